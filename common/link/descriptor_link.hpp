@@ -110,6 +110,8 @@ std::unique_ptr<Link> makeTcpServerLink(const LinkAddress& address);
 std::unique_ptr<Link> makeTcpLink(const LinkAddress& address);
 /// Listens on a UDP port (IPv4); datagrams follow each other in one stream. It never writes.
 std::unique_ptr<Link> makeUdpLink(const LinkAddress& address);
+/// A CAN interface (SocketCAN): frames as struct can_frame, one behind the other, whole ones only.
+std::unique_ptr<Link> makeCanLink(const LinkAddress& address);
 /// Reads a file once, from front to end; then it stays closed. It never writes.
 std::unique_ptr<Link> makeFileLink(const LinkAddress& address);
 

@@ -13,10 +13,10 @@ namespace tread {
 
 /// A link's address in parts.
 struct LinkAddress {
-  enum class Kind { kTty, kPty, kTcp, kTcpServer, kUdp, kFile };
+  enum class Kind { kTty, kPty, kTcp, kTcpServer, kUdp, kFile, kCan };
   Kind kind = Kind::kTty;
   std::string text;   ///< as configured
-  std::string path;   ///< tty, pty and file
+  std::string path;   ///< tty, pty and file; can: the interface
   std::string host;   ///< tcp: name or number; tcp-server, udp: number to listen on, empty = all
   uint16_t port = 0;  ///< tcp, tcp-server and udp
   int baud = 115200;  ///< tty [1/s]
@@ -55,7 +55,7 @@ class Link {
 };
 
 /// Opens a link from its address: tty:/dev/ttyUSB0?baud=115200 · tcp:host:port · udp:port (listens)
-/// · file:path (reads); for emulated devices pty:path (makes path) · tcp-server:[host:]port.
+/// · can:can0 (SocketCAN, struct can_frame of 16 bytes each) · file:path (reads); for emulated devices pty:path (makes path) · tcp-server:[host:]port.
 /** Throws std::invalid_argument for a malformed address (one clear line); a device that is absent
  * is not an error: the link is closed and reopen() tries again. */
 std::unique_ptr<Link> makeLink(const std::string& address);

@@ -190,6 +190,11 @@ LinkAddress parseLinkAddress(const std::string& text) {
     address.kind = LinkAddress::Kind::kPty;
     address.path = rest;
     if (rest.empty()) refuse(text, "the name is missing; write pty:path of a link to make");
+  } else if (kind == "can" && colon != std::string::npos) {
+    address.kind = LinkAddress::Kind::kCan;
+    address.path = rest;
+    if (rest.empty() || rest.size() > 15)
+      refuse(text, "the interface has 1 to 15 characters; write can:can0");
   } else if (kind == "file" && colon != std::string::npos) {
     address.kind = LinkAddress::Kind::kFile;
     address.path = rest;
@@ -197,7 +202,7 @@ LinkAddress parseLinkAddress(const std::string& text) {
   } else {
     refuse(text,
            "unknown kind; allowed tty:/dev/ttyUSB0?baud=115200, tcp:host:port, udp:port, "
-           "file:path, and for emulators pty:path, tcp-server:port");
+           "can:can0, file:path, and for emulators pty:path, tcp-server:port");
   }
   return address;
 }
@@ -221,6 +226,8 @@ std::unique_ptr<Link> makeLink(const std::string& address) {
       return makeUdpLink(parsed);
     case LinkAddress::Kind::kFile:
       return makeFileLink(parsed);
+    case LinkAddress::Kind::kCan:
+      return makeCanLink(parsed);
   }
   throw std::invalid_argument("link address \"" + address + "\": unknown kind");
 }

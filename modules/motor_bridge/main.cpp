@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <iostream>
+
 #include "common/bus/shell.hpp"
 #include "common/link/link.hpp"
 #include "modules/motor_bridge/motor_bridge_node.hpp"
+#include "modules/motor_bridge/real_time.hpp"
 
 int main(int argc, char** argv) {
   using namespace tread;
@@ -15,6 +18,8 @@ int main(int argc, char** argv) {
       const std::unique_ptr<Link> link = makeLink(config.address);
       requireFree(*link);
       MotorBridgeNode node(config, bus, *link);
+      for (const std::string& line : {node.notice(), becomeRealTime()})
+        if (!line.empty()) std::cerr << "tread-motor-bridge: " << line << std::endl;
       bus.run(node, stop);
     };
   };

@@ -344,7 +344,10 @@ void MotorBridgeNode::drive(int64_t utime) {
   output_ = bridge_.step(utime, controller_->report(utime));
   controller_->holdStop(output_.hold_device_stop);
   if (output_.release_device_stop) controller_->releaseStop(utime);
-  if (output_.send) controller_->command(output_.command, utime);
+  if (output_.send) {
+    controller_->command(output_.command, utime);
+    periods_.sent(utime);
+  }
   writeLink(controller_->poll(utime), utime);
 }
 
@@ -415,6 +418,17 @@ void MotorBridgeNode::reportCounters(int64_t utime) {
   }
   for (const auto& [name, count] : bridge_.counters()) health_.setCounter(name, count);
   for (const auto& [name, count] : controller_->counters()) health_.setCounter(name, count);
+  reportDevice();
+}
+
+void MotorBridgeNode::reportDevice() {
+  const CommandPeriods::Summary period = periods_.summary();
+  health_.setCounter("command period: least [us]", period.least);
+  health_.setCounter("command period: median [us]", period.median);
+  health_.setCounter("command period: longest [us]", period.longest);
+  const double temperature = controller_->telemetry().temperature;
+  if (std::isfinite(temperature))
+    health_.setCounter("controller's temperature [degC]", std::lround(temperature));
 }
 
 void MotorBridgeNode::shutdown(int64_t utime) {

@@ -19,6 +19,7 @@
 #include "common/messages/fence_messages.hpp"
 #include "common/vehicle/robot_description.hpp"
 #include "modules/motor_bridge/core/bridge.hpp"
+#include "modules/motor_bridge/core/command_periods.hpp"
 #include "modules/motor_bridge/core/motor_controller.hpp"
 
 namespace tread::motor {
@@ -66,6 +67,8 @@ class MotorBridgeNode : public Node {
   void shutdown(int64_t utime) override;
 
   const Bridge& bridge() const { return bridge_; }
+  /// What cannot be verified with this controller, one line; empty = nothing.
+  std::string notice() const { return controller_->notice(); }
 
  private:
   void listen();
@@ -78,12 +81,14 @@ class MotorBridgeNode : public Node {
   void publishStopping(int64_t utime);
   void reportHealth();
   void reportCounters(int64_t utime);
+  void reportDevice();
 
   MotorBridgeConfig config_;
   Bus& bus_;
   Link& link_;
   Bridge bridge_;
   std::unique_ptr<MotorController> controller_;
+  CommandPeriods periods_;
   HealthReporter health_;
   FenceExchange fence_exchange_;
   std::string holder_told_;

@@ -32,11 +32,16 @@
 #include "modules/learner/learner_node.hpp"
 #include "modules/lidar_driver/lidar_driver_node.hpp"
 #include "modules/mapping/mapping_node.hpp"
+#include "modules/motor_bridge/line_protocol/line_connection.hpp"
 #include "modules/motor_bridge/motor_bridge_node.hpp"
 #include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
+#include "modules/motor_bridge/vesc/vesc_connection.hpp"
 #include "modules/planner/planner_node.hpp"
 #include "modules/simulator/emulators/hokuyo/scip_emulator.hpp"
+#include "modules/simulator/emulators/line_protocol/mole_emulator.hpp"
 #include "modules/simulator/emulators/roboteq/roboteq_emulator.hpp"
+#include "modules/simulator/emulators/sabertooth/sabertooth_emulator.hpp"
+#include "modules/simulator/emulators/vesc/vesc_emulators.hpp"
 #include "modules/simulator/simulator_files.hpp"
 #include "modules/simulator/simulator_node.hpp"
 #include "tests/fuzz/reading.hpp"
@@ -225,8 +230,8 @@ void insBytes(const uint8_t* bytes, size_t size) {
   source.refusals();
 }
 
-void roboteqReply(const uint8_t* bytes, size_t size) {
-  motor::RoboteqConnection connection{motor::RoboteqConfig{}};
+/// What a motor controller says, in pieces; times between them are in the bytes, too.
+void hearController(motor::MotorController& connection, const uint8_t* bytes, size_t size) {
   connection.open();
   int64_t now = 1'000'000;
   for (size_t at = 0; at < size; at += 23) {
@@ -240,8 +245,45 @@ void roboteqReply(const uint8_t* bytes, size_t size) {
   }
 }
 
-void roboteqCommand(const uint8_t* bytes, size_t size) {
-  sim::RoboteqEmulator emulator;
+void roboteqReply(const uint8_t* bytes, size_t size) {
+  motor::RoboteqConnection connection{motor::RoboteqConfig{}};
+  hearController(connection, bytes, size);
+}
+
+void vescReply(const uint8_t* bytes, size_t size) {
+  motor::VescUart connection{motor::VescConfig{}};
+  hearController(connection, bytes, size);
+}
+
+void vescFrames(const uint8_t* bytes, size_t size) {
+  motor::VescCan connection{motor::VescConfig{}};
+  hearController(connection, bytes, size);
+}
+
+/// The controller that nobody has, as its description has it.
+void lineReply(const uint8_t* bytes, size_t size) {
+  static const motor::LineDescription kDescription = [] {
+    ConfigReader reader =
+        ConfigReader::fromFile(std::string(TREAD_SOURCE_DIR) + "/tests/data/controllers/mole.yaml");
+    return motor::readLineDescription(reader, DriveDescription{});
+  }();
+  motor::LineConnection connection{kDescription};
+  hearController(connection, bytes, size);
+}
+
+/// A description in the text, then what its own lines read.
+void lineDescription(const uint8_t* bytes, size_t size) {
+  configuration(bytes, size, [](ConfigReader& reader) {
+    const motor::LineDescription line = motor::readLineDescription(reader, DriveDescription{});
+    for (const auto& list : {line.command, line.stop, line.errors})
+      for (const motor::LineTemplate& text : list) text.match(text.format({{"left", 1e9}}));
+  });
+}
+
+/// Commands to an emulated controller: its output stays a power.
+template <class Emulator>
+void commandEmulator(const uint8_t* bytes, size_t size) {
+  Emulator emulator;
   emulator.receive(textOf(bytes, size), 1'000'000);
   for (int64_t now = 1'000'000; now < 3'000'000; now += 50'000) {
     for (const double power : emulator.output(now)) require(power >= -1.0 && power <= 1.0);
@@ -279,6 +321,9 @@ const std::map<std::string, Target>& targets() {
         {"key_file", keyFile},
         {"learner_files", learnerFiles},
         {"learner_state", learnerState},
+        {"line_command", commandEmulator<sim::MoleEmulator>},
+        {"line_description", lineDescription},
+        {"line_reply", lineReply},
         {"log", log},
         {"message", message},
         {"model_file", modelFile},
@@ -287,14 +332,19 @@ const std::map<std::string, Target>& targets() {
         {"pattern_file", patternFile},
         {"pattern_set_parts", patternSetParts},
         {"relay", relay},
-        {"roboteq_command", roboteqCommand},
+        {"roboteq_command", commandEmulator<sim::RoboteqEmulator>},
         {"roboteq_reply", roboteqReply},
         {"rule_memory", ruleMemory},
+        {"sabertooth_command", commandEmulator<sim::SabertoothEmulator>},
         {"scip", scip},
         {"seal", seal},
         {"truth_record", truthRecord},
         {"ublox", insBytes<ins::UbloxIns>},
         {"vectornav", insBytes<ins::VectornavIns>},
+        {"vesc_can_command", commandEmulator<sim::VescCanEmulator>},
+        {"vesc_command", commandEmulator<sim::VescUartEmulator>},
+        {"vesc_frames", vescFrames},
+        {"vesc_reply", vescReply},
         {"world", world},
     };
     addRangeFinderTargets(all);

@@ -130,6 +130,10 @@ class ScriptedRoboteq {
       reply("V=135:246:4730");
     } else if (line == "?S") {
       reply("S=100:-50");
+    } else if (line == "?T") {
+      reply("T=31:40:38");
+    } else if (line == "?FM") {
+      reply("FM=0:0");
     } else if (line == "?FF") {
       reply("FF=" + std::to_string(fault_flags));
     } else if (line == "?FS") {

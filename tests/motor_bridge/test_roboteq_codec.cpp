@@ -99,6 +99,14 @@ TEST_CASE("telemetry in SI units, left and right by the layout") {
   CHECK(telemetry.take(parseReply("S=50:-100"), layout, 5));
   CHECK(telemetry.speed_left == Approx(1.0));
   CHECK(telemetry.speed_right == Approx(0.5));
+  CHECK(telemetry.take(parseReply("T=31:45:38"), layout, 5));
+  CHECK(telemetry.temperature == 45.0);
+  CHECK(telemetry.take(parseReply("FM=2:9"), layout, 5));
+  CHECK(describeMotorFaults("left", telemetry.motor_flags_left) == "left motor: safety stop");
+  CHECK(describeMotorFaults("right", telemetry.motor_flags_right) == "right motor: stall");
+  CHECK(describeMotorFaults("left", 1 | 16 | 32).empty());
+  CHECK_FALSE(telemetry.take(parseReply("FM=2"), layout, 7));
+  CHECK_FALSE(telemetry.take(parseReply("FM=2:70000"), layout, 7));
   CHECK(telemetry.take(parseReply("FF=5"), layout, 6));
   CHECK(telemetry.fault_flags == 5);
   CHECK(telemetry.faults_read_at == 6);

@@ -9,6 +9,7 @@
 
 #include "common/geometry/se3.hpp"
 #include "modules/ins_driver/nmea/nmea_ins.hpp"
+#include "modules/motor_bridge/motor_bridge_node.hpp"
 #include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
 #include "modules/simulator/emulators/roboteq/roboteq_emulator.hpp"
 #include "modules/simulator/emulators/simulated_devices.hpp"
@@ -133,6 +134,31 @@ TEST_CASE(
   CHECK(lost);
   CHECK(loop.motor.ready());
   CHECK(loop.devices.motor().output(loop.now) == std::array<double, 2>{0.7, 0.7});
+}
+
+TEST_CASE("every emulated controller lets its driver drive the simulated robot, by its name") {
+  CHECK(emulatedDevices().controllers ==
+        std::vector<std::string>{"line_protocol", "roboteq", "sabertooth", "vesc", "vesc_can"});
+  for (const std::string& name : emulatedDevices().controllers) {
+    CAPTURE(name);
+    SimulatorSettings settings = Loop::settings();
+    settings.controller = name;
+    SimulatedDevices devices(Loop::world(), settings);
+    ConfigReader reader = ConfigReader::fromText(
+        "{controller: " + name + ", line_protocol: controllers/mole.yaml, sabertooth: {}}",
+        TREAD_SOURCE_DIR "/tests/data/bridge.yaml");
+    const auto motor = motor::readMotorController(reader, DriveDescription{})();
+    motor->open();
+    for (int64_t now = kStart; now < kStart + 5'000'000; now += kStep) {
+      devices.advanceTo(now);
+      devices.motor().receive(motor->poll(now), now);
+      motor->receive(devices.motor().transmit(now), now);
+      if (now % 20'000 == 0) motor->command({0.7, 0.7}, now);
+    }
+    CHECK(motor->ready());
+    CHECK(motor->report(kStart + 5'000'000).device_fault.empty());
+    CHECK(devices.robot().truth().distance > 2.0);
+  }
 }
 
 }  // namespace tread::sim

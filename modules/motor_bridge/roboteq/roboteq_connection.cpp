@@ -119,6 +119,9 @@ DeviceReport RoboteqConnection::reported(int64_t now) const {
     report.link_fault = "controller's fault flags are out of date";
   } else {
     report.device_fault = describeFaults(told.fault_flags, told.status_flags);
+    for (const std::string& motor : {describeMotorFaults("left", told.motor_flags_left),
+                                     describeMotorFaults("right", told.motor_flags_right)})
+      if (!motor.empty()) report.device_fault += (report.device_fault.empty() ? "" : "; ") + motor;
     report.stop_latched = session_.stopLatched();
   }
   return report;

@@ -54,6 +54,9 @@ constexpr FlagName kFaultNames[] = {{kOverheat, "overheat"},
 constexpr FlagName kStatusNames[] = {{kPowerStageOff, "power stage off"},
                                      {kStallDetected, "stall detected"}};
 
+constexpr FlagName kMotorNames[] = {
+    {kMotorStall, "stall"}, {kLoopError, "loop error"}, {kSafetyStop, "safety stop"}};
+
 /// The controller's emergency stop and its release are repeated this often, and released this long
 /// [us].
 constexpr int64_t kStopRepeat = 100'000;
@@ -70,6 +73,11 @@ std::pair<double, double> toSides(const std::vector<long>& values, const Roboteq
 /// fault".
 bool areFlags(const std::vector<long>& values) {
   return values.size() == 1 && values[0] >= 0 && values[0] <= 0xffff;
+}
+
+/// The same of both motors.
+bool areMotorFlags(const std::vector<long>& values) {
+  return values.size() >= 2 && areFlags({values[0]}) && areFlags({values[1]});
 }
 
 }  // namespace
@@ -131,6 +139,15 @@ std::string describeFaults(int32_t fault_flags, int32_t status_flags) {
   return words;
 }
 
+std::string describeMotorFaults(const std::string& side, int32_t motor_flags) {
+  std::string words;
+  for (const FlagName& fault : kMotorNames) {
+    if ((motor_flags & fault.flag) == 0) continue;
+    words += (words.empty() ? side + " motor: " : ", ") + std::string(fault.name);
+  }
+  return words;
+}
+
 bool RoboteqTelemetry::take(const RoboteqReply& reply, const RoboteqLayout& layout, int64_t now) {
   const std::vector<long>& values = reply.values;
   if (reply.key == "A" && values.size() >= 2) {
@@ -143,6 +160,12 @@ bool RoboteqTelemetry::take(const RoboteqReply& reply, const RoboteqLayout& layo
     const auto [left, right] = toSides(values, layout);
     speed_left = (layout.invert_left ? -left : left) / layout.rpm_per_mps;
     speed_right = (layout.invert_right ? -right : right) / layout.rpm_per_mps;
+  } else if (reply.key == "T" && !values.empty()) {
+    temperature = static_cast<double>(*std::max_element(values.begin(), values.end()));
+  } else if (reply.key == "FM" && areMotorFlags(values)) {
+    const auto [left, right] = toSides(values, layout);
+    motor_flags_left = static_cast<int32_t>(left);
+    motor_flags_right = static_cast<int32_t>(right);
   } else if (reply.key == "FF" && areFlags(values)) {
     fault_flags = static_cast<int32_t>(values[0]);
     faults_read_at = now;
@@ -157,7 +180,7 @@ bool RoboteqTelemetry::take(const RoboteqReply& reply, const RoboteqLayout& layo
 }
 
 RoboteqSession::RoboteqSession(const RoboteqConfig& config)
-    : config_(config), queries_{"FS", "A", "FS", "V"} {
+    : config_(config), queries_{"FS", "A", "FS", "V", "FS", "A", "FS", "T", "FS", "V", "FS", "FM"} {
   if (config_.layout.rpm_per_mps > 0.0) queries_.insert(queries_.end(), {"FS", "S"});
 }
 

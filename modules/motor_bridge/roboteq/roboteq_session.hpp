@@ -71,13 +71,25 @@ enum StatusFlag : int32_t {
 /// Status flags that stop the robot.
 inline constexpr int32_t kStoppingStatus = kPowerStageOff | kStallDetected;
 
+/// Flags of one motor (query ?FM) that stop the robot; the others are limits that it is at.
+enum MotorFlag : int32_t {
+  kMotorStall = 2,
+  kLoopError = 4,
+  kSafetyStop = 8,
+};
+
+/// Such flags in words, e.g. "left motor: stall"; empty if nothing stops the robot.
+std::string describeMotorFaults(const std::string& side, int32_t motor_flags);
+
 /// Flags in words, e.g. "controller: overheat, undervoltage"; empty if nothing stops the robot.
 std::string describeFaults(int32_t fault_flags, int32_t status_flags);
 
 /// What the controller last told about itself; nothing = unknown.
 struct RoboteqTelemetry : MotorTelemetry {
-  int32_t fault_flags = 0;                ///< ?FF
-  int32_t status_flags = 0;               ///< ?FS
+  int32_t fault_flags = 0;       ///< ?FF
+  int32_t status_flags = 0;      ///< ?FS
+  int32_t motor_flags_left = 0;  ///< ?FM
+  int32_t motor_flags_right = 0;
   std::optional<int64_t> faults_read_at;  ///< [us]
   std::optional<int64_t> status_read_at;  ///< [us]
 

@@ -49,6 +49,10 @@ const Table<MotorEmulator> kControllers{
      [](const Settings&, uint64_t) -> std::unique_ptr<MotorEmulator> {
        return std::make_unique<RoboteqEmulator>();
      }},
+    {"sabertooth",
+     [](const Settings&, uint64_t) -> std::unique_ptr<MotorEmulator> {
+       return std::make_unique<SabertoothEmulator>();
+     }},
     {"vesc",
      [](const Settings&, uint64_t) -> std::unique_ptr<MotorEmulator> {
        return std::make_unique<VescUartEmulator>();
