@@ -71,7 +71,7 @@ struct LineDescription {
   bool unframe(std::string& line) const;
 };
 
-/// Reads a description; throws ConfigError with file:line. config/robots/line_protocols has one.
+/// Reads a description; throws ConfigError with file:line. tests/data/controllers has two.
 /** Names of numbers: {left}, {right} in `command` (counts; full_command is full ahead), {watchdog}
  * in `start` and `queries`; in replies also battery_voltage, current_left, current_right,
  * speed_left, speed_right, temperature, faults. {left} is what robot.yaml's channel 1 is. */
