@@ -25,9 +25,9 @@ std::optional<Eigen::Quaterniond> orientation(const ins_t& ins) {
 }
 
 /// Ten seconds at 100 Hz; more than that cannot be waiting for its turn.
-constexpr size_t kMaxWaiting = 1000;
+constexpr size_t kMaxWaitingPoses = 1000;
 /// No clock of the robot is this far ahead of another [us].
-constexpr int64_t kMaxAheadUs = 1'000'000;
+constexpr int64_t kMaxPoseAheadUs = 1'000'000;
 
 }  // namespace
 
@@ -70,12 +70,12 @@ Tilt tilt(const ins_t& ins) {
 }
 
 void InsQueue::add(const ins_t& ins, int64_t now) {
-  if (ins.utime <= 0 || ins.utime > now + kMaxAheadUs) {
+  if (ins.utime <= 0 || ins.utime > now + kMaxPoseAheadUs) {
     ++invalid_;
     return;
   }
   if (begin_ == INT64_MIN) begin_ = ins.utime;
-  if (ins.utime <= settled_ || waiting_.size() >= kMaxWaiting) {
+  if (ins.utime <= settled_ || waiting_.size() >= kMaxWaitingPoses) {
     ++too_late_;
     return;
   }

@@ -32,7 +32,7 @@ Eigen::MatrixXd perChannel(const Observations& data, const std::vector<Variable>
 
 constexpr int kCells = 9;
 constexpr size_t kLeastRows = 12;
-constexpr size_t kLeastBlocks = 4;
+constexpr size_t kLeastResidualBlocks = 4;
 constexpr double kMarked = 3.9;  // normal quantile: 5 % over some 500 cells
 
 /// Cells of equal numbers of rows over one variable.
@@ -57,7 +57,7 @@ AtlasCell cellOf(const Observations& data, const std::vector<size_t>& members,
     block.second += 1.0;
     cell.mean += residuals[static_cast<Eigen::Index>(i)];
   }
-  if (members.size() < kLeastRows || blocks.size() < kLeastBlocks) {
+  if (members.size() < kLeastRows || blocks.size() < kLeastResidualBlocks) {
     cell.low = -std::numeric_limits<double>::infinity();
     cell.high = std::numeric_limits<double>::infinity();
     if (!members.empty()) cell.mean /= static_cast<double>(members.size());
@@ -96,7 +96,7 @@ std::vector<AtlasCell> cellsOf(const Observations& data, const std::vector<size_
 }
 
 /// Variables that a person looks at; the others are combinations of them.
-bool isShown(const std::string& variable) {
+bool isShownVariable(const std::string& variable) {
   static const std::set<std::string> kShown{"v",           "yaw rate",           "v x yaw rate",
                                             "change of v", "change of yaw rate", "pitch",
                                             "roll",        "elapsed time"};
@@ -185,7 +185,7 @@ void addCurves(const Observations& data, const AtlasRows& of, Channel channel,
   for (const Variable& variable : of.variables) {
     const bool is_rest =
         placeAmong(unexplained, channelName(channel), variable.name) < unexplained.size();
-    if (!isShown(variable.name) && !is_rest) continue;
+    if (!isShownVariable(variable.name) && !is_rest) continue;
     const std::vector<double> edges = edgesOf(pick(variable.values, members));
     if (edges.size() < 3) continue;
     curves.push_back({channelName(channel), channelUnit(channel), variable.name, variable.unit,

@@ -17,7 +17,7 @@ constexpr int kMostRounds = 8;    // with new Jacobians
 constexpr double kEnough = 0.02;  // [nats] a step that gains less ends a fit
 constexpr double kRoughlyEnough = 0.5;
 constexpr double kMostDamping = 1e6;  // beyond it no step is left
-constexpr double kShareOfTypical = 0.02;
+constexpr double kStepOfTypical = 0.02;
 
 double& valueOf(ModelDocument& model, const std::string& path) {
   double* value = findParameter(model, path);
@@ -150,7 +150,7 @@ FreeParameter freeParameter(const ModelDocument& model, const std::string& path)
   } else {
     free.step = known->role == ParameterRole::kShape && known->unit == "s"
                     ? 1.0
-                    : kShareOfTypical * std::abs(known->typical);
+                    : kStepOfTypical * std::abs(known->typical);
   }
   if (const auto bounds = plausibleBounds(model, path)) {
     free.min = bounds->min;

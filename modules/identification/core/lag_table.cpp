@@ -12,7 +12,7 @@ constexpr double kShortest = 0.4;    // [s] of an increment
 constexpr double kLongest = 1.2;     // [s]
 constexpr double kGyroGap = 0.5;     // [s] over which the gyro is not interpolated
 constexpr double kEncoderGap = 0.5;  // [s] over which encoders and currents are held
-constexpr size_t kFewest = 12;       // increments of a match
+constexpr size_t kFewestIncrements = 12;       // increments of a match
 
 template <class Rate>
 RunningSums commandSums(const Drive& drive, Rate rate) {
@@ -165,7 +165,7 @@ std::optional<LagMatch> LagTable::match(size_t lag, size_t first, size_t last) c
     y += rates_[i];
   }
   const auto rows = static_cast<size_t>(n);
-  if (rows < kFewest || 3 * rows < last - first) return std::nullopt;
+  if (rows < kFewestIncrements || 3 * rows < last - first) return std::nullopt;
   x /= n;
   y /= n;
   double xx = 0.0, yy = 0.0, xy = 0.0;

@@ -10,7 +10,7 @@ namespace tread::gap {
 namespace {
 
 constexpr double kWindow = 15.0;       // [s] of increments that are judged together
-constexpr double kClear = 0.5;         // |correlation| with which a window has a sign
+constexpr double kWindowClear = 0.5;         // |correlation| with which a window has a sign
 constexpr double kLeastSpread = 0.05;  // [rad/s] or [m/s] RMS of what follows: else it is noise
 constexpr double kAlike = 3.0;         // times the usual slope, or a part of it
 constexpr double kVeryClear = 0.8;     // with which it needs no second one
@@ -111,7 +111,7 @@ void checkSign(const Followed& followed, const std::vector<Window>& windows, Dia
   for (const Window& window : windows) {
     matches.push_back(followed.table.match(lag, window.first, window.last));
     std::optional<LagMatch>& match = matches.back();
-    if (match && (std::abs(match->correlation) < kClear || match->spread < kLeastSpread ||
+    if (match && (std::abs(match->correlation) < kWindowClear || match->spread < kLeastSpread ||
                   match->leading_spread < followed.least_leading))
       match.reset();
     if (match) slopes.push_back(std::abs(match->slope));

@@ -19,7 +19,7 @@ constexpr size_t kMostInputs = 3;      // of one feature
 constexpr double kWidth = 1.5;         // deviations of an input within which a function is smooth
 constexpr double kFarthest = 3.0;      // deviations; what is further out counts as that
 constexpr double kRidge = 1.0;         // of each feature's own information
-constexpr double kLeastUnique = 4e-4;  // share of its information that is its own, as in ScoreTest
+constexpr double kLeastUniqueShare = 4e-4;  // share of its information that is its own, as in ScoreTest
 constexpr int kDraws = 9999;           // a few of them must lie beyond the level of one channel
 
 /// Inputs in units of their deviation, those of both signs also without their sign.
@@ -163,7 +163,7 @@ Pulls pullsOf(const Fitter& fitter, const FitState& state, const Inputs& inputs,
   pulls.blocks -= rows.free_pulls * imitated;
   for (Eigen::Index f = 0; f < whole.size(); ++f) {
     const double own = pulls.overlap(f, f);
-    const double unit = own > kLeastUnique * whole[f] ? 1.0 / std::sqrt(own) : 0.0;
+    const double unit = own > kLeastUniqueShare * whole[f] ? 1.0 / std::sqrt(own) : 0.0;
     pulls.blocks.col(f) *= unit;
     pulls.values.col(f) *= unit;
     pulls.overlap.col(f) *= unit;

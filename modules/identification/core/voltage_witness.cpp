@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kFactor = 0.7;     // of an effect, one factor on each kind of motion in a block
 constexpr double kChanges = 0.05;   // of it, in which the factors of the blocks differ
-constexpr size_t kLeastBlocks = 8;  // with voltage
+constexpr size_t kLeastVoltageBlocks = 8;  // with voltage
 
 /// Sums over one block.
 struct BlockMotion {
@@ -127,7 +127,7 @@ std::map<std::string, VoltageWitness> voltageWitnesses(const Fitter& fitter, con
   std::map<std::string, VoltageWitness> witnesses;
   for (size_t e = 0; e < asked.size(); ++e) {
     const auto blocks = blockMotions(bins, drives, e);
-    if (blocks.size() < kLeastBlocks || !isFactorOverTime(blocks)) continue;
+    if (blocks.size() < kLeastVoltageBlocks || !isFactorOverTime(blocks)) continue;
     const BlockEstimate fall = estimateOver(
         voltageGrams(blocks, drives.size()),
         [](const Grams& grams) { return Eigen::VectorXd::Constant(1, fallOf(grams)); });

@@ -17,7 +17,7 @@ constexpr size_t kFewest = 6;
 constexpr double kEnough = 12.0;
 constexpr double kMost = 300.0;
 /// Smaller changes are not worth a message: this share, and 1 mm.
-constexpr double kNoticeable = 0.15;
+constexpr double kNoticeableShare = 0.15;
 
 }  // namespace
 
@@ -46,7 +46,7 @@ std::vector<CellIndex> RoughnessMap::take(const std::vector<GroundPoint>& points
     takeProfile(points, first, end, patch);
     if (patch.degrees < kEnough) continue;
     const Cell cost = costOf(std::sqrt(std::max(0.0, patch.squares / patch.degrees)));
-    const bool same = std::abs(cost - patch.cost) <= std::max(1.0, kNoticeable * patch.cost);
+    const bool same = std::abs(cost - patch.cost) <= std::max(1.0, kNoticeableShare * patch.cost);
     if (same && patch.cost != kFree) continue;
     patch.cost = cost;
     changed.push_back({index.x * kPatchCells, index.y * kPatchCells});

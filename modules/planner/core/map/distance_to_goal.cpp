@@ -61,8 +61,10 @@ RimmedCells cellsFor(const ClearanceSource& map, const Eigen::Vector2d& p_goal,
   return cells;
 }
 
+}  // namespace
+
 /// Cells waiting to be settled, in buckets of nearly equal length.
-class Front {
+class MarchFront {
  public:
   void add(size_t cell, float length) {
     const size_t wanted = std::max(current_, static_cast<size_t>(length * (1.0F / kBucket)));
@@ -89,8 +91,6 @@ class Front {
   size_t waiting_ = 0;
 };
 
-}  // namespace
-
 /// One fast marching from the goal over the cells that were laid out and painted.
 class DistanceToGoal::March {
  public:
@@ -110,7 +110,7 @@ class DistanceToGoal::March {
   DistanceToGoal& of_;
   const RimmedCells& cells_;
   size_t stride_;
-  Front front_;
+  MarchFront front_;
   bool touched_border_ = false;
 };
 

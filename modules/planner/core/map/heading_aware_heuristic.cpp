@@ -5,7 +5,7 @@
 namespace tread::planner {
 namespace {
 
-constexpr float kNever = std::numeric_limits<float>::infinity();
+constexpr float kUnreachable = std::numeric_limits<float>::infinity();
 constexpr double kBin = 2.0 * kPi / HeadingAwareHeuristic::kHeadings;
 /// A pattern that goes less than this per radian of its turn turns on the spot [m/rad].
 constexpr double kOnTheSpot = 0.05;
@@ -148,7 +148,7 @@ HeadingAwareHeuristic::HeadingAwareHeuristic(FreeConfigurations& configurations,
   if (!(least_move_ > 0.0F) || configurations.count() == 0) return;
   start_column_ = std::clamp(configurations.column(T_map_start.x), 0, configurations.width() - 1);
   start_row_ = std::clamp(configurations.row(T_map_start.y), 0, configurations.height() - 1);
-  cost_.assign(configurations.count() * kHeadings, kNever);
+  cost_.assign(configurations.count() * kHeadings, kUnreachable);
   Front front(least_move_);
   seed(goal, front);
   fill(T_map_start, beyond, front, interruption);
@@ -166,10 +166,10 @@ void HeadingAwareHeuristic::prepareMoves(const MotionRates& rates) {
       moves_[heading].push_back(move);
     }
   }
-  least_move_ = kNever;
+  least_move_ = kUnreachable;
   for (const auto& moves : moves_)
     for (const Move& move : moves) least_move_ = std::min(least_move_, move.cost);
-  double metre = kNever;
+  double metre = kUnreachable;
   for (const MotionRates::Rate& rate : rates.along)
     if (rate.any) metre = std::min(metre, rate.by_way.per_metre);
   square_cost_ = std::isfinite(metre) ? static_cast<float>(metre * configurations_->size()) : 0.0F;
@@ -228,7 +228,7 @@ void HeadingAwareHeuristic::fill(const Pose2& start, double beyond, Front& front
   const size_t own = configurations_->number(start_column_, start_row_) * kHeadings +
                      static_cast<size_t>(binOf(static_cast<float>(wrapAngle(start.yaw))));
   start_ = own;
-  float stop_at = kNever;
+  float stop_at = kUnreachable;
   for (; front.current < front.buckets.size(); ++front.current) {
     const float now = static_cast<float>(front.current) / front.per_width;
     if (now > stop_at) break;
