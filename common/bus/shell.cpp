@@ -40,7 +40,7 @@ void describe(CLI::App& app, Arguments& arguments) {
   app.add_option("--lcm-url", arguments.lcm_url,
                  "LCM provider, for instance udpm://239.255.76.67:7667?ttl=0");
   addKeyOption(app, arguments.key);
-  app.add_flag("--check", arguments.check, "only read the configuration and the key");
+  app.add_flag("--check", arguments.check, "only read the configuration and the key, and print what holds, defaults included");
   app.add_flag("--with-parent", arguments.with_parent, "end when the starting process is gone");
 }
 
@@ -78,7 +78,11 @@ int runShell(int argc, char** argv, const std::string& name, const std::string& 
             : ConfigReader::fromFile(arguments.config_path, arguments.overrides);
     const ShellBody body = prepare(reader);
     BusAccess access{arguments.lcm_url, hostSealer(arguments.key)};
-    if (!arguments.check) body(std::move(access), stop);
+    if (arguments.check) {
+      std::cout << reader.effective();
+    } else {
+      body(std::move(access), stop);
+    }
   } catch (const std::exception& error) {
     std::cerr << name << ": " << error.what() << std::endl;
     return 1;

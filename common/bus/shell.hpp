@@ -24,10 +24,10 @@ const std::atomic<bool>& stopRequest(pid_t parent);
 
 /// The main function of a process.
 /** Command line: --config FILE, --set KEY=VALUE (again and again), --lcm-url URL, --key FILE (only
- * sealed messages), --check (only reads the configuration and the key), --with-parent (ends as by
- * SIGINT when the process that started it is gone: a supervisor that is killed leaves nothing
- * driving), --help. stopRequest() becomes `stop`. Where something throws, one clear line and code
- * 1; usage errors end with code 2. */
+ * sealed messages), --check (only reads the configuration and the key, and prints what holds,
+ * defaults included), --with-parent (ends as by SIGINT when the process that started it is gone: a
+ * supervisor that is killed leaves nothing driving), --help. stopRequest() becomes `stop`. Where
+ * something throws, one clear line and code 1; usage errors end with code 2. */
 int runShell(int argc, char** argv, const std::string& name, const std::string& description,
              const ShellPreparation& prepare);
 

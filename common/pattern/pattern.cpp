@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <map>
 #include <stdexcept>
 
 namespace tread {
@@ -138,6 +140,34 @@ std::set<std::string> connectedClasses(const PatternSet& set, std::set<std::stri
     }
   }
   return found;
+}
+
+std::vector<double> restToRestLengths(const PatternSet& set) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  std::map<std::string, double> from_rest;
+  for (const MotionClass& each : set.content().classes)
+    from_rest[each.name] = each.standing() ? 0.0 : kFar;
+  std::map<std::string, double> to_rest = from_rest;
+  const auto shorten = [](double& length, double other) {
+    const bool shorter = other < length;
+    length = std::min(length, other);
+    return shorter;
+  };
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const MotionPattern& pattern : set.patterns()) {
+      const double length = pattern.pathLength();
+      double& after = from_rest[pattern.exit_class];
+      double& before = to_rest[pattern.entry_class];
+      changed |= shorten(after, from_rest[pattern.entry_class] + length);
+      changed |= shorten(before, to_rest[pattern.exit_class] + length);
+    }
+  }
+  std::vector<double> lengths;
+  for (const MotionPattern& pattern : set.patterns())
+    lengths.push_back(from_rest[pattern.entry_class] + pattern.pathLength() +
+                      to_rest[pattern.exit_class]);
+  return lengths;
 }
 
 }  // namespace tread

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -38,6 +39,11 @@ struct MotionClass {
   std::string name;     ///< for instance rest, cruise, reverse
   Twist2 twist;         ///< v_body of the steady motion
   TrackCommand steady;  ///< the command that keeps it
+
+  /// Whether the vehicle stands in it: less than 0.02 m/s and 0.02 rad/s.
+  bool standing() const {
+    return std::hypot(twist.v_x, twist.v_y) < 0.02 && std::abs(twist.omega) < 0.02;
+  }
 };
 
 /// Upper triangle of a planar pose covariance: xx xy xyaw yy yyaw yawyaw [m2, m rad, rad2]; NaN =
@@ -121,6 +127,10 @@ class PatternSet {
 /// which such chains reach them.
 std::set<std::string> connectedClasses(const PatternSet& set, std::set<std::string> found,
                                        bool backwards);
+
+/// For each pattern, in the order of the set: the shortest way from standstill through it to
+/// standstill [m]; infinite where no chain leads there.
+std::vector<double> restToRestLengths(const PatternSet& set);
 
 /// What PatternSet::make allows; the file reader tells people the same limits.
 struct PatternLimits {

@@ -70,8 +70,10 @@ InsInput ModelIns::sensed(int64_t utime, const InsInput& truth) {
   return input;
 }
 
-ModelVehicle::ModelVehicle(const ModelDocument& document, std::optional<uint64_t> noise_seed)
+ModelVehicle::ModelVehicle(const ModelDocument& document, std::optional<uint64_t> noise_seed,
+                           double top_speed)
     : model_(document.vehicle),
+      full_command_(model_.kind == CommandKind::kTrackSpeed ? top_speed : 1.0),
       kernel_(document.vehicle, EntryState{}),
       mean_(document.vehicle, EntryState{}),
       known_(document.envelope),
@@ -84,7 +86,8 @@ ModelVehicle::ModelVehicle(const ModelDocument& document, std::optional<uint64_t
 void ModelVehicle::step(const MotorPower& power, const Ground& ground, double dt) {
   if (noise_ && steps_ % kStepsPerNoise == 0) varyNoise();
   ++steps_;
-  const MotorPower clamped{std::clamp(power.left, -1.0, 1.0), std::clamp(power.right, -1.0, 1.0)};
+  const TrackCommand command{std::clamp(power.left, -full_command_, full_command_),
+                             std::clamp(power.right, -full_command_, full_command_)};
   DriveContext context;
   context.session_time = session_time_;
   context.battery_drop = 1.0 - battery_.voltage / drive_.full_voltage;
@@ -92,13 +95,13 @@ void ModelVehicle::step(const MotorPower& power, const Ground& ground, double dt
   context.pitch = -std::atan(ground.slope_along);
   context.roll = std::atan(ground.slope_across / std::hypot(1.0, ground.slope_along));
   const Pose2 T_start_before = kernel_.pose();
-  kernel_.step({clamped.left, clamped.right}, dt, context);
+  kernel_.step(command, dt, context);
   session_time_ += dt;
   const Pose2 moved = between(T_start_before, kernel_.pose());
   v_body_ = {moved.x / dt, moved.y / dt, moved.yaw / dt};
-  mean_.step({clamped.left, clamped.right}, dt, context);
+  mean_.step(command, dt, context);
   asked_.include(mean_.twist());
-  drawCurrent(clamped, dt);
+  drawCurrent(command, dt);
 }
 
 void ModelVehicle::varyNoise() {
@@ -107,13 +110,15 @@ void ModelVehicle::varyNoise() {
   kernel_.setNoise({now.forward, now.yaw, now.heading});
 }
 
-void ModelVehicle::drawCurrent(const MotorPower& power, double dt) {
+void ModelVehicle::drawCurrent(const TrackCommand& command, double dt) {
   const TrackCommand speeds = kernel_.trackSpeeds();
+  const TrackCommand power{command.left / full_command_, command.right / full_command_};
   left_ = {power.left, speeds.left, kFullCurrent * power.left};
   right_ = {power.right, speeds.right, kFullCurrent * power.right};
   stepBattery(drive_, left_, right_, dt, battery_);
   // What the tracks do not get onto the ground is load; what the drive does not give is none.
-  const double per_speed = kFullCurrent / model_.full_speed;
+  const double per_speed =
+      kFullCurrent / (takesSpeeds() ? full_command_ : model_.full_speed);
   const double forward = model_.forward_gain * (speeds.left + speeds.right) / 2.0 - v_body_.v_x;
   const double turning =
       model_.yaw_gain * (speeds.right - speeds.left) / 2.0 - v_body_.omega * model_.gauge / 2.0;
@@ -136,7 +141,8 @@ RobotParts partsOf(const ModelDocument& document, const RobotSettings& settings)
   RobotParts parts;
   std::optional<uint64_t> noise_seed;
   if (settings.motion_noise) noise_seed = streamSeed(settings.seed, kModelStream);
-  parts.vehicle = std::make_unique<ModelVehicle>(document, noise_seed);
+  parts.vehicle = std::make_unique<ModelVehicle>(document, noise_seed,
+                                                 settings.wiring.top_speed.value_or(1.0));
   if (!isPerfect(document.measurement))
     parts.ins_errors = std::make_unique<ModelIns>(document.measurement, settings.start_utime);
   return parts;

@@ -38,7 +38,7 @@ class ModelIns final : public InsErrors {
 };
 
 /// A vehicle that does what a model file says: how a named effect is seen at work.
-/** The kernel is stepped with the simulator; it hears power, session time, attitude and the fall of
+/** The kernel is stepped with the simulator; it hears power or track speeds, session time, attitude and the fall of
  * the battery's voltage. The world's surfaces do not touch it: a model file is one ground. Its
  * spread varies along the drive as the dynamic vehicle's does. The battery is the dynamic
  * vehicle's, loaded by the current that this one draws at the same power straight ahead on grass.
@@ -46,9 +46,11 @@ class ModelIns final : public InsErrors {
  * the ground takes of it. */
 class ModelVehicle final : public Plant {
  public:
-  /// `noise_seed`: of the spread; without it every execution is the mean. The model takes power.
-  ModelVehicle(const ModelDocument& document, std::optional<uint64_t> noise_seed);
+  /// `noise_seed`: of the spread; without it every execution is the mean. `top_speed` [m/s]: for a
+  /// model of track speeds, the largest that it is asked for.
+  ModelVehicle(const ModelDocument& document, std::optional<uint64_t> noise_seed, double top_speed);
 
+  bool takesSpeeds() const override { return model_.kind == CommandKind::kTrackSpeed; }
   void step(const MotorPower& power, const Ground& ground, double dt) override;
 
   /// Leads from pose to pose of the kernel in steps of constant velocity in the map.
@@ -67,9 +69,10 @@ class ModelVehicle final : public Plant {
 
  private:
   void varyNoise();
-  void drawCurrent(const MotorPower& power, double dt);
+  void drawCurrent(const TrackCommand& command, double dt);
 
   VehicleModel model_;
+  double full_command_;  ///< power 1, or the top speed [m/s]
   VehicleKernel kernel_;
   VehicleKernel mean_;  ///< the same without noise
   std::optional<Envelope> known_;

@@ -22,8 +22,8 @@ void readAddress(ConfigReader& reader, const std::string& key, std::string& addr
   }
 }
 
-/// The motor controller of the simulated robot takes power and nothing else.
-std::optional<ModelDocument> readModel(ConfigReader& reader) {
+/// `holds_speeds`: the motor controller of the simulated robot does, else it gives power.
+std::optional<ModelDocument> readModel(ConfigReader& reader, bool holds_speeds) {
   std::string path = "none";
   reader.text("model", path);
   if (path == "none") return std::nullopt;
@@ -33,10 +33,11 @@ std::optional<ModelDocument> readModel(ConfigReader& reader) {
                        "is of the dynamic vehicle, model: of the vehicle in its place; "
                        "give one of them");
   ModelDocument document = readModelDocument(path);
-  if (document.vehicle.kind != CommandKind::kPower)
+  if (document.vehicle.kind == CommandKind::kTrackSpeed && !holds_speeds)
     throw reader.error("model", path +
-                                    " takes track speeds, the simulated robot's motor line "
-                                    "only power; give a model of kind power");
+                                    " takes track speeds, the simulated robot's controller gives "
+                                    "power; give a model of kind power, or drive: kind: "
+                                    "track_speed in robot.yaml");
   return document;
 }
 
@@ -65,8 +66,8 @@ SimulatorConfig readSimulatorConfig(ConfigReader& reader) {
   reader.integer("seed", seed, {0.0, 1e15}, "1");
   robot.seed = static_cast<uint64_t>(seed);
   reader.flag("motion_noise", robot.motion_noise);
-  config.model = readModel(reader);
   readSimulatedRobot(reader, robot);
+  config.model = readModel(reader, robot.wiring.top_speed.has_value());
   readVehicle(reader.section("vehicle"), robot.vehicle);
   const EmulatedDevices known = emulatedDevices();
   reader.choice("controller", config.settings.controller, known.controllers);

@@ -33,6 +33,9 @@ const std::string kHidden = kPlain +
                             "  centrifugal_drift: {time: 0.15}\n"
                             "measurement:\n  lever_arm_x: {offset: 0.3}\n"
                             "  ins_latency: {latency: 0.2}\n";
+const std::string kOfSpeeds =
+    "name: m\nkind: track_speed\ngauge: 0.6\nlag: 0.15\ndelay: 0.05\nyaw_gain: 0.8\n";
+constexpr double kTopSpeed = 1.4;  // [m/s] of a controller that holds speeds
 const std::string kEverythingOff = kPlain +
                                    "effects:\n  turn_power_limit: {inverse_limit: 0}\n"
                                    "  centrifugal_drift: {time: 0}\n"
@@ -40,7 +43,7 @@ const std::string kEverythingOff = kPlain +
                                    "  ins_latency: {latency: 0}\n";
 
 /// Instruments without noise: what is left is what they can resolve.
-SimulatorSettings settingsOf(bool motion_noise = false) {
+SimulatorSettings settingsOf(bool motion_noise, std::optional<double> top_speed) {
   SimulatorSettings settings;
   settings.robot = shippedRobot();
   InsParameters& ins = settings.robot.ins;
@@ -49,6 +52,7 @@ SimulatorSettings settingsOf(bool motion_noise = false) {
   settings.robot.start_utime = kStart;
   settings.robot.start = {2.0, 3.0, 0.5};
   settings.robot.motion_noise = motion_noise;
+  settings.robot.wiring.top_speed = top_speed;
   return settings;
 }
 
@@ -72,8 +76,9 @@ std::array<int, 2> commandAt(int64_t since_start) {
 /// A simulator that runs a model on a virtual bus; a test at the drivers' ends of its lines.
 class Bench {
  public:
-  explicit Bench(const std::string& model, bool motion_noise = false, WorldDescription world = {})
-      : settings_(settingsOf(motion_noise)),
+  explicit Bench(const std::string& model, bool motion_noise = false, WorldDescription world = {},
+                 std::optional<double> top_speed = {})
+      : settings_(settingsOf(motion_noise, top_speed)),
         document_(parseModelDocument(model, "m.yaml")),
         bus_(1),
         devices_(std::make_shared<const World>(std::move(world)), settings_,
@@ -114,8 +119,11 @@ class Bench {
   std::vector<MotionSample> predicted(const std::string& model) const {
     const ModelDocument document = parseModelDocument(model, "m.yaml");
     std::vector<MotionSample> motion{{0.0, settings_.robot.start, 0.0}};
+    std::vector<TrackCommand> commands = powers;
+    const double full = settings_.robot.wiring.top_speed.value_or(1.0);
+    for (TrackCommand& each : commands) each = {full * each.left, full * each.right};
     const std::vector<Pose2> poses =
-        simulate(document.vehicle, powers, 1e-6 * kSlice, EntryState{});
+        simulate(document.vehicle, commands, 1e-6 * kSlice, EntryState{});
     for (const Pose2& T_start_body : poses) {
       const Pose2 T_map_body = settings_.robot.start * T_start_body;
       const double turned = T_map_body.yaw - motion.back().T_map_body.yaw;
@@ -188,6 +196,16 @@ TEST_CASE("the INS of a simulated model file says what simulate() and measure() 
   const std::array<double, 3> plain = bench.apartFrom(bench.predicted(kPlain));
   CHECK(plain[0] > 0.5);
   CHECK(plain[1] > 0.5);
+}
+
+TEST_CASE("a model of track speeds hears the speeds that its controller holds") {
+  Bench bench(kOfSpeeds, false, {}, kTopSpeed);
+  bench.drive(14.0);
+  REQUIRE(bench.estimates.size() > 650);
+  const std::array<double, 3> apart = bench.apartFrom(bench.predicted(kOfSpeeds));
+  CAPTURE(apart[0], apart[1], apart[2]);
+  CHECK(apart[0] < 0.003);
+  CHECK(apart[1] < 0.002);
 }
 
 TEST_CASE("effects that are switched off in a model file change no byte of the simulation") {
@@ -309,7 +327,7 @@ TEST_CASE("a model's vehicle leans with the ground and empties its battery") {
 TEST_CASE(
     "what the ground takes of the speed draws current, what the drive does not give does not") {
   const auto currentOf = [](const std::string& effects) {
-    ModelVehicle vehicle(parseModelDocument(kPlain + effects, "m.yaml"), std::nullopt);
+    ModelVehicle vehicle(parseModelDocument(kPlain + effects, "m.yaml"), std::nullopt, 1.0);
     for (int i = 0; i < 3000; ++i) vehicle.step({0.8, 0.8}, {}, 0.001);
     CHECK(vehicle.left().current == Approx(vehicle.right().current));
     return vehicle.left().current;
@@ -322,7 +340,7 @@ TEST_CASE(
 
 TEST_CASE("the track that is held back draws more than the other one") {
   ModelVehicle vehicle(parseModelDocument(kPlain + "effects:\n  yaw_pull: {pull: 0.2}\n", "m.yaml"),
-                       std::nullopt);
+                       std::nullopt, 1.0);
   for (int i = 0; i < 3000; ++i) vehicle.step({0.8, 0.8}, {}, 0.001);
   CHECK(vehicle.left().current > vehicle.right().current + 10.0);  // it pulls to the left
 }

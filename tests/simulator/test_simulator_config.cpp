@@ -60,7 +60,7 @@ TEST_CASE("a simulator's model is a file beside its configuration, or none") {
 TEST_CASE("a model that the simulator cannot drive is refused in one line") {
   using Catch::Contains;
   CHECK_THAT(refusalOf("model: ../models/warthog_nominal.yaml\n"),
-             Contains("test.yaml:4") && Contains("track speeds") && Contains("only power"));
+             Contains("test.yaml:4") && Contains("track speeds") && Contains("gives power"));
   CHECK_THAT(refusalOf("model: nowhere.yaml\n"), Contains("nowhere.yaml: cannot be read"));
   CHECK_THAT(refusalOf("model: ../models/teodor_grass.yaml\nvehicle: {mass: 300}\n"),
              Contains("test.yaml:5") && Contains("one of them"));

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <catch2/catch.hpp>
 
+#include "modules/simulator/core/speed_loop.hpp"
 #include "modules/simulator/core/vehicle.hpp"
 #include "tests/simulator/shipped_robot.hpp"
 
@@ -34,6 +37,31 @@ TEST_CASE("without power on level ground the vehicle does not move at all") {
     CHECK(moved.y == 0.0);
     CHECK(moved.yaw == 0.0);
   }
+}
+
+TEST_CASE("a controller that holds track speeds holds them on every ground") {
+  for (const SurfaceParameters& surface : builtInSurfaces()) {
+    TrackedVehicle vehicle{shippedVehicle()};
+    std::array<SpeedLoop, 2> loops{SpeedLoop(1.1), SpeedLoop(1.1)};
+    const std::array<double, 2> wanted{0.5, 0.3};
+    double fastest = 0.0;
+    for (int i = 0; i < 4000; ++i) {
+      vehicle.step({loops[0].step(wanted[0], vehicle.left().speed, kVehicleStep),
+                    loops[1].step(wanted[1], vehicle.right().speed, kVehicleStep)},
+                   levelGround(surface), kVehicleStep);
+      fastest = std::max(fastest, vehicle.left().speed);
+    }
+    CAPTURE(surface.name, vehicle.left().speed, vehicle.right().speed, fastest);
+    CHECK(vehicle.left().speed == Approx(wanted[0]).margin(0.01));
+    CHECK(vehicle.right().speed == Approx(wanted[1]).margin(0.01));
+    CHECK(fastest < 1.25 * wanted[0]);
+  }
+}
+
+TEST_CASE("a speed that cannot be reached winds nothing up") {
+  SpeedLoop loop(1.0);
+  for (int i = 0; i < 10000; ++i) loop.step(5.0, 1.0, kVehicleStep);
+  CHECK(loop.step(0.5, 1.0, kVehicleStep) < 0.1);
 }
 
 TEST_CASE("after driving the vehicle comes to rest within a second and stays there") {

@@ -17,10 +17,12 @@
 namespace tread::sim {
 
 /// How the motors hang on the channels of their controller.
+/** The controller gives power, or holds the speed of each track. */
 struct MotorWiring {
   int left_channel = 1;  ///< 1 or 2; the right track has the other one
   bool invert_left = false;
   bool invert_right = false;
+  std::optional<double> top_speed;  ///< [m/s] held at full command; none: the controller gives power
 };
 
 /// How a simulated robot is built.

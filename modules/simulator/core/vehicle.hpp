@@ -129,11 +129,14 @@ struct Ground {
 };
 
 /// The vehicle of a simulated robot as its devices and the world see it: power in, motion out.
+/** One that takesSpeeds() has the controller that holds them in itself: to it, "power" is the wanted
+ * track speed [m/s]. */
 /** Body origin on the ground midway between the tracks, x forward, y left. */
 class Plant {
  public:
   virtual ~Plant() = default;
 
+  virtual bool takesSpeeds() const { return false; }
   /// Advances by dt [s]. Power is clamped to -1..1.
   virtual void step(const MotorPower& power, const Ground& ground, double dt) = 0;
   /// Velocity of the body origin in the body frame: what moves it through the next step.

@@ -104,6 +104,8 @@ EmulatedDevices emulatedDevices() {
 SimulatedDevices::SimulatedDevices(std::shared_ptr<const World> world,
                                    const SimulatorSettings& settings, RobotParts parts)
     : robot_(std::move(world), settings.robot, std::move(parts)),
+      speed_loops_{SpeedLoop(settings.robot.vehicle.drive.free_speed),
+                   SpeedLoop(settings.robot.vehicle.drive.free_speed)},
       ins_(kSources.at(settings.source)(settings, streamSeed(settings.robot.seed, kInsStream))),
       motor_(kControllers.at(settings.controller)(settings,
                                                   streamSeed(settings.robot.seed, kMotorStream))),
@@ -117,8 +119,7 @@ SimulatedDevices::SimulatedDevices(std::shared_ptr<const World> world,
 
 void SimulatedDevices::advanceTo(int64_t utime) {
   while (robot_.truth().utime + kStepUs <= utime) {
-    const std::array<double, 2> motors = power(robot_.truth().utime);
-    robot_.setPower({motors[0], motors[1]});
+    drive(power(robot_.truth().utime));
     robot_.advanceTo(robot_.truth().utime + kStepUs);
     measureDrive();
   }
@@ -137,6 +138,17 @@ std::array<double, 2> SimulatedDevices::power(int64_t utime) {
   if (wiring.invert_left) power[0] = -power[0];
   if (wiring.invert_right) power[1] = -power[1];
   return power;
+}
+
+void SimulatedDevices::drive(const std::array<double, 2>& shares) {
+  const std::optional<double>& top_speed = robot_.settings().wiring.top_speed;
+  if (!top_speed) return robot_.setPower({shares[0], shares[1]});
+  const std::array<double, 2> wanted{*top_speed * shares[0], *top_speed * shares[1]};
+  const Plant& vehicle = robot_.vehicle();
+  if (vehicle.takesSpeeds()) return robot_.setPower({wanted[0], wanted[1]});
+  constexpr double kStep = static_cast<double>(kStepUs) * 1e-6;
+  robot_.setPower({speed_loops_[0].step(wanted[0], vehicle.left().speed, kStep),
+                   speed_loops_[1].step(wanted[1], vehicle.right().speed, kStep)});
 }
 
 void SimulatedDevices::measureDrive() {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "modules/simulator/core/robot.hpp"
+#include "modules/simulator/core/speed_loop.hpp"
 #include "modules/simulator/emulators/emulator.hpp"
 
 namespace tread::sim {
@@ -40,7 +41,8 @@ class SimulatedDevices {
   /// Simulates up to a time; the motors follow the controller's output in steps of 1 ms.
   void advanceTo(int64_t utime);
 
-  /// Power that the controller gives to the left and the right motor now, -1..1.
+  /// What the controller gives to the left and the right motor now, -1..1: power, or a share of the
+  /// speed that it holds at full command.
   std::array<double, 2> power(int64_t utime);
 
   /// Laser scans finished since the last call: the interface behind the range finder's library.
@@ -55,8 +57,10 @@ class SimulatedDevices {
 
  private:
   void measureDrive();
+  void drive(const std::array<double, 2>& shares);
 
   SimulatedRobot robot_;
+  std::array<SpeedLoop, 2> speed_loops_;  ///< left and right
   std::unique_ptr<InsEmulator> ins_;
   std::unique_ptr<MotorEmulator> motor_;
   std::unique_ptr<LaserEmulator> laser_;

@@ -155,12 +155,13 @@ TEST_CASE("with --with-parent a process ends when its parent is killed, and only
 }
 
 TEST_CASE(
-    "checking (--check) reads the configuration and nothing more: code 0, or 1 with one line") {
+    "checking (--check) prints the configuration that holds, with code 0, or one line with code 1") {
   const std::string file = "shell_" + std::to_string(getpid()) + ".yaml";
   std::ofstream(file) << "silence: 2\nrobot: " << kRobot << "robot.yaml\n";
   const Ending good = run({"--config", file, "--check"});
   CHECK(good.code == 0);
-  CHECK(good.output.empty());
+  CHECK(good.output.find("silence: 2") != std::string::npos);
+  CHECK(good.output.find("max_wait: ") != std::string::npos);  // a default
   std::ofstream(file) << "silenc: 2\nrobot: " << kRobot << "robot.yaml\n";
   const Ending mistyped = run({"--config", file, "--check"});
   std::remove(file.c_str());

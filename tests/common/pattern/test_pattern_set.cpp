@@ -162,3 +162,23 @@ TEST_CASE("Copies of a set share their content") {
   CHECK(&copy.content() == &set.content());
   CHECK(copy.checksum() == set.checksum());
 }
+
+TEST_CASE("the way from standstill to standstill through a pattern is the shortest chain's") {
+  PatternSetContent content = goodContent();
+  MotionPattern longer = content.patterns[0];
+  longer.id = 4;
+  longer.name = "longer start";
+  longer.trajectory.back().x = 0.9;
+  content.patterns.push_back(longer);
+  std::string why;
+  const std::vector<double> lengths = restToRestLengths(*PatternSet::make(content, why));
+  const double left = content.patterns[1].pathLength();
+  REQUIRE(lengths.size() == 4);
+  CHECK(lengths[0] == Approx(0.05 + 0.02));
+  CHECK(lengths[1] == Approx(0.05 + left + 0.02));
+  CHECK(lengths[2] == Approx(0.05 + 0.02));
+  CHECK(lengths[3] == Approx(0.9 + 0.02));
+  content.patterns.erase(content.patterns.begin() + 2);  // nothing stops any more
+  for (const double length : restToRestLengths(*PatternSet::make(content, why)))
+    CHECK(length == kInfinity);
+}

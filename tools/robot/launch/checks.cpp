@@ -3,10 +3,12 @@
 #include "tools/robot/launch/checks.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
 #include "common/link/link.hpp"
+#include "common/report/text.hpp"
 #include "tools/robot/launch/launch_file.hpp"
 
 namespace tread::launch {
@@ -14,6 +16,7 @@ namespace {
 
 constexpr int64_t kWantedSpace = 2'000'000'000;  // an hour or so of logs
 constexpr int64_t kNeededSpace = 20'000'000;     // for the states and some lines of log
+constexpr int kMostNames = 4;                    // of patterns in one line
 constexpr const char* kRouteRemedy =
     "ip link set lo up multicast on; ip route replace 224.0.0.0/4 dev lo  (as root)";
 constexpr const char* kRemedyWithoutRoot = "; or without root: --lcm-url tcpq://127.0.0.1:7668";
@@ -141,6 +144,26 @@ std::vector<HostFinding> checkProcess(const ProcessFacts& facts) {
     findings.push_back({false, device + " may not be read and written",
                         "usermod -a -G dialout USER  (as root), then log in again"});
   return findings;
+}
+
+std::vector<HostFinding> checkReach(const PatternSet& patterns, double marking_range) {
+  const std::vector<double> lengths = restToRestLengths(patterns);
+  std::string names;
+  int too_long = 0;
+  double longest = 0.0;
+  for (size_t i = 0; i < lengths.size(); ++i) {
+    if (!std::isfinite(lengths[i]) || lengths[i] <= marking_range) continue;
+    if (++too_long <= kMostNames) names += (names.empty() ? "" : ", ") + patterns.patterns()[i].name;
+    longest = std::max(longest, lengths[i]);
+  }
+  if (too_long == 0) return {};
+  if (too_long > kMostNames) names += ", ...";
+  return {{false,
+           std::to_string(too_long) + " of " + std::to_string(lengths.size()) + " patterns (" +
+               names + ") are out of use: from standstill to standstill they need up to " +
+               fixed(longest, 1) + " m, and obstacles are marked to " + fixed(marking_range, 1) + " m",
+           "marking_range of mapping.yaml, if the range finder sees obstacles so far; or slower "
+           "patterns"}};
 }
 
 std::string deviceOf(const std::vector<std::string>& arguments, const std::string& config_address,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/bus/lcm_address.hpp"
+#include "common/pattern/pattern.hpp"
 
 namespace tread::launch {
 
@@ -61,14 +62,18 @@ struct ProcessFacts {
   bool program_found = false;
   std::string config;  ///< path; empty = none
   bool config_readable = true;
-  int check_code = 0;      ///< exit code of the program's --check
-  std::string check_line;  ///< what it said
+  int check_code = 0;         ///< exit code of the program's --check
+  std::string check_line;     ///< what it refused
+  std::string configuration;  ///< what it takes it for, defaults included; empty if refused
   std::string device;      ///< path of a tty; empty = none
   bool device_present = true;
   bool device_usable = true;  ///< may be read and written
 };
 
 std::vector<HostFinding> checkProcess(const ProcessFacts& facts);
+
+/// Patterns that the planner can never drive: it ends every plan standing on ground that it knows.
+std::vector<HostFinding> checkReach(const PatternSet& patterns, double marking_range);
 
 /// The tty that a process will open: of its last `--set address=`, else the configuration's
 /// address; empty if there is none or if it lies in the run folder, where a process makes it.

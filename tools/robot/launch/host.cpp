@@ -24,6 +24,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "common/pattern/pattern_file.hpp"
 #include "common/seal/key_file.hpp"
 
 namespace tread::launch {
@@ -88,7 +89,8 @@ ProcessFacts processFacts(const LaunchProcess& process, const std::string& lcm_u
   if (facts.program_found && facts.config_readable && !check.empty()) {
     const CommandOutcome outcome = runCommand(check, 10.0);
     facts.check_code = outcome.code;
-    facts.check_line = firstLine(outcome.output);
+    (outcome.code == 0 ? facts.configuration : facts.check_line) =
+        outcome.code == 0 ? outcome.output : firstLine(outcome.output);
   }
   const std::string address =
       process.config.empty() || !facts.config_readable ? "" : configuredAddress(process.config);
@@ -303,6 +305,20 @@ FolderFacts folderFacts(const RunPaths& paths) {
   return facts;
 }
 
+/// Of the configurations that hold, as the programs' --check prints them.
+std::vector<HostFinding> checkTogether(const std::string& mapping, const std::string& learner) {
+  try {
+    double marking_range = 0.0;
+    std::string patterns;
+    ConfigReader::fromText(mapping, "tread-mapping --check")
+        .number("marking_range", marking_range, {0.0, 1e3}, "m");
+    ConfigReader::fromText(learner, "tread-learner --check").text("patterns", patterns);
+    return checkReach(readPatternFile(patterns), marking_range);
+  } catch (const ConfigError& error) {
+    return {{false, error.what(), "programs of one build"}};
+  }
+}
+
 std::vector<HostFinding> checkHost(const LaunchFile& launch, const LaunchSettings& settings) {
   std::vector<HostFinding> findings;
   const auto add = [&](const std::vector<HostFinding>& more) {
@@ -319,8 +335,15 @@ std::vector<HostFinding> checkHost(const LaunchFile& launch, const LaunchSetting
   else
     findings.push_back(
         {true, "LCM URL '" + launch.lcm_url + "' cannot be read", urlRemedy(launch.simulated)});
-  for (const LaunchProcess& process : launch.processes)
-    add(checkProcess(processFacts(process, launch.lcm_url, settings)));
+  std::string mapping;
+  std::string learner;
+  for (const LaunchProcess& process : launch.processes) {
+    const ProcessFacts facts = processFacts(process, launch.lcm_url, settings);
+    add(checkProcess(facts));
+    if (facts.program == "tread-mapping") mapping = facts.configuration;
+    if (facts.program == "tread-learner") learner = facts.configuration;
+  }
+  if (!mapping.empty() && !learner.empty()) add(checkTogether(mapping, learner));
   return findings;
 }
 

@@ -137,12 +137,9 @@ int PatternTable::classIndex(const std::string& name) const {
 
 int PatternTable::findRestClass() const {
   const auto& classes = set_->content().classes;
-  for (size_t i = 0; i < classes.size(); ++i) {
-    const Twist2& twist = classes[i].twist;
-    if (std::hypot(twist.v_x, twist.v_y) < kStanding && std::abs(twist.omega) < kStanding)
-      return static_cast<int>(i);
-  }
-  return -1;
+  const auto rest = std::find_if(classes.begin(), classes.end(),
+                                 [](const MotionClass& each) { return each.standing(); });
+  return rest == classes.end() ? -1 : static_cast<int>(rest - classes.begin());
 }
 
 std::string PatternTable::defect() const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "tests/common/pattern/pattern_samples.hpp"
 #include "tools/robot/launch/checks.hpp"
 #include "tools/robot/launch/launch_file.hpp"
 
@@ -63,7 +64,7 @@ TEST_CASE("a good host has nothing to mend") {
   address.ttl = 1;
   wide.sealed = true;
   CHECK(checkNetwork(address, wide, false).empty());
-  CHECK(checkProcess({"planner", "tread-planner", true, "p.yaml", true, 0, "", "", true, true})
+  CHECK(checkProcess({"planner", "tread-planner", true, "p.yaml", true, 0, "", "", "", true, true})
             .empty());
   CHECK(checkFolder({"/run", true, 1'000'000'000'000, 20, 0, false}).empty());
 }
@@ -154,7 +155,7 @@ TEST_CASE("the route is read from what ip says") {
 }
 
 TEST_CASE("a process's program, configuration and device are named when they are missing") {
-  ProcessFacts facts{"planner", "tread-planner", false, "p.yaml", true, 0, "", "", true, true};
+  ProcessFacts facts{"planner", "tread-planner", false, "p.yaml", true, 0, "", "", "", true, true};
   CHECK(oneLine(checkProcess(facts)) ==
         "robot: planner: there is no program tread-planner; fix: tools/build\n");
   facts.program_found = true;
@@ -174,6 +175,18 @@ TEST_CASE("a process's program, configuration and device are named when they are
   facts.device_present = true;
   facts.device_usable = false;
   CHECK_THAT(oneLine(checkProcess(facts)), Contains("usermod -a -G dialout"));
+}
+
+TEST_CASE("patterns that need more ground than is marked are told, with what they need") {
+  std::string why;
+  const std::optional<tread::PatternSet> set =
+      tread::PatternSet::make(tread::testing::goodContent(), why);
+  REQUIRE(set);
+  CHECK(checkReach(*set, 1.0).empty());
+  const std::vector<HostFinding> findings = checkReach(*set, 0.1);
+  CHECK_FALSE(anyCritical(findings));
+  CHECK_THAT(oneLine(findings), StartsWith("robot: advice: 1 of 3 patterns (left) are out of use: "
+                                           "from standstill to standstill they need up to 0.2 m"));
 }
 
 TEST_CASE("the device is that of the last --set, else of the configuration, and a tty") {
