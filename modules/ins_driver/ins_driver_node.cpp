@@ -102,19 +102,23 @@ std::string inSeconds(int64_t us) {
 
 }  // namespace
 
-MakeInsSource readInsSource(ConfigReader& reader, const RobotDescription& robot) {
+namespace {
+
+/// Which INS the robot has, and what that one's reader wants to know.
+void readSource(ConfigReader& reader, InsDriverConfig& config) {
   std::vector<std::string> known;
   for (const auto& [name, read] : kSources) known.push_back(name);
-  std::string name = "nmea";
-  reader.choice("source", name, known);
-  return kSources.at(name)(reader, robot);
+  reader.choice("source", config.source, known);
+  config.make_source = kSources.at(config.source)(reader, readRobot(reader));
 }
+
+}  // namespace
 
 InsDriverConfig readInsDriverConfig(ConfigReader& reader) {
   InsDriverConfig config;
   reader.text("address", config.address);
   reader.text("store", config.store);
-  config.make_source = readInsSource(reader, readRobot(reader));
+  readSource(reader, config);
   if (reader.has("origin")) {
     ConfigReader origin = reader.section("origin");
     config.origin = readOrigin(origin);
@@ -153,7 +157,8 @@ InsDriverNode::InsDriverNode(const InsDriverConfig& config, Bus& bus, Link& link
       start_(bus.now()),
       last_bytes_(bus.now()),
       last_position_(bus.now()),
-      last_heading_(bus.now()) {
+      last_heading_(bus.now()),
+      last_height_(bus.now()) {
   health_.watchNamesakes();
 }
 
@@ -199,6 +204,7 @@ void InsDriverNode::publishFinished(int64_t utime) {
       last_position_ = utime;
       too_far_before_ = source_->tooFar().first;
     }
+    if (std::isfinite(estimate->p_map_body.z())) last_height_ = utime;
     if (!(estimate->status & kNoHeading)) last_heading_ = utime;
     bus_.publish(kIns, messageOf(*estimate, seq_++));
   }
@@ -248,6 +254,11 @@ std::string InsDriverNode::measurementProblem(int64_t utime) const {
   if (utime - last_heading_ > silence_us_) {
     return "no heading for " + inSeconds(utime - last_heading_) + " (" + source_->refusals() +
            "); " + source_->advice().no_heading;
+  }
+  if (utime - last_height_ > silence_us_) {
+    return "positions without a height for " + inSeconds(utime - last_height_) +
+           ", mapping cannot use them; where the device tells heights above the ellipsoid only, "
+           "configure geoid_separation";
   }
   return origin_problem_;
 }

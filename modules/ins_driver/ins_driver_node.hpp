@@ -14,14 +14,12 @@
 
 namespace tread::ins {
 
-/// Reads which INS the robot has (key `source`) and what that one's reader wants to know.
-MakeInsSource readInsSource(ConfigReader& reader, const RobotDescription& robot);
-
 /// Configuration of ins_driver, with its defaults.
 struct InsDriverConfig {
   std::string address = "tty:/dev/ttyUSB0?baud=115200";  ///< of the device
   std::string store = "state/ins_driver";                ///< folder that keeps the map's origin
-  MakeInsSource make_source;        ///< of the kind that the configuration names
+  std::string source = "nmea";      ///< the kind that the configuration names
+  MakeInsSource make_source;        ///< of that kind
   std::optional<GeoOrigin> origin;  ///< of the map; absent: stored, or the first good fix
   double silence = 1.0;             ///< [s] without what is expected after which health says so
   int64_t period_us = 5'000;        ///< [us] between looks at the link
@@ -80,6 +78,7 @@ class InsDriverNode : public Node {
   int64_t last_bytes_;
   int64_t last_position_;
   int64_t last_heading_;
+  int64_t last_height_;
   int64_t next_counters_ = 0;
 };
 

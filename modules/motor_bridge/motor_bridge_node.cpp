@@ -160,10 +160,10 @@ bool sameToReaders(const BridgeOutput& a, const BridgeOutput& b) {
 
 }  // namespace
 
-MakeMotorController readMotorController(ConfigReader& reader, const DriveDescription& drive) {
+MakeMotorController readMotorController(ConfigReader& reader, const DriveDescription& drive,
+                                        std::string& name) {
   std::vector<std::string> known;
-  for (const auto& [name, read] : kControllers) known.push_back(name);
-  std::string name = "roboteq";
+  for (const auto& [each, read] : kControllers) known.push_back(each);
   reader.choice("controller", name, known);
   return kControllers.at(name)(reader, drive);
 }
@@ -181,7 +181,7 @@ MotorBridgeConfig readMotorBridgeConfig(ConfigReader& reader) {
   config.bridge.manual = readManual(reader.section("manual"), drive);
   config.bridge.gate.slot.kind = drive.kind;
   config.bridge.gate.slot.max_command = drive.max_command;
-  config.make_controller = readMotorController(reader, drive);
+  config.make_controller = readMotorController(reader, drive, config.controller);
   reader.finish();
   config.effective = reader.effective();
   return config;

@@ -26,14 +26,16 @@ namespace tread::motor {
 
 using MakeMotorController = std::function<std::unique_ptr<MotorController>()>;
 
-/// Reads which controller the robot has (key `controller`) and the section of that name.
-MakeMotorController readMotorController(ConfigReader& reader, const DriveDescription& drive);
+/// Reads which controller the robot has (key `controller`, into `name`) and the section of that name.
+MakeMotorController readMotorController(ConfigReader& reader, const DriveDescription& drive,
+                                        std::string& name);
 
 /// Configuration of motor_bridge, with its defaults.
 struct MotorBridgeConfig {
   std::string address = "tty:/dev/ttyACM0?baud=115200";  ///< of the controller
   BridgeConfig bridge;
-  MakeMotorController make_controller;  ///< of the kind that the configuration names
+  std::string controller = "roboteq";   ///< the kind that the configuration names
+  MakeMotorController make_controller;  ///< of that kind
   std::string effective;                ///< the whole as YAML, for CONFIG
 };
 

@@ -341,6 +341,25 @@ TEST_CASE("a lost fix and a lost heading are degraded health with their remedy")
   CHECK(rig.healthSays("no heading"));
 }
 
+TEST_CASE("positions without a height are degraded health: mapping cannot use them") {
+  Rig rig;
+  rig.drive(1.0);
+  CHECK(rig.health.health_state == health_t::HEALTH_OK);
+  for (int i = 0; i < 100; ++i) {
+    const double t = 43200.0 + static_cast<double>(rig.bus.now()) * 1e-6;
+    std::string whole = gga(t);
+    const size_t height = whole.find(",221.000,");
+    REQUIRE(height != std::string::npos);
+    whole.replace(height, 9, ",,");
+    rig.say(line(whole.substr(1, whole.find('*') - 1)) + pashr(t, 90.0));
+    rig.bus.runUntil(rig.bus.now() + 20'000);
+  }
+  CHECK(std::isfinite(rig.track.back().position[0]));
+  CHECK(rig.health.health_state == health_t::HEALTH_DEGRADED);
+  CHECK(rig.healthSays("positions without a height for "));
+  CHECK(rig.healthSays("configure geoid_separation"));
+}
+
 TEST_CASE("a fix at another site than the stored origin is told with its distance") {
   Rig rig;
   rig.store.write(kOriginEntry, "latitude: 43.0955622\nlongitude: -88.0340185\naltitude: 200\n");

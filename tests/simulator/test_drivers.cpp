@@ -147,7 +147,9 @@ TEST_CASE("every emulated controller lets its driver drive the simulated robot, 
     ConfigReader reader = ConfigReader::fromText(
         "{controller: " + name + ", line_protocol: controllers/mole.yaml, sabertooth: {}}",
         TREAD_SOURCE_DIR "/tests/data/bridge.yaml");
-    const auto motor = motor::readMotorController(reader, DriveDescription{})();
+    std::string read;
+    const auto motor = motor::readMotorController(reader, DriveDescription{}, read)();
+    CHECK(read == name);
     motor->open();
     for (int64_t now = kStart; now < kStart + 5'000'000; now += kStep) {
       devices.advanceTo(now);

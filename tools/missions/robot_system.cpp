@@ -182,6 +182,8 @@ RobotSystem::RobotSystem(const RobotConfig& config, const sim::WorldDescription&
   std::tie(motor_line_, motor_device_) = makePipe();
   sim::SimulatorSettings settings;
   settings.robot = config.simulated;
+  settings.source = config.ins_driver.source;
+  settings.controller = config.motor_bridge.controller;
   settings.robot.start = T_map_start;
   settings.robot.start_utime = bus_->now();
   settings.robot.seed = seed;

@@ -124,6 +124,24 @@ TEST_CASE("a robot of another size drives by its configuration alone") {
   CHECK(run.result.collisions() == 0);
 }
 
+TEST_CASE("a robot with other instruments and another controller drives by its configuration alone") {
+  const std::string folder = std::string(TREAD_SOURCE_DIR) + "/tests/data/robots/skid4";
+  MissionOptions options;
+  options.shortest_line = 8.0;
+  const std::vector<std::vector<std::string>> others{
+      {},
+      {"ins_driver.source=ublox", "motor_bridge.controller=vesc_can"},
+      {"ins_driver.source=vectornav", "ins_driver.geoid_separation=47",
+       "motor_bridge.controller=sabertooth"}};
+  for (const std::vector<std::string>& overrides : others) {
+    const RobotConfig robot = readRobot(folder, overrides);
+    const MissionRun run = runMission(robot, 8, options);
+    CAPTURE(robot.ins_driver.source, robot.motor_bridge.controller, run.result.reason);
+    CHECK(run.result.outcome == MissionOutcome::kArrived);
+    CHECK(run.result.collisions() == 0);
+  }
+}
+
 TEST_CASE("a mission drives from start to goal over changing ground without touching anything") {
   for (const uint64_t seed : {8u, 22u}) {
     CAPTURE(seed);
