@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -57,8 +58,11 @@ struct DriveMeasurements {
 /// A motor controller behind its driver's line.
 class MotorEmulator : public Emulator {
  public:
-  /// Power on the motors of both channels now, -1..1.
+  /// Power on the motors of both channels now, -1..1. Where the controller is set up to hold speeds
+  /// and heldSpeeds() does not tell them: the shares of its top speed that it is told to hold.
   virtual std::array<double, 2> output(int64_t utime) = 0;
+  /// The speeds that it holds by itself, by channel [m/s]; output() is what it does for them.
+  virtual std::optional<std::array<double, 2>> heldSpeeds() const { return std::nullopt; }
   virtual void measure(const DriveMeasurements& measurements) = 0;
 };
 

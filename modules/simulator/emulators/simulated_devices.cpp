@@ -119,7 +119,7 @@ SimulatedDevices::SimulatedDevices(std::shared_ptr<const World> world,
 
 void SimulatedDevices::advanceTo(int64_t utime) {
   while (robot_.truth().utime + kStepUs <= utime) {
-    drive(power(robot_.truth().utime));
+    drive();
     robot_.advanceTo(robot_.truth().utime + kStepUs);
     measureDrive();
   }
@@ -132,19 +132,27 @@ void SimulatedDevices::advanceTo(int64_t utime) {
 }
 
 std::array<double, 2> SimulatedDevices::power(int64_t utime) {
-  const MotorWiring& wiring = robot_.settings().wiring;
-  std::array<double, 2> power = motor_->output(utime);
-  if (wiring.left_channel == 2) std::swap(power[0], power[1]);
-  if (wiring.invert_left) power[0] = -power[0];
-  if (wiring.invert_right) power[1] = -power[1];
-  return power;
+  return ofTracks(motor_->output(utime));
 }
 
-void SimulatedDevices::drive(const std::array<double, 2>& shares) {
-  const std::optional<double>& top_speed = robot_.settings().wiring.top_speed;
-  if (!top_speed) return robot_.setPower({shares[0], shares[1]});
-  const std::array<double, 2> wanted{*top_speed * shares[0], *top_speed * shares[1]};
+/// From the controller's channels to the left and the right track.
+std::array<double, 2> SimulatedDevices::ofTracks(std::array<double, 2> channels) const {
+  const MotorWiring& wiring = robot_.settings().wiring;
+  if (wiring.left_channel == 2) std::swap(channels[0], channels[1]);
+  if (wiring.invert_left) channels[0] = -channels[0];
+  if (wiring.invert_right) channels[1] = -channels[1];
+  return channels;
+}
+
+void SimulatedDevices::drive() {
+  const std::array<double, 2> given = power(robot_.truth().utime);
+  const double top_speed = robot_.settings().wiring.top_speed.value_or(0.0);
   const Plant& vehicle = robot_.vehicle();
+  const auto held = motor_->heldSpeeds();
+  if (top_speed == 0.0 || (held && !vehicle.takesSpeeds()))
+    return robot_.setPower({given[0], given[1]});
+  const std::array<double, 2> wanted =
+      held ? ofTracks(*held) : std::array<double, 2>{top_speed * given[0], top_speed * given[1]};
   if (vehicle.takesSpeeds()) return robot_.setPower({wanted[0], wanted[1]});
   constexpr double kStep = static_cast<double>(kStepUs) * 1e-6;
   robot_.setPower({speed_loops_[0].step(wanted[0], vehicle.left().speed, kStep),

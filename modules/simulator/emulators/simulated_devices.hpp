@@ -57,7 +57,8 @@ class SimulatedDevices {
 
  private:
   void measureDrive();
-  void drive(const std::array<double, 2>& shares);
+  void drive();
+  std::array<double, 2> ofTracks(std::array<double, 2> channels) const;
 
   SimulatedRobot robot_;
   std::array<SpeedLoop, 2> speed_loops_;  ///< left and right

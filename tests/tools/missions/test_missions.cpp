@@ -124,19 +124,19 @@ TEST_CASE("a robot of another size drives by its configuration alone") {
   CHECK(run.result.collisions() == 0);
 }
 
-TEST_CASE("a robot with other instruments and another controller drives by its configuration alone") {
-  const std::string folder = std::string(TREAD_SOURCE_DIR) + "/tests/data/robots/skid4";
+TEST_CASE("robots with other instruments and controllers drive by their configuration alone") {
   MissionOptions options;
   options.shortest_line = 8.0;
-  const std::vector<std::vector<std::string>> others{
-      {},
-      {"ins_driver.source=ublox", "motor_bridge.controller=vesc_can"},
-      {"ins_driver.source=vectornav", "ins_driver.geoid_separation=47",
-       "motor_bridge.controller=sabertooth"}};
-  for (const std::vector<std::string>& overrides : others) {
-    const RobotConfig robot = readRobot(folder, overrides);
+  const std::vector<std::pair<std::string, std::vector<std::string>>> robots{
+      {"skid4", {}},  // NovAtel; VESCs that hold track speeds
+      {"skid4", {"ins_driver.source=vectornav", "ins_driver.geoid_separation=47"}},
+      {"small", {"motor_bridge.controller=sabertooth"}},
+      {"small", {"motor_bridge.controller=vesc_can"}}};
+  for (const auto& [name, overrides] : robots) {
+    const RobotConfig robot =
+        readRobot(std::string(TREAD_SOURCE_DIR) + "/tests/data/robots/" + name, overrides);
     const MissionRun run = runMission(robot, 8, options);
-    CAPTURE(robot.ins_driver.source, robot.motor_bridge.controller, run.result.reason);
+    CAPTURE(name, robot.ins_driver.source, robot.motor_bridge.controller, run.result.reason);
     CHECK(run.result.outcome == MissionOutcome::kArrived);
     CHECK(run.result.collisions() == 0);
   }

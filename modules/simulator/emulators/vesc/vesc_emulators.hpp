@@ -22,6 +22,7 @@ class VescBank {
   VescMotor* find(int id);
   std::vector<VescMotor>& motors() { return motors_; }
   std::array<double, 2> output(int64_t utime);
+  std::array<double, 2> heldSpeeds() const { return {motors_[0].heldSpeed(), motors_[1].heldSpeed()}; }
   void measure(const DriveMeasurements& measurements);
   void powerUp();
 
@@ -37,6 +38,7 @@ class VescUartEmulator final : public SerialMotorEmulator {
   explicit VescUartEmulator(const VescSettings& settings = {});
 
   std::array<double, 2> output(int64_t utime) override;
+  std::optional<std::array<double, 2>> heldSpeeds() const override { return bank_.heldSpeeds(); }
   void measure(const DriveMeasurements& measurements) override { bank_.measure(measurements); }
   VescBank& bank() { return bank_; }
 
@@ -61,6 +63,7 @@ class VescCanEmulator final : public MotorEmulator {
   void receive(std::string_view bytes, int64_t utime) override;
   std::string transmit(int64_t utime) override;
   std::array<double, 2> output(int64_t utime) override { return bank_.output(utime); }
+  std::optional<std::array<double, 2>> heldSpeeds() const override { return bank_.heldSpeeds(); }
   void measure(const DriveMeasurements& measurements) override { bank_.measure(measurements); }
   VescBank& bank() { return bank_; }
 

@@ -31,6 +31,11 @@ class VescMotor {
   /// Power on the motor at a time, -1..1.
   double output(int64_t utime);
 
+  /// [m/s] that its speed control holds; 0 in the other modes.
+  double heldSpeed() const {
+    return mode_ == Mode::kRpm ? wanted_ / settings_.erpm_per_mps : 0.0;
+  }
+
   int id() const { return id_; }
   int fault() const { return fault_; }
   int64_t timeoutMs() const { return settings_.timeout_ms; }
