@@ -14,6 +14,7 @@
 #include "common/geometry/se2.hpp"
 #include "common/log/event_log.hpp"
 #include "common/messages/blank.hpp"
+#include "modules/lidar_driver/carmen/carmen_player.hpp"
 
 namespace tread {
 namespace {
@@ -60,26 +61,6 @@ scan_t scanFrom(int64_t utime, double laser_height) {
   return message;
 }
 
-/// One FLASER line: ranges over the half turn ahead, and the pose of the laser.
-struct LaserLine {
-  std::vector<float> ranges;
-  Pose2 T_map_laser;
-};
-
-std::optional<LaserLine> parse(const std::string& line) {
-  std::istringstream words(line);
-  std::string keyword;
-  size_t count = 0;
-  LaserLine laser;
-  if (!(words >> keyword >> count) || count < 2 || count > 10000) return std::nullopt;
-  laser.ranges.resize(count);
-  for (float& range : laser.ranges) words >> range;
-  Pose2& pose = laser.T_map_laser;
-  words >> pose.x >> pose.y >> pose.yaw;
-  if (!words || !std::isfinite(pose.x + pose.y + pose.yaw)) return std::nullopt;
-  return laser;
-}
-
 /// `problem`: one clear line if the file ends too early.
 std::vector<std::string> linesOf(const std::string& path, std::string& problem) {
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
@@ -101,14 +82,14 @@ std::vector<std::string> linesOf(const std::string& path, std::string& problem) 
   return lines;
 }
 
-scan_t scanAt(int64_t utime, const std::vector<float>& ranges) {
+scan_t scanAt(int64_t utime, const lidar::RangeScan& scan) {
   scan_t message = scanFrom(utime, kCarmenLaserHeight);
-  message.angle_step = kPi / static_cast<double>(ranges.size());
-  message.angle_first = -kPi / 2.0;
+  message.angle_step = scan.angle_step;
+  message.angle_first = scan.angle_first;
   message.range_min = 0.0;
-  message.range_max = kNoReturn;
-  message.ranges = ranges;
-  message.num_beams = static_cast<int32_t>(ranges.size());
+  message.range_max = scan.range_max > 0.0 ? scan.range_max : kNoReturn;
+  message.ranges = scan.ranges;
+  message.num_beams = static_cast<int32_t>(scan.ranges.size());
   return message;
 }
 
@@ -140,7 +121,7 @@ mapping::MappingConfig outdoorConfig() {
   return config;
 }
 
-/// A CARMEN text log with corrected poses (FLASER lines), plain or gzipped.
+/// A CARMEN text log with corrected poses, plain or gzipped.
 /** Such logs have a pose about every metre and no times. Times are made up as if the robot had
  * driven at 1 m/s and turned at no more than 0.5 rad/s between the poses, along arcs. */
 void readCarmenLog(const std::string& path, MappingRecording& recording) {
@@ -148,25 +129,26 @@ void readCarmenLog(const std::string& path, MappingRecording& recording) {
   Pose2 last;
   int64_t utime = kStartUs;
   for (const std::string& line : linesOf(path, recording.problem)) {
-    if (line.compare(0, 7, "FLASER ") != 0) continue;
-    const auto laser = parse(line);
+    std::string problem;
+    const lidar::CarmenScan laser = lidar::parseCarmenLine(line, problem);
+    if (problem == lidar::kOtherCarmenLine) continue;
     const bool first = recording.scans.empty();
-    if (!laser || !(first || distanceBetween(last, laser->T_map_laser) <= kLongestWay)) {
+    if (!problem.empty() || !(first || distanceBetween(last, laser.T_map_laser) <= kLongestWay)) {
       ++recording.skipped;
       continue;
     }
     if (first) {
-      recording.poses.push_back(insAt(utime, laser->T_map_laser));
+      recording.poses.push_back(insAt(utime, laser.T_map_laser));
     } else {
-      const int64_t end = utime + durationOf(last, laser->T_map_laser);
-      drive(last, laser->T_map_laser, utime, end, recording.poses);
+      const int64_t end = utime + durationOf(last, laser.T_map_laser);
+      drive(last, laser.T_map_laser, utime, end, recording.poses);
       utime = end;
     }
-    last = laser->T_map_laser;
-    recording.scans.push_back(scanAt(utime, laser->ranges));
+    last = laser.T_map_laser;
+    recording.scans.push_back(scanAt(utime, laser.scan));
   }
   if (recording.scans.empty())
-    throw std::runtime_error(path + ": holds no FLASER line; is it a CARMEN log with poses?");
+    throw std::runtime_error(path + ": holds no FLASER or ROBOTLASER1 line; is it a CARMEN log with poses?");
 }
 
 /// Takes big-endian fields from a message's bytes; ok() turns false where they end.

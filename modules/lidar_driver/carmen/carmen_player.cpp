@@ -10,7 +10,6 @@
 namespace tread::lidar {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr size_t kMostBeams = 4000;
 constexpr size_t kLongestLine = 100'000;
 constexpr double kLongestPause = 5.0;  // [s]
@@ -37,16 +36,26 @@ std::optional<double> loggedAt(const std::string& line) {
   return good ? std::optional(time) : std::nullopt;
 }
 
-/// x, y and heading of laser and robot follow the ranges: what lacks them was cut off.
-bool readNumbers(std::istream& words, int count) {
+bool readNumber(std::istream& words, double& value) {
+  return (words >> value) && std::isfinite(value);
+}
+
+bool skipNumbers(std::istream& words, size_t count) {
   double value = 0.0;
-  for (int i = 0; i < count; ++i)
-    if (!(words >> value) || !std::isfinite(value)) return false;
+  for (size_t i = 0; i < count; ++i)
+    if (!readNumber(words, value)) return false;
   return true;
 }
 
-bool readFlaser(std::istream& words, RangeScan& scan) {
-  if (!readRanges(words, scan.ranges) || !readNumbers(words, 6)) return false;
+/// Laser and robot follow the ranges, x, y and heading of each: what lacks them was cut off.
+bool readPoses(std::istream& words, Pose2& laser) {
+  return readNumber(words, laser.x) && readNumber(words, laser.y) && readNumber(words, laser.yaw) &&
+         skipNumbers(words, 3);
+}
+
+bool readFlaser(std::istream& words, CarmenScan& read) {
+  RangeScan& scan = read.scan;
+  if (!readRanges(words, scan.ranges) || !readPoses(words, read.T_map_laser)) return false;
   const size_t count = scan.ranges.size();
   // 181 beams end on both sides, 180 leave out the last one.
   scan.angle_first = -kPi / 2.0;
@@ -54,7 +63,8 @@ bool readFlaser(std::istream& words, RangeScan& scan) {
   return true;
 }
 
-bool readRobotLaser(std::istream& words, RangeScan& scan) {
+bool readRobotLaser(std::istream& words, CarmenScan& read) {
+  RangeScan& scan = read.scan;
   double type = 0.0, field = 0.0, accuracy = 0.0, remission_mode = 0.0;
   if (!(words >> type >> scan.angle_first >> field >> scan.angle_step >> scan.range_max >>
         accuracy >> remission_mode))
@@ -63,7 +73,7 @@ bool readRobotLaser(std::istream& words, RangeScan& scan) {
   if (!readRanges(words, scan.ranges)) return false;
   size_t count = 0;
   if (!(words >> count) || count > kMostBeams) return false;
-  if (!readNumbers(words, static_cast<int>(count) + 6)) return false;
+  if (!skipNumbers(words, count) || !readPoses(words, read.T_map_laser)) return false;
   const double sweep = scan.angle_step * static_cast<double>(scan.ranges.size() - 1);
   return std::abs(scan.angle_first) <= 2 * kPi && scan.angle_step > 0.0 && sweep <= 2 * kPi &&
          scan.range_max > 0.0;
@@ -78,10 +88,10 @@ CarmenScan parseCarmenLine(const std::string& line, std::string& problem) {
   words >> keyword;
   const bool flaser = keyword == "FLASER";
   if (!flaser && keyword != "ROBOTLASER1") {
-    problem = "other lines";
+    problem = kOtherCarmenLine;
     return result;
   }
-  const bool good = flaser ? readFlaser(words, result.scan) : readRobotLaser(words, result.scan);
+  const bool good = flaser ? readFlaser(words, result) : readRobotLaser(words, result);
   problem = good ? "" : "lines of a scan that are damaged";
   result.logged = loggedAt(line);
   return result;

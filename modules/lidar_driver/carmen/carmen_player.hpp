@@ -8,18 +8,23 @@
 #include <string>
 
 #include "common/config/config_reader.hpp"
+#include "common/geometry/se2.hpp"
 #include "modules/lidar_driver/core/scan_device.hpp"
 
 namespace tread::lidar {
 
-/// One scan of a CARMEN log and the time that its logger wrote beside it.
+/// One scan of a CARMEN log, and what its logger wrote beside it.
 struct CarmenScan {
   RangeScan scan;                ///< without times
+  Pose2 T_map_laser;             ///< as odometry or a corrected log has it
   std::optional<double> logged;  ///< [s] since the logger's start
 };
 
+/// The problem of lines of other kinds: PARAM, ODOM, comments.
+inline constexpr const char* kOtherCarmenLine = "other lines";
+
 /// Takes a line apart; `problem` says in words why it is no scan of a range finder to the front,
-/// empty if it is one. Lines of other kinds (PARAM, ODOM, comments) are "other lines".
+/// empty if it is one.
 /** Source: CARMEN's log format, in the head of each log and in carmen_logger.
     - FLASER n ranges[n] x y theta odom_x odom_y odom_theta time host logger_time: a half turn
     - ROBOTLASER1 type start field_of_view resolution max_range accuracy remission_mode n ranges[n]

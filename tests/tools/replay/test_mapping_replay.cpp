@@ -80,13 +80,13 @@ TEST_CASE("lines of a CARMEN log that are not whole are skipped and counted") {
   const TestFile file("broken.clf", text);
   const MappingRecording recording = readMappingRecording(file.path());
   REQUIRE(recording.scans.size() == 3);
-  REQUIRE(recording.skipped == 2);  // "FLASER" alone is no line of that kind
+  REQUIRE(recording.skipped == 3);
 }
 
 TEST_CASE("logs that cannot be read are one clear line") {
   const TestFile garbage("garbage.clf", "what is this\n\x01\x02\x03");
   REQUIRE_THROWS_WITH(readMappingRecording(garbage.path()),
-                      Catch::Contains("holds no FLASER line"));
+                      Catch::Contains("holds no FLASER or ROBOTLASER1 line"));
   REQUIRE_THROWS_WITH(readMappingRecording("/nowhere/at.log.gz"),
                       Catch::Contains("cannot be opened"));
   const TestFile gz("damaged.log.gz",
