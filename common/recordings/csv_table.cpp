@@ -13,19 +13,27 @@
 namespace tread::recordings {
 namespace {
 
-/// Fields of one line; quotes are removed.
-std::vector<std::string> fieldsOf(const std::string& line) {
+std::string trimmed(const std::string& field) {
+  const size_t begin = field.find_first_not_of(" \t");
+  if (begin == std::string::npos) return {};
+  return field.substr(begin, field.find_last_not_of(" \t") + 1 - begin);
+}
+
+/// Fields of one line; quotes, and spaces around, are removed.
+std::vector<std::string> fieldsOf(const std::string& line, char delimiter) {
   std::vector<std::string> fields(1);
   bool quoted = false;
   for (const char letter : line) {
     if (letter == '"') {
       quoted = !quoted;
-    } else if (letter == ',' && !quoted) {
-      fields.emplace_back();
+    } else if (letter == delimiter && !quoted) {
+      if (delimiter != ' ' || !fields.back().empty()) fields.emplace_back();
     } else if (letter != '\r') {
       fields.back() += letter;
     }
   }
+  if (delimiter == ' ' && fields.size() > 1 && fields.back().empty()) fields.pop_back();
+  for (std::string& field : fields) field = trimmed(field);
   return fields;
 }
 
@@ -48,30 +56,42 @@ bool nextLine(std::istream& file, std::string& line, size_t& number) {
 
 }  // namespace
 
-CsvTable::CsvTable(const std::string& path) : path_(path) {
+CsvTable::CsvTable(const std::string& path, const CsvLayout& layout) : path_(path) {
   std::ifstream file(path);
-  read(file);
+  read(file, layout);
 }
 
 CsvTable::CsvTable(const std::string& text, const std::string& path) : path_(path) {
   std::istringstream file(text);
-  read(file);
+  read(file, {});
 }
 
-void CsvTable::read(std::istream& file) {
+void CsvTable::readHeader(const std::vector<std::string>& names) {
+  for (size_t i = 0; i < names.size(); ++i) {
+    const auto [place, added] = columns_.emplace(names[i], i);
+    if (!added) place->second = kTwice;
+  }
+}
+
+void CsvTable::read(std::istream& file, const CsvLayout& layout) {
   size_t number = 0;
   std::string line;
   if (!file || !nextLine(file, line, number))
-    throw RecordingError(path_ +
-                         ": cannot be read or is empty; give a CSV file with a header line");
-  for (const std::string& name : fieldsOf(line)) columns_.emplace(name, columns_.size());
-  while (nextLine(file, line, number)) {
-    rows_.push_back(fieldsOf(line));
+    throw RecordingError(path_ + ": cannot be read or is empty; give a CSV file" +
+                         (layout.header ? " with a header line" : ""));
+  constexpr const char* kByteOrderMark = "\xEF\xBB\xBF";
+  if (line.compare(0, 3, kByteOrderMark) == 0) line.erase(0, 3);
+  std::vector<std::string> fields = fieldsOf(line, layout.delimiter);
+  width_ = fields.size();
+  if (layout.header) readHeader(fields);
+  for (bool more = !layout.header || nextLine(file, line, number); more;
+       more = nextLine(file, line, number)) {
+    rows_.push_back(fieldsOf(line, layout.delimiter));
     lines_.push_back(number);
-    if (rows_.back().size() == columns_.size()) continue;
-    throw error(rows_.size() - 1, std::to_string(rows_.back().size()) +
-                                      " columns, the header has " +
-                                      std::to_string(columns_.size()) + "; is the file truncated?");
+    if (rows_.back().size() == width_) continue;
+    throw error(rows_.size() - 1, std::to_string(rows_.back().size()) + " columns, the " +
+                                      (layout.header ? "header" : "first line") + " has " +
+                                      std::to_string(width_) + "; is the file truncated?");
   }
   if (rows_.empty())
     throw RecordingError(path_ + ":1: no rows after the header; is the file truncated?");
@@ -83,12 +103,27 @@ void CsvTable::require(const std::vector<std::string>& names) const {
       throw RecordingError(path_ + ":1: no column " + name + "; needed are " + joinWords(names));
 }
 
-const std::string& CsvTable::text(size_t row, std::string_view column) const {
+std::string CsvTable::columnNames() const {
+  if (columns_.empty()) return std::to_string(width_);
+  std::vector<std::string> names;
+  for (const auto& [name, index] : columns_) names.push_back(name);
+  return joinWords(names);
+}
+
+size_t CsvTable::indexOf(std::string_view column) const {
   const auto found = columns_.find(column);
-  if (found == columns_.end())
-    throw RecordingError(path_ + ":1: no column " + std::string(column) +
-                         "; is this another --format?");
-  return rows_[row][found->second];
+  if (found != columns_.end() && found->second != kTwice) return found->second;
+  const std::string name(column);
+  if (found != columns_.end())
+    throw RecordingError(path_ + ":1: column " + name + " is there twice; give its number");
+  const auto number = parseInteger(name);
+  if (number && *number >= 1 && *number <= static_cast<int64_t>(width_))
+    return static_cast<size_t>(*number) - 1;
+  throw RecordingError(path_ + ":1: no column " + name + "; there are " + columnNames());
+}
+
+const std::string& CsvTable::text(size_t row, std::string_view column) const {
+  return rows_[row][indexOf(column)];
 }
 
 double CsvTable::number(size_t row, std::string_view column) const {
@@ -118,8 +153,7 @@ int CsvTable::integer(size_t row, std::string_view column) const {
 }
 
 RecordingError CsvTable::error(size_t row, const std::string& problem) const {
-  const size_t line = lines_[std::min(row, lines_.size() - 1)];
-  return RecordingError(path_ + ":" + std::to_string(line) + ": " + problem);
+  return RecordingError(path_ + ":" + std::to_string(line(row)) + ": " + problem);
 }
 
 }  // namespace tread::recordings

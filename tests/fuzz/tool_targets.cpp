@@ -14,6 +14,7 @@
 #include "tests/fuzz/targets.hpp"
 #include "tools/experiment/trials.hpp"
 #include "tools/gap/drive_log.hpp"
+#include "tools/import/csv_drive.hpp"
 #include "tools/patterns/recipe.hpp"
 #include "tools/plan/plan_files.hpp"
 #include "tools/replay/robot_log.hpp"
@@ -61,6 +62,25 @@ void recordedDrive(const uint8_t* bytes, size_t size) {
       recordings::LogCounts counts;
       makeLog(drive, session, format, recordings::ExecutionLayout{}, counts);
     });
+}
+
+/// A mapping file, a line of three dashes, and the table that it describes.
+void mappedCsv(const uint8_t* bytes, size_t size) {
+  const std::string text = textOf(bytes, size);
+  const size_t end = text.find("\n---\n");
+  if (end == std::string::npos) return;
+  refusing([&] {
+    ConfigReader reader = ConfigReader::fromText(text.substr(0, end), "mapping");
+    import::CsvMapping mapping = import::readCsvMapping(reader);
+    for (import::CsvSource& source : mapping.sources) source.file.clear();
+    const size_t table = end + 5;
+    const MemoryFile file(bytes + table, size - table);
+    const recordings::RecordedDrive drive = import::readMappedCsv(file.path(), mapping).drive;
+    recordings::Session session;
+    session.pose_rate = 10.0;
+    recordings::LogCounts counts;
+    makeLog(drive, session, "csv", recordings::ExecutionLayout{}, counts);
+  });
 }
 
 /// The table of sessions that stands beside recorded drives.
@@ -235,6 +255,7 @@ void addToolTargets(std::map<std::string, Target>& all) {
   all.insert({
       {"carmen_log", carmenLog},
       {"csv", csv},
+      {"csv_mapped", mappedCsv},
       {"drive_log", driveLog},
       {"gamepad", gamepad},
       {"keyboard", keyboard},

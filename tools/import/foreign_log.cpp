@@ -12,16 +12,10 @@
 namespace tread::import {
 namespace {
 
-using recordings::CommandRun;
 using recordings::DriveSample;
-using recordings::kPeriod;
 using recordings::RecordedDrive;
 using recordings::RecordingError;
 
-/// A command is as good as gone if none came for so long [s].
-constexpr double kCommandAge = 0.5;
-/// No pose of these robots is farther out [m].
-constexpr double kFarthest = 100'000.0;
 /// Nearer returns are the laser's own housing [m].
 constexpr double kNearestReturn = 0.1;
 constexpr double kLongestScan = 1.0;  // [s]
@@ -68,7 +62,7 @@ class LogContent {
                            "; choose one with --pose-channel");
     for (const auto& [name, messages] : channels)
       if (name != chosen->first) leaveOut(name + ": another --pose-channel", messages.size());
-    result_.pose_channel = chosen->first;
+    result_.poses = chosen->first;
     return chosen->second;
   }
 
@@ -100,7 +94,6 @@ class LogContent {
     if (!begin_) begin_ = at;
     const double since = (at - *begin_) * 1e-6;
     Timed message{since, event.channel, std::move(*content)};
-    constexpr double kLongest = 7.0 * 86'400.0;  // [s]
     if (!finite(message) || std::abs(since) > kLongest)
       return leaveOut(event.channel + ": numbers or times out of range");
     by_type_[type->name].push_back(std::move(message));
@@ -163,49 +156,6 @@ std::vector<DriveSample> commandsOf(const std::string& path, LogContent& log, do
   return samples;
 }
 
-/// Every 50 ms the newest command, none once it is too old.
-void takeCommands(std::vector<DriveSample> commands, RecordedDrive& drive) {
-  if (commands.empty()) return;
-  std::stable_sort(commands.begin(), commands.end(),
-                   [](const DriveSample& a, const DriveSample& b) { return a.time < b.time; });
-  size_t at = 0;
-  const double begin = commands.front().time;
-  const auto count = static_cast<size_t>((commands.back().time - begin) / kPeriod) + 1;
-  for (size_t i = 0; i < count; ++i) {
-    const double time = begin + kPeriod * static_cast<double>(i);
-    while (at + 1 < commands.size() && commands[at + 1].time <= time) ++at;
-    DriveSample sample = commands[at];
-    sample.automatic = time - sample.time <= kCommandAge;
-    if (!sample.automatic) sample.command = {0.0, 0.0};
-    sample.time = time;
-    drive.drive.push_back(sample);
-  }
-}
-
-bool isSame(const TrackCommand& a, const TrackCommand& b) {
-  return a.left == b.left && a.right == b.right;
-}
-
-/// Runs of one command other than zero; equal commands have equal numbers.
-void findRuns(RecordedDrive& drive) {
-  std::vector<TrackCommand> commands;
-  const std::vector<DriveSample>& samples = drive.drive;
-  for (size_t first = 0; first < samples.size();) {
-    const TrackCommand& command = samples[first].command;
-    size_t end = first + 1;
-    while (end < samples.size() && isSame(samples[end].command, command)) ++end;
-    if (!isSame(command, {0.0, 0.0})) {
-      const auto known = std::find_if(commands.begin(), commands.end(),
-                                      [&](const TrackCommand& c) { return isSame(c, command); });
-      const auto number = static_cast<int>(known - commands.begin()) + 1;
-      if (known == commands.end()) commands.push_back(command);
-      const char* const why = end < samples.size() ? "the command changed" : "the log ended";
-      drive.runs.push_back({number, samples[first].time, samples[end - 1].time + kPeriod, why});
-    }
-    first = end;
-  }
-}
-
 /// One turn of the laser as points; its sender says the time of each beam in us or in ms.
 std::optional<recordings::TimedScan> scanOf(const Timed& laser, double height) {
   auto scan = blank<scan_t>();
@@ -236,7 +186,7 @@ ForeignDrive readForeignLog(const std::string& path, const ForeignRobot& robot) 
   LogContent log(path, result);
   RecordedDrive& drive = result.drive;
   takePoses(path, log.poses(robot.pose_channel), drive);
-  takeCommands(commandsOf(path, log, robot.baseline, drive.kind), drive);
+  holdCommands(commandsOf(path, log, robot.baseline, drive.kind), kCommandAge, drive);
   findRuns(drive);
   for (const Timed& laser : log.all("lidar_t")) {
     if (auto scan = scanOf(laser, robot.lidar_height))

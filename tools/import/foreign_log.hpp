@@ -2,10 +2,9 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <map>
 #include <string>
 
-#include "common/recordings/imported_log.hpp"
+#include "tools/import/foreign_drive.hpp"
 
 namespace tread::import {
 
@@ -14,13 +13,6 @@ struct ForeignRobot {
   std::string pose_channel;   ///< whose poses become INS; empty: the only one that holds poses
   double baseline = 0.0;      ///< [m] between the wheels; 0 = unknown
   double lidar_height = 0.2;  ///< [m] of the range finder above the ground, over the body origin
-};
-
-/// What was found in such a log.
-struct ForeignDrive {
-  recordings::RecordedDrive drive;
-  std::string pose_channel;                ///< whose poses were taken
-  std::map<std::string, size_t> left_out;  ///< messages not taken, by channel and why
 };
 
 /// Reads an LCM log of a robot with the types of foreign_types.hpp, whatever its channels' names.

@@ -8,8 +8,10 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
+#include "common/config/config_reader.hpp"
 #include "common/recordings/csv_table.hpp"
 #include "common/recordings/imported_log.hpp"
+#include "tools/import/csv_drive.hpp"
 #include "tools/import/foreign_log.hpp"
 
 using namespace tread;
@@ -21,6 +23,8 @@ struct Arguments {
   std::string format;
   std::string sessions;
   std::string session;
+  std::string mapping;
+  std::vector<std::string> overrides;
   std::string csv;
   std::string log;
   bool keep_lag = false;
@@ -35,10 +39,17 @@ RecordedDrive read(const Arguments& arguments, const Session& session) {
   return readContinuous(arguments.csv, session, arguments.gyro);
 }
 
+/// Of robots that the project's own recordings are not of.
+bool isForeign(const std::string& format) {
+  return format == "lcm" || format == "csv";
+}
+
 /// Aligned files hold neither the gyro nor the times at which poses were logged.
 void checkFormat(const Arguments& arguments) {
-  if (arguments.format != "lcm" && arguments.sessions.empty())
+  if (!isForeign(arguments.format) && arguments.sessions.empty())
     throw RecordingError("--sessions is needed with --format " + arguments.format);
+  if ((arguments.format == "csv") == arguments.mapping.empty())
+    throw RecordingError("--mapping: needed with --format csv, and only there");
   if (arguments.format == "aligned" && (arguments.keep_lag || arguments.gyro == Gyro::kAll))
     throw RecordingError("--keep-lag and --gyro all: not in aligned files; take --format steps");
 }
@@ -61,10 +72,11 @@ void checkLength(double length) {
                          " s is no multiple of 0.05 s, the recordings' period");
 }
 
-/// What a foreign log does not say about its session.
+/// What a foreign recording does not say about its session.
 Session foreignSession(const Arguments& arguments, const RecordedDrive& recording) {
   Session session;
-  session.name = std::filesystem::path(arguments.csv).stem().string();
+  std::filesystem::path path(arguments.csv);
+  session.name = (path.has_filename() ? path : path.parent_path()).stem().string();
   session.robot = "robot of a foreign log";
   session.surface = "unknown";
   session.baseline = arguments.robot.baseline;
@@ -76,11 +88,27 @@ Session foreignSession(const Arguments& arguments, const RecordedDrive& recordin
   return session;
 }
 
-RecordedDrive readForeign(const Arguments& arguments) {
-  import::ForeignDrive foreign = import::readForeignLog(arguments.csv, arguments.robot);
+void tell(const import::ForeignDrive& foreign) {
   for (const auto& [what, count] : foreign.left_out)
     std::printf("left out: %zu of %s\n", count, what.c_str());
-  if (!foreign.pose_channel.empty()) std::printf("poses: %s\n", foreign.pose_channel.c_str());
+  if (!foreign.poses.empty()) std::printf("poses: %s\n", foreign.poses.c_str());
+}
+
+RecordedDrive readForeign(const Arguments& arguments, Session& session) {
+  if (arguments.format == "lcm") {
+    import::ForeignDrive foreign = import::readForeignLog(arguments.csv, arguments.robot);
+    tell(foreign);
+    session = foreignSession(arguments, foreign.drive);
+    return std::move(foreign.drive);
+  }
+  ConfigReader reader = ConfigReader::fromFile(arguments.mapping, arguments.overrides);
+  const import::CsvMapping mapping = import::readCsvMapping(reader);
+  import::ForeignDrive foreign = import::readMappedCsv(arguments.csv, mapping);
+  tell(foreign);
+  session = foreignSession(arguments, foreign.drive);
+  session.robot = mapping.robot;
+  session.surface = mapping.surface;
+  session.baseline = mapping.baseline;
   return std::move(foreign.drive);
 }
 
@@ -89,9 +117,8 @@ void run(const Arguments& arguments) {
   checkFormat(arguments);
   Session session;
   RecordedDrive recording;
-  if (arguments.format == "lcm") {
-    recording = readForeign(arguments);
-    session = foreignSession(arguments, recording);
+  if (isForeign(arguments.format)) {
+    recording = readForeign(arguments, session);
   } else {
     session = sessionOf(arguments);
     recording = read(arguments, session);
@@ -114,11 +141,18 @@ int parseAndRun(int argc, char** argv) {
   CLI::App app{
       "Turns a recording of a drive (CSV, or an LCM log of a MAEBot or MBot) into an LCM log: INS, "
       "MOTOR, SCAN, EXECUTION, MARK"};
-  app.add_option("--format", arguments.format, "which kind of file: lcm, or one of CSV")
+  app.add_option("--format", arguments.format,
+                 "which kind of file: lcm; csv as --mapping says; or one with --sessions")
       ->required()
-      ->check(CLI::IsMember({"steps", "aligned", "continuous", "lcm"}));
+      ->check(CLI::IsMember({"steps", "aligned", "continuous", "lcm", "csv"}));
+  app.add_option("--mapping", arguments.mapping,
+                 "csv: what its columns mean, as config/imports/example.yaml does");
+  app.add_option("--set", arguments.overrides,
+                 "csv: KEY=VALUE in the place of what the mapping says: wheel_radius=0.18")
+      ->expected(1)
+      ->take_all();
   app.add_option("--sessions", arguments.sessions,
-                 "sessions.csv: radius, baseline, pose lag; not with lcm");
+                 "sessions.csv: radius, baseline, pose lag; not with lcm and csv");
   app.add_option("--pose-channel", arguments.robot.pose_channel,
                  "lcm: whose poses become INS, if several channels hold poses");
   app.add_option("--baseline", arguments.robot.baseline,
@@ -129,7 +163,7 @@ int parseAndRun(int argc, char** argv) {
       ->check(CLI::Range(0.0, 10.0))
       ->capture_default_str();
   app.add_option("--session", arguments.session, "row of sessions.csv; default: the file's name");
-  app.add_option("csv", arguments.csv, "recording")->required();
+  app.add_option("csv", arguments.csv, "recording: a file, or a folder of tables")->required();
   app.add_option("-o,--output", arguments.log, "LCM log to write")->required();
   app.add_option("--offset", arguments.layout.offset,
                  "first execution this long after the command began [s]")

@@ -247,7 +247,7 @@ TEST_CASE("a bad file is one line with file and line") {
           "drive.csv:4: column x_m is 1e10; allowed is -100000.000000 to 100000.000000");
   std::string missing = kStepsHeader + good;
   missing.replace(missing.find("pose_new"), 8, "pose_old");
-  REQUIRE(complaint(missing) == "drive.csv:1: no column pose_new; is this another --format?");
+  REQUIRE(complaint(missing).find("drive.csv:1: no column pose_new; there are ") == 0);
   REQUIRE(complaint(kStepsHeader) ==
           "drive.csv:1: no rows after the header; is the file truncated?");
   std::string swapped = kStepsHeader + good;

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// Drives in CSV of other robots, by a mapping file. No recording of FoMo lies here: its session is
+// written by the test, in the files and columns of the data set's own examples.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "common/config/config_reader.hpp"
+#include "common/geometry/se2.hpp"
+#include "common/recordings/csv_table.hpp"
+#include "tests/tools/import/drive_samples.hpp"
+#include "tools/import/csv_drive.hpp"
+
+using namespace tread;
+using namespace tread::import;
+using tread::samples::Folder;
+using tread::samples::line;
+
+namespace {
+
+CsvMapping mappingOf(const std::string& yaml, const std::vector<std::string>& overrides = {}) {
+  ConfigReader reader = ConfigReader::fromText(yaml, "map.yaml", overrides);
+  return readCsvMapping(reader);
+}
+
+CsvMapping shipped(const std::string& name, const std::vector<std::string>& overrides = {}) {
+  ConfigReader reader =
+      ConfigReader::fromFile(std::string(TREAD_SOURCE_DIR) + "/config/imports/" + name, overrides);
+  return readCsvMapping(reader);
+}
+
+ForeignDrive readText(const std::string& csv, const std::string& yaml) {
+  const Folder folder("import_csv");
+  return readMappedCsv(folder.file("drive.csv", csv), mappingOf(yaml));
+}
+
+/// What reading throws, without the folder.
+std::string complaint(const std::string& csv, const std::string& yaml) {
+  try {
+    readText(csv, yaml);
+  } catch (const std::exception& error) {
+    const std::string text = error.what();
+    const size_t at = text.find("drive.csv");
+    return at == std::string::npos ? text : text.substr(at);
+  }
+  return "nothing";
+}
+
+const std::string kPoses =
+    "tables:\n"
+    "  - time: {column: t, unit: ms}\n"
+    "    columns: {x: {column: x}, y: {column: y}, yaw: {column: yaw}}\n";
+const std::string kCommands =
+    "tables:\n"
+    "  - time: {rate: 10}\n"
+    "    columns: {left_command: {column: l}, right_command: {column: r}}\n";
+
+}  // namespace
+
+TEST_CASE("the example mapping: units, scales, compass, degrees of latitude, power per side") {
+  std::string csv =
+      "time_ms,cmd_left,cmd_right,rpm_left,rpm_right,battery,amps_left,amps_right,lat,lon,alt,"
+      "compass,gyro_z,roll,pitch\n";
+  for (int i = 0; i < 100; ++i)
+    csv += line("%d,40,-30,60,-60,24500,3.5,4.5,%.9f,7.5587,120,30,90,2,-1\n", 50 * i,
+                50.3629 + i * 1e-6);
+  const Folder folder("import_csv_example");
+  const ForeignDrive read = readMappedCsv(folder.file("a.csv", csv), shipped("example.yaml"));
+  const recordings::RecordedDrive& drive = read.drive;
+  REQUIRE(read.left_out.empty());
+  REQUIRE(drive.kind == CommandKind::kPower);
+  REQUIRE(drive.drive.size() == 100);
+  const recordings::DriveSample& sample = drive.drive[50];
+  CHECK(sample.command.left == Approx(0.4));
+  CHECK(sample.command.right == Approx(0.3));
+  CHECK(sample.speed.left == Approx(2.0 * kPi * 0.12));
+  CHECK(sample.speed.right == Approx(2.0 * kPi * 0.12));
+  CHECK(sample.voltage == Approx(24.5));
+  CHECK(sample.current.right == Approx(4.5));
+  REQUIRE(drive.fixes.size() == 100);
+  const recordings::Fix& fix = drive.fixes.back();
+  CHECK(fix.time == Approx(4.95));
+  CHECK(fix.T_map_body.x == Approx(0.0).margin(1e-6));
+  CHECK(fix.T_map_body.y == Approx(99e-6 * 111'240.0).epsilon(0.001));  // a degree there
+  CHECK(fix.T_map_body.yaw == Approx(60.0 * kPi / 180.0));
+  CHECK(fix.yaw_rate == Approx(kPi / 2.0));
+  CHECK(fix.roll == Approx(2.0 * kPi / 180.0));
+  REQUIRE(drive.runs.size() == 1);
+}
+
+TEST_CASE("columns by number, other delimiters, quaternions and a named origin") {
+  const ForeignDrive read = readText(
+      "1.5; 1010; 2020; 0.7071068; 0; 0; 0.7071068\n2.0; 1011; 2020; 0.7071068; 0; 0; 0.7071068\n",
+      "origin: {at: [1000, 2000, 0]}\n"
+      "tables:\n"
+      "  - delimiter: semicolon\n"
+      "    header: false\n"
+      "    time: {column: 1}\n"
+      "    columns:\n"
+      "      {x: {column: 2}, y: {column: 3}, qw: {column: 4}, qx: {column: 5}, qy: {column: 6},\n"
+      "       qz: {column: 7}}\n");
+  REQUIRE(read.drive.fixes.size() == 2);
+  CHECK(read.drive.fixes[1].time == Approx(0.5));
+  CHECK(read.drive.fixes[1].T_map_body.x == Approx(11.0));
+  CHECK(read.drive.fixes[1].T_map_body.y == Approx(20.0));
+  CHECK(read.drive.fixes[1].T_map_body.yaw == Approx(kPi / 2.0));
+  CHECK(read.drive.drive.empty());
+}
+
+TEST_CASE("fields that are empty or nan are no measurements, but the rest of their row is") {
+  const ForeignDrive read = readText(
+      "\xEF\xBB\xBFt,x,y,yaw\n0,1,2,0\n100,,,0\n200,nan,2,0\n200,7,7,7\n300,2,2,0\n", kPoses);
+  REQUIRE(read.drive.fixes.size() == 2);
+  CHECK(read.drive.fixes[1].T_map_body.x == 2.0);
+  size_t of_x = 0;
+  size_t twice = 0;
+  for (const auto& [what, count] : read.left_out) {
+    if (what.find("no x") != std::string::npos) of_x = count;
+    if (what.find("the same time") != std::string::npos) twice = count;
+  }
+  CHECK(of_x == 2);
+  CHECK(twice == 1);
+}
+
+TEST_CASE("refusals name file, line and column") {
+  CHECK(complaint("t,x,y,yaw\n0,1,2,0\n100,abc,2,0\n", kPoses) ==
+        "drive.csv:3: column x is 'abc'; a finite number is needed");
+  CHECK(complaint("t,x,y,yaw\n0,1,2,0\n100,1e10,2,0\n", kPoses) ==
+        "drive.csv:3: column x (x) is 1e+10 after unit and scale; allowed is up to 1e+05");
+  CHECK(complaint("t,x,y,yaw\n0,1,2,0\n-100,1,2,0\n", kPoses) ==
+        "drive.csv:3: column t goes back; are the rows in order?");
+  CHECK(complaint("t,x,y,yaw\n0,1,2,0\n1e12,1,2,0\n", kPoses) ==
+        "drive.csv:3: column t is 1e+09 s after the first row; is the unit of the time right?");
+  CHECK(complaint("t,x,z,yaw\n0,1,2,0\n", kPoses) ==
+        "drive.csv:1: no column y; there are t, x, yaw, z");
+  CHECK(complaint("t,x,y,yaw,x\n0,1,2,0,4\n", kPoses) ==
+        "drive.csv:1: column x is there twice; give its number");
+  CHECK(complaint("t,x,y,yaw\n0,1,2\n", kPoses) ==
+        "drive.csv:2: 3 columns, the header has 4; is the file truncated?");
+  CHECK(complaint("l,r\n0.5,0.5\n1.2,0.5\n", kCommands) ==
+        "drive.csv:3: column l (left_command) is 1.2 after unit and scale; allowed is up to 1");
+  CHECK(complaint("t,x,y,yaw\n0,1,2,0\n1,2e5,0,0\n", "origin: {first_fix: true}\n" + kPoses) ==
+        "drive.csv:3: column of x: the position is 199999 m from the origin, beyond 100 km; give "
+        "another origin in the mapping");
+}
+
+TEST_CASE("a mapping that cannot mean a drive is refused with its line") {
+  const auto refusal = [](const std::string& yaml) { return complaint("a\n1\n", yaml); };
+  const auto columns = [](const std::string& text) {
+    return "tables:\n  - time: {rate: 10}\n    columns: {" + text + "}\n";
+  };
+  using Catch::Contains;
+  CHECK_THAT(refusal(columns("speed: {column: a}")),
+             Contains("map.yaml:3") && Contains("known are"));
+  CHECK_THAT(refusal(columns("left_command: {column: a}")), Contains("come together"));
+  CHECK_THAT(refusal(columns("x: {column: a}, y: {column: a}")), Contains("needs one heading"));
+  CHECK_THAT(refusal(columns("left_command: {column: a, unit: rpm}, right_command: {column: a}")),
+             Contains("needs wheel_radius"));
+  CHECK_THAT(refusal(columns("left_command: {column: a, unit: m/s}, right_command: {column: a}")),
+             Contains("one side is power"));
+  CHECK_THAT(refusal(columns("voltage: {column: a, unit: kV}")), Contains("V, mV"));
+  CHECK_THAT(refusal("heading: {course_above: 0.5}\n" + columns("x: {column: a}, y: {column: a}")),
+             Contains("drives backwards"));
+  CHECK_THAT(refusal("tables:\n  - time: {}\n    columns: {voltage: {column: a}}\n"),
+             Contains("map.yaml:2") && Contains("give one"));
+  CHECK_THAT(refusal(kCommands + "  - time: {column: a}\n    columns: {voltage: {column: a}}\n"),
+             Contains("cannot be placed"));
+  CHECK_THAT(refusal("wheels: 4\n" + kCommands), Contains("wheels"));
+}
+
+namespace {
+
+/// A session of FoMo: 3 s at rest, 6 s ahead to the east, 4 s back, at 1.5 m/s; a fix each 0.1 s.
+void writeFomo(const Folder& folder) {
+  const double begin = 1760456485.7;
+  std::string poses, current, voltage;
+  std::map<std::string, std::string> wheels;
+  double x = 0.0;
+  for (int i = 0; i < 130; ++i) {
+    const double v = i < 30 ? 0.0 : i < 90 ? 1.5 : -1.5;
+    const auto us = static_cast<long long>((begin + 0.1 * i) * 1e6);
+    poses += line("%.9f %.9f 5242729.39 643.6 0 0 0 1\n", begin + 0.1 * i, 255855.356 + x);
+    x += 0.1 * v;
+    for (const char* name : {"cmd_velocity_left", "cmd_velocity_right"})
+      wheels[name] += line("%lld,%.4f\n", us + (name[14] == 'l' ? 7000 : 0), v / 0.3);
+    for (const char* name : {"velocity_left", "velocity_right"})
+      wheels[name] += line("%lld,%.4f\n", us, v / 0.3);
+    if (i % 10 == 0) current += line("%lld,%d\n", us, i), voltage += line("%lld,46.5\n", us);
+  }
+  std::filesystem::create_directories(folder.file("metadata"));
+  folder.file("gt.txt", poses);
+  for (const auto& [name, rows] : wheels)
+    folder.file("metadata/" + name + ".csv", "timestamp,value\n" + rows);
+  folder.file("metadata/voltage_left.csv", "timestamp,value\n" + voltage);
+  for (const char* name : {"current_left", "current_right"})
+    folder.file(std::string("metadata/") + name + ".csv", "timestamp,value\n" + current);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a session of FoMo by its shipped mapping: wheels per side, volts, amperes, RTK, course") {
+  const Folder folder("import_fomo");
+  writeFomo(folder);
+  const ForeignDrive read = readMappedCsv(folder.file(""), shipped("fomo.yaml"));
+  const recordings::RecordedDrive& drive = read.drive;
+  REQUIRE(drive.kind == CommandKind::kTrackSpeed);
+  CHECK(read.left_out.at("poses without a heading") < 35);
+  REQUIRE(drive.fixes.size() > 90);
+  // Ahead and back with the nose to the east.
+  for (const recordings::Fix& fix : drive.fixes)
+    CHECK(std::abs(wrapAngle(fix.T_map_body.yaw)) < 1e-6);
+  CHECK(drive.fixes.front().T_map_body.x < 0.5);
+  CHECK(drive.fixes.front().time == Approx(3.0).margin(0.15));
+  CHECK(drive.drive.at(100).command.left == Approx(1.5));
+  CHECK(drive.drive.at(100).speed.right == Approx(1.5));
+  CHECK(drive.drive.at(100).voltage == Approx(46.5));
+  CHECK(drive.drive.at(100).current.left == Approx(50.0).margin(1.0));
+  REQUIRE(drive.runs.size() == 2);
+  CHECK(drive.runs[0].end - drive.runs[0].begin == Approx(6.0).margin(0.11));
+  const ForeignDrive tracks =
+      readMappedCsv(folder.file(""), shipped("fomo.yaml", {"wheel_radius=0.18"}));
+  CHECK(tracks.drive.drive.at(100).command.left == Approx(0.9));
+  std::filesystem::remove(folder.file("metadata/current_right.csv"));
+  CHECK_THROWS_WITH(readMappedCsv(folder.file(""), shipped("fomo.yaml")),
+                    Catch::Contains("current_right.csv: cannot be read"));
+}

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/import/csv_drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "common/config/scalars.hpp"
+#include "common/geometry/degrees.hpp"
+#include "common/geometry/se3.hpp"
+#include "modules/ins_driver/core/ins_source.hpp"
+
+namespace tread::import {
+namespace {
+
+using recordings::CsvTable;
+using recordings::DriveSample;
+using recordings::Fix;
+using recordings::kUnknown;
+using recordings::RecordedDrive;
+using recordings::RecordingError;
+
+/// Speeds, voltages and rates that are older say nothing of now [s].
+constexpr double kSpeedAge = 0.3;
+constexpr double kBatteryAge = 3.0;
+constexpr double kRateAge = 0.02;
+/// A course is that between two fixes, no further apart [s].
+constexpr double kCourseGap = 1.0;
+
+/// What a column measured, in order of time.
+class Series {
+ public:
+  void add(double time, double value, size_t line) { samples_.push_back({time, value, line}); }
+  void shift(double by) {
+    for (Sample& sample : samples_) sample.time += by;
+  }
+  bool empty() const { return samples_.empty(); }
+  size_t size() const { return samples_.size(); }
+  double time(size_t i) const { return samples_[i].time; }
+  size_t line(size_t i) const { return samples_[i].line; }
+  /// The newest one at a time, NaN if it is older than `age` [s].
+  double at(double time, double age) const {
+    const auto after =
+        std::upper_bound(samples_.begin(), samples_.end(), time,
+                         [](double t, const Sample& sample) { return t < sample.time; });
+    if (after == samples_.begin() || time - std::prev(after)->time > age) return kUnknown;
+    return std::prev(after)->value;
+  }
+
+ private:
+  struct Sample {
+    double time;
+    double value;
+    size_t line;  // of the file
+  };
+  std::vector<Sample> samples_;
+};
+
+bool isMissing(const std::string& field) {
+  return field.empty() || field == "nan" || field == "NaN" || field == "NAN";
+}
+
+/// All quantities of a recording.
+class CsvContent {
+ public:
+  CsvContent(const std::string& path, const CsvMapping& mapping, ForeignDrive& result)
+      : result_(result) {
+    const std::filesystem::path place(path);
+    for (const CsvSource& source : mapping.sources) {
+      const bool folder = std::filesystem::is_directory(place);
+      if (folder && source.file.empty())
+        throw RecordingError(path + ": is a folder; its tables need a file each in the mapping");
+      const std::filesystem::path parent = folder ? place : place.parent_path();
+      read(source.file.empty() ? path : (parent / source.file).string(), source);
+    }
+    for (auto& [name, series] : series_) series.shift(-begin_);
+  }
+
+  const Series& of(const std::string& quantity) const {
+    static const Series kNone;
+    const auto found = series_.find(quantity);
+    return found == series_.end() ? kNone : found->second;
+  }
+  double at(const std::string& quantity, double time, double age) const {
+    return of(quantity).at(time, age);
+  }
+  /// "file:line" of a quantity's i-th measurement, for messages.
+  std::string placeOf(const std::string& quantity, size_t i) const {
+    return files_.at(quantity) + ":" + std::to_string(of(quantity).line(i));
+  }
+
+ private:
+  void read(const std::string& file, const CsvSource& source) {
+    const CsvTable table(file, source.layout);
+    for (const auto& [quantity, column] : source.columns) files_[quantity] = file;
+    double first = 0.0;
+    double last = -std::numeric_limits<double>::infinity();
+    for (size_t row = 0; row < table.rows(); ++row) {
+      const double time = timeOf(table, row, source);
+      if (row == 0) first = time;
+      if (time < last)
+        throw table.error(row, "column " + source.time + " goes back; are the rows in order?");
+      if (time - first > kLongest)
+        throw table.error(row, "column " + source.time + " is " + formatNumber(time - first) +
+                                   " s after the first row; is the unit of the time right?");
+      if (time == last) {
+        ++result_.left_out[file + ": the same time as the row before"];
+        continue;
+      }
+      last = time;
+      for (const auto& [quantity, column] : source.columns)
+        take(table, row, time, quantity, column, file);
+    }
+    begin_ = std::min(begin_, first);
+  }
+
+  static double timeOf(const CsvTable& table, size_t row, const CsvSource& source) {
+    if (source.time.empty()) return static_cast<double>(row) / source.rate;
+    return source.time_unit * table.number(row, source.time);
+  }
+
+  void take(const CsvTable& table, size_t row, double time, const std::string& quantity,
+            const CsvColumn& column, const std::string& file) {
+    if (isMissing(table.text(row, column.column))) {
+      ++result_.left_out[file + ": no " + quantity];
+      return;
+    }
+    const double value = column.factor * table.number(row, column.column);
+    if (std::abs(value) > column.limit)
+      throw table.error(row, "column " + column.column + " (" + quantity + ") is " +
+                                 formatNumber(value) + " after unit and scale; allowed is up to " +
+                                 formatNumber(column.limit));
+    series_[quantity].add(time, value, table.line(row));
+  }
+
+  ForeignDrive& result_;
+  std::map<std::string, Series> series_;
+  std::map<std::string, std::string> files_;
+  double begin_ = std::numeric_limits<double>::max();
+};
+
+/// Positions in the map.
+class Placing {
+ public:
+  Placing(const CsvContent& content, const CsvMapping& mapping)
+      : content_(content), mapping_(mapping), degrees_(mapping.has("latitude")) {
+    if (mapping.origin) use(*mapping.origin);
+  }
+
+  /// p_map of the fix at this time; NaN where a part of it was not measured.
+  Eigen::Vector3d at(double time) {
+    const auto part = [&](const char* name) { return content_.at(name, time, 0.0); };
+    const char* const up = degrees_ ? "height" : "z";
+    Eigen::Vector3d place{part(degrees_ ? "latitude" : "x"), part(degrees_ ? "longitude" : "y"),
+                          mapping_.has(up) ? part(up) : 0.0};
+    if (!place.allFinite()) return place;
+    if (!placed_ && (degrees_ || mapping_.origin_at_first_fix)) use(place);
+    if (!degrees_) return place - origin_;
+    return frame_->toMap({toRadians(place.x()), toRadians(place.y())}, place.z());
+  }
+
+ private:
+  void use(const Eigen::Vector3d& place) {
+    placed_ = true;
+    origin_ = place;
+    if (degrees_)
+      frame_ = ins::LocalFrame({{toRadians(place.x()), toRadians(place.y())}, place.z(), 0.0});
+  }
+
+  const CsvContent& content_;
+  const CsvMapping& mapping_;
+  bool degrees_;
+  bool placed_ = false;
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
+  std::optional<ins::LocalFrame> frame_;
+};
+
+/// Attitude of a fix from its columns; a yaw of NaN where it was not measured.
+void setAttitude(const CsvContent& content, const CsvMapping& mapping, Fix& fix) {
+  const auto part = [&](const char* name) { return content.at(name, fix.time, 0.0); };
+  if (mapping.has("qw")) {
+    Eigen::Quaterniond q(part("qw"), part("qx"), part("qy"), part("qz"));
+    fix.T_map_body.yaw = kUnknown;
+    if (!(std::abs(q.norm() - 1.0) < 0.01)) return;
+    const YawPitchRoll angles = yawPitchRoll(q.normalized());
+    fix.T_map_body.yaw = angles.yaw + mapping.yaw_zero;
+    fix.pitch = angles.pitch;
+    fix.roll = angles.roll;
+    return;
+  }
+  fix.T_map_body.yaw = mapping.yaw_zero + mapping.yaw_sense * part("yaw");
+  fix.roll = part("roll");
+  fix.pitch = part("pitch");
+}
+
+/// Heading from the fixes before and after; NaN at low speed.
+double courseAt(const std::vector<Fix>& fixes, size_t i, const CsvContent& content,
+                double course_above) {
+  const Fix& before = fixes[i > 0 ? i - 1 : i];
+  const Fix& after = fixes[std::min(i + 1, fixes.size() - 1)];
+  const Eigen::Vector2d way = after.T_map_body.position() - before.T_map_body.position();
+  const double time = after.time - before.time;
+  if (time <= 0.0 || time > kCourseGap || way.norm() / time < course_above) return kUnknown;
+  const bool measured = !content.of("left_speed").empty();
+  const double age = measured ? kSpeedAge : kCommandAge;
+  const double ahead = content.at(measured ? "left_speed" : "left_command", fixes[i].time, age) +
+                       content.at(measured ? "right_speed" : "right_command", fixes[i].time, age);
+  if (!(std::abs(ahead) > 0.0)) return kUnknown;
+  return std::atan2(way.y(), way.x()) + (ahead < 0.0 ? kPi : 0.0);
+}
+
+void takePoses(const CsvContent& content, const CsvMapping& mapping, ForeignDrive& result) {
+  const char* const along = mapping.has("latitude") ? "latitude" : "x";
+  const Series& times = content.of(along);
+  Placing placing(content, mapping);
+  std::vector<Fix> fixes;
+  for (size_t i = 0; i < times.size(); ++i) {
+    Fix fix;
+    fix.time = times.time(i);
+    const Eigen::Vector3d p_map = placing.at(fix.time);
+    if (!p_map.allFinite()) continue;
+    if (p_map.head<2>().norm() > kFarthest)
+      throw RecordingError(content.placeOf(along, i) + ": column of " + along +
+                           ": the position is " + formatNumber(std::round(p_map.head<2>().norm())) +
+                           " m from the origin, beyond 100 km; give another origin in the mapping");
+    fix.T_map_body = {p_map.x(), p_map.y(), 0.0};
+    fix.z = p_map.z();
+    if (!mapping.course_above) setAttitude(content, mapping, fix);
+    fix.yaw_rate = content.at("yaw_rate", fix.time, kRateAge);
+    fixes.push_back(fix);
+  }
+  for (size_t i = 0; i < fixes.size(); ++i) {
+    Fix fix = fixes[i];
+    if (mapping.course_above)
+      fix.T_map_body.yaw = courseAt(fixes, i, content, *mapping.course_above);
+    if (!std::isfinite(fix.T_map_body.yaw)) {
+      ++result.left_out["poses without a heading"];
+      continue;
+    }
+    fix.new_track = result.drive.fixes.empty();
+    result.drive.fixes.push_back(fix);
+  }
+}
+
+void takeCommands(const CsvContent& content, const CsvMapping& mapping, RecordedDrive& drive) {
+  std::vector<DriveSample> commands;
+  for (const char* side : {"left_command", "right_command"})
+    for (size_t i = 0; i < content.of(side).size(); ++i) {
+      DriveSample sample;
+      sample.time = content.of(side).time(i);
+      sample.command = {content.at("left_command", sample.time, mapping.command_hold),
+                        content.at("right_command", sample.time, mapping.command_hold)};
+      if (std::isfinite(sample.command.left + sample.command.right)) commands.push_back(sample);
+    }
+  drive.kind = mapping.kind;
+  holdCommands(std::move(commands), mapping.command_hold, drive);
+  for (DriveSample& sample : drive.drive) {
+    sample.speed = {content.at("left_speed", sample.time, kSpeedAge),
+                    content.at("right_speed", sample.time, kSpeedAge)};
+    sample.voltage = content.at("voltage", sample.time, kBatteryAge);
+    sample.current = {content.at("left_current", sample.time, kBatteryAge),
+                      content.at("right_current", sample.time, kBatteryAge)};
+  }
+  findRuns(drive);
+}
+
+}  // namespace
+
+ForeignDrive readMappedCsv(const std::string& path, const CsvMapping& mapping) {
+  ForeignDrive result;
+  const CsvContent content(path, mapping, result);
+  if (mapping.course_above)
+    result.poses = "headings are the course over ground: slip to the side is not in them";
+  takePoses(content, mapping, result);
+  takeCommands(content, mapping, result.drive);
+  if (result.drive.fixes.empty() && result.drive.drive.empty())
+    throw RecordingError(path + ": holds neither a pose nor a command that can be used");
+  return result;
+}
+
+}  // namespace tread::import

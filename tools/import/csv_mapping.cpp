@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/import/csv_mapping.hpp"
+
+#include <algorithm>
+
+#include "common/config/scalars.hpp"
+#include "common/geometry/degrees.hpp"
+#include "tools/import/foreign_drive.hpp"
+
+namespace tread::import {
+namespace {
+
+/// Units that a column may be in, with their factors; the first is the one that is not named.
+struct Unit {
+  std::string name;
+  double factor;
+};
+
+/// A quantity that a column may hold.
+struct Quantity {
+  std::vector<Unit> units;
+  double limit;
+};
+
+const std::map<std::string, Quantity>& quantities() {
+  static const Quantity kCommand{
+      {{"1", 1.0}, {"percent", 0.01}, {"m/s", 1.0}, {"rad/s", 1.0}, {"rpm", 2.0 * kPi / 60.0}},
+      1.0};
+  static const Quantity kSpeed{{{"m/s", 1.0}, {"rad/s", 1.0}, {"rpm", 2.0 * kPi / 60.0}}, 100.0};
+  static const Quantity kCurrent{{{"A", 1.0}, {"mA", 0.001}}, 10'000.0};
+  // UTM northings are up to 10 000 km; they need an origin.
+  static const Quantity kLength{{{"m", 1.0}, {"mm", 0.001}, {"cm", 0.01}}, 1.1e7};
+  static const Quantity kAngle{{{"rad", 1.0}, {"deg", toRadians(1.0)}}, 10'000.0};
+  static const Quantity kOne{{{"1", 1.0}}, 1.001};
+  static const std::map<std::string, Quantity> kAll{
+      {"left_command", kCommand},
+      {"right_command", kCommand},
+      {"left_speed", kSpeed},
+      {"right_speed", kSpeed},
+      {"voltage", {{{"V", 1.0}, {"mV", 0.001}}, 1000.0}},
+      {"left_current", kCurrent},
+      {"right_current", kCurrent},
+      {"x", kLength},
+      {"y", kLength},
+      {"z", kLength},
+      {"latitude", {{{"deg", 1.0}, {"rad", toDegrees(1.0)}}, 90.0}},
+      {"longitude", {{{"deg", 1.0}, {"rad", toDegrees(1.0)}}, 360.0}},
+      {"height", kLength},
+      {"yaw", kAngle},
+      {"roll", kAngle},
+      {"pitch", kAngle},
+      {"yaw_rate", {{{"rad/s", 1.0}, {"deg/s", toRadians(1.0)}}, 100.0}},
+      {"qw", kOne},
+      {"qx", kOne},
+      {"qy", kOne},
+      {"qz", kOne}};
+  return kAll;
+}
+
+std::vector<std::string> namesOf(const std::vector<Unit>& units) {
+  std::vector<std::string> names;
+  for (const Unit& unit : units) names.push_back(unit.name);
+  return names;
+}
+
+double factorOf(const std::vector<Unit>& units, const std::string& name) {
+  return std::find_if(units.begin(), units.end(), [&](const Unit& u) { return u.name == name; })
+      ->factor;
+}
+
+bool turnsWheels(const std::string& unit) {
+  return unit == "rad/s" || unit == "rpm";
+}
+
+class MappingReader {
+ public:
+  explicit MappingReader(ConfigReader& reader) : reader_(reader) {}
+
+  CsvMapping read() {
+    reader_.text("robot", mapping_.robot);
+    reader_.text("surface", mapping_.surface);
+    reader_.number("baseline", mapping_.baseline, {0.0, 10.0}, "m");
+    reader_.number("wheel_radius", wheel_radius_, {0.001, 5.0}, "m");
+    reader_.number("command_hold", mapping_.command_hold, {0.05, 3600.0}, "s");
+    readOrigin(reader_.section("origin"));
+    readHeading(reader_.section("heading"));
+    for (ConfigReader& table : reader_.sections("tables", true))
+      mapping_.sources.push_back(readSource(table));
+    reader_.finish();
+    check();
+    if (!mapping_.origin && !mapping_.origin_at_first_fix)
+      for (CsvSource& source : mapping_.sources)
+        for (const char* name : {"x", "y"})
+          if (source.columns.count(name) != 0) source.columns[name].limit = kFarthest;
+    return std::move(mapping_);
+  }
+
+ private:
+  void readOrigin(ConfigReader origin) {
+    origin.flag("first_fix", mapping_.origin_at_first_fix);
+    std::vector<double> at;
+    origin.numbers("at", at, 3, {-1.1e7, 1.1e7}, "m m m, or deg deg m");
+    if (!at.empty()) mapping_.origin = Eigen::Vector3d(at[0], at[1], at[2]);
+    if (mapping_.origin && mapping_.origin_at_first_fix)
+      throw origin.error("at", "the origin is at the first fix already; give one of them");
+  }
+
+  void readHeading(ConfigReader heading) {
+    std::string sense = "counter_clockwise";
+    heading.choice("sense", sense, {"counter_clockwise", "clockwise"});
+    mapping_.yaw_sense = sense == "clockwise" ? -1.0 : 1.0;
+    double zero = 0.0;
+    heading.number("zero", zero, {-360.0, 360.0}, "deg");
+    mapping_.yaw_zero = toRadians(zero);
+    if (!heading.has("course_above")) return;
+    mapping_.course_above = 0.5;
+    heading.number("course_above", *mapping_.course_above, {0.05, 10.0}, "m/s");
+  }
+
+  CsvSource readSource(ConfigReader& table) {
+    CsvSource source;
+    table.text("file", source.file);
+    static const std::map<std::string, char> kDelimiters{
+        {"comma", ','}, {"semicolon", ';'}, {"space", ' '}, {"tab", '\t'}};
+    std::string delimiter = "comma";
+    table.choice("delimiter", delimiter, {"comma", "semicolon", "space", "tab"});
+    source.layout.delimiter = kDelimiters.at(delimiter);
+    table.flag("header", source.layout.header);
+    readTime(table.section("time", true), source);
+    ConfigReader columns = table.section("columns", true);
+    for (const std::string& quantity : columns.keys()) {
+      if (quantities().count(quantity) == 0) {
+        std::vector<std::string> known;
+        for (const auto& [name, what] : quantities()) known.push_back(name);
+        throw columns.error(quantity, "is no quantity; known are " + joinWords(known));
+      }
+      if (mapping_.has(quantity)) throw columns.error(quantity, "is in another table, too");
+      source.columns[quantity] = readColumn(columns.section(quantity), quantity);
+    }
+    if (source.columns.empty()) throw table.error("columns", "names no column");
+    return source;
+  }
+
+  static void readTime(ConfigReader time, CsvSource& source) {
+    static const std::vector<Unit> kUnits{{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}};
+    time.text("column", source.time);
+    std::string unit = "s";
+    time.choice("unit", unit, namesOf(kUnits));
+    source.time_unit = factorOf(kUnits, unit);
+    time.number("rate", source.rate, {0.01, 10'000.0}, "Hz");
+    if (source.time.empty() == (source.rate == 0.0))
+      throw time.error("column", "a time is either a column with its unit, or a rate; give one");
+  }
+
+  CsvColumn readColumn(ConfigReader section, const std::string& name) {
+    const Quantity& quantity = quantities().at(name);
+    CsvColumn column;
+    section.text("column", column.column, true);
+    std::string unit = quantity.units.front().name;
+    section.choice("unit", unit, namesOf(quantity.units));
+    double scale = 1.0;
+    section.number("scale", scale, {-1e6, 1e6}, "1");
+    column.factor = scale * factorOf(quantity.units, unit);
+    column.limit = quantity.limit;
+    const bool wheels = turnsWheels(unit) && name != "yaw_rate";
+    if (wheels && wheel_radius_ == 0.0)
+      throw section.error("unit", "needs wheel_radius, the metres from axle to rim");
+    if (wheels) column.factor *= wheel_radius_;
+    if (name == "left_command" || name == "right_command") {
+      const bool speed = wheels || unit == "m/s";
+      mapping_.kind = speed ? CommandKind::kTrackSpeed : CommandKind::kPower;
+      if (speed) column.limit = 100.0;
+      if (speeds_.emplace(speed, name).second && speeds_.size() > 1)
+        throw section.error("unit", "one side is power, the other a speed");
+    }
+    return column;
+  }
+
+  void require(bool good, const std::string& problem) const {
+    if (!good) throw reader_.error("tables", problem);
+  }
+
+  /// What must be there together.
+  void check() const {
+    const auto both = [&](const std::string& a, const std::string& b) {
+      require(mapping_.has(a) == mapping_.has(b), a + " and " + b + " come together");
+    };
+    both("left_command", "right_command");
+    both("left_speed", "right_speed");
+    both("x", "y");
+    both("latitude", "longitude");
+    both("roll", "pitch");
+    for (const char* part : {"qx", "qy", "qz"}) both("qw", part);
+    const bool metres = mapping_.has("x");
+    const bool degrees = mapping_.has("latitude");
+    require(!(metres && degrees), "x and latitude: positions come once");
+    const int headings = (mapping_.has("yaw") ? 1 : 0) + (mapping_.has("qw") ? 1 : 0) +
+                         (mapping_.course_above ? 1 : 0);
+    require(
+        !(metres || degrees) || headings == 1,
+        "a pose needs one heading: yaw, a quaternion (qw, qx, qy, qz), or heading.course_above");
+    require(
+        !mapping_.course_above || mapping_.has("left_command") || mapping_.has("left_speed"),
+        "heading.course_above needs commands or speeds, which tell whether it drives backwards");
+    require(metres || degrees || mapping_.has("left_command"), "neither positions nor commands");
+    for (const CsvSource& source : mapping_.sources)
+      require(mapping_.sources.size() == 1 || source.rate == 0.0,
+              "rows without a time of their own cannot be placed beside those of another table");
+  }
+
+  ConfigReader& reader_;
+  CsvMapping mapping_;
+  double wheel_radius_ = 0.0;           ///< [m] 0 = not given
+  std::map<bool, std::string> speeds_;  ///< whether commands are speeds
+};
+
+}  // namespace
+
+bool CsvMapping::has(const std::string& quantity) const {
+  return std::any_of(sources.begin(), sources.end(),
+                     [&](const CsvSource& source) { return source.columns.count(quantity) != 0; });
+}
+
+CsvMapping readCsvMapping(ConfigReader& reader) {
+  return MappingReader(reader).read();
+}
+
+}  // namespace tread::import

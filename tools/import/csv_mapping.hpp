@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "common/config/config_reader.hpp"
+#include "common/pattern/pattern.hpp"
+#include "common/recordings/csv_table.hpp"
+
+namespace tread::import {
+
+/// A column of a table, and what its numbers mean.
+struct CsvColumn {
+  std::string column;   ///< name, or number from 1
+  double factor = 1.0;  ///< from the column's number to m, rad, s, m/s, V, A, or power -1..1
+  double limit = 0.0;   ///< larger magnitudes are refused, after the factor
+};
+
+/// A CSV file of a recording.
+struct CsvSource {
+  std::string file;  ///< relative to the recording's folder; empty: the recording is this file
+  recordings::CsvLayout layout;
+  std::string time;                          ///< column of the time; empty: rows come at `rate`
+  double time_unit = 1.0;                    ///< [s]
+  double rate = 0.0;                         ///< [Hz]
+  std::map<std::string, CsvColumn> columns;  ///< by quantity, see csv_mapping.cpp
+};
+
+/// What a recording in CSV means: a mapping file.
+struct CsvMapping {
+  std::string robot = "robot of a CSV file";
+  std::string surface = "unknown";
+  double baseline = 0.0;  ///< [m] between the tracks; 0 = unknown
+  CommandKind kind = CommandKind::kPower;
+  double command_hold = 0.5;  ///< [s] a command counts as gone if none came for so long
+  std::vector<CsvSource> sources;
+  /// Where the map's origin is: metres where positions are x and y; degrees, degrees and metres
+  /// where they are latitude and longitude. Nothing: where they are zero, or at the first fix.
+  std::optional<Eigen::Vector3d> origin;
+  bool origin_at_first_fix = false;
+  double yaw_sense = 1.0;  ///< -1: the column counts clockwise
+  double yaw_zero = 0.0;   ///< [rad] where the column's zero looks in the map
+  /// [m/s] from here on the course over ground is the heading; nothing: a column holds it.
+  std::optional<double> course_above;
+
+  bool has(const std::string& quantity) const;
+};
+
+/// Reads a mapping file; throws ConfigError with file:line.
+/** Quantities: left_command, right_command, left_speed, right_speed, voltage, left_current,
+ *  right_current, x, y, z, latitude, longitude, height, yaw, roll, pitch, qw, qx, qy, qz (of
+ *  R_map_body), yaw_rate. Roll, pitch and quaternion are those of a body with x forward, y left and
+ *  z up. A position and its heading stand in one file. */
+CsvMapping readCsvMapping(ConfigReader& reader);
+
+}  // namespace tread::import
