@@ -89,6 +89,8 @@ void LidarDriverNode::publish(const RangeScan& scan, const Mounting& mounting) {
   message.range_max = scan.range_max;
   message.ranges = scan.ranges;
   message.num_beams = static_cast<int32_t>(scan.ranges.size());
+  for (const auto& point : scan.points) message.points.emplace_back(point.begin(), point.end());
+  message.num_points = static_cast<int32_t>(scan.points.size());
   bus_.publish(kScan, message);
   health_.addToCounter("scans");
 }

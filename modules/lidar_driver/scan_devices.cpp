@@ -9,6 +9,7 @@
 #include "modules/lidar_driver/rplidar/rplidar_session.hpp"
 #include "modules/lidar_driver/sick_cola/cola_session.hpp"
 #include "modules/lidar_driver/sick_lms2xx/lms_session.hpp"
+#include "modules/lidar_driver/velodyne/velodyne_session.hpp"
 
 namespace tread::lidar {
 namespace {
@@ -49,7 +50,11 @@ const std::map<std::string, DeviceKind>& kinds() {
       {"sick_lms2xx",
        {{Kind::kTty, Kind::kTcp},
         "tty:/dev/ttyUSB0?baud=38400",
-        session<LmsConfig, LmsSession, readLmsConfig>}}};
+        session<LmsConfig, LmsSession, readLmsConfig>}},
+      {"velodyne",
+       {{Kind::kUdp, Kind::kFile},
+        "udp:2368 or file:drive.pcap",
+        session<VelodyneConfig, VelodyneSession, readVelodyneConfig>}}};
   return kKinds;
 }
 

@@ -7,6 +7,7 @@
 #include "modules/lidar_driver/rplidar/rplidar_session.hpp"
 #include "modules/lidar_driver/sick_cola/cola_session.hpp"
 #include "modules/lidar_driver/sick_lms2xx/lms_session.hpp"
+#include "modules/lidar_driver/velodyne/velodyne_session.hpp"
 #include "modules/simulator/emulators/rplidar/rplidar_emulator.hpp"
 #include "modules/simulator/emulators/sick_cola/cola_emulator.hpp"
 #include "modules/simulator/emulators/sick_lms2xx/lms_emulator.hpp"
@@ -19,8 +20,19 @@ namespace {
 /// What a session made of bytes: scans that ended before they came.
 void requireScans(lidar::ScanDevice& device, int64_t now) {
   for (const lidar::RangeScan& scan : device.take(now)) {
-    require(scan.ranges.size() >= 2 && scan.ranges.size() <= 4000 && scan.duration_us >= 0);
+    const bool slice = scan.ranges.empty() && !scan.points.empty();
+    require(slice || (scan.ranges.size() >= 2 && scan.ranges.size() <= 4000));
+    require(scan.points.size() <= lidar::kMostPoints && scan.duration_us >= 0);
     require(std::isfinite(scan.angle_first) && scan.utime <= now - scan.duration_us);
+  }
+}
+
+/// Bytes in pieces, with time between them, to a device that is open.
+template <class Use>
+void inPieces(const uint8_t* bytes, size_t size, int64_t now, Use use) {
+  for (size_t at = 0; at < size; at += 61) {
+    now += 1000 * (bytes[at] % 64);
+    use(textOf(bytes + at, std::min<size_t>(61, size - at)), now);
   }
 }
 
@@ -41,12 +53,11 @@ void cola(const uint8_t* bytes, size_t size) {
   const std::string telegram = "sSN LMDscandata " + textOf(bytes + 1, size - 1);
   session.receive(lidar::colaFrame(config.dialect, telegram), now);
   requireScans(session, now);
-  for (size_t at = 1; at < size; at += 61) {
-    now += 1000 * (bytes[at] % 64);
-    session.receive(textOf(bytes + at, std::min<size_t>(61, size - at)), now);
-    requireScans(session, now);
-    session.poll(now);
-  }
+  inPieces(bytes + 1, size - 1, now, [&](const std::string& piece, int64_t time) {
+    session.receive(piece, time);
+    requireScans(session, time);
+    session.poll(time);
+  });
 }
 
 void colaCommand(const uint8_t* bytes, size_t size) {
@@ -58,42 +69,36 @@ void colaCommand(const uint8_t* bytes, size_t size) {
   emulator.transmit(1'100'000);
 }
 
-void lms(const uint8_t* bytes, size_t size) {
-  lidar::LmsSession session({});
-  sim::LmsEmulator emulator{sim::LaserParameters{}};
-  int64_t now = 10'000'000;
-  session.open(now);
-  for (int i = 0; i < 4; ++i) {
-    emulator.receive(session.poll(now), now);
-    session.receive(emulator.transmit(now), now);
-  }
-  for (size_t at = 0; at < size; at += 61) {
-    const std::string piece = textOf(bytes + at, std::min<size_t>(61, size - at));
-    now += 1000 * (bytes[at] % 64);
-    session.receive(piece, now);
-    requireScans(session, now);
-    emulator.receive(piece, now);
-    emulator.transmit(now);
-  }
-}
-
-void rplidar(const uint8_t* bytes, size_t size) {
-  lidar::RplidarSession session({});
-  sim::RplidarEmulator emulator{sim::LaserParameters{}};
+/// A scanner that is started up by its emulator; then both get the bytes.
+template <class Session, class Emulator>
+void scanner(const uint8_t* bytes, size_t size) {
+  Session session({});
+  Emulator emulator{sim::LaserParameters{}};
   int64_t now = 10'000'000;
   session.open(now);
   for (int i = 0; i < 8; ++i, now += 100'000) {
     emulator.receive(session.poll(now), now);
     session.receive(emulator.transmit(now), now);
   }
-  for (size_t at = 0; at < size; at += 61) {
-    const std::string piece = textOf(bytes + at, std::min<size_t>(61, size - at));
-    now += 1000 * (bytes[at] % 64);
-    session.receive(piece, now);
-    requireScans(session, now);
-    emulator.receive(piece, now);
-    emulator.transmit(now);
-  }
+  inPieces(bytes, size, now, [&](const std::string& piece, int64_t time) {
+    session.receive(piece, time);
+    requireScans(session, time);
+    emulator.receive(piece, time);
+    emulator.transmit(time);
+  });
+}
+
+/// Packets as a network line brings them, or a capture file.
+void velodyne(const uint8_t* bytes, size_t size) {
+  lidar::VelodyneSession session({1, 1, 0.0});
+  int64_t now = 10'000'000;
+  session.open(now);
+  inPieces(bytes, size, now, [&](const std::string& piece, int64_t time) {
+    session.receive(piece, now = time);
+    requireScans(session, time);
+  });
+  session.close();
+  requireScans(session, now + 1'000'000'000);
 }
 
 void carmenPlayer(const uint8_t* bytes, size_t size) {
@@ -109,8 +114,9 @@ void addRangeFinderTargets(std::map<std::string, Target>& targets) {
   targets["carmen_player"] = carmenPlayer;
   targets["cola"] = cola;
   targets["cola_command"] = colaCommand;
-  targets["lms"] = lms;
-  targets["rplidar"] = rplidar;
+  targets["lms"] = scanner<lidar::LmsSession, sim::LmsEmulator>;
+  targets["rplidar"] = scanner<lidar::RplidarSession, sim::RplidarEmulator>;
+  targets["velodyne"] = velodyne;
 }
 
 }  // namespace tread::fuzz

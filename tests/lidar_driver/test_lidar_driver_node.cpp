@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
+#include <cmath>
+
 #include "common/bus/virtual_bus.hpp"
 #include "modules/lidar_driver/lidar_driver_node.hpp"
 
@@ -138,4 +140,33 @@ TEST_CASE(
   CHECK(scans[1].seq == 1);
   CHECK(health.health_state == health_t::HEALTH_FAILED);
   CHECK(health.health_reason.find("tcp:192.168.0.11:10940: no scan for 1 s") == 0);
+}
+
+TEST_CASE("a slice of points is published as points, those beyond the limits as no measurement") {
+  VirtualBus bus(1);
+  ScriptedSource source;
+  LidarDriverConfig config;
+  config.limits = {0.5, 30.0, 4000, 3};
+  std::vector<scan_t> scans;
+  bus.outside().subscribe<scan_t>(kScan, [&](const scan_t& scan) { scans.push_back(scan); });
+  bus.addNode("lidar_driver",
+              [&](Bus& end) { return std::make_unique<LidarDriverNode>(config, end, source); });
+  RangeScan slice;
+  slice.utime = bus.now() + 10'000;
+  slice.duration_us = 25'000;
+  slice.range_max = 130.0;
+  slice.points = {{3.0F, 1.0F, -0.5F}, {0.1F, 0.1F, 0.1F}, {40.0F, 0.0F, 0.0F}};
+  source.next = {slice};
+  bus.runUntil(bus.now() + 100'000);
+  slice.utime += 60'000;
+  slice.points.resize(kMostPoints + 1);
+  source.next = {slice};
+  bus.runUntil(bus.now() + 100'000);
+  REQUIRE(scans.size() == 1);
+  REQUIRE(scans[0].num_points == 3);
+  CHECK(scans[0].num_beams == 0);
+  CHECK(scans[0].points[0] == std::vector<float>{3.0F, 1.0F, -0.5F});
+  CHECK(std::isnan(scans[0].points[1][0]));
+  CHECK(std::isnan(scans[0].points[2][2]));
+  CHECK(scans[0].duration == 25'000);
 }

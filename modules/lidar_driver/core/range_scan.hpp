@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -10,7 +11,10 @@
 
 namespace tread::lidar {
 
-/// One sweep of a 2D range finder in the sensor frame.
+/// Of a slice: what one message of at most 60 kB holds.
+inline constexpr size_t kMostPoints = 4900;
+
+/// One sweep of a 2D range finder, or one slice of a 3D one, in the sensor frame.
 struct RangeScan {
   int64_t utime = 0;          ///< [us] of the first beam
   int64_t duration_us = 0;    ///< [us] from the first to the last beam
@@ -18,8 +22,10 @@ struct RangeScan {
   double angle_step = 0.0;    ///< [rad] from beam to beam
   double range_min = 0.0;     ///< [m] shorter is not a measurement
   double range_max = 0.0;     ///< [m] longer means that nothing was hit
-  std::vector<float> ranges;  ///< [m]
-  bool ground = false;        ///< of the range finder that looks at the ground ahead
+  std::vector<float> ranges;  ///< [m]; none in a slice
+  /// Of a slice [m]: forward, left, up, in equal steps of time; NaN where nothing came back.
+  std::vector<std::array<float, 3>> points;
+  bool ground = false;  ///< of the range finder that looks at the ground ahead
 };
 
 /// What the check lets through.
@@ -27,11 +33,11 @@ struct ScanLimits {
   double range_min = 0.1;   ///< [m]
   double range_max = 30.0;  ///< [m]
   int max_beams = 4000;
-  int beam_stride = 1;  ///< every n-th beam is kept
+  int beam_stride = 1;  ///< every n-th beam is kept; not of slices
 };
 
 /// Checks scans before they reach the bus. Time never goes back; a beam is a range, +inf (nothing
-/// hit) or NaN.
+/// hit) or NaN, a point one within the limits or NaN.
 class ScanCheck {
  public:
   explicit ScanCheck(const ScanLimits& limits) : limits_(limits) {}
@@ -42,6 +48,8 @@ class ScanCheck {
 
  private:
   std::string problemOf(const RangeScan& raw) const;
+  std::string problemOfBeams(const RangeScan& raw) const;
+  void thin(RangeScan& scan) const;
 
   ScanLimits limits_;
   int64_t last_utime_ = INT64_MIN;

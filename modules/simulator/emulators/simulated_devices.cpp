@@ -17,6 +17,7 @@
 #include "modules/simulator/emulators/sick_lms2xx/lms_emulator.hpp"
 #include "modules/simulator/emulators/ublox/ublox_emulator.hpp"
 #include "modules/simulator/emulators/vectornav/vectornav_emulator.hpp"
+#include "modules/simulator/emulators/velodyne/velodyne_emulator.hpp"
 #include "modules/simulator/emulators/vesc/vesc_emulators.hpp"
 
 namespace tread::sim {
@@ -84,8 +85,12 @@ const Table<LaserEmulator, LaserParameters> kRangeFinders{
      [](const LaserParameters& laser, uint64_t) -> std::unique_ptr<LaserEmulator> {
        return std::make_unique<ColaEmulator>(laser);
      }},
-    {"sick_lms2xx", [](const LaserParameters& laser, uint64_t) -> std::unique_ptr<LaserEmulator> {
+    {"sick_lms2xx",
+     [](const LaserParameters& laser, uint64_t) -> std::unique_ptr<LaserEmulator> {
        return std::make_unique<LmsEmulator>(laser);
+     }},
+    {"velodyne", [](const LaserParameters& laser, uint64_t) -> std::unique_ptr<LaserEmulator> {
+       return std::make_unique<VelodyneEmulator>(laser);
      }}};
 
 template <class Kind, class From>
