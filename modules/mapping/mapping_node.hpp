@@ -11,6 +11,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/config/config_reader.hpp"
+#include "common/messages/scan_messages.hpp"
 #include "modules/mapping/core/occupancy_map.hpp"
 #include "modules/mapping/core/spatial_track.hpp"
 
@@ -30,19 +31,6 @@ struct MappingConfig {
 
 /// Reads the configuration; throws ConfigError with file:line.
 MappingConfig readMappingConfig(ConfigReader& reader);
-
-/// A good scan that waits for the poses of its beams.
-struct WaitingScan {
-  int64_t first = 0;  ///< [us] time of the first beam
-  int64_t last = 0;   ///< [us] time of the last
-  Eigen::Isometry3d T_body_sensor;
-  std::vector<Beam> beams;
-};
-
-/// Checks a SCAN message field by field and takes its beams; else nothing and the reason.
-/** NaN and ranges below range_min are no measurement; +inf and ranges above range_max saw nothing
- *  up to range_max. */
-std::optional<WaitingScan> readScan(const scan_t& message, std::string& refusal);
 
 /// Makes MAP from SCAN and INS, and says in HEALTH what it refused and why.
 class MappingNode : public Node {
@@ -64,7 +52,7 @@ class MappingNode : public Node {
   void hear(const scan_t& message);
   void beginNewMap();
   Fate tryFirst(int64_t now);
-  void insert(const WaitingScan& scan);
+  void insert(const ReceivedScan& scan);
   void refuse(const std::string& reason);
   void publishTiles(int64_t utime);
   void send(CellIndex tile);
@@ -75,7 +63,7 @@ class MappingNode : public Node {
   HealthReporter health_;
   std::unique_ptr<OccupancyMap> map_;
   SpatialTrack track_;
-  std::deque<WaitingScan> waiting_;
+  std::deque<ReceivedScan> waiting_;
   TileSchedule turns_;
   int64_t next_cycle_ = 0;
   int64_t seq_ = 0;

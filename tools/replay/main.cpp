@@ -11,6 +11,7 @@
 #include "common/store/store.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "tools/replay/learner_replay.hpp"
+#include "tools/replay/matching_replay.hpp"
 #include "tools/replay/robot_replay.hpp"
 #include "tools/replay/sensor_replay.hpp"
 
@@ -74,6 +75,24 @@ void addMapping(CLI::App& app, Arguments& arguments) {
       ->required();
   addOutput(command, arguments.output);
   command.callback([&arguments] { replayMappingLog(arguments); });
+}
+
+void replayMatchingLog(const Arguments& arguments) {
+  ConfigReader reader = arguments.config.empty() ? ConfigReader::fromText("{}", "defaults")
+                                                 : ConfigReader::fromFile(arguments.config);
+  const MatchingReplay replay = replayMatching(readMappingRecording(arguments.log),
+                                               scan_matching::readScanMatchingConfig(reader));
+  say(reportOf(replay), arguments.output);
+  if (!arguments.output.picture.empty()) drawTracks(replay, arguments.output.picture);
+}
+
+void addMatching(CLI::App& app, Arguments& arguments) {
+  CLI::App& command = *app.add_subcommand(
+      "matching", "the scans of such a recording through scan matching, against its poses");
+  command.add_option("log", arguments.log, "as for mapping")->required();
+  command.add_option("--config", arguments.config, "configuration of scan_matching");
+  addOutput(command, arguments.output);
+  command.callback([&arguments] { replayMatchingLog(arguments); });
 }
 
 void comparePlanner(Arguments& arguments) {
@@ -200,6 +219,7 @@ int parseAndRun(int argc, char** argv) {
   Arguments planner_arguments;
   Arguments ins_arguments;
   Arguments mapping_arguments;
+  Arguments matching_arguments;
   RecipeArguments recipe_arguments;
   CLI::App app{"Recorded logs through the real nodes, on the virtual bus"};
   app.require_subcommand(0, 1);
@@ -208,6 +228,7 @@ int parseAndRun(int argc, char** argv) {
   addPlanner(app, planner_arguments);
   addIns(app, ins_arguments);
   addMapping(app, mapping_arguments);
+  addMatching(app, matching_arguments);
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   return learner_arguments.different || planner_arguments.different ? 1 : 0;
 }

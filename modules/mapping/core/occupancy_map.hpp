@@ -9,6 +9,7 @@
 
 #include <Eigen/Geometry>
 
+#include "common/geometry/beam.hpp"
 #include "common/geometry/se2.hpp"
 #include "common/grid/footprint.hpp"
 #include "common/grid/grid.hpp"
@@ -112,13 +113,6 @@ class ColumnClassifier {
 inline constexpr int kMostOffHeight = kColumnHeight / 6;
 /// Voxels of a column that are above the robot's ground at any time; what is higher is not kept.
 inline constexpr int kVoxelsAboveGround = kColumnHeight / 2 - kMostOffHeight;
-
-/// One beam of a scan.
-struct Beam {
-  Eigen::Vector3d end = Eigen::Vector3d::Zero();  ///< p_sensor of its return, or of its reach [m]
-  double share = 0.0;  ///< 0 = at the time of the first beam, 1 = of the last
-  bool hit = false;    ///< something was there; otherwise nothing up to `end`
-};
 
 /// One scan of a range finder with the body's motion during it.
 struct Scan {

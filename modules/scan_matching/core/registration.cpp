@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/scan_matching/core/registration.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+namespace tread::scan_matching {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr int kMostIterations = 25;
+constexpr int kWideIterations = 4;     // with the large radius at least
+constexpr double kWideRadius = 0.5;    // [m] to a partner
+constexpr double kNarrowRadius = 0.25; // [m] the same, once it lies nearly right
+constexpr double kSmallShift = 1e-4;   // [m], and [rad] at 10 m
+constexpr double kCauchy = 2.4;        // [1] of the scale: where a weight has fallen to a half
+constexpr double kScatterNoise = 0.05; // [m] at least, of a scatter's partner
+constexpr double kScatterDoubt = 0.15; // [1] of what scatter tells is chance: it finds partners
+constexpr double kStraightness = 0.01; // [rad] walls are no straighter
+constexpr double kClear = 4.0;         // [1] a direction is determined from here on
+constexpr double kMostAlike = 20.0;    // [1] neighbours that count for one
+
+Vector2d leftOf(const Vector2d& v) {
+  return {-v.y(), v.x()};
+}
+
+/// A point of the scan and its partner.
+struct Pair {
+  Vector2d lever;     ///< from the body to the point, map axes [m]
+  Vector2d offset;    ///< from the partner to the point [m]
+  const ScanPoint* partner = nullptr;
+  double weight = 0.0;  ///< [1/m2] of its residual
+
+  bool isLine() const { return partner->shape == Shape::kLine; }
+  double residual() const { return isLine() ? partner->normal.dot(offset) : offset.norm(); }
+  /// How the offset along an axis changes with x, y, yaw.
+  Vector3d jacobian(const Vector2d& axis) const {
+    return {axis.x(), axis.y(), axis.dot(leftOf(lever))};
+  }
+};
+
+std::vector<Pair> pairsAt(const std::vector<ScanPoint>& points, const LocalMap& map,
+                          const Pose2& T_map_body, const Vector2d& p_body_sensor, double radius) {
+  const Vector2d p_map_sensor = T_map_body * p_body_sensor;
+  std::vector<Pair> pairs;
+  pairs.reserve(points.size());
+  for (const ScanPoint& point : points) {
+    const Vector2d p_map = T_map_body * point.p;
+    const ScanPoint* partner = map.nearest(p_map, radius, p_map_sensor);
+    if (partner == nullptr) continue;
+    pairs.push_back({p_map - T_map_body.position(), p_map - partner->p, partner, 0.0});
+  }
+  return pairs;
+}
+
+/// Robust standard deviation of the residuals of one shape, at least `least`.
+double scaleOf(const std::vector<Pair>& pairs, bool lines, double least) {
+  std::vector<double> sizes;
+  for (const Pair& pair : pairs)
+    if (pair.isLine() == lines) sizes.push_back(std::abs(pair.residual()));
+  if (sizes.empty()) return least;
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return std::max(least, 1.4826 * *middle);
+}
+
+/// Sets the weights; returns the scale of the lines [m].
+double weigh(std::vector<Pair>& pairs, double range_noise) {
+  const double line = scaleOf(pairs, true, range_noise);
+  const double scatter = scaleOf(pairs, false, kScatterNoise);
+  for (Pair& pair : pairs) {
+    const double scale = pair.isLine() ? line : scatter;
+    const double far = pair.residual() / (kCauchy * scale);
+    pair.weight = 1.0 / ((1.0 + far * far) * scale * scale);
+  }
+  return line;
+}
+
+/// What the pairs tell, and what chance would.
+struct Normal {
+  Matrix3d told = Matrix3d::Zero();    ///< H
+  Matrix3d chance = Matrix3d::Zero();  ///< F
+  Vector3d gradient = Vector3d::Zero();
+};
+
+void addAxis(const Pair& pair, const Vector2d& axis, Normal& normal) {
+  const Vector3d j = pair.jacobian(axis);
+  normal.told += pair.weight * j * j.transpose();
+  normal.gradient += pair.weight * axis.dot(pair.offset) * j;
+}
+
+Normal normalOf(const std::vector<Pair>& pairs) {
+  Normal normal;
+  for (const Pair& pair : pairs) {
+    const Vector2d lever_axis(1.0, pair.lever.squaredNorm());
+    normal.chance.diagonal() += kStraightness * kStraightness * pair.weight *
+                                Vector3d(lever_axis.x(), lever_axis.x(), lever_axis.y());
+    if (pair.isLine()) {
+      addAxis(pair, pair.partner->normal, normal);
+      const Vector3d along = pair.jacobian(leftOf(pair.partner->normal));
+      normal.chance +=
+          pair.weight * pair.partner->normal_variance * along * along.transpose();
+    } else {
+      Normal scatter;
+      addAxis(pair, Vector2d::UnitX(), scatter);
+      addAxis(pair, Vector2d::UnitY(), scatter);
+      normal.told += scatter.told;
+      normal.gradient += scatter.gradient;
+      normal.chance += kScatterDoubt * scatter.told;
+    }
+  }
+  return normal;
+}
+
+/// What a scan determines: in the other directions nothing is left of it.
+struct Determined {
+  Matrix3d told = Matrix3d::Zero();         ///< for the steps
+  Matrix3d information = Matrix3d::Zero();  ///< without what chance tells
+  Vector3d gradient = Vector3d::Zero();
+  int undetermined = 3;
+};
+
+Determined determinedOf(const Normal& normal) {
+  Determined out;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix3d> solver(normal.told, normal.chance);
+  if (solver.info() != Eigen::Success) return out;
+  // The columns v of V: V' F V = 1, V' H V = diag(m); so H = W diag(m) W' with W = F V.
+  const Matrix3d& V = solver.eigenvectors();
+  const Matrix3d W = normal.chance * V;
+  out.undetermined = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double clear = solver.eigenvalues()[i];
+    if (!(clear >= kClear)) {
+      ++out.undetermined;
+      continue;
+    }
+    out.told += clear * W.col(i) * W.col(i).transpose();
+    out.information += (clear - 1.0) * W.col(i) * W.col(i).transpose();
+    out.gradient += W.col(i) * V.col(i).dot(normal.gradient);
+  }
+  return out;
+}
+
+/// How many neighbours count for one, by how alike their residuals are.
+double alikeOf(const std::vector<Pair>& pairs) {
+  double product = 0.0;
+  double square = 1e-12;
+  for (size_t i = 1; i < pairs.size(); ++i) {
+    if (!pairs[i].isLine() || !pairs[i - 1].isLine()) continue;
+    const double w = std::min(pairs[i].weight, pairs[i - 1].weight);
+    product += w * pairs[i].residual() * pairs[i - 1].residual();
+    square += w * pairs[i].residual() * pairs[i].residual();
+  }
+  const double alike = std::clamp(product / square, 0.0, 0.99);
+  return std::min(kMostAlike, (1.0 + alike) / (1.0 - alike));
+}
+
+Vector3d differenceOf(const Pose2& to, const Pose2& from) {
+  return {to.x - from.x, to.y - from.y, wrapAngle(to.yaw - from.yaw)};
+}
+
+}  // namespace
+
+Registration registerScan(const std::vector<ScanPoint>& points, const LocalMap& map,
+                          const Pose2& start, const PosePrior& prior,
+                          const Vector2d& p_body_sensor, const RegistrationConfig& config) {
+  Registration result;
+  result.T_map_body = start;
+  const Matrix3d prior_information = prior.covariance.inverse();
+  double alike = 1.0;
+  double radius = kWideRadius;
+  for (int i = 0; i < kMostIterations; ++i) {
+    std::vector<Pair> pairs = pairsAt(points, map, result.T_map_body, p_body_sensor, radius);
+    result.noise = weigh(pairs, config.range_noise);
+    result.matched = static_cast<int>(pairs.size());
+    const Determined scan = determinedOf(normalOf(pairs));
+    alike = alikeOf(pairs);
+    result.information = scan.information / alike;
+    result.undetermined = scan.undetermined;
+    const Matrix3d H = scan.told / alike + prior_information;
+    const Vector3d from_prior = differenceOf(result.T_map_body, prior.T_map_body);
+    const Vector3d step = -H.ldlt().solve(scan.gradient / alike + prior_information * from_prior);
+    result.T_map_body.x += step.x();
+    result.T_map_body.y += step.y();
+    result.T_map_body.yaw += step.z();
+    const bool settled = step.head<2>().norm() < kSmallShift && std::abs(step.z()) < 0.1 * kSmallShift;
+    if (settled && radius <= kNarrowRadius) break;
+    if (settled || i + 1 >= kWideIterations) radius = kNarrowRadius;
+  }
+  if (!points.empty()) result.overlap = result.matched / static_cast<double>(points.size());
+  return result;
+}
+
+}  // namespace tread::scan_matching

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "common/geometry/se2.hpp"
+#include "modules/scan_matching/core/local_map.hpp"
+#include "modules/scan_matching/core/scan_points.hpp"
+
+namespace tread::scan_matching {
+
+/// Where the body is thought to be before a scan is matched.
+struct PosePrior {
+  Pose2 T_map_body;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< of x, y, yaw in map [m, rad]
+};
+
+/// What a scan says about the pose from which it was taken.
+struct Registration {
+  Pose2 T_map_body;
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< (3x3) of the scan alone: x, y, yaw
+  int undetermined = 0;  ///< directions, of three, about which the scan says nothing
+  int matched = 0;       ///< points that have a partner in the map
+  double overlap = 0.0;  ///< their share of all points
+  double noise = 0.0;    ///< [m] standard deviation of the distances to the lines of the map
+};
+
+/// How scans are laid onto the map.
+struct RegistrationConfig {
+  double range_noise = 0.01;  ///< [m] standard deviation of a single range
+};
+
+/// Lays a scan onto the map, beginning at a pose: iterative closest point with distances to lines.
+/** Source: Chen and Medioni 1992 (distance to the tangent), Censi 2008 (PLICP, in the plane);
+ *  1. Each point takes the nearest point of the map as its partner. To a line only the distance
+ *     counts, to a scatter the whole offset, with a weight that its own spread allows. Weights fall
+ *     with the residual (Cauchy), the scale is the residuals' own.
+ *  2. Gauss-Newton on x, y, yaw with `prior` beside the scan.
+ *  3. What the lines say of the direction along them is the noise of their normals. With H what the
+ *     scan tells and F what that noise alone would tell, the directions with H v = m F v and small
+ *     m are undetermined: there the prior alone counts. From the others F is taken off.
+ *  4. Residuals of neighbours are alike (the map's own error, the wall's shape): the information is
+ *     divided by how many of them count for one. */
+Registration registerScan(const std::vector<ScanPoint>& points, const LocalMap& map,
+                          const Pose2& start, const PosePrior& prior,
+                          const Eigen::Vector2d& p_body_sensor, const RegistrationConfig& config);
+
+/// The pose at which most returns lie on something of the map, within a window around the prior of
+/// 2.5 standard deviations, at most 1.5 m and 0.6 rad.
+/** Source: Olson 2009, correlative scan matching, in two resolutions. */
+Pose2 searchPose(const std::vector<ScanPoint>& points, const LocalMap& map, const PosePrior& prior);
+
+}  // namespace tread::scan_matching
