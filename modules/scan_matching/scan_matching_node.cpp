@@ -29,6 +29,8 @@ void readMatching(ConfigReader& reader, ScanMatcherConfig& matcher) {
   reader.numbers("start", start, 3, {-1e5, 1e5}, "m, m, rad");
   matcher.start = {start[0], start[1], start[2]};
   reader.number("range_noise", matcher.points.range_noise, {0.001, 0.2}, "m");
+  matcher.registration.range_noise = matcher.points.range_noise;
+  reader.number("surface_noise", matcher.registration.surface_noise, {0.0, 0.5}, "m");
   reader.number("range_max", matcher.points.range_max, {1.0, 100.0}, "m");
   reader.number("spacing", matcher.points.spacing, {0.01, 0.5}, "m");
   int64_t min_points = matcher.min_points;
@@ -43,6 +45,8 @@ void readMatching(ConfigReader& reader, ScanMatcherConfig& matcher) {
 void readMotion(ConfigReader reader, MotionConfig& motion) {
   reader.number("acceleration", motion.acceleration, {0.05, 20.0}, "m/s2");
   reader.number("yaw_acceleration", motion.yaw_acceleration, {0.05, 50.0}, "rad/s2");
+  reader.number("speed", motion.speed, {0.05, 20.0}, "m/s");
+  reader.number("yaw_rate", motion.yaw_rate, {0.05, 20.0}, "rad/s");
   reader.number("correlation", motion.correlation, {0.05, 5.0}, "s");
 }
 

@@ -193,10 +193,10 @@ std::vector<float> pointOf(float range, float clockwise) {
   return {range * std::cos(clockwise), -range * std::sin(clockwise), 0.0f};
 }
 
-std::optional<scan_t> scanOf(const LogEvent& event, int64_t utime) {
+std::optional<scan_t> scanOf(const LogEvent& event, int64_t utime, int64_t& device_time) {
   Fields fields(event.bytes);
   if (fields.take<uint64_t>() != kLidarType) return std::nullopt;
-  fields.take<int64_t>();
+  device_time = fields.take<int64_t>();
   const auto count = fields.take<int32_t>();
   if (!fields.ok() || count < 2 || count > 10000) return std::nullopt;
   std::vector<float> ranges(static_cast<size_t>(count));
@@ -250,7 +250,10 @@ void readMbotLog(const std::string& path, MappingRecording& recording) {
     if (event.channel == "TRUE_POSE") {
       keep(poseOf(event, utime), recording.poses, recording);
     } else if (event.channel == "LIDAR") {
-      keep(scanOf(event, utime - kSweepUs), recording.scans, recording);
+      int64_t device_time = 0;
+      const auto scan = scanOf(event, utime - kSweepUs, device_time);
+      keep(scan, recording.scans, recording);
+      if (scan) recording.device_times.push_back(device_time);
     }
   }
   recording.problem = log.problem();

@@ -22,6 +22,7 @@ using scan_matching::MatchedPose;
 constexpr double kMetre = 1.0;          // [m]
 constexpr int64_t kTwoSeconds = 2'000'000;  // [us]
 constexpr int64_t kMaxGap = 300'000;    // [us] between true poses
+constexpr double kMostSlip = 0.3;       // [m] sideways between two scans
 
 /// A measured pose with the true one.
 struct Compared {
@@ -29,6 +30,15 @@ struct Compared {
   Pose2 T_map_true;
   double way = 0.0;  ///< [m] of the truth so far
 };
+
+/// Whether the true body went sideways as no vehicle on wheels or tracks does: the reference has an
+/// error there. On an arc the chord lies at half of the turn.
+bool slips(const Compared& last, const MatchedPose& next, const Pose2& T_map_true) {
+  if (next.utime - last.measured->utime > kTwoSeconds) return false;
+  const Pose2 step = between(last.T_map_true, T_map_true);
+  const double half = wrapAngle(step.yaw) / 2.0;
+  return std::abs(step.y * std::cos(half) - step.x * std::sin(half)) > kMostSlip;
+}
 
 /// A stretch without a new track in it.
 using Stretch = std::vector<Compared>;
@@ -151,7 +161,9 @@ TrackComparison compareTracks(const std::vector<MatchedPose>& poses,
     }
     const auto T_map_true = truth(pose.utime);
     if (!T_map_true) continue;
-    if (pose.new_track && !stretches.back().empty()) stretches.emplace_back();
+    const bool sideways = !stretches.back().empty() && slips(stretches.back().back(), pose, *T_map_true);
+    if (sideways) ++comparison.sideways;
+    if ((pose.new_track || sideways) && !stretches.back().empty()) stretches.emplace_back();
     Stretch& stretch = stretches.back();
     const double step =
         stretch.empty() ? 0.0 : distanceBetween(stretch.back().T_map_true, *T_map_true);
@@ -182,7 +194,7 @@ std::string reportOf(const TrackComparison& comparison) {
   say(out, "per metre", comparison.per_metre);
   say(out, "per 2 s", comparison.per_2s);
   out << std::setprecision(2) << "  " << comparison.compared << " poses compared, "
-      << comparison.unknown << " unknown; after " << comparison.way << " m "
+      << comparison.unknown << " unknown, " << comparison.sideways << " times the reference jumps sideways; after " << comparison.way << " m "
       << comparison.end_position << " m (told deviation " << comparison.end_position_std << ") and "
       << std::setprecision(3) << comparison.end_yaw << " rad (" << comparison.end_yaw_std
       << ") off\n";
@@ -201,20 +213,28 @@ MatchingReplay replayMatching(const MappingRecording& recording,
   if (!replay.truth.empty()) config.matcher.start = replay.truth.front().T_map_body;
   scan_matching::ScanMatcher matcher(config.matcher);
   double cpu = 0.0;
-  for (const scan_t& message : recording.scans) {
+  for (size_t i = 0; i < recording.scans.size(); ++i) {
     std::string refusal;
-    const auto scan = readScan(message, refusal);
-    const auto sweep = scan ? sweepOf(*scan, config, refusal) : std::nullopt;
+    const auto scan = readScan(recording.scans[i], refusal);
+    auto sweep = scan ? sweepOf(*scan, config, refusal) : std::nullopt;
     if (!sweep) {
       ++replay.outcomes["refused: " + refusal];
       continue;
     }
+    // The motion is that of the device's clock, the true pose that of the recorder's.
+    if (!recording.device_times.empty()) {
+      const int64_t ahead = recording.device_times[i] - sweep->last;
+      sweep->first += ahead;
+      sweep->last += ahead;
+    }
     const double begin = cpuNow();
     replay.poses.push_back(matcher.take(*sweep));
+    replay.poses.back().utime = scan->last;
     const double took = cpuNow() - begin;
     cpu += took;
     replay.cpu_max_ms = std::max(replay.cpu_max_ms, took);
     ++replay.outcomes[nameOf(replay.poses.back().outcome)];
+    if (getenv("H5DUMP") && replay.poses.size() % 1 == 0) { auto&q=replay.poses.back(); auto t=truth.at(q.utime,kMaxGap); printf("DUMP %.3f %d %d%d%d est %.3f %.3f %.3f true %.3f %.3f %.3f sd %.4f %.4f loc %.4f %.4f tw %.2f %.2f %.2f n %zu und %d mat %d ov %.2f nz %.4f mis %.3f\n", 1e-6*double(q.utime), int(q.outcome), q.position_known,q.heading_known,q.new_track, q.T_map_body.x,q.T_map_body.y,q.T_map_body.yaw, t?t->x:-99,t?t->y:-99,t?t->yaw:-99, sqrt(q.covariance(0,0)),sqrt(q.covariance(2,2)),sqrt(q.local(0,0)),sqrt(q.local(2,2)),q.v_body.v_x,q.v_body.v_y,q.v_body.omega, sweep->returns.size(), q.dbg.undetermined, q.dbg.matched, q.dbg.overlap, q.dbg.noise, q.dbg.misfit); }
   }
   replay.cpu_mean_ms = cpu / std::max(1.0, static_cast<double>(replay.poses.size()));
   replay.comparison =

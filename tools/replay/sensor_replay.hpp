@@ -23,6 +23,9 @@ struct MappingRecording {
   std::string name;
   std::vector<ins_t> poses;       ///< in order of time
   std::vector<scan_t> scans;      ///< in order of time
+  /// [us] of the scans' last beams by the range finder's own clock, where it is steadier than their
+  /// utime; else empty.
+  std::vector<int64_t> device_times;
   int64_t skipped = 0;            ///< lines or messages of the recording that were not whole
   std::string problem;            ///< one clear line if the file is damaged; what is whole was read
   mapping::MappingConfig config;  ///< that fits its robot and its surroundings

@@ -43,6 +43,18 @@ void MotionFilter::predict(double dt) {
   Q.bottomRightCorner<3, 3>() = dt * density;
   covariance_ = F * covariance_ * F.transpose() + Q;
   pose_ = next;
+  limitTwist();
+}
+
+/// A body never becomes faster than it can be, whatever is not known of it.
+void MotionFilter::limitTwist() {
+  const double most[3] = {config_.speed, config_.speed, config_.yaw_rate};
+  for (int i = 0; i < 3; ++i) {
+    const double share = most[i] / std::sqrt(covariance_(3 + i, 3 + i));
+    if (share >= 1.0) continue;
+    covariance_.row(3 + i) *= share;
+    covariance_.col(3 + i) *= share;
+  }
 }
 
 void MotionFilter::update(const Pose2& T_map_body, const Matrix3d& covariance) {

@@ -14,6 +14,8 @@ struct MotionConfig {
   double yaw_acceleration = 1.5;  ///< [rad/s2]
   double correlation = 0.5;       ///< [s] for which an acceleration lasts
   double start_speed = 0.3;       ///< [m/s], and [rad/s], before the first two scans
+  double speed = 1.0;             ///< [m/s] standard deviation, however long nothing was measured
+  double yaw_rate = 0.7;          ///< [rad/s] the same
 };
 
 /// Pose and twist of a body that goes on as it goes, but for accelerations: a Kalman filter.
@@ -37,6 +39,8 @@ class MotionFilter {
   Eigen::Matrix3d twistCovariance() const { return covariance_.bottomRightCorner<3, 3>(); }
 
  private:
+  void limitTwist();
+
   MotionConfig config_;
   Pose2 pose_;
   Twist2 twist_;

@@ -23,10 +23,12 @@ constexpr double kNarrowRadius = 0.25; // [m] the same, once it lies nearly righ
 constexpr double kSmallShift = 1e-4;   // [m], and [rad] at 10 m
 constexpr double kCauchy = 2.4;        // [1] of the scale: where a weight has fallen to a half
 constexpr double kScatterNoise = 0.05; // [m] at least, of a scatter's partner
-constexpr double kScatterDoubt = 0.15; // [1] of what scatter tells is chance: it finds partners
-constexpr double kStraightness = 0.01; // [rad] walls are no straighter
-constexpr double kClear = 4.0;         // [1] a direction is determined from here on
-constexpr double kMostAlike = 20.0;    // [1] neighbours that count for one
+constexpr double kScatterDoubt = 0.1; // [1] of what scatter tells is chance: it finds partners
+constexpr double kStraightness = 0.03; // [rad] walls are no straighter
+constexpr double kClear = 6.0;         // [1] a direction is determined from here on
+constexpr double kPiece = 2.0;         // [m] of one thing that share an error
+constexpr double kApart = 0.5;         // [m] between neighbours: another thing
+constexpr double kBad = 0.1;           // [m] a residual that makes a point as bad as one without
 
 Vector2d leftOf(const Vector2d& v) {
   return {-v.y(), v.x()};
@@ -70,6 +72,30 @@ double scaleOf(const std::vector<Pair>& pairs, bool lines, double least) {
   const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
   std::nth_element(sizes.begin(), middle, sizes.end());
   return std::max(least, 1.4826 * *middle);
+}
+
+/// The end of the piece of one thing that begins at a pair.
+size_t pieceFrom(const std::vector<Pair>& pairs, size_t begin) {
+  size_t end = begin + 1;
+  double length = 0.0;
+  for (; end < pairs.size() && length <= kPiece; ++end) {
+    const double step = (pairs[end].lever - pairs[end - 1].lever).norm();
+    if (step > kApart || pairs[end].isLine() != pairs[begin].isLine()) break;
+    length += step;
+  }
+  return end;
+}
+
+/// However many points a thing has, it tells no more than its own error allows.
+void limitPieces(std::vector<Pair>& pairs, double surface_noise) {
+  for (size_t begin = 0; begin < pairs.size();) {
+    const size_t end = pieceFrom(pairs, begin);
+    double sum = 0.0;
+    for (size_t i = begin; i < end; ++i) sum += pairs[i].weight;
+    const double share = 1.0 / (1.0 + sum * surface_noise * surface_noise);
+    for (size_t i = begin; i < end; ++i) pairs[i].weight *= share;
+    begin = end;
+  }
 }
 
 /// Sets the weights; returns the scale of the lines [m].
@@ -149,25 +175,21 @@ Determined determinedOf(const Normal& normal) {
   return out;
 }
 
-/// How many neighbours count for one, by how alike their residuals are.
-double alikeOf(const std::vector<Pair>& pairs) {
-  double product = 0.0;
-  double square = 1e-12;
-  for (size_t i = 1; i < pairs.size(); ++i) {
-    if (!pairs[i].isLine() || !pairs[i - 1].isLine()) continue;
-    const double w = std::min(pairs[i].weight, pairs[i - 1].weight);
-    product += w * pairs[i].residual() * pairs[i - 1].residual();
-    square += w * pairs[i].residual() * pairs[i].residual();
-  }
-  const double alike = std::clamp(product / square, 0.0, 0.99);
-  return std::min(kMostAlike, (1.0 + alike) / (1.0 - alike));
-}
-
 Vector3d differenceOf(const Pose2& to, const Pose2& from) {
   return {to.x - from.x, to.y - from.y, wrapAngle(to.yaw - from.yaw)};
 }
 
 }  // namespace
+
+/// Mean badness of the points, 0..1; one without a partner has 1.
+double misfitOf(const std::vector<Pair>& pairs, size_t points) {
+  double fit = 0.0;
+  for (const Pair& pair : pairs) {
+    const double bad = pair.residual() / kBad;
+    fit += 1.0 / (1.0 + bad * bad);
+  }
+  return 1.0 - fit / std::max(1.0, static_cast<double>(points));
+}
 
 Registration registerScan(const std::vector<ScanPoint>& points, const LocalMap& map,
                           const Pose2& start, const PosePrior& prior,
@@ -175,19 +197,19 @@ Registration registerScan(const std::vector<ScanPoint>& points, const LocalMap& 
   Registration result;
   result.T_map_body = start;
   const Matrix3d prior_information = prior.covariance.inverse();
-  double alike = 1.0;
   double radius = kWideRadius;
   for (int i = 0; i < kMostIterations; ++i) {
     std::vector<Pair> pairs = pairsAt(points, map, result.T_map_body, p_body_sensor, radius);
     result.noise = weigh(pairs, config.range_noise);
     result.matched = static_cast<int>(pairs.size());
     const Determined scan = determinedOf(normalOf(pairs));
-    alike = alikeOf(pairs);
-    result.information = scan.information / alike;
+    result.misfit = misfitOf(pairs, points.size());
+    limitPieces(pairs, config.surface_noise);
+    result.information = determinedOf(normalOf(pairs)).information;
     result.undetermined = scan.undetermined;
-    const Matrix3d H = scan.told / alike + prior_information;
+    const Matrix3d H = scan.told + prior_information;
     const Vector3d from_prior = differenceOf(result.T_map_body, prior.T_map_body);
-    const Vector3d step = -H.ldlt().solve(scan.gradient / alike + prior_information * from_prior);
+    const Vector3d step = -H.ldlt().solve(scan.gradient + prior_information * from_prior);
     result.T_map_body.x += step.x();
     result.T_map_body.y += step.y();
     result.T_map_body.yaw += step.z();

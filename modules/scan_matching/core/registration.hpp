@@ -25,12 +25,14 @@ struct Registration {
   int undetermined = 0;  ///< directions, of three, about which the scan says nothing
   int matched = 0;       ///< points that have a partner in the map
   double overlap = 0.0;  ///< their share of all points
+  double misfit = 1.0;   ///< 0 = every point lies on the map, 1 = none does
   double noise = 0.0;    ///< [m] standard deviation of the distances to the lines of the map
 };
 
 /// How scans are laid onto the map.
 struct RegistrationConfig {
-  double range_noise = 0.01;  ///< [m] standard deviation of a single range
+  double range_noise = 0.01;    ///< [m] standard deviation of a single range
+  double surface_noise = 0.02;  ///< [m] of one thing as a whole, seen from elsewhere: leaves, tilt
 };
 
 /// Lays a scan onto the map, beginning at a pose: iterative closest point with distances to lines.
@@ -42,8 +44,9 @@ struct RegistrationConfig {
  *  3. What the lines say of the direction along them is the noise of their normals. With H what the
  *     scan tells and F what that noise alone would tell, the directions with H v = m F v and small
  *     m are undetermined: there the prior alone counts. From the others F is taken off.
- *  4. Residuals of neighbours are alike (the map's own error, the wall's shape): the information is
- *     divided by how many of them count for one. */
+ *  4. What stands in the map is not the same from everywhere (leaves, a slope, the map's own error):
+ *     the points of 2 m of one thing share an error, `surface_noise`, that their number does not
+ *     make smaller. */
 Registration registerScan(const std::vector<ScanPoint>& points, const LocalMap& map,
                           const Pose2& start, const PosePrior& prior,
                           const Eigen::Vector2d& p_body_sensor, const RegistrationConfig& config);

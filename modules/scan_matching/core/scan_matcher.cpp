@@ -46,15 +46,16 @@ ScanMatcher::ScanMatcher(const ScanMatcherConfig& config)
       map_(static_cast<size_t>(config.key_scans), 1.2 * config.points.range_max) {}
 
 MatchedPose ScanMatcher::take(const Sweep& sweep) {
-  if (last_ && sweep.last < *last_ + kLeast) return describe(sweep, MatchOutcome::kNotNewer);
-  if (last_ && sweep.last > *last_ + kLongest) {
+  const int64_t middle = sweep.first + (sweep.last - sweep.first) / 2;
+  if (middle_ && middle < *middle_ + kLeast) return describe(sweep, MatchOutcome::kNotNewer);
+  if (middle_ && middle > *middle_ + kLongest) {
     // Whatever it did meanwhile is not known.
     filter_ = MotionFilter(config_.motion, filter_.pose());
     map_.clear();
-  } else if (last_) {
-    filter_.predict(secondsOf(sweep.last - *last_));
+  } else if (middle_) {
+    filter_.predict(secondsOf(middle - *middle_));
   }
-  last_ = sweep.last;
+  middle_ = middle;
   const MatchOutcome outcome = process(sweep);
   watch(sweep, outcome);
   return describe(sweep, outcome);
@@ -81,6 +82,7 @@ MatchOutcome ScanMatcher::process(const Sweep& sweep) {
     }
   }
   fitted_ = sweep.last;
+  dbg_ = best.registration;
   const bool determined = best.registration.undetermined == 0;
   if (determined) unfixed_.setZero();
   if (isKey()) addKeyScan(best.points);
@@ -104,15 +106,15 @@ ScanMatcher::Match ScanMatcher::match(const Sweep& sweep, const Twist2& twist) c
   if (static_cast<int>(result.points.size()) < config_.min_points || map_.empty()) return result;
   const PosePrior prior{filter_.pose(), filter_.poseCovariance()};
   const auto lay = [&](const Pose2& start) {
-    result.registration = registerScan(result.points, map_, start, prior, sweep.p_body_sensor,
-                                       {config_.points.range_noise});
-    return fits(result.registration);
+    const Registration laid = registerScan(result.points, map_, start, prior, sweep.p_body_sensor,
+                                           config_.registration);
+    if (laid.misfit < result.registration.misfit) result.registration = laid;
   };
   const bool doubtful = positionStd(prior.covariance) > config_.search_std ||
                         yawStd(prior.covariance) > 0.5 * config_.search_std;
-  bool good = !doubtful && lay(prior.T_map_body);
-  if (!good) good = lay(searchPose(result.points, map_, prior));
-  result.outcome = good ? MatchOutcome::kMatched : MatchOutcome::kNoFit;
+  lay(prior.T_map_body);
+  if (doubtful || !fits(result.registration)) lay(searchPose(result.points, map_, prior));
+  result.outcome = fits(result.registration) ? MatchOutcome::kMatched : MatchOutcome::kNoFit;
   return result;
 }
 
@@ -131,25 +133,25 @@ bool ScanMatcher::isKey() const {
          std::abs(wrapAngle(step.yaw)) >= config_.key_turn;
 }
 
-/// A covariance of the newest key scan, as it is at the body's pose: a wrong yaw there swings it.
-Matrix3d ScanMatcher::carried(const Matrix3d& covariance) const {
+/// A covariance of the newest key scan, as it is at a pose: a wrong yaw there swings it.
+Matrix3d ScanMatcher::carried(const Matrix3d& covariance, const Pose2& T_map_body) const {
   if (map_.empty()) return covariance;
   Matrix3d J = Matrix3d::Identity();
-  J(0, 2) = -(filter_.pose().y - map_.newest().y);
-  J(1, 2) = filter_.pose().x - map_.newest().x;
+  J(0, 2) = -(T_map_body.y - map_.newest().y);
+  J(1, 2) = T_map_body.x - map_.newest().x;
   return J * covariance * J.transpose();
 }
 
 void ScanMatcher::addKeyScan(const std::vector<ScanPoint>& points) {
-  drift_ = carried(drift_) + filter_.poseCovariance();
-  unfixed_ = carried(unfixed_) + filter_.poseCovariance();
+  drift_ = carried(drift_, filter_.pose()) + filter_.poseCovariance();
+  unfixed_ = carried(unfixed_, filter_.pose()) + filter_.poseCovariance();
   filter_.anchor();
   map_.add(filter_.pose(), points);
 }
 
 /// Says what is still known, and begins anew where nothing fits for long.
 void ScanMatcher::watch(const Sweep& sweep, MatchOutcome outcome) {
-  const Matrix3d unfixed = carried(unfixed_) + filter_.poseCovariance();
+  const Matrix3d unfixed = carried(unfixed_, filter_.pose()) + filter_.poseCovariance();
   const bool position = positionStd(unfixed) <= config_.max_position_std;
   const bool heading = yawStd(unfixed) <= config_.max_yaw_std;
   const bool fixed = outcome == MatchOutcome::kMatched;
@@ -164,13 +166,16 @@ void ScanMatcher::watch(const Sweep& sweep, MatchOutcome outcome) {
 }
 
 MatchedPose ScanMatcher::describe(const Sweep& sweep, MatchOutcome outcome) {
+  MotionFilter at_last = filter_;
+  at_last.predict(std::max(0.0, secondsOf(sweep.last - *middle_)));
   MatchedPose pose;
   pose.utime = sweep.last;
   pose.outcome = outcome;
-  pose.T_map_body = filter_.pose();
-  pose.v_body = filter_.twist();
-  pose.local = filter_.poseCovariance();
-  pose.covariance = carried(drift_) + pose.local;
+  pose.dbg = dbg_;
+  pose.T_map_body = at_last.pose();
+  pose.v_body = at_last.twist();
+  pose.local = at_last.poseCovariance();
+  pose.covariance = carried(drift_, pose.T_map_body) + pose.local;
   const bool usable = outcome != MatchOutcome::kNotNewer && !map_.empty();
   pose.position_known = usable && position_known_;
   pose.heading_known = usable && heading_known_;

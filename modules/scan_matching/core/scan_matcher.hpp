@@ -20,6 +20,7 @@ namespace tread::scan_matching {
 struct ScanMatcherConfig {
   Pose2 start;                     ///< T_map_body at the first scan
   ScanPointsConfig points;
+  RegistrationConfig registration;
   MotionConfig motion;
   int min_points = 25;             ///< of a scan, and of those that find a partner
   double min_overlap = 0.3;        ///< share of the points that must find a partner
@@ -60,11 +61,13 @@ struct MatchedPose {
   Eigen::Matrix3d local = Eigen::Matrix3d::Zero();  ///< the same against the newest key scan
   bool position_known = true;
   bool heading_known = true;
+  Registration dbg;
   bool new_track = false;  ///< not connected with the poses before
 };
 
 /// Measures the motion of a body from a range finder alone, against a local map of recent scans.
-/** 1. The pose is predicted (MotionFilter), the sweep straightened with the predicted twist.
+/** 1. The pose in the middle of the sweep is predicted (MotionFilter), the sweep straightened with
+ *     the predicted twist.
  *  2. A badly known pose is searched for, then the scan is laid onto the map (registerScan).
  *  3. A scan that fits corrects pose and twist in the directions that it determines. In the others,
  *     and where none fits, the prediction goes on and its uncertainty grows; beyond max_*_std the
@@ -95,12 +98,13 @@ class ScanMatcher {
   bool isKey() const;
   void watch(const Sweep& sweep, MatchOutcome outcome);
   MatchedPose describe(const Sweep& sweep, MatchOutcome outcome);
-  Eigen::Matrix3d carried(const Eigen::Matrix3d& covariance) const;
+  Eigen::Matrix3d carried(const Eigen::Matrix3d& covariance, const Pose2& T_map_body) const;
 
   ScanMatcherConfig config_;
   MotionFilter filter_;
   LocalMap map_;
-  std::optional<int64_t> last_;     ///< [us] of the newest scan
+  Registration dbg_;
+  std::optional<int64_t> middle_;   ///< [us] of the newest sweep: the time of the filter
   int64_t fitted_ = 0;              ///< [us] of the newest one that fitted
   Eigen::Matrix3d drift_ = Eigen::Matrix3d::Zero();    ///< of the newest key scan, in map
   Eigen::Matrix3d unfixed_ = Eigen::Matrix3d::Zero();  ///< the part since the last full match

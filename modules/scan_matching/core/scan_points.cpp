@@ -21,7 +21,7 @@ std::vector<Eigen::Vector2d> deskewed(const std::vector<PlanarReturn>& returns,
   std::vector<Eigen::Vector2d> points;
   points.reserve(returns.size());
   for (const PlanarReturn& hit : returns)
-    points.push_back(integrate(twist, (hit.share - 1.0) * duration) * hit.p_body);
+    points.push_back(integrate(twist, (hit.share - 0.5) * duration) * hit.p_body);
   return points;
 }
 
@@ -69,7 +69,13 @@ bool describe(const std::vector<Eigen::Vector2d>& points, size_t i,
               const Eigen::Vector2d& p_body_sensor, double range_noise, ScanPoint& point) {
   const auto [begin, end] = neighbours(points, i);
   const auto count = static_cast<double>(end - begin);
-  if (end - begin < kFewest) return false;
+  point.p = points[i];
+  if (end - begin < kFewest) {
+    // A post or a trunk far away. Single points may be of a wall that is seen at a grazing angle.
+    point.shape = Shape::kScatter;
+    const auto beside = [&](size_t j) { return (points[j] - points[i]).norm() <= kReach; };
+    return (i > begin && beside(i - 1)) || (i + 1 < end && beside(i + 1));
+  }
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (size_t j = begin; j < end; ++j) mean += points[j] / count;
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
@@ -79,7 +85,6 @@ bool describe(const std::vector<Eigen::Vector2d>& points, size_t i,
   axes.computeDirect(scatter);
   const double across = std::max(0.0, axes.eigenvalues()[0]);
   const double along = axes.eigenvalues()[1];
-  point.p = points[i];
   point.normal = axes.eigenvectors().col(0);
   if (point.normal.dot(p_body_sensor - point.p) < 0.0) point.normal = -point.normal;
   const double variance = std::max(across / (count - 2.0), range_noise * range_noise);

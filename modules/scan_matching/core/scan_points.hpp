@@ -25,7 +25,7 @@ enum class Shape {
 
 /// A point of a scan, a mean of returns that lie side by side, with what lies around it.
 struct ScanPoint {
-  Eigen::Vector2d p = Eigen::Vector2d::Zero();       ///< [m] p_body, the body at the last beam
+  Eigen::Vector2d p = Eigen::Vector2d::Zero();       ///< [m] p_body, in the middle of the sweep
   Eigen::Vector2d normal = Eigen::Vector2d::Zero();  ///< unit, towards the range finder; of lines
   double normal_variance = 0.0;                      ///< of its direction [rad2]
   Shape shape = Shape::kScatter;
@@ -38,10 +38,10 @@ struct ScanPointsConfig {
   double range_max = 30.0;    ///< [m] what is farther away is not matched
 };
 
-/// Brings the returns of a sweep to where they lie as seen from the body at the last beam, and says
+/// Brings the returns of a sweep to where they lie as seen from the body in the middle of it, and says
 /// what they are part of.
-/** 1. Each return is moved by what the body, with a constant twist, moved from its own beam to the
- *     last one.
+/** 1. Each return is moved by what the body, with a constant twist, moved between its own beam and
+ *     the middle: there a wrong twist does least.
  *  2. Neighbours in the order of the beams within `spacing` become their mean.
  *  3. A line is fitted to each point and its neighbours in the same order; where they lie on one,
  *     the point is of a line, where there are many and they do not, of a scatter. Single points
