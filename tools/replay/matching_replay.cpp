@@ -22,6 +22,8 @@ using scan_matching::MatchedPose;
 constexpr double kMetre = 1.0;          // [m]
 constexpr int64_t kTwoSeconds = 2'000'000;  // [us]
 constexpr int64_t kMaxGap = 300'000;    // [us] between true poses
+constexpr int64_t kDelayed = 60'000;    // [us] on the way, more than usual
+constexpr int64_t kAround = 1'000'000;  // [us] around a delay in which no true pose is believed
 constexpr double kMostSlip = 0.3;       // [m] sideways between two scans
 
 /// A measured pose with the true one.
@@ -135,6 +137,20 @@ void endOf(const Stretch& stretch, TrackComparison& comparison) {
   comparison.end_yaw_std = std::sqrt(covariance(2, 2));
 }
 
+/// When messages came late over the recorder's network [us], by the range finder's own clock: the
+/// true poses came over the same one, so that their times are not known then either.
+std::vector<int64_t> delaysOf(const MappingRecording& recording) {
+  std::vector<int64_t> delayed;
+  int64_t least = INT64_MAX;
+  const auto delay = [&](size_t i) {
+    return recording.scans[i].utime + recording.scans[i].duration - recording.device_times[i];
+  };
+  for (size_t i = 0; i < recording.device_times.size(); ++i) least = std::min(least, delay(i));
+  for (size_t i = 0; i < recording.device_times.size(); ++i)
+    if (delay(i) > least + kDelayed) delayed.push_back(recording.scans[i].utime);
+  return delayed;
+}
+
 /// CPU time of this thread [ms].
 double cpuNow() {
   timespec time{};
@@ -234,11 +250,14 @@ MatchingReplay replayMatching(const MappingRecording& recording,
     cpu += took;
     replay.cpu_max_ms = std::max(replay.cpu_max_ms, took);
     ++replay.outcomes[nameOf(replay.poses.back().outcome)];
-    if (getenv("H5DUMP") && replay.poses.size() % 1 == 0) { auto&q=replay.poses.back(); auto t=truth.at(q.utime,kMaxGap); printf("DUMP %.3f %d %d%d%d est %.3f %.3f %.3f true %.3f %.3f %.3f sd %.4f %.4f loc %.4f %.4f tw %.2f %.2f %.2f n %zu und %d mat %d ov %.2f nz %.4f mis %.3f\n", 1e-6*double(q.utime), int(q.outcome), q.position_known,q.heading_known,q.new_track, q.T_map_body.x,q.T_map_body.y,q.T_map_body.yaw, t?t->x:-99,t?t->y:-99,t?t->yaw:-99, sqrt(q.covariance(0,0)),sqrt(q.covariance(2,2)),sqrt(q.local(0,0)),sqrt(q.local(2,2)),q.v_body.v_x,q.v_body.v_y,q.v_body.omega, sweep->returns.size(), q.dbg.undetermined, q.dbg.matched, q.dbg.overlap, q.dbg.noise, q.dbg.misfit); }
   }
   replay.cpu_mean_ms = cpu / std::max(1.0, static_cast<double>(replay.poses.size()));
-  replay.comparison =
-      compareTracks(replay.poses, [&](int64_t utime) { return truth.at(utime, kMaxGap); });
+  const std::vector<int64_t> delayed = delaysOf(recording);
+  replay.comparison = compareTracks(replay.poses, [&](int64_t utime) -> std::optional<Pose2> {
+    for (const int64_t late : delayed)
+      if (std::abs(late - utime) <= kAround) return std::nullopt;
+    return truth.at(utime, kMaxGap);
+  });
   return replay;
 }
 

@@ -27,6 +27,10 @@ constexpr double kScatterDoubt = 0.1; // [1] of what scatter tells is chance: it
 constexpr double kStraightness = 0.03; // [rad] walls are no straighter
 constexpr double kClear = 6.0;         // [1] a direction is determined from here on
 constexpr double kPiece = 2.0;         // [m] of one thing that share an error
+constexpr size_t kFewestOfPiece = 3;   // points of which the mean counts
+constexpr size_t kFewestPieces = 5;    // that tell what error they share
+constexpr double kUsualShared = 0.02;  // [m] that error, where there are fewer
+constexpr double kLeaves = 2.0;        // [1] of their distance: error of a partner in a scatter
 constexpr double kApart = 0.5;         // [m] between neighbours: another thing
 constexpr double kBad = 0.1;           // [m] a residual that makes a point as bad as one without
 
@@ -86,15 +90,57 @@ size_t pieceFrom(const std::vector<Pair>& pairs, size_t begin) {
   return end;
 }
 
-/// However many points a thing has, it tells no more than its own error allows.
-void limitPieces(std::vector<Pair>& pairs, double surface_noise) {
-  for (size_t begin = 0; begin < pairs.size();) {
-    const size_t end = pieceFrom(pairs, begin);
-    double sum = 0.0;
-    for (size_t i = begin; i < end; ++i) sum += pairs[i].weight;
-    const double share = 1.0 / (1.0 + sum * surface_noise * surface_noise);
-    for (size_t i = begin; i < end; ++i) pairs[i].weight *= share;
-    begin = end;
+/// A piece of one thing, as a range of pairs.
+struct Piece {
+  size_t begin;
+  size_t end;
+  double weight = 0.0;  ///< [1/m2] of its points together
+  double offset = 0.0;  ///< [m] mean residual
+};
+
+std::vector<Piece> piecesOf(const std::vector<Pair>& pairs) {
+  std::vector<Piece> pieces;
+  for (size_t begin = 0; begin < pairs.size(); begin = pieces.back().end) {
+    Piece piece{begin, pieceFrom(pairs, begin)};
+    for (size_t i = piece.begin; i < piece.end; ++i) {
+      piece.weight += pairs[i].weight;
+      piece.offset += pairs[i].weight * pairs[i].residual();
+    }
+    piece.offset /= std::max(1e-9, piece.weight);
+    pieces.push_back(piece);
+  }
+  return pieces;
+}
+
+/// Robust standard deviation of the mean residuals of whole pieces [m], at least `least`; three of
+/// them the fit has made zero.
+double sharedError(const std::vector<Pair>& pairs, const std::vector<Piece>& pieces, double least) {
+  std::vector<double> offsets;
+  for (const Piece& piece : pieces)
+    if (pairs[piece.begin].isLine() && piece.end - piece.begin >= kFewestOfPiece)
+      offsets.push_back(std::abs(piece.offset));
+  const size_t count = offsets.size();
+  if (count < kFewestPieces) return std::max(least, kUsualShared);
+  const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(offsets.begin(), middle, offsets.end());
+  const double fitted = std::sqrt(static_cast<double>(count) / static_cast<double>(count - 3));
+  return std::max(least, 1.4826 * *middle * fitted);
+}
+
+/// Leaves the weights that the errors behind the residuals allow. The nearest leaf is mostly another
+/// one: as far off as leaves are apart. And however many points a thing has, it tells no more than
+/// the error that they share.
+void limitWeights(std::vector<Pair>& pairs, double surface_noise) {
+  for (Pair& pair : pairs) {
+    if (pair.isLine()) continue;
+    const double apart = kLeaves * pair.partner->spread;
+    pair.weight /= 1.0 + pair.weight * apart * apart;
+  }
+  const std::vector<Piece> pieces = piecesOf(pairs);
+  const double shared = sharedError(pairs, pieces, surface_noise);
+  for (const Piece& piece : pieces) {
+    const double share = 1.0 / (1.0 + piece.weight * shared * shared);
+    for (size_t i = piece.begin; i < piece.end; ++i) pairs[i].weight *= share;
   }
 }
 
@@ -204,7 +250,7 @@ Registration registerScan(const std::vector<ScanPoint>& points, const LocalMap& 
     result.matched = static_cast<int>(pairs.size());
     const Determined scan = determinedOf(normalOf(pairs));
     result.misfit = misfitOf(pairs, points.size());
-    limitPieces(pairs, config.surface_noise);
+    limitWeights(pairs, config.surface_noise);
     result.information = determinedOf(normalOf(pairs)).information;
     result.undetermined = scan.undetermined;
     const Matrix3d H = scan.told + prior_information;

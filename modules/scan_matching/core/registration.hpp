@@ -32,7 +32,7 @@ struct Registration {
 /// How scans are laid onto the map.
 struct RegistrationConfig {
   double range_noise = 0.01;    ///< [m] standard deviation of a single range
-  double surface_noise = 0.02;  ///< [m] of one thing as a whole, seen from elsewhere: leaves, tilt
+  double surface_noise = 0.01;  ///< [m] least error that the points of one thing share
 };
 
 /// Lays a scan onto the map, beginning at a pose: iterative closest point with distances to lines.
@@ -45,8 +45,8 @@ struct RegistrationConfig {
  *     scan tells and F what that noise alone would tell, the directions with H v = m F v and small
  *     m are undetermined: there the prior alone counts. From the others F is taken off.
  *  4. What stands in the map is not the same from everywhere (leaves, a slope, the map's own error):
- *     the points of 2 m of one thing share an error, `surface_noise`, that their number does not
- *     make smaller. */
+ *     the points of 2 m of one thing share an error that their number does not make smaller. It
+ *     is told by how far such pieces as a whole lie off. */
 Registration registerScan(const std::vector<ScanPoint>& points, const LocalMap& map,
                           const Pose2& start, const PosePrior& prior,
                           const Eigen::Vector2d& p_body_sensor, const RegistrationConfig& config);

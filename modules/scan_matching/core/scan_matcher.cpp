@@ -82,7 +82,6 @@ MatchOutcome ScanMatcher::process(const Sweep& sweep) {
     }
   }
   fitted_ = sweep.last;
-  dbg_ = best.registration;
   const bool determined = best.registration.undetermined == 0;
   if (determined) unfixed_.setZero();
   if (isKey()) addKeyScan(best.points);
@@ -171,7 +170,6 @@ MatchedPose ScanMatcher::describe(const Sweep& sweep, MatchOutcome outcome) {
   MatchedPose pose;
   pose.utime = sweep.last;
   pose.outcome = outcome;
-  pose.dbg = dbg_;
   pose.T_map_body = at_last.pose();
   pose.v_body = at_last.twist();
   pose.local = at_last.poseCovariance();

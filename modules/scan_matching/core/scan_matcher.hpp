@@ -61,7 +61,6 @@ struct MatchedPose {
   Eigen::Matrix3d local = Eigen::Matrix3d::Zero();  ///< the same against the newest key scan
   bool position_known = true;
   bool heading_known = true;
-  Registration dbg;
   bool new_track = false;  ///< not connected with the poses before
 };
 
@@ -103,7 +102,6 @@ class ScanMatcher {
   ScanMatcherConfig config_;
   MotionFilter filter_;
   LocalMap map_;
-  Registration dbg_;
   std::optional<int64_t> middle_;   ///< [us] of the newest sweep: the time of the filter
   int64_t fitted_ = 0;              ///< [us] of the newest one that fitted
   Eigen::Matrix3d drift_ = Eigen::Matrix3d::Zero();    ///< of the newest key scan, in map

@@ -45,17 +45,18 @@ std::vector<Eigen::Vector2d> thinned(const std::vector<Eigen::Vector2d>& points,
   return means;
 }
 
-/// How far the neighbours of a point may be [m]: grazing beams are far apart on the same wall.
-double reachAt(const std::vector<Eigen::Vector2d>& points, size_t i) {
+/// From a point to the nearer of its two neighbours [m].
+double spreadAt(const std::vector<Eigen::Vector2d>& points, size_t i) {
   double nearest = kFarthestReach;
   if (i > 0) nearest = std::min(nearest, (points[i] - points[i - 1]).norm());
   if (i + 1 < points.size()) nearest = std::min(nearest, (points[i + 1] - points[i]).norm());
-  return std::clamp(3.0 * nearest, kReach, kFarthestReach);
+  return nearest;
 }
 
 /// The range [begin, end) of neighbours in the order of the beams.
 std::pair<size_t, size_t> neighbours(const std::vector<Eigen::Vector2d>& points, size_t i) {
-  const double reach = reachAt(points, i);
+  // Grazing beams are far apart on the same wall.
+  const double reach = std::clamp(3.0 * spreadAt(points, i), kReach, kFarthestReach);
   const auto near = [&](size_t j) { return (points[j] - points[i]).norm() <= reach; };
   size_t begin = i;
   size_t end = i + 1;
@@ -70,6 +71,7 @@ bool describe(const std::vector<Eigen::Vector2d>& points, size_t i,
   const auto [begin, end] = neighbours(points, i);
   const auto count = static_cast<double>(end - begin);
   point.p = points[i];
+  point.spread = spreadAt(points, i);
   if (end - begin < kFewest) {
     // A post or a trunk far away. Single points may be of a wall that is seen at a grazing angle.
     point.shape = Shape::kScatter;

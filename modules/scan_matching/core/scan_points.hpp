@@ -27,6 +27,7 @@ enum class Shape {
 struct ScanPoint {
   Eigen::Vector2d p = Eigen::Vector2d::Zero();       ///< [m] p_body, in the middle of the sweep
   Eigen::Vector2d normal = Eigen::Vector2d::Zero();  ///< unit, towards the range finder; of lines
+  double spread = 0.0;           ///< [m] to the nearest other point of its scan
   double normal_variance = 0.0;                      ///< of its direction [rad2]
   Shape shape = Shape::kScatter;
 };
