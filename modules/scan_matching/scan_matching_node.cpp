@@ -18,6 +18,8 @@ constexpr int64_t kFarthestAhead = 200'000;
 constexpr size_t kMostWaiting = 4;
 /// Own messages come back within so many.
 constexpr size_t kMostOwn = 100;
+/// An older MOTOR says nothing of now [us].
+constexpr int64_t kMotorAge = 300'000;
 constexpr double kUsual = 0.1;  // [1] share of a new interval in the usual one
 
 int64_t microseconds(double seconds) {
@@ -45,6 +47,7 @@ void readMatching(ConfigReader& reader, ScanMatcherConfig& matcher) {
 void readMotion(ConfigReader reader, MotionConfig& motion) {
   reader.number("acceleration", motion.acceleration, {0.05, 20.0}, "m/s2");
   reader.number("yaw_acceleration", motion.yaw_acceleration, {0.05, 50.0}, "rad/s2");
+  reader.number("lateral_speed", motion.lateral_speed, {0.005, 20.0}, "m/s");
   reader.number("speed", motion.speed, {0.05, 20.0}, "m/s");
   reader.number("yaw_rate", motion.yaw_rate, {0.05, 20.0}, "rad/s");
   reader.number("correlation", motion.correlation, {0.05, 5.0}, "s");
@@ -125,6 +128,7 @@ ScanMatchingConfig readScanMatchingConfig(ConfigReader& reader) {
   readKeyScans(reader.section("key_scans"), config.matcher);
   reader.number("lowest", config.lowest, {-1.0, 5.0}, "m");
   reader.number("max_tilt", config.max_tilt, {0.0, 1.0}, "rad");
+  reader.number("standing_after", config.standing_after, {0.1, 60.0}, "s");
   reader.number("silence", config.silence, {0.1, 60.0}, "s");
   reader.finish();
   config.effective = reader.effective();
@@ -175,6 +179,7 @@ ScanMatchingNode::ScanMatchingNode(const ScanMatchingConfig& config, Bus& bus)
       last_pose_(bus.now()) {
   health_.watchNamesakes();
   bus.subscribe<scan_t>(kScan, [this](const scan_t& message) { hear(message); });
+  bus.subscribe<motor_t>(kMotor, [this](const motor_t& message) { hear(message); });
   // Its own messages come back here, too: no input.
   bus.overhear<ins_t>(kIns, [this](const ins_t& message) { hear(message); });
 }
@@ -189,6 +194,7 @@ void ScanMatchingNode::hear(const scan_t& message) {
   if (scan->last > bus_.now() + kFarthestAhead) return refuse("time is ahead");
   auto sweep = sweepOf(*scan, config_, reason);
   if (!sweep) return refuse(reason);
+  sweep->standing = standsAt(sweep->last);
   waiting_.push_back(std::move(*sweep));
   if (waiting_.size() <= kMostWaiting) return;
   waiting_.pop_front();
@@ -197,6 +203,20 @@ void ScanMatchingNode::hear(const scan_t& message) {
 
 void ScanMatchingNode::hear(const ins_t& message) {
   if (!isOwn(message.utime)) foreign_ = bus_.now();
+}
+
+void ScanMatchingNode::hear(const motor_t& message) {
+  if (message.utime <= last_motor_) return;
+  last_motor_ = message.utime;
+  const bool off = message.command_left == 0.0 && message.command_right == 0.0;
+  if (!off) off_since_.reset();
+  if (off && !off_since_) off_since_ = message.utime;
+}
+
+/// Motors that nobody tells of may be on.
+bool ScanMatchingNode::standsAt(int64_t utime) const {
+  return off_since_ && utime - *off_since_ >= microseconds(config_.standing_after) &&
+         utime - last_motor_ <= kMotorAge;
 }
 
 bool ScanMatchingNode::isOwn(int64_t utime) const {

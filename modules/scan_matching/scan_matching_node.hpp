@@ -8,6 +8,7 @@
 #include <string>
 
 #include <tread/ins_t.hpp>
+#include <tread/motor_t.hpp>
 #include <tread/scan_t.hpp>
 
 #include "common/bus/bus.hpp"
@@ -22,6 +23,7 @@ struct ScanMatchingConfig {
   ScanMatcherConfig matcher;
   double lowest = 0.1;     ///< [m] z_body: lower returns are the ground
   double max_tilt = 0.2;   ///< [rad] of a range finder's plane in body: others look at the ground
+  double standing_after = 1.0;  ///< [s] of zero commands after which the robot stands
   double silence = 1.0;    ///< [s] without what is expected after which health says so
   std::string effective;   ///< the whole as YAML, for CONFIG
 };
@@ -48,10 +50,12 @@ class ScanMatchingNode : public Node {
  private:
   void hear(const scan_t& message);
   void hear(const ins_t& message);
+  void hear(const motor_t& message);
   void match(const Sweep& sweep);
   void refuse(const std::string& reason);
   void count(const MatchedPose& pose);
   bool isOwn(int64_t utime) const;
+  bool standsAt(int64_t utime) const;
   void reportHealth(int64_t utime);
   std::string problem(int64_t utime) const;
 
@@ -61,6 +65,8 @@ class ScanMatchingNode : public Node {
   ScanMatcher matcher_;
   std::deque<Sweep> waiting_;
   std::deque<int64_t> own_;  ///< [us] utimes of what was published lately
+  std::optional<int64_t> off_since_;  ///< [us] utime of the first MOTOR with zero commands
+  int64_t last_motor_ = 0;            ///< [us] utime of the newest one
   int64_t seq_ = 0;
   bool heard_ = false;       ///< anything yet: only then the robot's time is known
   int64_t last_scan_;        ///< [us] when the last SCAN came in

@@ -144,7 +144,7 @@ TEST_CASE("broken scans, scans of the ground and another INS are counted or told
 
 TEST_CASE("the shipped configuration of scan matching is read, what is out of range is told with its line") {
   ConfigReader shipped =
-      ConfigReader::fromFile(TREAD_SOURCE_DIR "/config/robots/teodor/scan_matching.yaml");
+      ConfigReader::fromFile(TREAD_SOURCE_DIR "/config/robots/teodor_without_ins/scan_matching.yaml");
   const ScanMatchingConfig config = readScanMatchingConfig(shipped);
   CHECK(config.matcher.points.range_max == 15.0);
   ConfigReader wrong = ConfigReader::fromText("start: [0, 0, 0]\nmin_overlap: 2\n", "s.yaml");

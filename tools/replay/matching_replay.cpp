@@ -22,8 +22,8 @@ using scan_matching::MatchedPose;
 constexpr double kMetre = 1.0;          // [m]
 constexpr int64_t kTwoSeconds = 2'000'000;  // [us]
 constexpr int64_t kMaxGap = 300'000;    // [us] between true poses
-constexpr int64_t kDelayed = 60'000;    // [us] on the way, more than usual
-constexpr int64_t kAround = 1'000'000;  // [us] around a delay in which no true pose is believed
+constexpr int64_t kDelayed = 150'000;    // [us] on the way, more than usual
+constexpr int64_t kAround = 500'000;    // [us] around a delay in which no true pose is believed
 constexpr double kMostSlip = 0.3;       // [m] sideways between two scans
 
 /// A measured pose with the true one.

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/scan_matching/core/motion_filter.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/LU>
@@ -44,6 +45,25 @@ void MotionFilter::predict(double dt) {
   covariance_ = F * covariance_ * F.transpose() + Q;
   pose_ = next;
   limitTwist();
+}
+
+void MotionFilter::constrain(double dt, bool standing) {
+  // As one measurement in each correlation time, whatever the rate of the scans.
+  const double count = dt / config_.correlation;
+  const auto variance = [&](double std) { return std * std / std::max(1e-6, count); };
+  if (!standing) return measureTwist(1, variance(config_.lateral_speed));
+  for (int axis = 0; axis < 3; ++axis) measureTwist(axis, variance(config_.standing_speed));
+}
+
+/// One component of the twist is zero, but for this variance.
+void MotionFilter::measureTwist(int axis, double variance) {
+  const double value = axis == 0 ? twist_.v_x : axis == 1 ? twist_.v_y : twist_.omega;
+  const Eigen::Matrix<double, 6, 1> column = covariance_.col(3 + axis);
+  const double total = column[3 + axis] + variance;
+  const Eigen::Matrix<double, 6, 1> change = column * (-value / total);
+  pose_ = {pose_.x + change[0], pose_.y + change[1], pose_.yaw + change[2]};
+  twist_ = {twist_.v_x + change[3], twist_.v_y + change[4], twist_.omega + change[5]};
+  covariance_ -= column * column.transpose() / total;
 }
 
 /// A body never becomes faster than it can be, whatever is not known of it.

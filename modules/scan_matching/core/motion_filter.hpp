@@ -14,6 +14,8 @@ struct MotionConfig {
   double yaw_acceleration = 1.5;  ///< [rad/s2]
   double correlation = 0.5;       ///< [s] for which an acceleration lasts
   double start_speed = 0.3;       ///< [m/s], and [rad/s], before the first two scans
+  double lateral_speed = 0.1;     ///< [m/s] sideways: tracks and wheels hardly slip so
+  double standing_speed = 0.005;  ///< [m/s], and [rad/s], while the motors have been off for long
   double speed = 1.0;             ///< [m/s] standard deviation, however long nothing was measured
   double yaw_rate = 0.7;          ///< [rad/s] the same
 };
@@ -28,6 +30,8 @@ class MotionFilter {
 
   /// Goes on for dt [s].
   void predict(double dt);
+  /// What is known of the motion over dt [s] without any scan: hardly sideways, or not at all.
+  void constrain(double dt, bool standing);
   /// Takes what a match made of the predicted pose: the posterior pose and its covariance (3x3).
   void update(const Pose2& T_map_body, const Eigen::Matrix3d& covariance);
   /// From now on the pose is counted from where it is: its own uncertainty is nothing.
@@ -40,6 +44,7 @@ class MotionFilter {
 
  private:
   void limitTwist();
+  void measureTwist(int axis, double variance);
 
   MotionConfig config_;
   Pose2 pose_;

@@ -53,7 +53,9 @@ MatchedPose ScanMatcher::take(const Sweep& sweep) {
     filter_ = MotionFilter(config_.motion, filter_.pose());
     map_.clear();
   } else if (middle_) {
-    filter_.predict(secondsOf(middle - *middle_));
+    const double dt = secondsOf(middle - *middle_);
+    filter_.predict(dt);
+    filter_.constrain(dt, sweep.standing);
   }
   middle_ = middle;
   const MatchOutcome outcome = process(sweep);

@@ -39,6 +39,7 @@ struct Sweep {
   int64_t last = 0;   ///< [us] of the last
   Eigen::Vector2d p_body_sensor = Eigen::Vector2d::Zero();
   std::vector<PlanarReturn> returns;
+  bool standing = false;  ///< the motors have been off for long: the body stands
 };
 
 /// What became of a scan.
