@@ -88,7 +88,8 @@ const char* remedyOf(MatchOutcome outcome) {
       return "too little is in sight of the range finder (an open field?); drive nearer to walls, "
              "trees or posts, or use an INS";
     case MatchOutcome::kNoFit:
-      return "scans do not fit the local map; is the range finder loose, blocked, or the ground too "
+      return "scans do not fit the local map; is the range finder loose, blocked, or the ground "
+             "too "
              "uneven?";
     default:
       return "the next scans will tell";

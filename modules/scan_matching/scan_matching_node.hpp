@@ -21,11 +21,11 @@ namespace tread::scan_matching {
 /// Configuration of scan_matching, with its defaults.
 struct ScanMatchingConfig {
   ScanMatcherConfig matcher;
-  double lowest = 0.1;     ///< [m] z_body: lower returns are the ground
-  double max_tilt = 0.2;   ///< [rad] of a range finder's plane in body: others look at the ground
+  double lowest = 0.1;    ///< [m] z_body: lower returns are the ground
+  double max_tilt = 0.2;  ///< [rad] of a range finder's plane in body: others look at the ground
   double standing_after = 1.0;  ///< [s] of zero commands after which the robot stands
-  double silence = 1.0;    ///< [s] without what is expected after which health says so
-  std::string effective;   ///< the whole as YAML, for CONFIG
+  double silence = 1.0;         ///< [s] without what is expected after which health says so
+  std::string effective;        ///< the whole as YAML, for CONFIG
 };
 
 /// Reads the configuration; throws ConfigError with file:line.
@@ -64,15 +64,15 @@ class ScanMatchingNode : public Node {
   HealthReporter health_;
   ScanMatcher matcher_;
   std::deque<Sweep> waiting_;
-  std::deque<int64_t> own_;  ///< [us] utimes of what was published lately
+  std::deque<int64_t> own_;           ///< [us] utimes of what was published lately
   std::optional<int64_t> off_since_;  ///< [us] utime of the first MOTOR with zero commands
   int64_t last_motor_ = 0;            ///< [us] utime of the newest one
   int64_t seq_ = 0;
-  bool heard_ = false;       ///< anything yet: only then the robot's time is known
-  int64_t last_scan_;        ///< [us] when the last SCAN came in
-  int64_t last_pose_;        ///< [us] when the last pose with position and heading went out
-  int64_t last_published_ = 0;  ///< [us] utime of the last message
-  double interval_ = 0.0;       ///< [us] usual, between messages
+  bool heard_ = false;              ///< anything yet: only then the robot's time is known
+  int64_t last_scan_;               ///< [us] when the last SCAN came in
+  int64_t last_pose_;               ///< [us] when the last pose with position and heading went out
+  int64_t last_published_ = 0;      ///< [us] utime of the last message
+  double interval_ = 0.0;           ///< [us] usual, between messages
   std::optional<int64_t> foreign_;  ///< [us] when another process's INS came in
   std::string last_refusal_;
 };

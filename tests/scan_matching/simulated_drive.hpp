@@ -23,9 +23,9 @@ struct SimulatedDrive {
 
   std::optional<Pose2> trueAt(int64_t utime) const { return truth.at(utime, 20'000); }
   int count(MatchOutcome outcome) const {
-    return static_cast<int>(
-        std::count_if(poses.begin(), poses.end(),
-                      [&](const MatchedPose& pose) { return pose.outcome == outcome; }));
+    return static_cast<int>(std::count_if(poses.begin(), poses.end(), [&](const MatchedPose& pose) {
+      return pose.outcome == outcome;
+    }));
   }
 };
 
@@ -82,14 +82,11 @@ inline sim::MotorPower everything(double t) {
 inline sim::WorldDescription yard() {
   using sim::boxObstacle;
   sim::WorldDescription world;
-  world.obstacles = {boxObstacle({12.0, 0.0, 0.0}, 0.4, 18.0, 2.0),
-                     boxObstacle({-12.0, 0.0, 0.0}, 0.4, 18.0, 2.0),
-                     boxObstacle({0.0, 9.0, 0.0}, 24.0, 0.4, 2.0),
-                     boxObstacle({0.0, -9.0, 0.0}, 24.0, 0.4, 2.0),
-                     boxObstacle({7.0, 4.0, 0.4}, 3.0, 2.0, 2.0),
-                     sim::discObstacle({-4.0, 5.0}, 0.3, 2.0),
-                     sim::discObstacle({3.0, -5.0}, 0.4, 2.0),
-                     sim::discObstacle({-6.0, -4.0}, 0.2, 2.0)};
+  world.obstacles = {
+      boxObstacle({12.0, 0.0, 0.0}, 0.4, 18.0, 2.0), boxObstacle({-12.0, 0.0, 0.0}, 0.4, 18.0, 2.0),
+      boxObstacle({0.0, 9.0, 0.0}, 24.0, 0.4, 2.0),  boxObstacle({0.0, -9.0, 0.0}, 24.0, 0.4, 2.0),
+      boxObstacle({7.0, 4.0, 0.4}, 3.0, 2.0, 2.0),   sim::discObstacle({-4.0, 5.0}, 0.3, 2.0),
+      sim::discObstacle({3.0, -5.0}, 0.4, 2.0),      sim::discObstacle({-6.0, -4.0}, 0.2, 2.0)};
   return world;
 }
 

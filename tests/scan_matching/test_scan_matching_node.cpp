@@ -39,9 +39,8 @@ struct NodeRun {
     settings.start_utime = bus.now();
     robot = std::make_unique<sim::SimulatedRobot>(
         std::make_shared<const sim::World>(std::move(world)), settings);
-    bus.addNode("scan_matching", [config](Bus& end) {
-      return std::make_unique<ScanMatchingNode>(config, end);
-    });
+    bus.addNode("scan_matching",
+                [config](Bus& end) { return std::make_unique<ScanMatchingNode>(config, end); });
     bus.outside().subscribe<ins_t>(kIns, [this](const ins_t& message) {
       if (message.satellites == -1) heard.push_back(message);
     });
@@ -139,12 +138,15 @@ TEST_CASE("broken scans, scans of the ground and another INS are counted or told
   run.runFor(2.0, {});
   CHECK(run.health.health_state == health_t::HEALTH_OK);
   CHECK(run.counters.at("scans refused: its plane is too steep") >= 8);
-  CHECK(run.counters.count("scans refused: range limits are not 0 <= range_min < range_max <= 1000 m"));
+  CHECK(run.counters.count(
+      "scans refused: range limits are not 0 <= range_min < range_max <= 1000 m"));
 }
 
-TEST_CASE("the shipped configuration of scan matching is read, what is out of range is told with its line") {
-  ConfigReader shipped =
-      ConfigReader::fromFile(TREAD_SOURCE_DIR "/config/robots/teodor_without_ins/scan_matching.yaml");
+TEST_CASE(
+    "the shipped configuration of scan matching is read, what is out of range is told with its "
+    "line") {
+  ConfigReader shipped = ConfigReader::fromFile(
+      TREAD_SOURCE_DIR "/config/robots/teodor_without_ins/scan_matching.yaml");
   const ScanMatchingConfig config = readScanMatchingConfig(shipped);
   CHECK(config.matcher.points.range_max == 15.0);
   ConfigReader wrong = ConfigReader::fromText("start: [0, 0, 0]\nmin_overlap: 2\n", "s.yaml");

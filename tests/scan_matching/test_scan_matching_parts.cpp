@@ -92,7 +92,8 @@ TEST_CASE("a sweep of a turning body is straightened: its wall lies on one line 
   CHECK(bent > 0.2);
 }
 
-TEST_CASE("points of walls have their normal towards the range finder, single points are left out") {
+TEST_CASE(
+    "points of walls have their normal towards the range finder, single points are left out") {
   const auto points = pointsFrom(room(), {});
   REQUIRE(points.size() > 100);
   int lines = 0;
@@ -184,7 +185,8 @@ TEST_CASE("who is carried away loses the pose, then begins a new track where it 
   ScanMatcher matcher({});
   int64_t t = 1'000'000;
   for (int i = 0; i < 5; ++i) matcher.take(sweepAt(room(), t += 100'000, {}));
-  const Walls elsewhere{{{{2.0, -9.0}, {9.0, 6.0}}, {{-6.0, -7.0}, {-8.0, 9.0}}, {{-8.0, 9.5}, {9.0, 6.0}}}};
+  const Walls elsewhere{
+      {{{2.0, -9.0}, {9.0, 6.0}}, {{-6.0, -7.0}, {-8.0, 9.0}}, {{-8.0, 9.5}, {9.0, 6.0}}}};
   bool lost = false;
   bool again = false;
   for (int i = 0; i < 30; ++i) {

@@ -37,7 +37,8 @@ double lastKnownError(const SimulatedDrive& drive) {
 
 }  // namespace
 
-TEST_CASE("in a yard the motion is measured to 2 cm and 5 mrad in 2 s, and the deviations are honest") {
+TEST_CASE(
+    "in a yard the motion is measured to 2 cm and 5 mrad in 2 s, and the deviations are honest") {
   const SimulatedDrive driven = drive(yard(), {-8.0, 0.0, 0.1}, 25.0, everything);
   const TrackComparison comparison = compared(driven);
   INFO(reportOf(comparison));
@@ -51,7 +52,8 @@ TEST_CASE("in a yard the motion is measured to 2 cm and 5 mrad in 2 s, and the d
   CHECK(comparison.end_position < 2.0 * comparison.end_position_std + 0.01);
 }
 
-TEST_CASE("in a corridor without an end in sight the way along it becomes unknown, the heading not") {
+TEST_CASE(
+    "in a corridor without an end in sight the way along it becomes unknown, the heading not") {
   const SimulatedDrive driven = drive(corridor(), {-60.0, 0.2, 0.0}, 12.0, ahead);
   INFO(reportOf(compared(driven)));
   CHECK(driven.count(MatchOutcome::kUndetermined) >= 115);
@@ -81,7 +83,8 @@ TEST_CASE("a corridor with an end in sight determines the way along it") {
 TEST_CASE("in an open field nothing is claimed") {
   const SimulatedDrive driven = drive({}, {0.0, 0.0, 0.0}, 5.0, ahead);
   CHECK(driven.count(MatchOutcome::kTooFew) == static_cast<int>(driven.poses.size()));
-  for (const MatchedPose& pose : driven.poses) CHECK_FALSE((pose.position_known || pose.heading_known));
+  for (const MatchedPose& pose : driven.poses)
+    CHECK_FALSE((pose.position_known || pose.heading_known));
 }
 
 TEST_CASE("who drives out of a yard into an open field says so within a second") {

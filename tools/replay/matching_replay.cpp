@@ -19,12 +19,12 @@ namespace {
 
 using scan_matching::MatchedPose;
 
-constexpr double kMetre = 1.0;          // [m]
+constexpr double kMetre = 1.0;              // [m]
 constexpr int64_t kTwoSeconds = 2'000'000;  // [us]
-constexpr int64_t kMaxGap = 300'000;    // [us] between true poses
-constexpr int64_t kDelayed = 150'000;    // [us] on the way, more than usual
-constexpr int64_t kAround = 500'000;    // [us] around a delay in which no true pose is believed
-constexpr double kMostSlip = 0.3;       // [m] sideways between two scans
+constexpr int64_t kMaxGap = 300'000;        // [us] between true poses
+constexpr int64_t kDelayed = 150'000;       // [us] on the way, more than usual
+constexpr int64_t kAround = 500'000;        // [us] around a delay in which no true pose is believed
+constexpr double kMostSlip = 0.3;           // [m] sideways between two scans
 
 /// A measured pose with the true one.
 struct Compared {
@@ -159,7 +159,7 @@ double cpuNow() {
 }
 
 const char* nameOf(scan_matching::MatchOutcome outcome) {
-  constexpr const char* kNames[] = {"map begun",     "matched",      "undetermined",
+  constexpr const char* kNames[] = {"map begun",      "matched",      "undetermined",
                                     "too few points", "does not fit", "not newer"};
   return kNames[static_cast<size_t>(outcome)];
 }
@@ -177,7 +177,8 @@ TrackComparison compareTracks(const std::vector<MatchedPose>& poses,
     }
     const auto T_map_true = truth(pose.utime);
     if (!T_map_true) continue;
-    const bool sideways = !stretches.back().empty() && slips(stretches.back().back(), pose, *T_map_true);
+    const bool sideways =
+        !stretches.back().empty() && slips(stretches.back().back(), pose, *T_map_true);
     if (sideways) ++comparison.sideways;
     if ((pose.new_track || sideways) && !stretches.back().empty()) stretches.emplace_back();
     Stretch& stretch = stretches.back();
@@ -189,14 +190,15 @@ TrackComparison compareTracks(const std::vector<MatchedPose>& poses,
   }
   Sums per_metre, per_2s;
   for (const Stretch& stretch : stretches) {
-    addPairs(stretch,
-             [](const Compared& a, const Compared& b) { return b.way - a.way >= kMetre; },
-             per_metre);
-    addPairs(stretch,
-             [](const Compared& a, const Compared& b) {
-               return b.measured->utime - a.measured->utime >= kTwoSeconds;
-             },
-             per_2s);
+    addPairs(
+        stretch, [](const Compared& a, const Compared& b) { return b.way - a.way >= kMetre; },
+        per_metre);
+    addPairs(
+        stretch,
+        [](const Compared& a, const Compared& b) {
+          return b.measured->utime - a.measured->utime >= kTwoSeconds;
+        },
+        per_2s);
   }
   comparison.per_metre = per_metre.result();
   comparison.per_2s = per_2s.result();
@@ -210,7 +212,8 @@ std::string reportOf(const TrackComparison& comparison) {
   say(out, "per metre", comparison.per_metre);
   say(out, "per 2 s", comparison.per_2s);
   out << std::setprecision(2) << "  " << comparison.compared << " poses compared, "
-      << comparison.unknown << " unknown, " << comparison.sideways << " times the reference jumps sideways; after " << comparison.way << " m "
+      << comparison.unknown << " unknown, " << comparison.sideways
+      << " times the reference jumps sideways; after " << comparison.way << " m "
       << comparison.end_position << " m (told deviation " << comparison.end_position_std << ") and "
       << std::setprecision(3) << comparison.end_yaw << " rad (" << comparison.end_yaw_std
       << ") off\n";

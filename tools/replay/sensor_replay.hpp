@@ -21,8 +21,8 @@ namespace tread {
 /// A recording of range scans with poses, as Tread's messages.
 struct MappingRecording {
   std::string name;
-  std::vector<ins_t> poses;       ///< in order of time
-  std::vector<scan_t> scans;      ///< in order of time
+  std::vector<ins_t> poses;   ///< in order of time
+  std::vector<scan_t> scans;  ///< in order of time
   /// [us] of the scans' last beams by the range finder's own clock, where it is steadier than their
   /// utime; else empty.
   std::vector<int64_t> device_times;

@@ -10,12 +10,12 @@
 namespace tread::scan_matching {
 namespace {
 
-constexpr double kDeviations = 2.5;   // half of the window
-constexpr double kMostShift = 1.5;    // [m] the same
-constexpr double kMostTurn = 0.6;     // [rad]
-constexpr size_t kMostPoints = 120;   // looked at
-constexpr double kCoarse = 0.2;       // [m] between tried places
-constexpr double kPriorCost = 4.0;    // [of 255] that one variance from the prior costs
+constexpr double kDeviations = 2.5;  // half of the window
+constexpr double kMostShift = 1.5;   // [m] the same
+constexpr double kMostTurn = 0.6;    // [rad]
+constexpr size_t kMostPoints = 120;  // looked at
+constexpr double kCoarse = 0.2;      // [m] between tried places
+constexpr double kPriorCost = 4.0;   // [of 255] that one variance from the prior costs
 
 /// Tries poses of a lattice and keeps the best.
 class Search {

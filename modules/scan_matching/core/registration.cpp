@@ -17,22 +17,22 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kMostIterations = 25;
-constexpr int kWideIterations = 4;     // with the large radius at least
-constexpr double kWideRadius = 0.5;    // [m] to a partner
-constexpr double kNarrowRadius = 0.25; // [m] the same, once it lies nearly right
-constexpr double kSmallShift = 1e-4;   // [m], and [rad] at 10 m
-constexpr double kCauchy = 2.4;        // [1] of the scale: where a weight has fallen to a half
-constexpr double kScatterNoise = 0.05; // [m] at least, of a scatter's partner
-constexpr double kScatterDoubt = 0.1; // [1] of what scatter tells is chance: it finds partners
-constexpr double kStraightness = 0.03; // [rad] walls are no straighter
-constexpr double kClear = 6.0;         // [1] a direction is determined from here on
-constexpr double kPiece = 2.0;         // [m] of one thing that share an error
-constexpr size_t kFewestOfPiece = 3;   // points of which the mean counts
-constexpr size_t kFewestPieces = 5;    // that tell what error they share
-constexpr double kUsualShared = 0.02;  // [m] that error, where there are fewer
-constexpr double kLeaves = 2.0;        // [1] of their distance: error of a partner in a scatter
-constexpr double kApart = 0.5;         // [m] between neighbours: another thing
-constexpr double kBad = 0.1;           // [m] a residual that makes a point as bad as one without
+constexpr int kWideIterations = 4;      // with the large radius at least
+constexpr double kWideRadius = 0.5;     // [m] to a partner
+constexpr double kNarrowRadius = 0.25;  // [m] the same, once it lies nearly right
+constexpr double kSmallShift = 1e-4;    // [m], and [rad] at 10 m
+constexpr double kCauchy = 2.4;         // [1] of the scale: where a weight has fallen to a half
+constexpr double kScatterNoise = 0.05;  // [m] at least, of a scatter's partner
+constexpr double kScatterDoubt = 0.1;   // [1] of what scatter tells is chance: it finds partners
+constexpr double kStraightness = 0.03;  // [rad] walls are no straighter
+constexpr double kClear = 6.0;          // [1] a direction is determined from here on
+constexpr double kPiece = 2.0;          // [m] of one thing that share an error
+constexpr size_t kFewestOfPiece = 3;    // points of which the mean counts
+constexpr size_t kFewestPieces = 5;     // that tell what error they share
+constexpr double kUsualShared = 0.02;   // [m] that error, where there are fewer
+constexpr double kLeaves = 2.0;         // [1] of their distance: error of a partner in a scatter
+constexpr double kApart = 0.5;          // [m] between neighbours: another thing
+constexpr double kBad = 0.1;            // [m] a residual that makes a point as bad as one without
 
 Vector2d leftOf(const Vector2d& v) {
   return {-v.y(), v.x()};
@@ -40,8 +40,8 @@ Vector2d leftOf(const Vector2d& v) {
 
 /// A point of the scan and its partner.
 struct Pair {
-  Vector2d lever;     ///< from the body to the point, map axes [m]
-  Vector2d offset;    ///< from the partner to the point [m]
+  Vector2d lever;   ///< from the body to the point, map axes [m]
+  Vector2d offset;  ///< from the partner to the point [m]
   const ScanPoint* partner = nullptr;
   double weight = 0.0;  ///< [1/m2] of its residual
 
@@ -127,9 +127,9 @@ double sharedError(const std::vector<Pair>& pairs, const std::vector<Piece>& pie
   return std::max(least, 1.4826 * *middle * fitted);
 }
 
-/// Leaves the weights that the errors behind the residuals allow. The nearest leaf is mostly another
-/// one: as far off as leaves are apart. And however many points a thing has, it tells no more than
-/// the error that they share.
+/// Leaves the weights that the errors behind the residuals allow. The nearest leaf is mostly
+/// another one: as far off as leaves are apart. And however many points a thing has, it tells no
+/// more than the error that they share.
 void limitWeights(std::vector<Pair>& pairs, double surface_noise) {
   for (Pair& pair : pairs) {
     if (pair.isLine()) continue;
@@ -178,8 +178,7 @@ Normal normalOf(const std::vector<Pair>& pairs) {
     if (pair.isLine()) {
       addAxis(pair, pair.partner->normal, normal);
       const Vector3d along = pair.jacobian(leftOf(pair.partner->normal));
-      normal.chance +=
-          pair.weight * pair.partner->normal_variance * along * along.transpose();
+      normal.chance += pair.weight * pair.partner->normal_variance * along * along.transpose();
     } else {
       Normal scatter;
       addAxis(pair, Vector2d::UnitX(), scatter);
@@ -238,8 +237,8 @@ double misfitOf(const std::vector<Pair>& pairs, size_t points) {
 }
 
 Registration registerScan(const std::vector<ScanPoint>& points, const LocalMap& map,
-                          const Pose2& start, const PosePrior& prior,
-                          const Vector2d& p_body_sensor, const RegistrationConfig& config) {
+                          const Pose2& start, const PosePrior& prior, const Vector2d& p_body_sensor,
+                          const RegistrationConfig& config) {
   Registration result;
   result.T_map_body = start;
   const Matrix3d prior_information = prior.covariance.inverse();
@@ -259,7 +258,8 @@ Registration registerScan(const std::vector<ScanPoint>& points, const LocalMap& 
     result.T_map_body.x += step.x();
     result.T_map_body.y += step.y();
     result.T_map_body.yaw += step.z();
-    const bool settled = step.head<2>().norm() < kSmallShift && std::abs(step.z()) < 0.1 * kSmallShift;
+    const bool settled =
+        step.head<2>().norm() < kSmallShift && std::abs(step.z()) < 0.1 * kSmallShift;
     if (settled && radius <= kNarrowRadius) break;
     if (settled || i + 1 >= kWideIterations) radius = kNarrowRadius;
   }

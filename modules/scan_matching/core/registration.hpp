@@ -44,8 +44,8 @@ struct RegistrationConfig {
  *  3. What the lines say of the direction along them is the noise of their normals. With H what the
  *     scan tells and F what that noise alone would tell, the directions with H v = m F v and small
  *     m are undetermined: there the prior alone counts. From the others F is taken off.
- *  4. What stands in the map is not the same from everywhere (leaves, a slope, the map's own error):
- *     the points of 2 m of one thing share an error that their number does not make smaller. It
+ *  4. What stands in the map is not the same from everywhere (leaves, a slope, the map's own
+ * error): the points of 2 m of one thing share an error that their number does not make smaller. It
  *     is told by how far such pieces as a whole lie off. */
 Registration registerScan(const std::vector<ScanPoint>& points, const LocalMap& map,
                           const Pose2& start, const PosePrior& prior,

@@ -13,10 +13,10 @@ namespace {
 
 using Eigen::Matrix3d;
 
-constexpr int64_t kLeast = 1'000;         // [us] between scans
-constexpr int64_t kLongest = 3'000'000;   // [us] the same: beyond, nothing is known of the motion
-constexpr double kBent = 0.01;            // [m] a sweep may be bent by a twist that was wrong
-constexpr double kLever = 5.0;            // [m] at which turning bends it
+constexpr int64_t kLeast = 1'000;        // [us] between scans
+constexpr int64_t kLongest = 3'000'000;  // [us] the same: beyond, nothing is known of the motion
+constexpr double kBent = 0.01;           // [m] a sweep may be bent by a twist that was wrong
+constexpr double kLever = 5.0;           // [m] at which turning bends it
 
 double secondsOf(int64_t us) {
   return 1e-6 * static_cast<double>(us);
@@ -34,8 +34,8 @@ double yawStd(const Matrix3d& covariance) {
 }
 
 double bentBy(const Twist2& was, const Twist2& is, double duration) {
-  return duration * (std::hypot(is.v_x - was.v_x, is.v_y - was.v_y) +
-                     kLever * std::abs(is.omega - was.omega));
+  return duration *
+         (std::hypot(is.v_x - was.v_x, is.v_y - was.v_y) + kLever * std::abs(is.omega - was.omega));
 }
 
 }  // namespace
@@ -107,8 +107,8 @@ ScanMatcher::Match ScanMatcher::match(const Sweep& sweep, const Twist2& twist) c
   if (static_cast<int>(result.points.size()) < config_.min_points || map_.empty()) return result;
   const PosePrior prior{filter_.pose(), filter_.poseCovariance()};
   const auto lay = [&](const Pose2& start) {
-    const Registration laid = registerScan(result.points, map_, start, prior, sweep.p_body_sensor,
-                                           config_.registration);
+    const Registration laid =
+        registerScan(result.points, map_, start, prior, sweep.p_body_sensor, config_.registration);
     if (laid.misfit < result.registration.misfit) result.registration = laid;
   };
   const bool doubtful = positionStd(prior.covariance) > config_.search_std ||

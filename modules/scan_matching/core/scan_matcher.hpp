@@ -18,19 +18,19 @@ namespace tread::scan_matching {
 
 /// How motion is measured from scans, with its defaults.
 struct ScanMatcherConfig {
-  Pose2 start;                     ///< T_map_body at the first scan
+  Pose2 start;  ///< T_map_body at the first scan
   ScanPointsConfig points;
   RegistrationConfig registration;
   MotionConfig motion;
-  int min_points = 25;             ///< of a scan, and of those that find a partner
-  double min_overlap = 0.3;        ///< share of the points that must find a partner
-  double search_std = 0.1;         ///< [m], and half of it in rad: less known places are searched for
-  double key_distance = 0.5;       ///< [m] after which a scan is added to the local map
-  double key_turn = 0.35;          ///< [rad] the same
-  int key_scans = 15;              ///< that the local map keeps
-  double max_position_std = 0.3;   ///< [m] since the last full match: beyond, position is unknown
-  double max_yaw_std = 0.1;        ///< [rad] the same for the heading
-  double new_map_after = 1.0;      ///< [s] lost, after which the map begins anew where the body is
+  int min_points = 25;        ///< of a scan, and of those that find a partner
+  double min_overlap = 0.3;   ///< share of the points that must find a partner
+  double search_std = 0.1;    ///< [m], and half of it in rad: less known places are searched for
+  double key_distance = 0.5;  ///< [m] after which a scan is added to the local map
+  double key_turn = 0.35;     ///< [rad] the same
+  int key_scans = 15;         ///< that the local map keeps
+  double max_position_std = 0.3;  ///< [m] since the last full match: beyond, position is unknown
+  double max_yaw_std = 0.1;       ///< [rad] the same for the heading
+  double new_map_after = 1.0;     ///< [s] lost, after which the map begins anew where the body is
 };
 
 /// One sweep, as seen from above.
@@ -56,10 +56,10 @@ enum class MatchOutcome {
 struct MatchedPose {
   int64_t utime = 0;  ///< [us]
   MatchOutcome outcome = MatchOutcome::kFirst;
-  Pose2 T_map_body;   ///< yaw unwrapped
+  Pose2 T_map_body;  ///< yaw unwrapped
   Twist2 v_body;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y, yaw in map, since the start
-  Eigen::Matrix3d local = Eigen::Matrix3d::Zero();  ///< the same against the newest key scan
+  Eigen::Matrix3d local = Eigen::Matrix3d::Zero();       ///< the same against the newest key scan
   bool position_known = true;
   bool heading_known = true;
   bool new_track = false;  ///< not connected with the poses before
@@ -103,8 +103,8 @@ class ScanMatcher {
   ScanMatcherConfig config_;
   MotionFilter filter_;
   LocalMap map_;
-  std::optional<int64_t> middle_;   ///< [us] of the newest sweep: the time of the filter
-  int64_t fitted_ = 0;              ///< [us] of the newest one that fitted
+  std::optional<int64_t> middle_;  ///< [us] of the newest sweep: the time of the filter
+  int64_t fitted_ = 0;             ///< [us] of the newest one that fitted
   Eigen::Matrix3d drift_ = Eigen::Matrix3d::Zero();    ///< of the newest key scan, in map
   Eigen::Matrix3d unfixed_ = Eigen::Matrix3d::Zero();  ///< the part since the last full match
   bool position_known_ = true;

@@ -10,14 +10,14 @@
 namespace tread::scan_matching {
 namespace {
 
-constexpr double kReach = 0.3;        // [m] of a line fit to either side
+constexpr double kReach = 0.3;          // [m] of a line fit to either side
 constexpr double kFarthestReach = 1.5;  // [m] where points are sparse
 constexpr size_t kMostNeighbours = 12;  // to either side
-constexpr size_t kFewest = 5;         // points of a line fit
-constexpr double kStraight = 0.04;    // [1] of the variance along the line may lie across it
+constexpr size_t kFewest = 5;           // points of a line fit
+constexpr double kStraight = 0.04;      // [1] of the variance along the line may lie across it
 
-std::vector<Eigen::Vector2d> deskewed(const std::vector<PlanarReturn>& returns,
-                                      const Twist2& twist, double duration) {
+std::vector<Eigen::Vector2d> deskewed(const std::vector<PlanarReturn>& returns, const Twist2& twist,
+                                      double duration) {
   std::vector<Eigen::Vector2d> points;
   points.reserve(returns.size());
   for (const PlanarReturn& hit : returns)

@@ -27,7 +27,7 @@ enum class Shape {
 struct ScanPoint {
   Eigen::Vector2d p = Eigen::Vector2d::Zero();       ///< [m] p_body, in the middle of the sweep
   Eigen::Vector2d normal = Eigen::Vector2d::Zero();  ///< unit, towards the range finder; of lines
-  double spread = 0.0;           ///< [m] to the nearest other point of its scan
+  double spread = 0.0;                               ///< [m] to the nearest other point of its scan
   double normal_variance = 0.0;                      ///< of its direction [rad2]
   Shape shape = Shape::kScatter;
 };
@@ -39,8 +39,8 @@ struct ScanPointsConfig {
   double range_max = 30.0;    ///< [m] what is farther away is not matched
 };
 
-/// Brings the returns of a sweep to where they lie as seen from the body in the middle of it, and says
-/// what they are part of.
+/// Brings the returns of a sweep to where they lie as seen from the body in the middle of it, and
+/// says what they are part of.
 /** 1. Each return is moved by what the body, with a constant twist, moved between its own beam and
  *     the middle: there a wrong twist does least.
  *  2. Neighbours in the order of the beams within `spacing` become their mean.
