@@ -22,6 +22,23 @@ double rms(const std::vector<double>& values) {
   return std::sqrt(sum / std::max(1.0, static_cast<double>(values.size())));
 }
 
+double median(std::vector<double> values) {
+  REQUIRE_FALSE(values.empty());
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// A scan each metre or so, a second apart, with 80 m range: little is known between two of them.
+ScanMatchingConfig campusConfig() {
+  ScanMatchingConfig config;
+  config.matcher.points.range_max = 50.0;
+  config.matcher.min_points = 15;
+  config.matcher.max_position_std = 1.0;
+  config.matcher.max_yaw_std = 0.5;
+  return config;
+}
+
 sim::MotorPower ahead(double t) {
   return t < 1.0 ? sim::MotorPower{0.0, 0.0} : sim::MotorPower{0.8, 0.8};
 }
@@ -101,6 +118,37 @@ TEST_CASE("who drives out of a yard into an open field says so within a second")
     if (pose.outcome == MatchOutcome::kMatched) last_match = pose.utime;
     if (pose.utime > last_match + testing::kSecond) CHECK_FALSE(pose.position_known);
   }
+}
+
+TEST_CASE("an MBot that drives a square is measured back to its start") {
+  const std::string path = testing::recorded("lcmlogs/mbot2017_sweep/sweep_drive_square.log");
+  if (path.empty()) {
+    WARN("skipped: the MBot's log is not here (TREAD_RECORDINGS)");
+    return;
+  }
+  const MatchingReplay replay = replayMatching(readMappingRecording(path), {});
+  INFO(reportOf(replay));
+  CHECK(replay.outcomes.at("matched") >= 123);
+  // The whole way, begun and ended at rest: 4.2 m and three quarters of a turn.
+  CHECK(replay.comparison.end_position < 0.08);
+  CHECK(replay.comparison.end_yaw < 0.03);
+}
+
+TEST_CASE("on the Freiburg campus 300 scans a metre apart are matched to 3 cm and 3 mrad a metre") {
+  const std::string path = testing::recorded("lidar/carmen/freiburg-campus-corrected.log.gz");
+  if (path.empty()) {
+    WARN("skipped: the Freiburg log is not here (TREAD_RECORDINGS)");
+    return;
+  }
+  MappingRecording recording = readMappingRecording(path);
+  recording.scans.erase(recording.scans.begin(), recording.scans.begin() + 1300);
+  recording.scans.resize(300);
+  const MatchingReplay replay = replayMatching(recording, campusConfig());
+  INFO(reportOf(replay));
+  CHECK(replay.outcomes.at("matched") >= 285);
+  CHECK(median(replay.comparison.per_metre.position) < 0.03);
+  CHECK(median(replay.comparison.per_metre.yaw) < 0.003);
+  CHECK(replay.comparison.per_metre.within_two > 0.4);
 }
 
 // Not part of the tests: the figures of RESULTS.md.
