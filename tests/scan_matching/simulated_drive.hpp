@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -20,6 +21,8 @@ namespace tread::scan_matching {
 struct SimulatedDrive {
   std::vector<MatchedPose> poses;
   PoseTrack truth{INT64_MAX};
+  double cpu_ms = 0.0;   ///< of the matcher, all scans together
+  double most_ms = 0.0;  ///< of one scan
 
   std::optional<Pose2> trueAt(int64_t utime) const { return truth.at(utime, 20'000); }
   int count(MatchOutcome outcome) const {
@@ -61,8 +64,13 @@ inline SimulatedDrive drive(sim::WorldDescription description, const Pose2& star
     robot.setPower(power(1e-6 * static_cast<double>(t)));
     robot.advanceTo(t);
     drive.truth.push(robot.truth().utime, robot.truth().T_map_body);
-    for (const sim::LaserScan& scan : robot.takeScans())
+    for (const sim::LaserScan& scan : robot.takeScans()) {
+      const std::clock_t begin = std::clock();
       drive.poses.push_back(matcher.take(sweepOf(scan, settings.laser)));
+      const double took = 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+      drive.cpu_ms += took;
+      drive.most_ms = std::max(drive.most_ms, took);
+    }
   }
   return drive;
 }

@@ -154,10 +154,14 @@ TEST_CASE("on the Freiburg campus 300 scans a metre apart are matched to 3 cm an
 // Not part of the tests: the figures of RESULTS.md.
 TEST_CASE("figures of simulated drives", "[.figures]") {
   const auto say = [](const char* name, const SimulatedDrive& driven) {
-    std::printf("%s: %zu scans, %d matched, %d undetermined, %d too few, %d do not fit\n%s", name,
-                driven.poses.size(), driven.count(MatchOutcome::kMatched),
-                driven.count(MatchOutcome::kUndetermined), driven.count(MatchOutcome::kTooFew),
-                driven.count(MatchOutcome::kNoFit), reportOf(compared(driven)).c_str());
+    std::printf(
+        "%s: %zu scans, %d matched, %d undetermined, %d too few, %d do not fit, %.2f ms each, at "
+        "most %.2f\n%s",
+        name, driven.poses.size(), driven.count(MatchOutcome::kMatched),
+        driven.count(MatchOutcome::kUndetermined), driven.count(MatchOutcome::kTooFew),
+        driven.count(MatchOutcome::kNoFit),
+        driven.cpu_ms / static_cast<double>(driven.poses.size()), driven.most_ms,
+        reportOf(compared(driven)).c_str());
   };
   say("yard", drive(yard(), {-8.0, 0.0, 0.1}, 25.0, everything));
   say("corridor", drive(corridor(), {-60.0, 0.2, 0.0}, 30.0, ahead));

@@ -132,7 +132,8 @@ void endOf(const Stretch& stretch, TrackComparison& comparison) {
   const Pose2 truth = between(first.T_map_true, last.T_map_true);
   comparison.end_position = distanceBetween(measured, truth);
   comparison.end_yaw = std::abs(wrapAngle(measured.yaw - truth.yaw));
-  const Eigen::Matrix3d& covariance = last.measured->covariance;
+  comparison.end_way = last.way;
+  const Eigen::Matrix3d covariance = relativeCovariance(*first.measured, *last.measured);
   comparison.end_position_std = std::sqrt(covariance(0, 0) + covariance(1, 1));
   comparison.end_yaw_std = std::sqrt(covariance(2, 2));
 }
@@ -213,7 +214,7 @@ std::string reportOf(const TrackComparison& comparison) {
   say(out, "per 2 s", comparison.per_2s);
   out << std::setprecision(2) << "  " << comparison.compared << " poses compared, "
       << comparison.unknown << " unknown, " << comparison.sideways
-      << " times the reference jumps sideways; after " << comparison.way << " m "
+      << " times the reference jumps sideways; after the last " << comparison.end_way << " m "
       << comparison.end_position << " m (told deviation " << comparison.end_position_std << ") and "
       << std::setprecision(3) << comparison.end_yaw << " rad (" << comparison.end_yaw_std
       << ") off\n";

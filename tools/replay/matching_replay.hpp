@@ -32,7 +32,8 @@ struct TrackComparison {
   int64_t compared = 0;    ///< poses with position and heading whose true pose is known
   int64_t unknown = 0;     ///< poses that said that they know no position or heading
   int64_t sideways = 0;    ///< jumps to the side of the true track itself; no pair reaches over one
-  double end_position = 0.0;      ///< [m] error of the last pose after all that way
+  double end_way = 0.0;    ///< [m] since the last new track or jump of the reference
+  double end_position = 0.0;      ///< [m] error of the last pose after that way
   double end_yaw = 0.0;           ///< [rad]
   double end_position_std = 0.0;  ///< [m] as told
   double end_yaw_std = 0.0;       ///< [rad]
