@@ -40,7 +40,8 @@ void describe(CLI::App& app, Arguments& arguments) {
   app.add_option("--lcm-url", arguments.lcm_url,
                  "LCM provider, for instance udpm://239.255.76.67:7667?ttl=0");
   addKeyOption(app, arguments.key);
-  app.add_flag("--check", arguments.check, "only read the configuration and the key, and print what holds, defaults included");
+  app.add_flag("--check", arguments.check,
+               "only read the configuration and the key, and print what holds, defaults included");
   app.add_flag("--with-parent", arguments.with_parent, "end when the starting process is gone");
 }
 

@@ -55,7 +55,8 @@ class Link {
 };
 
 /// Opens a link from its address: tty:/dev/ttyUSB0?baud=115200 · tcp:host:port · udp:port (listens)
-/// · can:can0 (SocketCAN, struct can_frame of 16 bytes each) · file:path (reads); for emulated devices pty:path (makes path) · tcp-server:[host:]port.
+/// · can:can0 (SocketCAN, struct can_frame of 16 bytes each) · file:path (reads); for emulated
+/// devices pty:path (makes path) · tcp-server:[host:]port.
 /** Throws std::invalid_argument for a malformed address (one clear line); a device that is absent
  * is not an error: the link is closed and reopen() tries again. */
 std::unique_ptr<Link> makeLink(const std::string& address);

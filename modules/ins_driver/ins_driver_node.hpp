@@ -18,8 +18,8 @@ namespace tread::ins {
 struct InsDriverConfig {
   std::string address = "tty:/dev/ttyUSB0?baud=115200";  ///< of the device
   std::string store = "state/ins_driver";                ///< folder that keeps the map's origin
-  std::string source = "nmea";      ///< the kind that the configuration names
-  MakeInsSource make_source;        ///< of that kind
+  std::string source = "nmea";                           ///< the kind that the configuration names
+  MakeInsSource make_source;                             ///< of that kind
   std::optional<GeoOrigin> origin;  ///< of the map; absent: stored, or the first good fix
   double silence = 1.0;             ///< [s] without what is expected after which health says so
   int64_t period_us = 5'000;        ///< [us] between looks at the link

@@ -117,8 +117,7 @@ void ModelVehicle::drawCurrent(const TrackCommand& command, double dt) {
   right_ = {power.right, speeds.right, kFullCurrent * power.right};
   stepBattery(drive_, left_, right_, dt, battery_);
   // What the tracks do not get onto the ground is load; what the drive does not give is none.
-  const double per_speed =
-      kFullCurrent / (takesSpeeds() ? full_command_ : model_.full_speed);
+  const double per_speed = kFullCurrent / (takesSpeeds() ? full_command_ : model_.full_speed);
   const double forward = model_.forward_gain * (speeds.left + speeds.right) / 2.0 - v_body_.v_x;
   const double turning =
       model_.yaw_gain * (speeds.right - speeds.left) / 2.0 - v_body_.omega * model_.gauge / 2.0;
@@ -141,8 +140,8 @@ RobotParts partsOf(const ModelDocument& document, const RobotSettings& settings)
   RobotParts parts;
   std::optional<uint64_t> noise_seed;
   if (settings.motion_noise) noise_seed = streamSeed(settings.seed, kModelStream);
-  parts.vehicle = std::make_unique<ModelVehicle>(document, noise_seed,
-                                                 settings.wiring.top_speed.value_or(1.0));
+  parts.vehicle =
+      std::make_unique<ModelVehicle>(document, noise_seed, settings.wiring.top_speed.value_or(1.0));
   if (!isPerfect(document.measurement))
     parts.ins_errors = std::make_unique<ModelIns>(document.measurement, settings.start_utime);
   return parts;

@@ -38,12 +38,12 @@ class ModelIns final : public InsErrors {
 };
 
 /// A vehicle that does what a model file says: how a named effect is seen at work.
-/** The kernel is stepped with the simulator; it hears power or track speeds, session time, attitude and the fall of
- * the battery's voltage. The world's surfaces do not touch it: a model file is one ground. Its
- * spread varies along the drive as the dynamic vehicle's does. The battery is the dynamic
- * vehicle's, loaded by the current that this one draws at the same power straight ahead on grass.
- * The motor currents that it reports are those at the speed that the drive gives, and more for what
- * the ground takes of it. */
+/** The kernel is stepped with the simulator; it hears power or track speeds, session time, attitude
+ * and the fall of the battery's voltage. The world's surfaces do not touch it: a model file is one
+ * ground. Its spread varies along the drive as the dynamic vehicle's does. The battery is the
+ * dynamic vehicle's, loaded by the current that this one draws at the same power straight ahead on
+ * grass. The motor currents that it reports are those at the speed that the drive gives, and more
+ * for what the ground takes of it. */
 class ModelVehicle final : public Plant {
  public:
   /// `noise_seed`: of the spread; without it every execution is the mean. `top_speed` [m/s]: for a

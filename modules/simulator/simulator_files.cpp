@@ -215,7 +215,8 @@ void readSimulatedRobot(ConfigReader& reader, RobotSettings& settings) {
   settings.vehicle.outline = robot.outline;
   settings.vehicle.gauge = robot.gauge;
   settings.vehicle.drive.free_speed = robot.drive.full_speed;
-  settings.wiring = {robot.drive.left_channel, robot.drive.invert_left, robot.drive.invert_right, {}};
+  settings.wiring = {
+      robot.drive.left_channel, robot.drive.invert_left, robot.drive.invert_right, {}};
   if (robot.drive.kind == CommandKind::kTrackSpeed)
     settings.wiring.top_speed = robot.drive.fullCommand();
   settings.laser.mounting = robot.range_finder;

@@ -114,7 +114,8 @@ TEST_CASE("described controllers stop in time, and nothing moves before it is ar
   stopsInTime([] { return RoboteqRig{described("roboteq")}; }, 250'000);
 }
 
-TEST_CASE("described controller: a reboot is noticed, stall and silence too, and zero comes first") {
+TEST_CASE(
+    "described controller: a reboot is noticed, stall and silence too, and zero comes first") {
   MoleRig rig{described("mole")};
   requireDriving(rig);
   SECTION("reboot") {

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <random>
 
 #include <catch2/catch.hpp>
@@ -174,6 +175,22 @@ TEST_CASE("motion: a heading that drifts away from its gyro is told") {
   drive.good(0.8, 0.8);
   drive.drift.omega = 0.2;
   checkTold(drive.run(3.0), "heading and gyro differ");
+}
+
+TEST_CASE("motion: a turn before the gyro is there is not held against it") {
+  Drive drive;
+  drive.good(0.0, 0.0, 2.0);
+  double missing = 0.5;  // [s] of a turn
+  drive.spoil = [&missing](InsMotion& ins) {
+    if (missing <= 0.0 || std::abs(ins.yaw_rate) < 0.3) return;
+    missing -= 0.02;
+    ins.yaw_rate = std::numeric_limits<double>::quiet_NaN();
+  };
+  drive.command = {-0.8, 0.8};
+  const auto told = drive.run(6.0);
+  INFO(told.first << " " << told.second);
+  CHECK(missing <= 0.0);
+  CHECK(told.second.empty());
 }
 
 TEST_CASE("motion: a position that drifts away from its velocity is told") {

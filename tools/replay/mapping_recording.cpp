@@ -148,7 +148,8 @@ void readCarmenLog(const std::string& path, MappingRecording& recording) {
     recording.scans.push_back(scanAt(utime, laser.scan));
   }
   if (recording.scans.empty())
-    throw std::runtime_error(path + ": holds no FLASER or ROBOTLASER1 line; is it a CARMEN log with poses?");
+    throw std::runtime_error(
+        path + ": holds no FLASER or ROBOTLASER1 line; is it a CARMEN log with poses?");
 }
 
 /// Takes big-endian fields from a message's bytes; ok() turns false where they end.

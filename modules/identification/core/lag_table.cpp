@@ -8,11 +8,11 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kShortest = 0.4;    // [s] of an increment
-constexpr double kLongest = 1.2;     // [s]
-constexpr double kGyroGap = 0.5;     // [s] over which the gyro is not interpolated
-constexpr double kEncoderGap = 0.5;  // [s] over which encoders and currents are held
-constexpr size_t kFewestIncrements = 12;       // increments of a match
+constexpr double kShortest = 0.4;         // [s] of an increment
+constexpr double kLongest = 1.2;          // [s]
+constexpr double kGyroGap = 0.5;          // [s] over which the gyro is not interpolated
+constexpr double kEncoderGap = 0.5;       // [s] over which encoders and currents are held
+constexpr size_t kFewestIncrements = 12;  // increments of a match
 
 template <class Rate>
 RunningSums commandSums(const Drive& drive, Rate rate) {

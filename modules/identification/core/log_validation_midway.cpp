@@ -10,7 +10,7 @@ namespace tread::gap {
 namespace {
 
 constexpr double kWindow = 15.0;       // [s] of increments that are judged together
-constexpr double kWindowClear = 0.5;         // |correlation| with which a window has a sign
+constexpr double kWindowClear = 0.5;   // |correlation| with which a window has a sign
 constexpr double kLeastSpread = 0.05;  // [rad/s] or [m/s] RMS of what follows: else it is noise
 constexpr double kAlike = 3.0;         // times the usual slope, or a part of it
 constexpr double kVeryClear = 0.8;     // with which it needs no second one

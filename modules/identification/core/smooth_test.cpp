@@ -15,12 +15,13 @@ namespace tread::gap {
 namespace {
 
 constexpr size_t kFeatures = 320;
-constexpr size_t kMostInputs = 3;      // of one feature
-constexpr double kWidth = 1.5;         // deviations of an input within which a function is smooth
-constexpr double kFarthest = 3.0;      // deviations; what is further out counts as that
-constexpr double kRidge = 1.0;         // of each feature's own information
-constexpr double kLeastUniqueShare = 4e-4;  // share of its information that is its own, as in ScoreTest
-constexpr int kDraws = 9999;           // a few of them must lie beyond the level of one channel
+constexpr size_t kMostInputs = 3;  // of one feature
+constexpr double kWidth = 1.5;     // deviations of an input within which a function is smooth
+constexpr double kFarthest = 3.0;  // deviations; what is further out counts as that
+constexpr double kRidge = 1.0;     // of each feature's own information
+constexpr double kLeastUniqueShare =
+    4e-4;                     // share of its information that is its own, as in ScoreTest
+constexpr int kDraws = 9999;  // a few of them must lie beyond the level of one channel
 
 /// Inputs in units of their deviation, those of both signs also without their sign.
 struct Inputs {

@@ -14,8 +14,8 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kFactor = 0.7;     // of an effect, one factor on each kind of motion in a block
-constexpr double kChanges = 0.05;   // of it, in which the factors of the blocks differ
+constexpr double kFactor = 0.7;    // of an effect, one factor on each kind of motion in a block
+constexpr double kChanges = 0.05;  // of it, in which the factors of the blocks differ
 constexpr size_t kLeastVoltageBlocks = 8;  // with voltage
 
 /// Sums over one block.

@@ -25,7 +25,9 @@ class PcapStream {
   /// True if a file begins like a capture, also like one of the newer format, which is refused.
   static bool begins(std::string_view bytes);
 
-  void push(std::string_view bytes) { buffer_.append(bytes); }
+  void push(std::string_view bytes) {
+    if (problem_.empty()) buffer_.append(bytes);
+  }
   /// The next datagram; nothing while its bytes are missing, and for good after problem().
   std::optional<CapturedDatagram> next();
   /// Why nothing comes of this file, in one line; empty if something may.

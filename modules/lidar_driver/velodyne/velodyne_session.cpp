@@ -144,8 +144,8 @@ void VelodyneSession::takePacket(std::string_view bytes, int64_t arrival) {
 
 int64_t VelodyneSession::hostTime(uint32_t past_hour, int64_t arrival) {
   // At the full hour it begins anew.
-  if (last_past_hour_ && past_hour<*last_past_hour_&& * last_past_hour_ - past_hour> kHour / 2)
-    hours_ += kHour;
+  const int64_t back = int64_t{last_past_hour_.value_or(past_hour)} - past_hour;
+  if (back > kHour / 2) hours_ += kHour;
   last_past_hour_ = past_hour;
   if (!clock_.observe(hours_ + past_hour, arrival)) ++counters_["restarts of the device's clock"];
   return clock_.hostTime() - std::llround(1e6 * config_.latency);

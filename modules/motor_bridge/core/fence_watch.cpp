@@ -11,7 +11,7 @@ namespace {
 constexpr double kStep = 0.1;                // [s] between the poses that are looked at
 constexpr double kMuchTurn = 0.7;            // [1] of a commanded turn that is made at most
 constexpr double kSlack = 0.05;              // [m] by which a pose outside may seem farther out
-constexpr double kStillTwist = 0.03;              // [m/s, rad/s] of a standing robot
+constexpr double kStillTwist = 0.03;         // [m/s, rad/s] of a standing robot
 constexpr double kMostAge = 0.5;             // [s] of a pose; an older one is a fault of its own
 constexpr int64_t kBlindStands = 1'000'000;  // [us] for which it is
 

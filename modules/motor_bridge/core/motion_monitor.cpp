@@ -108,11 +108,11 @@ struct Judge {
 
   std::string ownRate() const {
     if (sums.no_rate > 0.2 * sums.seconds()) return "";
-    if (std::abs(sums.turned - sums.gyro) <=
+    if (std::abs(sums.turned_with_gyro - sums.gyro) <=
         kYawSlack + lateRate(sums.gyro_path) + kRateError * sums.gyro_path)
       return "";
     return words("heading and gyro differ: %0 and %0 deg in %1 s; check the INS, then ARM",
-                 {toDegrees(sums.turned), toDegrees(sums.gyro), sums.seconds()});
+                 {toDegrees(sums.turned_with_gyro), toDegrees(sums.gyro), sums.seconds()});
   }
   std::string ownVelocity() const {
     if (sums.no_velocity > 0.2 * sums.seconds()) return "";

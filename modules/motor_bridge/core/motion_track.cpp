@@ -59,6 +59,7 @@ MotionSums MotionSums::operator-(const MotionSums& start) const {
   out.ins_path = ins_path - start.ins_path;
   out.gyro = gyro - start.gyro;
   out.gyro_path = gyro_path - start.gyro_path;
+  out.turned_with_gyro = turned_with_gyro - start.turned_with_gyro;
   out.no_velocity = no_velocity - start.no_velocity;
   out.no_rate = no_rate - start.no_rate;
   return out;
@@ -174,6 +175,7 @@ void MotionTrack::measure(MotionSums& sums, const InsMotion& ins, double dt) con
   if (std::abs(rate) * limits_.gauge < kBrokenSpeed * limits_.full_speed) {
     sums.gyro += dt * rate;
     sums.gyro_path += dt * std::abs(rate);
+    sums.turned_with_gyro += turned;
   } else {
     sums.no_rate += dt;
   }

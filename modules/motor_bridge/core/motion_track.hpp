@@ -77,7 +77,8 @@ struct MotionSums {
   Eigen::Vector2d ins_way = Eigen::Vector2d::Zero();  ///< [m] in map, by the INS's velocity
   double ins_path = 0.0;                              ///< [m] length of that
   double gyro = 0.0, gyro_path = 0.0;                 ///< [rad] by the INS's yaw rate
-  double no_velocity = 0.0, no_rate = 0.0;            ///< [s] in which it was not measured
+  double turned_with_gyro = 0.0;            ///< [rad] by the heading, while that rate was measured
+  double no_velocity = 0.0, no_rate = 0.0;  ///< [s] in which it was not measured
 
   double seconds() const { return 1e-6 * static_cast<double>(utime); }
   MotionSums operator-(const MotionSums& start) const;

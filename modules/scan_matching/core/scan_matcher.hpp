@@ -49,7 +49,7 @@ enum class MatchOutcome {
   kUndetermined,  ///< it fits, but says nothing about some direction: a corridor, a round room
   kTooFew,        ///< hardly anything to be seen: an open field
   kNoFit,         ///< it does not fit the map
-  kNotNewer       ///< its time is not after that of the scan before, or is far after it
+  kNotNewer       ///< its time is not after that of the scan before
 };
 
 /// Where the body was at the last beam of a scan.

@@ -22,7 +22,8 @@ struct MotorWiring {
   int left_channel = 1;  ///< 1 or 2; the right track has the other one
   bool invert_left = false;
   bool invert_right = false;
-  std::optional<double> top_speed;  ///< [m/s] held at full command; none: the controller gives power
+  std::optional<double>
+      top_speed;  ///< [m/s] held at full command; none: the controller gives power
 };
 
 /// How a simulated robot is built.

@@ -129,8 +129,8 @@ struct Ground {
 };
 
 /// The vehicle of a simulated robot as its devices and the world see it: power in, motion out.
-/** One that takesSpeeds() has the controller that holds them in itself: to it, "power" is the wanted
- * track speed [m/s]. */
+/** One that takesSpeeds() has the controller that holds them in itself: to it, "power" is the
+ * wanted track speed [m/s]. */
 /** Body origin on the ground midway between the tracks, x forward, y left. */
 class Plant {
  public:

@@ -155,7 +155,8 @@ TEST_CASE("with --with-parent a process ends when its parent is killed, and only
 }
 
 TEST_CASE(
-    "checking (--check) prints the configuration that holds, with code 0, or one line with code 1") {
+    "checking (--check) prints the configuration that holds, with code 0, or one line with code "
+    "1") {
   const std::string file = "shell_" + std::to_string(getpid()) + ".yaml";
   std::ofstream(file) << "silence: 2\nrobot: " << kRobot << "robot.yaml\n";
   const Ending good = run({"--config", file, "--check"});

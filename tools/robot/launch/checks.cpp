@@ -153,7 +153,8 @@ std::vector<HostFinding> checkReach(const PatternSet& patterns, double marking_r
   double longest = 0.0;
   for (size_t i = 0; i < lengths.size(); ++i) {
     if (!std::isfinite(lengths[i]) || lengths[i] <= marking_range) continue;
-    if (++too_long <= kMostNames) names += (names.empty() ? "" : ", ") + patterns.patterns()[i].name;
+    if (++too_long <= kMostNames)
+      names += (names.empty() ? "" : ", ") + patterns.patterns()[i].name;
     longest = std::max(longest, lengths[i]);
   }
   if (too_long == 0) return {};
@@ -161,7 +162,8 @@ std::vector<HostFinding> checkReach(const PatternSet& patterns, double marking_r
   return {{false,
            std::to_string(too_long) + " of " + std::to_string(lengths.size()) + " patterns (" +
                names + ") are out of use: from standstill to standstill they need up to " +
-               fixed(longest, 1) + " m, and obstacles are marked to " + fixed(marking_range, 1) + " m",
+               fixed(longest, 1) + " m, and obstacles are marked to " + fixed(marking_range, 1) +
+               " m",
            "marking_range of mapping.yaml, if the range finder sees obstacles so far; or slower "
            "patterns"}};
 }

@@ -65,7 +65,7 @@ struct ProcessFacts {
   int check_code = 0;         ///< exit code of the program's --check
   std::string check_line;     ///< what it refused
   std::string configuration;  ///< what it takes it for, defaults included; empty if refused
-  std::string device;      ///< path of a tty; empty = none
+  std::string device;         ///< path of a tty; empty = none
   bool device_present = true;
   bool device_usable = true;  ///< may be read and written
 };

@@ -22,7 +22,9 @@ class VescBank {
   VescMotor* find(int id);
   std::vector<VescMotor>& motors() { return motors_; }
   std::array<double, 2> output(int64_t utime);
-  std::array<double, 2> heldSpeeds() const { return {motors_[0].heldSpeed(), motors_[1].heldSpeed()}; }
+  std::array<double, 2> heldSpeeds() const {
+    return {motors_[0].heldSpeed(), motors_[1].heldSpeed()};
+  }
   void measure(const DriveMeasurements& measurements);
   void powerUp();
 

@@ -32,9 +32,7 @@ class VescMotor {
   double output(int64_t utime);
 
   /// [m/s] that its speed control holds; 0 in the other modes.
-  double heldSpeed() const {
-    return mode_ == Mode::kRpm ? wanted_ / settings_.erpm_per_mps : 0.0;
-  }
+  double heldSpeed() const { return mode_ == Mode::kRpm ? wanted_ / settings_.erpm_per_mps : 0.0; }
 
   int id() const { return id_; }
   int fault() const { return fault_; }
