@@ -128,7 +128,7 @@ TEST_CASE("robots with other instruments and controllers drive by their configur
   MissionOptions options;
   options.shortest_line = 8.0;
   const std::vector<std::pair<std::string, std::vector<std::string>>> robots{
-      {"skid4", {"ins_driver.imu_rate=200"}},  // NovAtel; VESCs that hold track speeds
+      {"skid4", {}},  // NovAtel; VESCs that hold track speeds
       {"skid4", {"ins_driver.source=vectornav", "ins_driver.geoid_separation=47"}},
       {"small", {"motor_bridge.controller=sabertooth"}},
       {"small", {"motor_bridge.controller=vesc_can"}}};
