@@ -8,6 +8,7 @@
 #include "common/messages/blank.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "common/messages/operator_beacon.hpp"
+#include "modules/motor_bridge/kangaroo/kangaroo_connection.hpp"
 #include "modules/motor_bridge/line_protocol/line_connection.hpp"
 #include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
 #include "modules/motor_bridge/sabertooth/sabertooth_connection.hpp"
@@ -31,6 +32,15 @@ MakeMotorController lineProtocol(ConfigReader& reader, const DriveDescription& d
   return making<LineConnection>(readLineDescription(description, drive));
 }
 
+MakeMotorController kangaroo(ConfigReader& reader, const DriveDescription& drive) {
+  if (drive.kind != CommandKind::kTrackSpeed)
+    throw reader.error("controller",
+                       "kangaroo holds speeds only, the robot's drive is power: make it "
+                       "track_speed, or take sabertooth");
+  ConfigReader section = reader.section("kangaroo");
+  return making<KangarooConnection>(readKangarooConfig(section, drive));
+}
+
 MakeMotorController sabertooth(ConfigReader& reader, const DriveDescription& drive) {
   if (drive.kind != CommandKind::kPower)
     throw reader.error("controller",
@@ -46,7 +56,8 @@ MakeMotorController vesc(ConfigReader section, const DriveDescription& drive) {
 
 /// A new controller is one line here and a folder of its own.
 const std::map<std::string, MakeMotorController (*)(ConfigReader&, const DriveDescription&)>
-    kControllers{{"line_protocol", lineProtocol},
+    kControllers{{"kangaroo", kangaroo},
+                 {"line_protocol", lineProtocol},
                  {"roboteq", roboteq},
                  {"sabertooth", sabertooth},
                  {"vesc",

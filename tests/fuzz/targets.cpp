@@ -32,12 +32,14 @@
 #include "modules/learner/learner_node.hpp"
 #include "modules/lidar_driver/lidar_driver_node.hpp"
 #include "modules/mapping/mapping_node.hpp"
+#include "modules/motor_bridge/kangaroo/kangaroo_connection.hpp"
 #include "modules/motor_bridge/line_protocol/line_connection.hpp"
 #include "modules/motor_bridge/motor_bridge_node.hpp"
 #include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
 #include "modules/motor_bridge/vesc/vesc_connection.hpp"
 #include "modules/planner/planner_node.hpp"
 #include "modules/simulator/emulators/hokuyo/scip_emulator.hpp"
+#include "modules/simulator/emulators/kangaroo/kangaroo_emulator.hpp"
 #include "modules/simulator/emulators/line_protocol/mole_emulator.hpp"
 #include "modules/simulator/emulators/roboteq/roboteq_emulator.hpp"
 #include "modules/simulator/emulators/sabertooth/sabertooth_emulator.hpp"
@@ -250,6 +252,11 @@ void roboteqReply(const uint8_t* bytes, size_t size) {
   hearController(connection, bytes, size);
 }
 
+void kangarooReply(const uint8_t* bytes, size_t size) {
+  motor::KangarooConnection connection{motor::KangarooConfig{}};
+  hearController(connection, bytes, size);
+}
+
 void vescReply(const uint8_t* bytes, size_t size) {
   motor::VescUart connection{motor::VescConfig{}};
   hearController(connection, bytes, size);
@@ -321,6 +328,8 @@ const std::map<std::string, Target>& targets() {
         {"key_file", keyFile},
         {"learner_files", learnerFiles},
         {"learner_state", learnerState},
+        {"kangaroo_command", commandEmulator<sim::KangarooEmulator>},
+        {"kangaroo_reply", kangarooReply},
         {"line_command", commandEmulator<sim::MoleEmulator>},
         {"line_description", lineDescription},
         {"line_reply", lineReply},

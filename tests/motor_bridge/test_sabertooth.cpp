@@ -13,9 +13,9 @@ using namespace tread::motor;
 
 namespace {
 
-using Rig = EmulatedRig<SabertoothConnection, sim::SabertoothEmulator>;
+using SabertoothRig = EmulatedRig<SabertoothConnection, sim::SabertoothEmulator>;
 
-SabertoothConfig configOf(const std::string& text, const DriveDescription& drive = {}) {
+SabertoothConfig sabertoothOf(const std::string& text, const DriveDescription& drive = {}) {
   ConfigReader reader = ConfigReader::fromText(text, "sabertooth.yaml");
   const SabertoothConfig config = readSabertoothConfig(reader, drive);
   reader.finish();
@@ -27,7 +27,7 @@ SabertoothConfig configOf(const std::string& text, const DriveDescription& drive
 TEST_CASE("Sabertooth packets: the manual's example, and both motors both ways") {
   // Address 130, motor 1 forwards at 64: checksum 66.
   CHECK(sabertoothPacket(130, 0, 64) == std::string("\x82\x00\x40\x42", 4));
-  SabertoothConfig config = configOf("{}");
+  SabertoothConfig config = sabertoothOf("{}");
   config.left_motor = 2;
   config.invert_right = true;
   SabertoothConnection connection(config);
@@ -44,7 +44,7 @@ TEST_CASE("a Sabertooth section is refused with its line") {
                           "watchdog: 1", "addres: 128"}) {
     INFO(bad);
     try {
-      configOf(bad);
+      sabertoothOf(bad);
       FAIL("accepted");
     } catch (const ConfigError& error) {
       CHECK(std::string(error.what()).rfind("sabertooth.yaml:1", 0) == 0);
@@ -53,7 +53,7 @@ TEST_CASE("a Sabertooth section is refused with its line") {
 }
 
 TEST_CASE("an emulated Sabertooth gets what is played, and what it cannot say is told once") {
-  Rig rig{configOf("{}")};
+  SabertoothRig rig{sabertoothOf("{}")};
   requireDriving(rig);
   rig.run(5'000'000);
   CHECK(rig.device.output(rig.now)[0] == Approx(rig.out.command.left).margin(0.005));
@@ -64,11 +64,11 @@ TEST_CASE("an emulated Sabertooth gets what is played, and what it cannot say is
 }
 
 TEST_CASE("Sabertooth: it stops in time, and nothing moves before it is armed") {
-  stopsInTime([] { return Rig{configOf("{}")}; }, 200'000);
+  stopsInTime([] { return SabertoothRig{sabertoothOf("{}")}; }, 200'000);
 }
 
 TEST_CASE("Sabertooth: a restarted one has its baud rate and its watchdog again within a second") {
-  Rig rig{configOf("{}")};
+  SabertoothRig rig{sabertoothOf("{}")};
   requireDriving(rig);
   rig.device.reboot(rig.now);
   REQUIRE_FALSE(rig.turning());
@@ -79,7 +79,7 @@ TEST_CASE("Sabertooth: a restarted one has its baud rate and its watchdog again 
 }
 
 TEST_CASE("Sabertooth: lost bytes leave no wrong command on the motors for long") {
-  Rig rig{configOf("{}")};
+  SabertoothRig rig{sabertoothOf("{}")};
   requireDriving(rig);
   rig.lost_bytes = 0.05;
   rig.run(20'000'000);
@@ -90,5 +90,5 @@ TEST_CASE("Sabertooth: lost bytes leave no wrong command on the motors for long"
 }
 
 TEST_CASE("Sabertooth: a million random bytes") {
-  bearsRandomBytes<SabertoothConnection>(configOf("{}"), "nothing", 1'000'000);
+  bearsRandomBytes<SabertoothConnection>(sabertoothOf("{}"), "nothing", 1'000'000);
 }

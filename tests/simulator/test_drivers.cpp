@@ -137,18 +137,22 @@ TEST_CASE(
 }
 
 TEST_CASE("every emulated controller lets its driver drive the simulated robot, by its name") {
-  CHECK(emulatedDevices().controllers ==
-        std::vector<std::string>{"line_protocol", "roboteq", "sabertooth", "vesc", "vesc_can"});
+  CHECK(emulatedDevices().controllers == std::vector<std::string>{"kangaroo", "line_protocol",
+                                                                  "roboteq", "sabertooth", "vesc",
+                                                                  "vesc_can"});
   for (const std::string& name : emulatedDevices().controllers) {
     CAPTURE(name);
     SimulatorSettings settings = Loop::settings();
     settings.controller = name;
     SimulatedDevices devices(Loop::world(), settings);
     ConfigReader reader = ConfigReader::fromText(
-        "{controller: " + name + ", line_protocol: controllers/mole.yaml, sabertooth: {}}",
+        "{controller: " + name + ", line_protocol: controllers/mole.yaml, sabertooth: {}, " +
+            "kangaroo: {units_per_metre: 1000}}",
         TREAD_SOURCE_DIR "/tests/data/bridge.yaml");
+    DriveDescription drive;
+    if (name == "kangaroo") drive = {CommandKind::kTrackSpeed, 1.1, 1.1};
     std::string read;
-    const auto motor = motor::readMotorController(reader, DriveDescription{}, read)();
+    const auto motor = motor::readMotorController(reader, drive, read)();
     CHECK(read == name);
     motor->open();
     for (int64_t now = kStart; now < kStart + 5'000'000; now += kStep) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "modules/simulator/emulators/hokuyo/scip_emulator.hpp"
+#include "modules/simulator/emulators/kangaroo/kangaroo_emulator.hpp"
 #include "modules/simulator/emulators/line_protocol/mole_emulator.hpp"
 #include "modules/simulator/emulators/nmea/nmea_ins_emulator.hpp"
 #include "modules/simulator/emulators/novatel/novatel_emulator.hpp"
@@ -42,6 +43,10 @@ template <class Kind, class From = Settings>
 using Table = std::map<std::string, std::unique_ptr<Kind> (*)(const From&, uint64_t seed)>;
 
 const Table<MotorEmulator> kControllers{
+    {"kangaroo",
+     [](const Settings&, uint64_t) -> std::unique_ptr<MotorEmulator> {
+       return std::make_unique<KangarooEmulator>();
+     }},
     {"line_protocol",
      [](const Settings&, uint64_t) -> std::unique_ptr<MotorEmulator> {
        return std::make_unique<MoleEmulator>();
