@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/robot/setup/core/wiring_drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tread::setup {
+namespace {
+
+constexpr double kLongestPulse = 2.0;  // [s]
+constexpr double kMovedAway = 0.04;    // [m] that count as motion
+constexpr double kMovedRound = 0.06;   // [rad]
+constexpr double kLevelStep = 0.15;
+constexpr int64_t kSpeedSpan = 300'000;  // [us]
+constexpr int64_t kBlind = 500'000;      // [us] without a pose
+constexpr double kTurnAsTravel = 0.35;   // [m] per rad, so that turns are short, too
+
+/// A pulse: shares of the level for both sides, slow or full, and how much of the travel.
+struct Pulse {
+  double left, right;
+  bool full;
+  double share;
+};
+
+/// To and fro by turns, so that it stays where it is; the ways back of turns are shorter, so that
+/// it looks to all sides in the end.
+constexpr Pulse kRound[] = {
+    {1, 0, false, 1},  {-1, 0, false, 0.8}, {0, 1, false, 1},  {0, -1, false, 0.8},
+    {1, 1, true, 1},   {-1, -1, true, 1},   {1, -1, true, 1},  {-1, 1, true, 0.6},
+    {1, 0, true, 1},   {-1, 0, true, 0.9},  {0, 1, true, 1},   {0, -1, true, 0.9},
+    {1, 1, false, 1},  {-1, -1, false, 1},  {1, 0.5, true, 1}, {-1, -0.5, true, 1},
+    {-1, 1, false, 1}, {1, -1, false, 0.6}, {0.5, 1, true, 1}, {-0.5, -1, true, 1}};
+constexpr size_t kPulses = sizeof kRound / sizeof kRound[0];
+
+int64_t inMicroseconds(double seconds) {
+  return std::llround(1e6 * seconds);
+}
+
+}  // namespace
+
+WiringDriveConfig preDrive() {
+  WiringDriveConfig config;
+  config.room = 1.0;
+  config.seconds = 8.0;
+  config.travel = 0.1;
+  config.shortest = 0.3;
+  config.pause = 0.35;
+  config.first_level = 0.3;
+  config.most_path = 0.8;
+  return config;
+}
+
+WiringDrive::WiringDrive(const WiringDriveConfig& config)
+    : config_(config), level_(config.first_level) {}
+
+void WiringDrive::end(const std::string& problem) {
+  done_ = true;
+  problem_ = problem;
+  command_ = {};
+}
+
+void WiringDrive::follow(const Pose2& pose) {
+  if (!home_) home_ = pose;
+  if (last_) path_ += distanceBetween(*last_, pose);
+  last_ = pose;
+}
+
+TrackCommand WiringDrive::step(int64_t utime, const std::optional<Pose2>& T_map_body) {
+  if (done_) return {};
+  if (!start_) start_ = last_seen_ = utime;
+  if (T_map_body) {
+    last_seen_ = utime;
+    // Noise of standing adds up: only what is beyond it is path.
+    if (!last_ || distanceBetween(*last_, *T_map_body) > 0.02) follow(*T_map_body);
+    recent_.emplace_back(utime, *T_map_body);
+    while (recent_.front().first < utime - kSpeedSpan) recent_.pop_front();
+  }
+  if (utime - *last_seen_ > kBlind) {
+    end("the INS gives no position with a heading; it must not drive blindly");
+  } else if (home_ && distanceBetween(*home_, *last_) > 0.9 * config_.room) {
+    end("it has left the free circle; drive it back to the middle, or give it more room");
+  } else if (path_ > config_.most_path) {
+    end("");
+  } else if (home_) {
+    if (utime >= pulse_end_ && (command_.left != 0.0 || command_.right != 0.0)) feel();
+    if (utime >= pause_end_ && !done_) begin(utime);
+  }
+  return command_;
+}
+
+/// A pulse has ended: what did it do?
+void WiringDrive::feel() {
+  const double share = std::max(std::abs(command_.left), std::abs(command_.right));
+  command_ = {};
+  const Pose2& now = recent_.back().second;
+  const Pose2& then = recent_.front().second;
+  const double time =
+      std::max(0.1, 1e-6 * static_cast<double>(recent_.back().first - recent_.front().first));
+  const double went =
+      distanceBetween(then, now) + kTurnAsTravel * std::abs(wrapAngle(now.yaw - then.yaw));
+  fastest_ = std::max(fastest_, went / time / share);
+  if (felt_) return;
+  felt_ = distanceBetween(pulse_start_, now) > kMovedAway ||
+          std::abs(wrapAngle(now.yaw - pulse_start_.yaw)) > kMovedRound;
+  if (!felt_ && level_ >= 1.0) end("");  // both sides at full command: nothing moves
+  if (!felt_) level_ = std::min(1.0, level_ + kLevelStep);
+}
+
+void WiringDrive::begin(int64_t utime) {
+  if (utime - *start_ > inMicroseconds(config_.seconds) && pulse_ % 2 == 0) return end("");
+  const double slow = std::min(1.0, std::max(0.5, level_ + kLevelStep));
+  Pulse pulse = kRound[pulse_ % kPulses];
+  double level = pulse.full && config_.travel > 0.5 ? 1.0 : slow;
+  // One side alone: the other one may be dead, or turn the other way round.
+  if (!felt_) {
+    pulse = {1, 0.5, false, 1};
+    level = level_;
+  } else {
+    ++pulse_;
+  }
+  const double far = distanceBetween(*home_, *last_) > 0.5 * config_.room ? 0.5 : 1.0;
+  const double speed = std::max(0.05, fastest_ * level);
+  const double time = felt_ ? std::clamp(far * pulse.share * config_.travel / speed,
+                                         pulse.share * config_.shortest, kLongestPulse)
+                            : config_.shortest;
+  pulse_start_ = *last_;
+  command_ = {level * pulse.left, level * pulse.right};
+  pulse_end_ = utime + inMicroseconds(time);
+  pause_end_ = pulse_end_ + inMicroseconds(config_.pause);
+}
+
+}  // namespace tread::setup

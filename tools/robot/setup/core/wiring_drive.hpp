@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/geometry/se2.hpp"
+#include "common/pattern/pattern.hpp"
+
+namespace tread::setup {
+
+/// How far and how long the wiring is driven out.
+struct WiringDriveConfig {
+  double room = 5.0;         ///< [m] free circle around where it begins
+  double seconds = 60.0;     ///< of driving
+  double travel = 1.2;       ///< [m] about as far in one direction
+  double shortest = 0.7;     ///< [s] of a pulse
+  double pause = 0.6;        ///< [s] between two
+  double first_level = 0.2;  ///< [1] of the command that it begins with; it rises until it moves
+  double most_path = 1e3;    ///< [m] it ends before it has driven farther
+};
+
+/// The 10 s before a drive: less than a metre of path.
+WiringDriveConfig preDrive();
+
+/// Chooses commands that tell what hangs where: pulses to and fro, straight, turning, each side
+/// alone, slow and full; shorter where the vehicle is fast or far from the middle.
+/** Knows nothing of the wiring, only keeps to the circle. Commands are shares of the full one. */
+class WiringDrive {
+ public:
+  explicit WiringDrive(const WiringDriveConfig& config);
+
+  /// The command from now on [us]; `T_map_body` if the INS told a pose that is fresh.
+  TrackCommand step(int64_t utime, const std::optional<Pose2>& T_map_body);
+
+  bool done() const { return done_; }
+  /// Why it ended early, one line; empty if it did not.
+  const std::string& problem() const { return problem_; }
+  /// [m] driven so far, as far as the INS tells.
+  double path() const { return path_; }
+
+ private:
+  void follow(const Pose2& pose);
+  void begin(int64_t utime);
+  void feel();
+  void end(const std::string& problem);
+
+  WiringDriveConfig config_;
+  std::optional<int64_t> start_;
+  std::optional<Pose2> home_, last_;
+  std::optional<int64_t> last_seen_;
+  std::deque<std::pair<int64_t, Pose2>> recent_;  ///< of the last 0.3 s
+  double path_ = 0.0;
+  double fastest_ = 0.0;  ///< [m/s] per share of a full command
+  bool felt_ = false;     ///< it moves at level_
+  double level_ = 0.0;
+  Pose2 pulse_start_;
+  size_t pulse_ = 0;  ///< of the round
+  TrackCommand command_;
+  int64_t pulse_end_ = 0;
+  int64_t pause_end_ = 0;
+  bool done_ = false;
+  std::string problem_;
+};
+
+}  // namespace tread::setup

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/robot/setup/core/wiring_fit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace tread::setup {
+namespace {
+
+constexpr double kFitStep = 0.01;  // [s] of integration
+constexpr double kWindow = 0.1;    // [s] of a row
+constexpr double kMostGap = 0.15;  // [s] between fixes that belong together
+constexpr double kFinest = 0.001;  // of the search, [s] and [1]
+const Eigen::Vector3d kLeastShape(0.0, 0.005, 0.0), kMostShape(0.8, 1.5, 0.6);
+
+double beyondDead(double command, double dead) {
+  return std::copysign(std::max(0.0, std::abs(command) - dead), command);
+}
+
+}  // namespace
+
+WiringRows::WiringRows(const std::vector<GivenCommand>& commands,
+                       const std::vector<InsFix>& fixes) {
+  if (commands.empty() || fixes.empty()) return;
+  const int64_t start = commands.front().utime;
+  const auto seconds = [start](int64_t utime) { return 1e-6 * static_cast<double>(utime - start); };
+  size_t at = 0;
+  for (double t = 0.0; t < seconds(fixes.back().utime) + kFitStep; t += kFitStep) {
+    while (at + 1 < commands.size() && seconds(commands[at + 1].utime) <= t) ++at;
+    held_.push_back(commands[at].command);
+  }
+  size_t first = 0;
+  double turned = 0.0;
+  for (size_t i = 1; i < fixes.size(); ++i) {
+    const double step = seconds(fixes[i].utime) - seconds(fixes[i - 1].utime);
+    if (step > kMostGap || seconds(fixes[first].utime) < 0.0) {
+      first = i;
+      turned = 0.0;
+      continue;
+    }
+    turned += wrapAngle(fixes[i].T_map_body.yaw - fixes[i - 1].T_map_body.yaw);
+    const Pose2& from = fixes[first].T_map_body;
+    const double time = seconds(fixes[i].utime) - seconds(fixes[first].utime);
+    if (time < kWindow - 1e-6) continue;
+    rows_.push_back({seconds(fixes[first].utime), seconds(fixes[i].utime),
+                     (fixes[i].T_map_body.position() - from.position()) / time,
+                     from.yaw + 0.5 * turned, turned / time});
+    first = i;
+    turned = 0.0;
+  }
+}
+
+/// What has passed of s by each step [s].
+std::vector<Eigen::Vector2d> WiringRows::integralOf(const Eigen::Vector3d& shape) const {
+  std::vector<Eigen::Vector2d> integral(held_.size() + 1, Eigen::Vector2d::Zero());
+  Eigen::Vector2d speed = Eigen::Vector2d::Zero();
+  const double decay = std::exp(-kFitStep / shape[1]);
+  for (size_t i = 0; i < held_.size(); ++i) {
+    // A delay between two steps takes a share of each.
+    const double back = static_cast<double>(i) - shape[0] / kFitStep;
+    const double floor = std::floor(back);
+    Eigen::Vector2d target = Eigen::Vector2d::Zero();
+    for (const int k : {0, 1}) {
+      const double index = floor + k;
+      if (index < 0.0) continue;
+      const TrackCommand& command = held_[std::min(held_.size() - 1, static_cast<size_t>(index))];
+      const double share = k == 0 ? 1.0 - (back - floor) : back - floor;
+      target += share * Eigen::Vector2d(beyondDead(command.left, shape[2]),
+                                        beyondDead(command.right, shape[2]));
+    }
+    const Eigen::Vector2d next = target + decay * (speed - target);
+    integral[i + 1] = integral[i] + kFitStep * target + shape[1] * (speed - next);
+    speed = next;
+  }
+  return integral;
+}
+
+WiringFit WiringRows::solve(const Eigen::Vector3d& shape, bool mirrored, const Use& use) const {
+  const std::vector<Eigen::Vector2d> integral = integralOf(shape);
+  const auto passed = [&](double time) -> Eigen::Vector2d {
+    const double at = std::clamp(time / kFitStep, 0.0, static_cast<double>(integral.size() - 1));
+    const size_t i = std::min(static_cast<size_t>(at), integral.size() - 2);
+    return integral[i] + (at - static_cast<double>(i)) * (integral[i + 1] - integral[i]);
+  };
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  Eigen::Matrix<double, 3, 2> product = Eigen::Matrix<double, 3, 2>::Zero();
+  Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+  double count = 0.0;
+  for (size_t i = 0; i < rows_.size(); ++i) {
+    if (!use(i)) continue;
+    const Row& row = rows_[i];
+    const Eigen::Vector2d s = (passed(row.to) - passed(row.from)) / (row.to - row.from);
+    const double yaw = mirrored ? -row.yaw : row.yaw;
+    const double c = std::cos(yaw), sn = std::sin(yaw);
+    const Eigen::Vector3d seen(c * row.moved_map.x() + sn * row.moved_map.y(),
+                               c * row.moved_map.y() - sn * row.moved_map.x(),
+                               mirrored ? -row.turned : row.turned);
+    normal += s * s.transpose();
+    product += seen * s.transpose();
+    squares += seen.cwiseProduct(seen);
+    count += 1.0;
+  }
+  WiringFit fit;
+  fit.delay = shape[0];
+  fit.lag = shape[1];
+  fit.dead = shape[2];
+  const double determinant = normal.determinant();
+  if (count < 10.0 || determinant < 1e-9) return fit;
+  Eigen::Matrix2d inverted;
+  inverted << normal(1, 1), -normal(0, 1), -normal(1, 0), normal(0, 0);
+  fit.response = product * inverted / determinant;
+  const Eigen::Vector3d left = squares - fit.response.cwiseProduct(product).rowwise().sum();
+  fit.velocity_rms = std::sqrt(std::max(0.0, left[0] + left[1]) / count);
+  fit.turn_rms = std::sqrt(std::max(0.0, left[2]) / count);
+  return fit;
+}
+
+/// Both kinds of residual count by how large they are usually: minus the log likelihood.
+double WiringRows::costOf(const WiringFit& fit) const {
+  return 2.0 * std::log(fit.velocity_rms + 1e-6) + std::log(fit.turn_rms + 1e-6);
+}
+
+/// A compass search: delay and lag stand in for each other, so that it also moves along both.
+WiringFit WiringRows::search(WiringFit best, double step, bool mirrored, const Use& use) const {
+  static const std::array<Eigen::Vector3d, 5> kDirections{
+      Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, 0, 1),
+      Eigen::Vector3d(1, -1, 0), Eigen::Vector3d(0, 1, 1)};
+  double cost = costOf(best);
+  while (step >= kFinest) {
+    bool better = false;
+    for (const Eigen::Vector3d& direction : kDirections)
+      for (const double sign : {1.0, -1.0}) {
+        const Eigen::Vector3d shape =
+            (Eigen::Vector3d(best.delay, best.lag, best.dead) + sign * step * direction)
+                .cwiseMax(kLeastShape)
+                .cwiseMin(kMostShape);
+        const WiringFit tried = solve(shape, mirrored, use);
+        if (costOf(tried) >= cost - 1e-9) continue;
+        best = tried;
+        cost = costOf(tried);
+        better = true;
+      }
+    if (!better) step /= 2.0;
+  }
+  return best;
+}
+
+WiringFit WiringRows::fit(bool mirrored, const Use& use) const {
+  if (rows_.empty()) return {};
+  std::optional<WiringFit> best;
+  for (const double delay : {0.02, 0.1, 0.25})
+    for (const double lag : {0.05, 0.15, 0.4})
+      for (const double dead : {0.0, 0.15}) {
+        const WiringFit tried = solve({delay, lag, dead}, mirrored, use);
+        if (!best || costOf(tried) < costOf(*best)) best = tried;
+      }
+  return search(*best, 0.04, mirrored, use);
+}
+
+WiringFit WiringRows::refine(const WiringFit& near, bool mirrored, const Use& use) const {
+  if (rows_.empty()) return {};
+  return search(solve({near.delay, near.lag, near.dead}, mirrored, use), 0.008, mirrored, use);
+}
+
+}  // namespace tread::setup
