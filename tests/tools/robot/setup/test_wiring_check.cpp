@@ -4,7 +4,6 @@
 // that nothing was tuned to.
 #include <catch2/catch.hpp>
 
-#include <iostream>
 #include <random>
 
 #include "modules/simulator/simulator_files.hpp"
@@ -156,10 +155,7 @@ TEST_CASE("a drive of a minute stays in its circle and names every wrong wire on
     const WiringReport report = checkWiring(driven.commands, driven.fixes, {0.0, seenBy(hidden)});
     ++all;
     right += named(hidden, report);
-    if (!named(hidden, report))
-      std::cout << i << " " << hidden.surface << " lp " << hidden.left_power << " rp "
-                << hidden.right_power << " sw " << hidden.swapped << hidden.reverse_left
-                << hidden.reverse_right << " yaw " << hidden.ins_yaw << ": " << wordsOf(report);
+    if (!named(hidden, report)) UNSCOPED_INFO(i << " " << wordsOf(report));
   }
   CHECK(right == all);
 }
@@ -191,10 +187,11 @@ std::pair<double, double> steadySpeed(const Hidden& hidden) {
 TEST_CASE("the minute's numbers hold: speed, mounting, place of the INS, lag, within intervals") {
   std::mt19937_64 random(77);
   const int seeds = effort(40);
-  int speed = 0, yaw = 0, along = 0, across = 0;
-  double speed_error = 0.0, yaw_error = 0.0, place_error = 0.0, slowest = 0.0, lag_error = 0.0;
+  int speed = 0, yaw = 0, across = 0;
+  double speed_error = 0.0, yaw_error = 0.0, place_error = 0.0, lag_error = 0.0;
   for (int i = 0; i < seeds; ++i) {
     Hidden hidden = drawn(random);
+    if (hidden.surface == "ice") hidden.surface = "sand";  // full speed is not reached in 5 m
     hidden.ins_yaw = uniform(random, -0.6, 0.6);
     hidden.ins_x = uniform(random, -0.4, 0.4);
     hidden.ins_y = uniform(random, -0.3, 0.3);
@@ -208,7 +205,6 @@ TEST_CASE("the minute's numbers hold: speed, mounting, place of the INS, lag, wi
     full.high = (full.high + report.full_right.high) / 2.0;
     speed += full.holds(truth);
     yaw += report.mounting_yaw.holds(hidden.ins_yaw);
-    along += report.antenna_x.holds(hidden.ins_x);
     across += report.antenna_y.holds(hidden.ins_y);
     speed_error += std::abs(full.value / truth - 1.0) / seeds;
     yaw_error += std::abs(report.mounting_yaw.value - hidden.ins_yaw) / seeds;
@@ -216,12 +212,15 @@ TEST_CASE("the minute's numbers hold: speed, mounting, place of the INS, lag, wi
         std::hypot(report.antenna_x.value - hidden.ins_x, report.antenna_y.value - hidden.ins_y) /
         seeds;
     lag_error += std::abs(report.delay.value + report.lag.value - rise) / seeds;
-    slowest = std::max(slowest, report.lag.high - report.lag.low);
   }
-  std::cout << "of " << seeds << " within their 95 %: speed " << speed << ", yaw " << yaw
-            << ", along " << along << ", across " << across << "; mean errors: speed "
-            << 100.0 * speed_error << " %, yaw " << yaw_error / kDeg << " deg, place "
-            << place_error << " m, lag " << lag_error << " s; widest lag " << slowest << " s\n";
+  CAPTURE(speed, yaw, across);
+  CHECK(speed >= 0.85 * seeds);
+  CHECK(yaw >= 0.85 * seeds);
+  CHECK(across >= 0.85 * seeds);
+  CHECK(speed_error < 0.04);
+  CHECK(yaw_error < 1.0 * kDeg);
+  CHECK(place_error < 0.1);  // beside the point that it turns about, which is not quite the middle
+  CHECK(lag_error < 0.05);
 }
 
 TEST_CASE("dead sides, a mirrored INS and a vehicle that stands are named") {
@@ -236,8 +235,7 @@ TEST_CASE("dead sides, a mirrored INS and a vehicle that stands are named") {
     CAPTURE(i, wordsOf(report), driven.problem);
     CHECK(driven.farthest < 5.0);
     dead += named(hidden, report);
-    if (!named(hidden, report))
-      std::cout << i << hidden.surface << wordsOf(report) << driven.problem << "\n";
+    if (!named(hidden, report)) UNSCOPED_INFO(i << " " << wordsOf(report));
 
     hidden.left_power = hidden.right_power = 1.0;
     hidden.mirrored = true;
@@ -245,8 +243,7 @@ TEST_CASE("dead sides, a mirrored INS and a vehicle that stands are named") {
     driven = drive(hidden, {}, 4000 + static_cast<uint64_t>(i));
     report = checkWiring(driven.commands, driven.fixes, {});
     mirrored += named(hidden, report);
-    if (!named(hidden, report))
-      std::cout << i << hidden.surface << wordsOf(report) << driven.problem << "\n";
+    if (!named(hidden, report)) UNSCOPED_INFO(i << " " << wordsOf(report));
   }
   CHECK(dead == seeds);
   CHECK(mirrored == seeds);
@@ -287,12 +284,8 @@ TEST_CASE("before a drive every wrong part is named within less than a metre of 
     longest = std::max(longest, driven.path);
     ++all;
     right += named(hidden, report);
-    if (!named(hidden, report))
-      std::cout << i << " " << hidden.surface << " " << driven.problem << " path " << driven.path
-                << " dead " << hidden.dead_power << " rows: " << wordsOf(report);
+    if (!named(hidden, report)) UNSCOPED_INFO(i << " " << wordsOf(report));
   }
-  std::cout << "before a drive: " << right << " of " << all << ", longest path " << longest
-            << " m\n";
   CHECK(right == all);
   CHECK(longest < 1.0);
 }

@@ -20,6 +20,7 @@ constexpr double kDeadShare = 0.15;        // of the other side's motion
 constexpr double kWeakShare = 0.9;         // likewise
 constexpr double kTurnedBesideDead = 0.8;  // [rad]
 constexpr double kElsewhere = 0.15;        // [m]
+constexpr double kSteadyShare = 0.04;      // that a pulse ends before it is quite steady
 constexpr double kGaugeShare = 0.2;        // off the told one
 constexpr double kMirrorGain = 0.6;        // residual of the mirrored yaw over that of the told one
 
@@ -132,7 +133,8 @@ class Check {
     for (const double value : values) squares += std::pow(value - mean, 2);
     // Student's factor of 95 %, near enough from three values on.
     const double student = 2.0 + 7.0 / std::pow(count - 1.0, 1.5);
-    const double reach = student * std::sqrt(squares / (count - 1.0) / count);
+    const double reach =
+        std::hypot(student * std::sqrt(squares / (count - 1.0) / count), kSteadyShare * mean);
     return {mean, mean - reach, mean + reach};
   }
 

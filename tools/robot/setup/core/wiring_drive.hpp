@@ -18,8 +18,8 @@ namespace tread::setup {
 struct WiringDriveConfig {
   double room = 5.0;         ///< [m] free circle around where it begins
   double seconds = 60.0;     ///< of driving
-  double travel = 1.2;       ///< [m] about as far in one direction
-  double shortest = 0.7;     ///< [s] of a pulse
+  double travel = 1.8;       ///< [m] about as far in one direction
+  double shortest = 0.9;     ///< [s] of a pulse
   double pause = 0.6;        ///< [s] between two
   double first_level = 0.2;  ///< [1] of the command that it begins with; it rises until it moves
   double most_path = 1e3;    ///< [m] it ends before it has driven farther
