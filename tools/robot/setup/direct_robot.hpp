@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/robot/setup/robot_folder.hpp"
+#include "tools/robot/setup/site.hpp"
+
+namespace tread::setup {
+
+/// INS and motors of a robot, without its processes: for the short drives before there are any.
+/** It sees no obstacles. When it goes the motors are given zero. */
+class DirectRobot {
+ public:
+  /// Opens both ports; throws std::runtime_error, one line, where one cannot be opened.
+  DirectRobot(Site& site, const Drivers& drivers);
+  ~DirectRobot();
+  DirectRobot(const DirectRobot&) = delete;
+  DirectRobot& operator=(const DirectRobot&) = delete;
+
+  /// The command of each 50 ms as shares of the full one; nothing = the line is silent.
+  using Choose = std::function<std::optional<TrackCommand>(int64_t utime)>;
+  /// Drives for so long, or until the controller reports a fault: that in one line, else empty.
+  std::string run(double seconds, const Choose& choose, const std::function<bool()>& ended = {});
+  /// Waits for controller and INS; why they are not there, one line; empty = ready.
+  std::string begin();
+
+  const std::vector<GivenCommand>& commands() const { return commands_; }
+  const std::vector<InsFix>& fixes() const { return fixes_; }
+  /// [rad] of the INS, at its newest fix.
+  const YawPitchRoll& attitude() const { return attitude_; }
+  /// A pose since the last call.
+  std::optional<Pose2> takePose();
+  motor::MotorTelemetry telemetry() const { return controller_->telemetry(); }
+  int64_t now() { return site_.now(); }
+
+ private:
+  void exchange();
+
+  Site& site_;
+  double full_command_;
+  std::unique_ptr<Link> motor_link_, ins_link_;
+  std::unique_ptr<motor::MotorController> controller_;
+  std::unique_ptr<ins::InsSource> ins_;
+  std::vector<GivenCommand> commands_;
+  std::vector<InsFix> fixes_;
+  YawPitchRoll attitude_;
+  bool silent_ = false;  ///< nothing is written
+  size_t taken_ = 0;     ///< fixes that takePose() has given
+};
+
+}  // namespace tread::setup

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/robot/setup/trials.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "common/report/text.hpp"
+
+namespace tread::setup {
+namespace {
+
+constexpr double kSilence = 1.2;       // [s] in which the watchdog must trip
+constexpr double kRampStep = 0.02;     // of the full command
+constexpr double kRampEvery = 0.15;    // [s]
+constexpr double kStandsSpeed = 0.05;  // [m/s] by the INS
+
+/// Turning of a side as the controller tells it: speed where it has one, else current.
+double toldMotion(const motor::MotorTelemetry& telemetry, int side) {
+  const double speed = side == 0 ? telemetry.speed_left : telemetry.speed_right;
+  const double current = side == 0 ? telemetry.current_left : telemetry.current_right;
+  return std::abs(std::isfinite(speed) ? 10.0 * speed : current);
+}
+
+TrackCommand ofSide(int side, double share) {
+  return side == 0 ? TrackCommand{share, 0.0} : TrackCommand{0.0, share};
+}
+
+class Lift {
+ public:
+  Lift(Site& site, Interview& person, const Drivers& drivers)
+      : person_(person), robot_(site, drivers) {}
+
+  LiftReport run() {
+    require(robot_.begin());
+    person_.confirm("wheels_up");
+    for (const int side : {0, 1}) {
+      trySide(side);
+      if (side == 0) ask();
+    }
+    tryWatchdog();
+    return report_;
+  }
+
+ private:
+  void require(const std::string& problem) const {
+    if (!problem.empty()) throw std::runtime_error(problem);
+  }
+
+  void hold(double seconds, const std::optional<TrackCommand>& command) {
+    require(robot_.run(seconds, [&](int64_t) { return command; }));
+  }
+
+  void trySide(int side) {
+    const auto at = static_cast<size_t>(side);
+    LiftedSide& lifted = report_.sides[at];
+    hold(0.8, TrackCommand{});
+    const double idle = toldMotion(robot_.telemetry(), side);
+    const bool told = std::isfinite(idle);
+    lifted.dead_power = std::nan("");
+    for (double share = kRampStep; share <= kLiftedLevel; share += kRampStep) {
+      hold(kRampEvery, ofSide(side, share));
+      if (!told || toldMotion(robot_.telemetry(), side) < idle + 0.3) continue;
+      lifted.dead_power = share - kRampStep;
+      break;
+    }
+    hold(1.5, ofSide(side, kLiftedLevel));
+    const motor::MotorTelemetry running = robot_.telemetry();
+    lifted.current = side == 0 ? running.current_left : running.current_right;
+    if (told && toldMotion(running, side) < idle + 0.3)
+      report_.problems.push_back(std::string("the configured ") + (side == 0 ? "left" : "right") +
+                                 " side draws no current and does not turn at 40 %: look at its "
+                                 "motor, its fuse and its channel");
+    hold(0.6, TrackCommand{});
+  }
+
+  void ask() {
+    report_.seen.side =
+        person_.choice("first_track", {"left", "right"}) == "left" ? Side::kLeft : Side::kRight;
+    report_.seen.forward = person_.choice("first_direction", {"forward", "backward"}) == "forward";
+  }
+
+  /// The line falls silent: the controller must stop by itself. What drives it would give zero,
+  /// too, once it may speak again, so that only a person can tell.
+  void tryWatchdog() {
+    hold(1.0, TrackCommand{kLiftedLevel, kLiftedLevel});
+    hold(kSilence, std::nullopt);
+    require(robot_.begin());
+    hold(0.5, TrackCommand{});
+    if (person_.choice("watchdog_stopped", {"yes", "no"}) == "no")
+      throw std::runtime_error(
+          "the controller does not stop when its line falls silent: set up its "
+          "watchdog, or choose one that has one; nothing drives without it");
+  }
+
+  Interview& person_;
+  DirectRobot robot_;
+  LiftReport report_;
+};
+
+/// [s] until the INS sees it stand after commands cease.
+double coastAfterSilence(DirectRobot& robot, double level) {
+  robot.run(1.0, [&](int64_t) { return TrackCommand{level, level}; });
+  const int64_t last = robot.commands().back().utime;
+  std::optional<double> stopped;
+  const auto standing = [&] {
+    const auto& fixes = robot.fixes();
+    if (fixes.size() < 12) return false;
+    const InsFix& now = fixes.back();
+    const InsFix& then = fixes[fixes.size() - 11];
+    const double time = 1e-6 * static_cast<double>(now.utime - then.utime);
+    const bool stands =
+        then.utime > last && distanceBetween(then.T_map_body, now.T_map_body) < kStandsSpeed * time;
+    if (stands) stopped = 1e-6 * static_cast<double>(then.utime - last);
+    return stands;
+  };
+  robot.run(
+      kSilence + 1.0, [](int64_t) { return std::nullopt; }, standing);
+  robot.begin();
+  robot.run(0.3, [](int64_t) { return TrackCommand{}; });
+  return stopped.value_or(kSilence + 1.0);
+}
+
+}  // namespace
+
+LiftReport tryWheelsUp(Site& site, Interview& person, const Drivers& drivers) {
+  return Lift(site, person, drivers).run();
+}
+
+GroundReport tryWheelsDown(Site& site, const Drivers& drivers, const WiringDriveConfig& how,
+                           const WiringExpectation& expected, bool watchdog) {
+  GroundReport report;
+  DirectRobot robot(site, drivers);
+  report.problem = robot.begin();
+  if (!report.problem.empty()) return report;
+  robot.run(0.5, [](int64_t) { return TrackCommand{}; });
+  WiringDrive drive(how);
+  const std::string fault = robot.run(
+      2.0 * how.seconds + 10.0, [&](int64_t now) { return drive.step(now, robot.takePose()); },
+      [&] { return drive.done(); });
+  robot.run(0.5, [](int64_t) { return TrackCommand{}; });
+  report.problem = fault.empty() ? drive.problem() : fault;
+  report.commands = robot.commands();
+  report.fixes = robot.fixes();
+  report.wiring = checkWiring(report.commands, report.fixes, expected);
+  if (watchdog && report.problem.empty() && !report.wiring.has(FaultKind::kNoMotion))
+    report.watchdog = coastAfterSilence(robot, 0.5);
+  return report;
+}
+
+void applyWiring(const WiringReport& wiring, RobotFindings& findings) {
+  DriveDescription& drive = findings.robot.drive;
+  const DriveDescription before = drive;
+  for (const int i : {0, 1}) {
+    const SideMotion& moves = wiring.moves[static_cast<size_t>(i)];
+    const bool inverted = (i == 0 ? before.invert_left : before.invert_right) != !moves.forward;
+    (moves.side == Side::kLeft ? drive.invert_left : drive.invert_right) = inverted;
+  }
+  if (wiring.moves[0].side == Side::kRight) drive.left_channel = 3 - before.left_channel;
+  double& yaw = findings.robot.ins.angles.yaw;
+  if (wiring.has(FaultKind::kInsTurned)) yaw = wrapAngle(yaw + wiring.mounting_yaw.value);
+}
+
+}  // namespace tread::setup
