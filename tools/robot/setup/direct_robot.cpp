@@ -71,10 +71,17 @@ void DirectRobot::exchange() {
 std::string DirectRobot::begin() {
   for (const int64_t end = site_.now() + kPatience; site_.now() < end; site_.pass(kExchange)) {
     exchange();
-    if (controller_->ready() && fixes_.size() > kFewFixes) return "";
+    if (fault().empty() && fixes_.size() > kFewFixes) return "";
   }
-  if (controller_->ready()) return "the INS gives no position with a heading; look at its fix";
-  return "the motor controller is not ready: " + controller_->report(site_.now()).link_fault;
+  if (!fault().empty()) return fault();
+  return "the INS gives no position with a heading; look at its fix";
+}
+
+std::string DirectRobot::fault() const {
+  const motor::DeviceReport report = controller_->report(site_.now());
+  if (report.stop_latched) return "the controller holds an emergency stop: release it";
+  const std::string& words = report.link_fault.empty() ? report.device_fault : report.link_fault;
+  return words.empty() ? "" : "motor controller: " + words;
 }
 
 std::string DirectRobot::run(double seconds, const Choose& choose,
@@ -94,10 +101,8 @@ std::string DirectRobot::run(double seconds, const Choose& choose,
     }
     exchange();
     if (silent_) continue;
-    const motor::DeviceReport report = controller_->report(site_.now());
-    if (report.stop_latched) return "the controller holds an emergency stop: release it";
-    if (!report.link_fault.empty()) return "motor controller: " + report.link_fault;
-    if (!report.device_fault.empty()) return "motor controller: " + report.device_fault;
+    const std::string words = fault();
+    if (!words.empty()) return words;
   }
   silent_ = false;
   return "";

@@ -41,6 +41,8 @@ class DirectRobot {
 
  private:
   void exchange();
+  /// What the controller complains of, one line; empty = nothing.
+  std::string fault() const;
 
   Site& site_;
   double full_command_;

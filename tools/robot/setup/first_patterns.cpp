@@ -116,18 +116,22 @@ class Recipe {
   std::string text_;
 };
 
-/// Arms for the setup; throws std::runtime_error where the bridge does not.
-void arm(RunningRobot& robot, const std::string& why, const std::function<void()>& meanwhile) {
+/// Arms for the setup; throws std::runtime_error where the bridge does not. The call listens to the
+/// bus: keep it as long as that is handled.
+std::unique_ptr<operators::ArmCall> arm(RunningRobot& robot, const std::string& why,
+                                        const std::function<void()>& meanwhile) {
   Bus& bus = robot.bus();
-  operators::ArmCall call(bus, {kOperator, why, kOperator}, {}, 15.0);
+  auto call = std::make_unique<operators::ArmCall>(
+      bus, operators::Requester{kOperator, why, kOperator}, operators::ArmRequest{}, 15.0);
   operators::CallResult result = operators::CallResult::kPending;
   while (result == operators::CallResult::kPending) {
     robot.pass(kStep);
     meanwhile();
-    result = call.step(bus.now());
+    result = call->step(bus.now());
   }
   if (result != operators::CallResult::kDone)
-    throw std::runtime_error("the robot cannot be armed: " + call.describe(bus.now()));
+    throw std::runtime_error("the robot cannot be armed: " + call->describe(bus.now()));
+  return call;
 }
 
 /// Where the INS says that it is.
@@ -165,7 +169,7 @@ RecordedPatterns recordPatterns(Site& site, Interview& person, const std::string
     robot->pass(kStep);
     step();
   }
-  arm(*robot, "recording of patterns", step);
+  const auto armed = arm(*robot, "recording of patterns", step);
   using State = pattern_recorder::RecorderNode::State;
   for (const int64_t end = bus.now() + kRecordingPatience;
        recorder.state() == State::kRunning && bus.now() < end;) {
@@ -194,7 +198,7 @@ GoalDrive driveAhead(Site& site, Interview& person, const std::string& folder, d
   Pose2 start = presentPose(*robot, ins);
   robot->pass(3'000'000);  // the map is made
   start = presentPose(*robot, ins);
-  arm(*robot, "first goal", [] {});
+  const auto armed = arm(*robot, "first goal", [] {});
   operators::GoalRequest request;
   request.T_map_goal = start * Pose2{ahead, 0.0, 0.0};
   operators::GoalCall call(bus, request, kOperator, bus.now(), {});

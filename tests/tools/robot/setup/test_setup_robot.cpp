@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// Five machines nobody has described: from their ports to the first goal, by a file of answers.
+#include <catch2/catch.hpp>
+
+#include <iostream>
+
+#include "tests/helpers.hpp"
+#include "tests/tools/called_program.hpp"
+#include "tests/tools/robot/setup/virtual_site.hpp"
+#include "tools/robot/setup/setup.hpp"
+
+using namespace tread;
+using namespace tread::setup;
+using tread::samples::OwnFolder;
+
+namespace {
+
+constexpr const char* kAnswers = R"(name: mole
+front: 0.65
+rear: 0.65
+half_width: 0.34
+height: 1.2
+range_finder_x: 0.25
+range_finder_z: 0.5
+wheels_up: yes
+watchdog_stopped: yes
+wheels_down: yes
+record: yes
+go: yes
+)";
+
+/// A yard with walls all around and a few boulders beyond the free circle.
+sim::WorldDescription yard(const std::string& surface) {
+  sim::WorldDescription world;
+  world.name = "yard";
+  world.base_surface = surface;
+  world.bounds = {{-30.0, -30.0}, {30.0, 30.0}};
+  for (const double side : {-1.0, 1.0}) {
+    world.obstacles.push_back(sim::boxObstacle({side * 17.0, 0.0, 0.0}, 0.4, 34.0, 2.0));
+    world.obstacles.push_back(sim::boxObstacle({0.0, side * 17.0, 0.0}, 34.0, 0.4, 2.0));
+  }
+  world.obstacles.push_back(sim::discObstacle({8.0, 9.0}, 0.4, 1.5));
+  world.obstacles.push_back(sim::discObstacle({-9.0, -8.0}, 0.4, 1.5));
+  return world;
+}
+
+HiddenMachine machine(const std::string& controller, const std::string& surface, uint64_t seed) {
+  HiddenMachine hidden;
+  hidden.settings.robot =
+      sim::readSimulatedRobot(std::string(TREAD_SOURCE_DIR) + "/config/robots/teodor");
+  hidden.settings.robot.seed = seed;
+  hidden.settings.controller = controller;
+  hidden.settings.device = "sick_cola";
+  hidden.settings.robot.laser.range_max = 20.0;
+  hidden.world = yard(surface);
+  hidden.ins_port = "tty:/dev/ttyUSB1";
+  hidden.ins_baud = 460800;
+  hidden.motor_port = "tty:/dev/ttyACM0";
+  hidden.motor_baud = 115200;
+  hidden.laser_port = "tcp:192.168.0.1:2111";
+  hidden.empty_ports = {"tty:/dev/ttyUSB0", "udp:2368"};
+  return hidden;
+}
+
+SetupResult brought(const HiddenMachine& hidden, const std::string& answers,
+                    const OwnFolder& folder) {
+  VirtualSite site(hidden);
+  VirtualPerson person(site, kAnswers + answers);
+  SetupResult result = setUp(site, person, folder.path("robots"));
+  UNSCOPED_INFO(person.heard());
+  if (!result.problem.empty() || true)
+    std::cout << person.heard() << result.problem << "\n" << result.minutes << " min\n";
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("swapped sides behind a Roboteq: from its ports to the first goal") {
+  OwnFolder folder;
+  HiddenMachine hidden = machine("roboteq", "grass", 3);
+  hidden.settings.robot.wiring.left_channel = 2;
+  const SetupResult result =
+      brought(hidden, "first_track: right\nfirst_direction: forward\n", folder);
+  CHECK(result.problem == "");
+  CHECK(result.goal.arrived);
+  CHECK(result.minutes < 30.0);
+  CHECK(result.findings.wiring.has(FaultKind::kSwapped));
+  CHECK(result.findings.robot.drive.left_channel == 2);
+}
