@@ -88,3 +88,79 @@ TEST_CASE("swapped sides behind a Roboteq: from its ports to the first goal") {
   CHECK(result.findings.wiring.has(FaultKind::kSwapped));
   CHECK(result.findings.robot.drive.left_channel == 2);
 }
+
+TEST_CASE("a weak track behind VESCs, a NovAtel INS in a corner: to the first goal") {
+  OwnFolder folder;
+  HiddenMachine hidden = machine("vesc", "gravel", 5);
+  hidden.settings.source = "novatel";
+  hidden.settings.robot.vehicle.left_power = 0.75;
+  hidden.settings.robot.ins.mounting.p_body = {-0.4, 0.2, 0.9};
+  const SetupResult result =
+      brought(hidden, "first_track: left\nfirst_direction: forward\n", folder);
+  CHECK(result.problem == "");
+  CHECK(result.goal.arrived);
+  CHECK(result.minutes < 30.0);
+  CHECK(result.findings.wiring.has(FaultKind::kWeak, Side::kLeft));
+  CHECK(result.findings.wiring.has(FaultKind::kInsElsewhere));
+  CHECK(std::abs(result.findings.robot.ins.p_body.x() + 0.4) < 0.15);
+}
+
+TEST_CASE("a line protocol and an INS upside down, so that it is mirrored: to the first goal") {
+  OwnFolder folder;
+  HiddenMachine hidden = machine("line_protocol", "tarmac", 7);
+  hidden.settings.source = "ublox";
+  hidden.settings.robot.ins.mounting.angles.roll = kPi;
+  hidden.settings.robot.wiring.invert_right = true;
+  const std::string description =
+      std::string(TREAD_SOURCE_DIR) + "/tests/data/controllers/mole.yaml";
+  const SetupResult result = brought(
+      hidden, "first_track: left\nfirst_direction: forward\nline_protocols: " + description + "\n",
+      folder);
+  CHECK(result.problem == "");
+  CHECK(result.goal.arrived);
+  CHECK(result.minutes < 30.0);
+  CHECK(result.findings.wiring.has(FaultKind::kReversed, Side::kRight));
+  CHECK(std::abs(std::abs(result.findings.robot.ins.angles.roll) - kPi) < 0.05);
+}
+
+TEST_CASE("front and rear exchanged for the INS, both motors reversed: to the first goal") {
+  OwnFolder folder;
+  HiddenMachine hidden = machine("roboteq", "cinder", 9);
+  hidden.settings.source = "vectornav";
+  hidden.settings.robot.ins.mounting.angles.yaw = kPi;
+  hidden.settings.robot.wiring.invert_left = hidden.settings.robot.wiring.invert_right = true;
+  hidden.settings.device = "velodyne";
+  hidden.laser_port = "udp:2368";
+  hidden.empty_ports = {"tty:/dev/ttyUSB0", "tcp:192.168.0.10:2111"};
+  const SetupResult result =
+      brought(hidden, "first_track: left\nfirst_direction: backward\n", folder);
+  CHECK(result.problem == "");
+  CHECK(result.goal.arrived);
+  CHECK(result.minutes < 30.0);
+  CHECK(result.findings.wiring.has(FaultKind::kReversed, Side::kLeft));
+  CHECK(result.findings.wiring.has(FaultKind::kReversed, Side::kRight));
+  CHECK(result.findings.wiring.has(FaultKind::kInsTurned));
+}
+
+TEST_CASE("a Sabertooth that never answers, an INS turned by a quarter: to the first goal") {
+  OwnFolder folder;
+  HiddenMachine hidden = machine("sabertooth", "sand", 11);
+  hidden.settings.robot.ins.mounting.angles.yaw = kPi / 2.0;
+  hidden.settings.robot.wiring.left_channel = 2;
+  hidden.settings.robot.wiring.invert_left = true;
+  hidden.motor_baud = 38400;
+  hidden.settings.device = "sick_lms2xx";
+  hidden.laser_port = "tty:/dev/ttyUSB2";
+  hidden.laser_baud = 38400;
+  const SetupResult result =
+      brought(hidden,
+              "first_track: right\nfirst_direction: forward\nsilent_controller: "
+              "tty:/dev/ttyACM0?baud=38400\n",
+              folder);
+  CHECK(result.problem == "");
+  CHECK(result.goal.arrived);
+  CHECK(result.minutes < 30.0);
+  CHECK(result.findings.wiring.has(FaultKind::kSwapped));
+  CHECK(result.findings.wiring.has(FaultKind::kReversed, Side::kLeft));
+  CHECK(result.findings.wiring.has(FaultKind::kInsTurned));
+}
