@@ -82,6 +82,22 @@ TEST_CASE("An excitation run that began too far away leads back") {
   CHECK(driven.counts.at("straight") >= 3);
 }
 
+TEST_CASE("An excitation run that stands just outside turns back, though turning leads farther") {
+  // Ahead leads away, and turning in place moves it by two centimetres.
+  const auto ahead =
+      tread::patterns::kit::pattern(1, "ahead", {0.5, 0.5}, {1.0, 0.0, 0.0}, "rest", "rest");
+  const auto turn =
+      tread::patterns::kit::pattern(2, "turn", {-0.5, 0.5}, {0.0, 0.02, 0.5 * kPi}, "rest", "rest");
+  const auto start =
+      tread::patterns::kit::pattern(3, "start", {0.5, 0.5}, {0.5, 0.0, 0.0}, "rest", "cruise");
+  const auto stop =
+      tread::patterns::kit::pattern(4, "stop", {0.0, 0.0}, {0.1, 0.0, 0.0}, "cruise", "rest");
+  const PatternSet set = tread::patterns::kit::setOf({ahead, turn, start, stop}, true);
+  const Driven driven = drivenBy(set, 4.0, 5, {0.0, 4.01, 0.0});
+  CHECK(driven.counts.at("ahead") >= 5);
+  CHECK(driven.farthest < 4.1);
+}
+
 TEST_CASE(
     "Where nothing that is needed fits into the room any more, an excitation run ends standing") {
   const Driven driven = drivenBy(tread::patterns::kit::withoutRight(), 5.0, 30);

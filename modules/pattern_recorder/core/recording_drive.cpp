@@ -18,6 +18,7 @@ constexpr double kTimeCost = 0.05;      // [1/s]
 constexpr double kFarCost = 0.5;        // at the border of the room
 constexpr double kLagGain = 0.5;        // for the pattern that lags behind most
 constexpr double kLaterShare = 0.9;     // what the next pattern counts of the one before
+constexpr double kTurnMoves = 0.05;     // [m] that turning in place may lead farther
 
 double distance(const Pose2& T_home_body) {
   return std::hypot(T_home_body.x, T_home_body.y);
@@ -159,9 +160,9 @@ std::optional<size_t> ExcitationPlanner::next(const std::string& motion_class,
                                               const std::vector<int>& needed) const {
   const size_t from = classIndex(motion_class);
   if (*std::max_element(needed.begin(), needed.end()) <= 0) return ways_[from].first;
-  // Where it is too far away already, no pattern may lead farther.
+  // Where it is too far away already, no pattern may lead farther, but to turn back it must turn.
   const double stands_at = distance(T_home_body * ways_[from].T_start_end);
-  Search search(*this, needed, std::max(room_, stands_at + 1e-9));
+  Search search(*this, needed, std::max(room_, stands_at + kTurnMoves));
   search.run(from, T_home_body);
   return search.best_first ? search.best_first : ways_[from].first;
 }

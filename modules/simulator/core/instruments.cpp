@@ -72,8 +72,11 @@ InsInput Ins::atInstrument(InsInput truth) const {
   truth.v_body += truth.rate_body.cross(p_body);
   const Eigen::Matrix3d R_body_device = rotationOf(parameters_.mounting.angles);
   const Eigen::Matrix3d R = truth.body.R_map_body * R_body_device;
-  truth.v_body = R_body_device.transpose() * truth.v_body;
+  // It says its velocity over the ground, however it leans, and its rates as it lies.
+  const Eigen::Vector3d v_map = truth.body.R_map_body * truth.v_body;
+  truth.rate_body = R_body_device.transpose() * truth.rate_body;
   truth.yaw += wrapAngle(std::atan2(R(1, 0), R(0, 0)) - truth.yaw);
+  truth.v_body = Eigen::AngleAxisd(-truth.yaw, Eigen::Vector3d::UnitZ()) * v_map;
   truth.body.pitch = -std::asin(R(2, 0));
   truth.body.roll = std::atan2(R(2, 1), R(2, 2));
   return truth;

@@ -65,8 +65,8 @@ struct InsSample {
   double yaw = 0.0;                                     ///< [rad], unwrapped, counter-clockwise
   double pitch = 0.0;                                   ///< nose down positive [rad]
   double roll = 0.0;                                    ///< left side up positive [rad]
-  Eigen::Vector3d v_body = Eigen::Vector3d::Zero();     ///< of that point, device's axes [m/s]
-  Eigen::Vector3d rate_body = Eigen::Vector3d::Zero();  ///< [rad/s]
+  Eigen::Vector3d v_body = Eigen::Vector3d::Zero();     ///< of that point, ahead, left, up [m/s]
+  Eigen::Vector3d rate_body = Eigen::Vector3d::Zero();  ///< about the device's axes [rad/s]
 };
 
 /// Measures at a fixed rate and hands out what has passed the latency.

@@ -42,6 +42,16 @@ void send(Link& link, const std::string& bytes) {
   if (!bytes.empty()) link.write(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size());
 }
 
+/// Share of a scan's beams that hit something or know that nothing is there.
+double shareThatTells(const lidar::RangeScan& scan) {
+  const auto ranges =
+      std::count_if(scan.ranges.begin(), scan.ranges.end(), [](float r) { return !std::isnan(r); });
+  const auto points = std::count_if(scan.points.begin(), scan.points.end(),
+                                    [](const auto& point) { return !std::isnan(point[0]); });
+  const size_t all = scan.ranges.size() + scan.points.size();
+  return all == 0 ? 0.0 : static_cast<double>(ranges + points) / static_cast<double>(all);
+}
+
 /// A port at all rates that it may have.
 std::vector<std::string> addressesOf(const std::string& port) {
   const LinkAddress address = parseLinkAddress(port);
@@ -213,7 +223,7 @@ class Search {
     const auto device = lidar::readScanDevice(reader, 0.002).make();
     device->open(site_.now());
     int scans = 0;
-    double range = 0.0;
+    double range = 0.0, told = 0.0;
     for (const int64_t end = site_.now() + kScan; site_.now() < end && scans < 3;
          site_.pass(kLookEvery)) {
       if (device->lost()) break;
@@ -223,11 +233,13 @@ class Search {
       for (const lidar::RangeScan& scan : device->take(site_.now())) {
         ++scans;
         range = scan.range_max;
+        told = shareThatTells(scan);
       }
     }
     if (scans < 2) return false;
     findings_.range_finder = {kind, address, "", 0.0};
     findings_.range = std::clamp(range, 0.5, 300.0);
+    findings_.beams_that_tell = told;
     person_.say("range finder: " + kind + " on " + address + ", sees to " + fixed(range, 0) + " m");
     return true;
   }

@@ -11,6 +11,7 @@ namespace tread::setup {
 namespace {
 
 constexpr double kLeastRate = 10.0;      // [Hz] of the INS
+constexpr double kLeastTelling = 0.3;    // [1] of the beams
 constexpr double kMostDead = 0.35;       // [1]
 constexpr double kMostDelay = 0.5;       // [s]
 constexpr double kWatchdogSlack = 0.35;  // [s] for the INS to notice
@@ -57,6 +58,10 @@ std::vector<FitCheck> checkFit(const SetupResult& result) {
         "drive slower, or raise marking_range of mapping.yaml");
   check(found.marking_range <= found.range,
         "the range finder sees to " + fixed(found.range, 1) + " m", "lower marking_range");
+  check(found.beams_that_tell > kLeastTelling,
+        fixed(100.0 * found.beams_that_tell, 0) + " % of its beams told something where it stood",
+        "the planner drives only where it knows the ground to be free: begin where more is within "
+        "its range, or tell the driver that no echo means clear");
   if (!result.recorded) return checks;
   const auto reach = launch::checkReach(result.recorded->patterns, found.marking_range);
   check(reach.empty(),

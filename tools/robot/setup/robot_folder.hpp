@@ -32,8 +32,9 @@ struct RobotFindings {
   double watchdog = 0.2;         ///< [s] of the controller
   std::string line_description;  ///< text of the controller's line protocol; empty = none
   WiringReport wiring;
-  double range = 0.0;           ///< [m] of the range finder
-  double marking_range = 10.0;  ///< [m]
+  double range = 0.0;            ///< [m] of the range finder
+  double beams_that_tell = 1.0;  ///< [1] share of its beams that hit, or know that nothing is there
+  double marking_range = 10.0;   ///< [m]
 };
 
 /// robot.yaml.

@@ -116,8 +116,11 @@ void NmeaInsEmulator::sayMotion(int64_t n, const Fix& fix, const InsSample& samp
                   fix.time.c_str(), fix.heading, sample.roll / kDegree, -sample.pitch / kDegree,
                   0.0, valid ? 1 : 0));
   }
-  if (due(n, settings_.rates.rot))
-    say(formatted("GPROT,%.3f,A", -sample.rate_body.z() / kDegree * 60.0));
+  if (due(n, settings_.rates.rot)) {
+    // Of the heading, also where the device lies on its back.
+    const double rate = std::cos(sample.roll) < 0.0 ? -sample.rate_body.z() : sample.rate_body.z();
+    say(formatted("GPROT,%.3f,A", -rate / kDegree * 60.0));
+  }
 }
 
 void NmeaInsEmulator::say(const std::string& body) {

@@ -3,7 +3,6 @@
 // Five machines nobody has described: from their ports to the first goal, by a file of answers.
 #include <catch2/catch.hpp>
 
-#include <iostream>
 
 #include "tests/helpers.hpp"
 #include "tests/tools/called_program.hpp"
@@ -69,8 +68,6 @@ SetupResult brought(const HiddenMachine& hidden, const std::string& answers,
   VirtualPerson person(site, kAnswers + answers);
   SetupResult result = setUp(site, person, folder.path("robots"));
   UNSCOPED_INFO(person.heard());
-  if (!result.problem.empty() || true)
-    std::cout << person.heard() << result.problem << "\n" << result.minutes << " min\n";
   return result;
 }
 
@@ -149,9 +146,6 @@ TEST_CASE("a Sabertooth that never answers, an INS turned by a quarter: to the f
   hidden.settings.robot.wiring.left_channel = 2;
   hidden.settings.robot.wiring.invert_left = true;
   hidden.motor_baud = 38400;
-  hidden.settings.device = "sick_lms2xx";
-  hidden.laser_port = "tty:/dev/ttyUSB2";
-  hidden.laser_baud = 38400;
   const SetupResult result =
       brought(hidden,
               "first_track: right\nfirst_direction: forward\nsilent_controller: "

@@ -26,11 +26,12 @@ struct Pulse {
 /// To and fro by turns, so that it stays where it is; the ways back of turns are shorter, so that
 /// it looks to all sides in the end.
 constexpr Pulse kRound[] = {
-    {1, 0, false, 1},  {-1, 0, false, 0.8}, {0, 1, false, 1},  {0, -1, false, 0.8},
-    {1, 1, true, 1},   {-1, -1, true, 1},   {1, -1, true, 1},  {-1, 1, true, 0.6},
-    {1, 0, true, 1},   {-1, 0, true, 0.9},  {0, 1, true, 1},   {0, -1, true, 0.9},
-    {1, 1, false, 1},  {-1, -1, false, 1},  {1, 0.5, true, 1}, {-1, -0.5, true, 1},
-    {-1, 1, false, 1}, {1, -1, false, 0.6}, {0.5, 1, true, 1}, {-0.5, -1, true, 1}};
+    {1, 0, false, 1},    {-1, 0, false, 0.8},   {0, 1, false, 1},    {0, -1, false, 0.8},
+    {1, 1, true, 1},     {-1, -1, true, 1},     {1, -1, true, 1},    {-1, 1, true, 0.6},
+    {1, 1, true, 1},     {-1, -1, true, 1},     {1, 0, true, 0.8},   {-1, 0, true, 0.7},
+    {0, 1, true, 0.8},   {0, -1, true, 0.7},    {1, 1, true, 1},     {-1, -1, true, 1},
+    {1, 1, false, 0.7},  {-1, -1, false, 0.7},  {-1, 1, false, 1},   {1, -1, false, 0.6},
+    {1, 0.5, true, 0.8}, {-1, -0.5, true, 0.8}, {0.5, 1, true, 0.8}, {-0.5, -1, true, 0.8}};
 constexpr size_t kPulses = sizeof kRound / sizeof kRound[0];
 
 int64_t inMicroseconds(double seconds) {
@@ -47,7 +48,7 @@ WiringDriveConfig preDrive() {
   config.shortest = 0.3;
   config.pause = 0.35;
   config.first_level = 0.3;
-  config.most_path = 0.8;
+  config.most_path = 0.75;
   return config;
 }
 
