@@ -146,7 +146,7 @@ class Setup {
   /// With the corrections nothing may be wrong any more but what they cannot mend.
   void verify() {
     const GroundReport again =
-        tryWheelsDown(site_, driversOf(found()), preDrive(), {0.0, {}, 0.2}, false);
+        tryWheelsDown(site_, driversOf(found()), preDrive(), {0.0, {}, true}, false);
     if (!again.problem.empty()) throw std::runtime_error(again.problem);
     for (const WiringFault& fault : again.wiring.faults)
       if (fault.kind != FaultKind::kWeak && fault.kind != FaultKind::kInsElsewhere &&
@@ -186,7 +186,7 @@ SetupResult setUp(Site& site, Interview& person, const std::string& robots) {
 
 PreDrive preDriveOf(Site& site, const std::string& folder) {
   ConfigReader beside = ConfigReader::fromText("{}", folder + "/setup");
-  const WiringExpectation expected{readRobot(beside).gauge, {}, 0.2};
+  const WiringExpectation expected{readRobot(beside).gauge, {}, true};
   const GroundReport ground = tryWheelsDown(site, driversOf(folder), preDrive(), expected, false);
   PreDrive drive;
   drive.problem = !ground.problem.empty() ? ground.problem : ground.wiring.unsure;

@@ -3,6 +3,8 @@
 // Five machines nobody has described: from their ports to the first goal, by a file of answers.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <filesystem>
 
 #include "tests/helpers.hpp"
 #include "tests/tools/called_program.hpp"
@@ -157,4 +159,120 @@ TEST_CASE("a Sabertooth that never answers, an INS turned by a quarter: to the f
   CHECK(result.findings.wiring.has(FaultKind::kSwapped));
   CHECK(result.findings.wiring.has(FaultKind::kReversed, Side::kLeft));
   CHECK(result.findings.wiring.has(FaultKind::kInsTurned));
+}
+
+namespace {
+
+/// What the ten seconds say of a machine of which something was changed after it was set up.
+struct ChangedPart {
+  const char* what;
+  void (*change)(sim::SimulatorSettings& settings);
+  FaultKind named;
+  std::optional<Side> side;
+};
+
+constexpr double kQuarter = kPi / 2.0;
+
+const ChangedPart kChanges[] = {
+    {"swapped", [](auto& machine) { machine.robot.wiring.left_channel = 2; }, FaultKind::kSwapped,
+     std::nullopt},
+    {"left reversed", [](auto& machine) { machine.robot.wiring.invert_left = true; },
+     FaultKind::kReversed, Side::kLeft},
+    {"right reversed", [](auto& machine) { machine.robot.wiring.invert_right = true; },
+     FaultKind::kReversed, Side::kRight},
+    {"left dead", [](auto& machine) { machine.robot.vehicle.left_power = 0.0; }, FaultKind::kDead,
+     Side::kLeft},
+    {"right dead", [](auto& machine) { machine.robot.vehicle.right_power = 0.0; }, FaultKind::kDead,
+     Side::kRight},
+    {"nothing moves",
+     [](auto& machine) {
+       machine.robot.vehicle.left_power = machine.robot.vehicle.right_power = 0.0;
+     },
+     FaultKind::kNoMotion, std::nullopt},
+    {"INS turned", [](auto& machine) { machine.robot.ins.mounting.angles.yaw = -kQuarter; },
+     FaultKind::kInsTurned, std::nullopt},
+    {"INS behind", [](auto& machine) { machine.robot.ins.mounting.angles.yaw = kPi; },
+     FaultKind::kInsTurned, std::nullopt}};
+
+}  // namespace
+
+TEST_CASE(
+    "before a drive a robot that was set up is right, and every part changed since is named") {
+  OwnFolder folder;
+  HiddenMachine hidden = machine("roboteq", "grass", 21);
+  const std::string robot = folder.path("robots") + "/mole";
+  {
+    const SetupResult result =
+        brought(hidden, "first_track: left\nfirst_direction: forward\n", folder);
+    REQUIRE(result.problem == "");
+  }
+  {
+    VirtualSite site(hidden);
+    const PreDrive drive = preDriveOf(site, robot);
+    CHECK(drive.problem == "");
+    for (const WiringFault& fault : drive.faults) UNSCOPED_INFO(fault.words);
+    CHECK(drive.faults.empty());
+  }
+  for (const ChangedPart& part : kChanges) {
+    HiddenMachine changed = hidden;
+    part.change(changed.settings);
+    VirtualSite site(changed);
+    const int64_t begun = site.now();
+    const PreDrive drive = preDriveOf(site, robot);
+    CAPTURE(part.what, drive.problem);
+    CHECK(site.robot().truth().distance < 1.0);
+    CHECK(site.now() - begun < 20 * tread::testing::kSecond);
+    CHECK(std::any_of(drive.faults.begin(), drive.faults.end(), [&](const WiringFault& fault) {
+      return fault.kind == part.named && (!part.side || fault.side == part.side);
+    }));
+  }
+}
+
+TEST_CASE("what a setup writes is what the robot's processes and its launch file take") {
+  OwnFolder folder;
+  const SetupResult result = brought(machine("vesc", "tarmac", 23),
+                                     "first_track: left\nfirst_direction: forward\n", folder);
+  REQUIRE(result.problem == "");
+  const std::string robot = result.folder;
+  for (const char* process :
+       {"ins-driver", "lidar-driver", "mapping", "learner", "planner", "motor-bridge"}) {
+    std::string file = process;
+    std::replace(file.begin(), file.end(), '-', '_');
+    const auto checked = tread::samples::called(std::string("tread-") + process + " --config " +
+                                                robot + "/" + file + ".yaml --check");
+    CAPTURE(checked.printed);
+    CHECK(checked.status == 0);
+  }
+  // Devices and network are the host's: nothing of the robot's own may be wrong.
+  const auto launch = tread::samples::called(
+      "tread-launch " TREAD_SOURCE_DIR "/config/launch/robot.yaml --set robot=" + robot +
+      " --run " + folder.path("run") + " --check");
+  CAPTURE(launch.printed);
+  CHECK_FALSE(launch.says("refuses"));
+  CHECK_FALSE(launch.says("edit " + robot));
+  CHECK_FALSE(launch.says("patterns"));
+  const std::string page = tread::testing::contentOf(robot + "/setup.html");
+  CHECK(page.find("mole is set up") != std::string::npos);
+  CHECK(page.find("<svg") != std::string::npos);
+}
+
+TEST_CASE("what a setup cannot go on with is told in one clear line") {
+  OwnFolder folder;
+  const std::string answers = "first_track: left\nfirst_direction: forward\n";
+  HiddenMachine dead = machine("roboteq", "grass", 31);
+  dead.settings.robot.vehicle.right_power = 0.0;
+  CHECK(brought(dead, answers, folder).problem.find("the right track does not move") == 0);
+  std::filesystem::remove_all(folder.path("robots"));
+  HiddenMachine unplugged = machine("roboteq", "grass", 31);
+  unplugged.motor_baud = 1200;
+  CHECK(brought(unplugged, answers, folder).problem.find("no motor controller answers") == 0);
+  CHECK(brought(unplugged, answers, folder).problem.find("is there already") != std::string::npos);
+  std::filesystem::remove_all(folder.path("robots"));
+  HiddenMachine deaf = machine("roboteq", "grass", 31);
+  deaf.ins_baud = 1200;
+  CHECK(brought(deaf, answers, folder).problem.find("no INS is heard") == 0);
+  std::filesystem::remove_all(folder.path("robots"));
+  CHECK(
+      brought(machine("roboteq", "grass", 31), "", folder).problem.find("first_track is missing") !=
+      std::string::npos);
 }

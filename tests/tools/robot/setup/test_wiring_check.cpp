@@ -280,7 +280,7 @@ TEST_CASE("before a drive every wrong part is named within less than a metre of 
         break;
     }
     const Driven driven = drive(hidden, preDrive(), 5000 + static_cast<uint64_t>(i));
-    const WiringReport report = checkWiring(driven.commands, driven.fixes, {0.0, {}, 0.2});
+    const WiringReport report = checkWiring(driven.commands, driven.fixes, {0.0, {}, true});
     longest = std::max(longest, driven.path);
     ++all;
     right += named(hidden, report);

@@ -13,15 +13,20 @@ namespace tread::setup {
 namespace {
 
 constexpr size_t kFewRows = 25;
-constexpr size_t kParts = 12;              // of the drive, each left out once
-constexpr double kStudent = 2.2;           // 95 % with that many parts
-constexpr double kStandsStill = 0.05;      // [m/s], [rad/s]: no motion at full command
-constexpr double kDeadShare = 0.15;        // of the other side's motion
-constexpr double kWeakShare = 0.9;         // likewise
+constexpr size_t kParts = 12;          // of the drive, each left out once
+constexpr double kStudent = 2.2;       // 95 % with that many parts
+constexpr double kStandsStill = 0.05;  // [m/s], [rad/s]: no motion at full command
+constexpr double kDeadShare = 0.15;    // of the other side's motion
+struct Tolerance {
+  double turn;       // [rad] of the INS
+  double elsewhere;  // [m] of the INS
+  double gauge;      // share off the told one
+  double weak;       // share of the other side
+};
+constexpr Tolerance kMinute{0.05, 0.15, 0.2, 0.9}, kSeconds{0.2, 0.3, 0.6, 0.7};
 constexpr double kTurnedBesideDead = 0.8;  // [rad]
-constexpr double kElsewhere = 0.15;        // [m]
+constexpr double kTurnedForSure = 0.5;     // [rad]
 constexpr double kSteadyShare = 0.04;      // that a pulse ends before it is quite steady
-constexpr double kGaugeShare = 0.2;        // off the told one
 constexpr double kMirrorGain = 0.6;        // residual of the mirrored yaw over that of the told one
 
 double motionOf(const WiringFit& fit, int side) {
@@ -47,7 +52,11 @@ class Check {
  public:
   Check(const std::vector<GivenCommand>& commands, const std::vector<InsFix>& fixes,
         const WiringExpectation& expected)
-      : commands_(commands), fixes_(fixes), rows_(commands, fixes), expected_(expected) {}
+      : commands_(commands),
+        fixes_(fixes),
+        rows_(commands, fixes),
+        expected_(expected),
+        tolerance_(expected.brief ? kSeconds : kMinute) {}
 
   WiringReport run() {
     if (rows_.size() < kFewRows) {
@@ -87,13 +96,20 @@ class Check {
     if (oneIsDead()) return geometryOfOne(fit, report_.dead[0] ? 1 : 0);
     WiringGeometry plain = geometryOf(fit, false), swapped = geometryOf(fit, true);
     if (!expected_.seen) {
+      const int more = changesOf(plain) - changesOf(swapped);
       const bool straighter = std::abs(swapped.of[kYaw]) < std::abs(plain.of[kYaw]);
-      return straighter ? swapped : plain;
+      return more > 0 || (more == 0 && straighter) ? swapped : plain;
     }
     const bool is_swapped = expected_.seen->side == Side::kRight;
     const WiringGeometry& found = is_swapped ? swapped : plain;
     contradicts_ = found.reverse_left == expected_.seen->forward;
     return found;
+  }
+
+  /// How many parts are not as configured: of two explanations the one with fewer holds.
+  int changesOf(const WiringGeometry& geometry) const {
+    return geometry.swapped + geometry.reverse_left + geometry.reverse_right +
+           (std::abs(geometry.of[kYaw]) > std::max(tolerance_.turn, kTurnedForSure));
   }
 
   void measure(const WiringGeometry& best) {
@@ -177,7 +193,7 @@ class Check {
                       "to the right for it; look at its mounting and its axes, and try again");
     const Interval& yaw = report_.mounting_yaw;
     // One track alone may turn it about another point than the dead one's middle.
-    const double least = oneIsDead() ? kTurnedBesideDead : expected_.turn;
+    const double least = oneIsDead() ? kTurnedBesideDead : tolerance_.turn;
     if (yaw.low > least || yaw.high < -least)
       add(FaultKind::kInsTurned, {}, yaw.value,
           "the INS is turned by " + inDegrees(yaw.value) + " (" + inDegrees(yaw.low) + " to " +
@@ -188,7 +204,7 @@ class Check {
                    : ""));
     const double off = std::hypot(report_.antenna_x.value, report_.antenna_y.value);
     const bool sure = !report_.antenna_x.holds(0.0) || !report_.antenna_y.holds(0.0);
-    if (!oneIsDead() && off > kElsewhere && sure)
+    if (!oneIsDead() && off > tolerance_.elsewhere && sure)
       add(FaultKind::kInsElsewhere, {}, off,
           "the INS measures " + inMetres(report_.antenna_x.value) + " ahead and " +
               inMetres(report_.antenna_y.value) +
@@ -222,7 +238,7 @@ class Check {
     const Interval& weak = left_is_weak ? report_.full_left : report_.full_right;
     const Interval& strong = left_is_weak ? report_.full_right : report_.full_left;
     const double share = weak.value / strong.value;
-    if (share > kWeakShare || weak.high > strong.low) return;
+    if (share > tolerance_.weak || weak.high > strong.low) return;
     const Side side = left_is_weak ? Side::kLeft : Side::kRight;
     add(FaultKind::kWeak, side, share,
         std::string("the ") + nameOf(side) + " track gives " + fixedText(100.0 * share, 0) +
@@ -234,7 +250,7 @@ class Check {
   void judgeGauge() {
     const Interval& gauge = report_.gauge;
     if (expected_.gauge <= 0.0 || gauge.holds(expected_.gauge) ||
-        std::abs(gauge.value / expected_.gauge - 1.0) < kGaugeShare)
+        std::abs(gauge.value / expected_.gauge - 1.0) < tolerance_.gauge)
       return;
     add(FaultKind::kGauge, {}, gauge.value,
         "it turns as if it were " + inMetres(gauge.value) + " wide (" + inMetres(gauge.low) +
@@ -246,6 +262,7 @@ class Check {
   const std::vector<InsFix>& fixes_;
   WiringRows rows_;
   WiringExpectation expected_;
+  Tolerance tolerance_;
   WiringReport report_;
   bool mirrored_ = false;
   bool contradicts_ = false;  // what was seen and what the INS says

@@ -41,7 +41,7 @@ struct WiringExpectation {
   /// What a person saw when only the configured left side was commanded forward. The INS alone
   /// cannot tell a vehicle from the same one with front and rear exchanged.
   std::optional<SideMotion> seen;
-  double turn = 0.05;  ///< [rad] of the INS that counts
+  bool brief = false;  ///< a few seconds: only large deviations count
 };
 
 enum class FaultKind {
