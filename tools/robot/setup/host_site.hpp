@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+#include "tools/robot/setup/site.hpp"
+
+namespace tread::setup {
+
+/// What the command line says of this host.
+struct HostOptions {
+  std::vector<std::string> ports;  ///< looked at alone; empty: what this host has
+  std::string launch_folder;       ///< of robot.yaml and recording.yaml
+  std::string run;                 ///< folder for states and logs
+  std::string lcm_url;             ///< empty = the launch files'
+};
+
+/// Serial lines (by their lasting names), CAN interfaces, Velodyne's UDP port, and SICK's TCP port
+/// on the neighbours of this host.
+std::vector<std::string> portsOfHost();
+
+/// This host: real ports, real time, and tread-launch for the processes.
+class HostSite : public Site {
+ public:
+  /// Once `interrupted` is true, waiting throws std::runtime_error: motors are let go by whoever
+  /// holds them.
+  HostSite(HostOptions options, const std::atomic<bool>& interrupted);
+
+  std::vector<std::string> ports() override { return ports_; }
+  std::unique_ptr<Link> open(const std::string& address) override;
+  int64_t now() override;
+  void pass(int64_t duration) override;
+  std::unique_ptr<RunningRobot> start(const std::string& folder, Processes which) override;
+
+ private:
+  HostOptions options_;
+  const std::atomic<bool>& interrupted_;
+  std::vector<std::string> ports_;
+};
+
+}  // namespace tread::setup
