@@ -24,6 +24,7 @@ constexpr int64_t kLookEvery = 5'000;   // [us]
 constexpr int64_t kListen = 1'200'000;  // [us] for an INS
 constexpr int64_t kAnswer = 700'000;    // [us] for a controller's start-up
 constexpr int64_t kScan = 3'000'000;    // [us] for two scans
+constexpr double kHokuyoRange = 15.0;   // [m]
 constexpr double kLeastInsRate = 5.0;   // [Hz]
 constexpr int kRates[] = {115200, 460800, 38400, 9600, 57600, 230400, 921600};
 
@@ -79,6 +80,7 @@ class Search {
     if (findings_.controller.kind.empty()) takeSilent();
     eachPort([this](const std::string& address) { return askFinders(address); },
              {Kind::kTty, Kind::kTcp, Kind::kUdp, Kind::kPty});
+    if (findings_.range_finder.kind.empty()) takeHokuyo();
     if (findings_.range_finder.kind.empty())
       throw std::runtime_error("no range finder scans on " + joined(ports_) +
                                "; look at its power and its line; it is needed to see obstacles");
@@ -242,6 +244,16 @@ class Search {
     findings_.beams_that_tell = told;
     person_.say("range finder: " + kind + " on " + address + ", sees to " + fixed(range, 0) + " m");
     return true;
+  }
+
+  /// It is reached through a library that insists on its own process: that one will tell.
+  void takeHokuyo() {
+    const std::string address = person_.ask("hokuyo");
+    if (address == "none") return;
+    lidar::checkDeviceAddress("hokuyo", address);
+    findings_.range_finder = {"hokuyo", address, "", 0.0};
+    findings_.range = kHokuyoRange;
+    person_.say("range finder: hokuyo on " + address + ", not heard yet");
   }
 
   Site& site_;
