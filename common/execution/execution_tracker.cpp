@@ -22,7 +22,7 @@ std::string conflictOf(const PatternSet& set, const PlannedExecution& slot) {
       "PATTERN_SET version " + std::to_string(set.version()) + " waits: in it";
   const std::string pattern = " pattern " + std::to_string(ours.id) + " (" + ours.name + ")";
   if (theirs == nullptr) return where + " there is no" + pattern + ", which is under way";
-  const bool same_timing = set.content().kind == slot.set->content().kind &&
+  const bool same_timing = set.content().channels == slot.set->content().channels &&
                            set.content().period_us == slot.set->content().period_us;
   const bool same_ends =
       theirs->entry_class == ours.entry_class && theirs->exit_class == ours.exit_class;

@@ -225,6 +225,21 @@ Measurement measure(const TrackHistory& history, const ExecutionCut& cut,
   return Cutter(history, cut, pattern, period_us, limits).run(entry_class);
 }
 
+namespace {
+
+/// Mean of the speeds that a command asks of tracks or wheels [m/s]; 0 if it asks for none.
+double commandedSpeed(const Command& command, const CommandChannels& channels) {
+  double sum = 0.0, count = 0.0;
+  for (size_t i = 0; i < channels.size(); ++i) {
+    if (channels[i].kind != CommandKind::kTrackSpeed) continue;
+    sum += command[i];
+    count += 1.0;
+  }
+  return count > 0.0 ? std::abs(sum) / count : 0.0;
+}
+
+}  // namespace
+
 double largestSpeed(const PatternSet& set) {
   double largest = 0.0;
   for (const MotionClass& motion : set.content().classes)
@@ -235,9 +250,8 @@ double largestSpeed(const PatternSet& set) {
       largest = std::max(largest, distanceBetween(last, pose) / set.periodSeconds());
       last = pose;
     }
-    if (set.content().kind != CommandKind::kTrackSpeed) continue;
-    for (const TrackCommand& command : pattern.commands)
-      largest = std::max(largest, std::abs(command.left + command.right) / 2.0);
+    for (const Command& command : pattern.commands)
+      largest = std::max(largest, commandedSpeed(command, set.content().channels));
   }
   return largest;
 }

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "common/log/older_types.hpp"
 #include "common/seal/seal.hpp"
 
 namespace tread {
@@ -262,6 +263,7 @@ bool LogReader::next(LogEvent& event) {
   const uint8_t* const message = name + channel_size;
   event.bytes.assign(message, message + sizeWithoutSeal(message, message_size));
   event.sealed = event.bytes.size() < message_size;
+  renew(event);
   file_->position += kLogHeaderSize + channel_size + message_size;
   ++file_->events;
   return true;

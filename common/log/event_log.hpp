@@ -78,8 +78,8 @@ class LogReader {
   LogReader(const LogReader&) = delete;
   LogReader& operator=(const LogReader&) = delete;
 
-  /// The next event, without the seal that a robot with a key puts behind each message; false at
-  /// the end.
+  /// The next event, without the seal that a robot with a key puts behind each message, and as its
+  /// type is today (see older_types.hpp); false at the end.
   bool next(LogEvent& event);
   /// One clear line if the log ends in the middle of an event or holds damaged bytes; empty if it
   /// is whole.

@@ -59,12 +59,11 @@ inline void markUnknown(map_tile_t& m) {
   setUnknown(m.cell_size);
 }
 inline void markUnknown(motor_t& m) {
-  setAllUnknown(m.command_left, m.command_right, m.battery_voltage, m.current_left, m.current_right,
-                m.track_speed_left, m.track_speed_right);
+  setAllUnknown(m.command, m.battery_voltage, m.current, m.measured);
   m.command_index = -1;
 }
 inline void markUnknown(pattern_set_part_t& m) {
-  setAllUnknown(m.entry_twist, m.exit_twist, m.entry_steady, m.exit_steady, m.end_covariance);
+  setAllUnknown(m.entry_twist, m.exit_twist, m.end_covariance);
 }
 inline void markUnknown(plan_t& m) {
   setUnknown(m.time_to_go);

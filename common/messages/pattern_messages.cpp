@@ -25,7 +25,13 @@ pattern_set_part_t partOf(const PatternSet& set, size_t index) {
   part.part_count = static_cast<int32_t>(content.patterns.size());
   part.set_pattern_id = pattern.id;
   part.pattern_name = pattern.name;
-  part.set_command_kind = static_cast<int16_t>(content.kind);
+  part.num_channels = static_cast<int32_t>(content.channels.size());
+  for (const CommandChannel& channel : content.channels) {
+    part.channel_name.push_back(channel.name);
+    part.channel_kind.push_back(static_cast<int16_t>(channel.kind));
+    part.channel_lowest.push_back(channel.lowest);
+    part.channel_highest.push_back(channel.highest);
+  }
   part.set_period = static_cast<int32_t>(content.period_us);
   part.entry_class = pattern.entry_class;
   part.exit_class = pattern.exit_class;
@@ -50,12 +56,23 @@ Problem headProblem(const pattern_set_part_t& part) {
   if (part.part_count < 1 || part.part_count > static_cast<int32_t>(PatternLimits::kMaxPatterns))
     return "part count is not 1.." + std::to_string(PatternLimits::kMaxPatterns);
   if (part.part < 0 || part.part >= part.part_count) return "part number is not below the count";
-  if (part.set_command_kind != program_slot_t::KIND_POWER &&
-      part.set_command_kind != program_slot_t::KIND_TRACK_SPEED)
-    return "command kind is unknown";
   if (part.set_period < PatternLimits::kMinPeriodUs ||
       part.set_period > PatternLimits::kMaxPeriodUs)
     return "period is not 5 ms..1 s";
+  return {};
+}
+
+/// What they mean is PatternSet::make's business.
+Problem channelProblem(const pattern_set_part_t& part) {
+  if (part.num_channels < 1 || part.num_channels > static_cast<int32_t>(Command::kMaxChannels))
+    return "number of channels is not 1.." + std::to_string(Command::kMaxChannels);
+  const auto channels = static_cast<size_t>(part.num_channels);
+  for (const size_t size :
+       {part.channel_name.size(), part.channel_kind.size(), part.channel_lowest.size(),
+        part.channel_highest.size(), part.entry_steady.size(), part.exit_steady.size()})
+    if (size != channels) return "lengths are not the number of channels";
+  for (const int16_t kind : part.channel_kind)
+    if (nameOf(static_cast<CommandKind>(kind))[0] == '\0') return "command kind is unknown";
   return {};
 }
 
@@ -66,8 +83,8 @@ Problem seriesProblem(const pattern_set_part_t& part) {
   if (part.command.size() != samples || part.trajectory.size() != samples)
     return "lengths of commands and trajectory are not the number of samples";
   for (size_t i = 0; i < samples; ++i) {
-    if (part.command[i].size() != 2 || !allFinite(part.command[i]))
-      return "command " + std::to_string(i) + " is not two finite numbers";
+    if (part.command[i].size() != part.channel_kind.size() || !allFinite(part.command[i]))
+      return "command " + std::to_string(i) + " is not a finite number for each channel";
     if (part.trajectory[i].size() != 3 || !allFinite(part.trajectory[i]))
       return "pose " + std::to_string(i) + " is not three finite numbers";
   }
@@ -76,6 +93,7 @@ Problem seriesProblem(const pattern_set_part_t& part) {
 
 Problem partProblem(const pattern_set_part_t& part) {
   if (Problem problem = headProblem(part); !problem.empty()) return problem;
+  if (Problem problem = channelProblem(part); !problem.empty()) return problem;
   for (const std::string* name :
        {&part.set_name, &part.pattern_name, &part.entry_class, &part.exit_class})
     if (name->empty() || name->size() > PatternLimits::kMaxNameLength)
@@ -93,8 +111,21 @@ Problem partProblem(const pattern_set_part_t& part) {
 bool sameSet(const pattern_set_part_t& a, const pattern_set_part_t& b) {
   return a.utime == b.utime && a.parent_version == b.parent_version &&
          a.set_checksum == b.set_checksum && a.set_name == b.set_name &&
-         a.part_count == b.part_count && a.set_command_kind == b.set_command_kind &&
-         a.set_period == b.set_period;
+         a.part_count == b.part_count && a.channel_name == b.channel_name &&
+         a.channel_kind == b.channel_kind && a.channel_lowest == b.channel_lowest &&
+         a.channel_highest == b.channel_highest && a.set_period == b.set_period;
+}
+
+Command commandFrom(const std::vector<double>& values) {
+  Command command;
+  for (size_t i = 0; i < values.size(); ++i) command[i] = values[i];
+  return command;
+}
+
+std::vector<double> valuesOf(const Command& command, size_t channels) {
+  std::vector<double> values(channels);
+  for (size_t i = 0; i < channels; ++i) values[i] = command[i];
+  return values;
 }
 
 MotionPattern patternOf(const pattern_set_part_t& part) {
@@ -106,7 +137,7 @@ MotionPattern patternOf(const pattern_set_part_t& part) {
   pattern.times_learned = part.times_learned;
   std::copy(std::begin(part.end_covariance), std::end(part.end_covariance),
             pattern.end_covariance.begin());
-  for (const auto& command : part.command) pattern.commands.push_back({command[0], command[1]});
+  for (const auto& command : part.command) pattern.commands.push_back(commandFrom(command));
   for (const auto& pose : part.trajectory)
     pattern.trajectory.push_back({pose[0], pose[1], pose[2]});
   return pattern;
@@ -114,16 +145,15 @@ MotionPattern patternOf(const pattern_set_part_t& part) {
 
 /// Adds a class, or compares it with the one of that name; false if they differ.
 bool addClass(std::vector<MotionClass>& classes, const std::string& name, const double (&twist)[3],
-              const double (&steady)[2]) {
+              const std::vector<double>& steady) {
   const auto known = std::find_if(classes.begin(), classes.end(),
                                   [&](const MotionClass& motion) { return motion.name == name; });
   if (known == classes.end()) {
-    classes.push_back({name, {twist[0], twist[1], twist[2]}, {steady[0], steady[1]}});
+    classes.push_back({name, {twist[0], twist[1], twist[2]}, commandFrom(steady)});
     return true;
   }
   return known->twist.v_x == twist[0] && known->twist.v_y == twist[1] &&
-         known->twist.omega == twist[2] && known->steady.left == steady[0] &&
-         known->steady.right == steady[1];
+         known->twist.omega == twist[2] && known->steady == commandFrom(steady);
 }
 
 std::string about(const pattern_set_part_t& part) {
@@ -155,6 +185,19 @@ constexpr size_t kRememberedCommands = 1500;
 /// MOTOR carries single precision, and a Roboteq takes thousandths of full power.
 constexpr double kTolerance = 2e-3;
 
+bool sameCommand(const Command& given, const Command& command, size_t channels) {
+  for (size_t i = 0; i < channels; ++i)
+    if (!(std::abs(given[i] - command[i]) <= kTolerance)) return false;  // nor for NaN
+  return true;
+}
+
+/// "0.500, -0.250".
+std::string listed(const Command& command, size_t channels) {
+  std::string text;
+  for (size_t i = 0; i < channels; ++i) text += formatted(i == 0 ? "%.3f" : ", %.3f", command[i]);
+  return text;
+}
+
 }  // namespace
 
 std::vector<pattern_set_part_t> toMessages(const PatternSet& set) {
@@ -162,19 +205,19 @@ std::vector<pattern_set_part_t> toMessages(const PatternSet& set) {
   for (size_t i = 0; i < set.patterns().size(); ++i) {
     const MotionPattern& pattern = set.patterns()[i];
     pattern_set_part_t part = partOf(set, i);
-    const auto fillClass = [&](const std::string& name, double(&twist)[3], double(&steady)[2]) {
+    const auto fillClass = [&](const std::string& name, double(&twist)[3],
+                               std::vector<double>& steady) {
       const MotionClass& motion = set.classNamed(name);
       twist[0] = motion.twist.v_x;
       twist[1] = motion.twist.v_y;
       twist[2] = motion.twist.omega;
-      steady[0] = motion.steady.left;
-      steady[1] = motion.steady.right;
+      steady = valuesOf(motion.steady, set.content().channels.size());
     };
     fillClass(pattern.entry_class, part.entry_twist, part.entry_steady);
     fillClass(pattern.exit_class, part.exit_twist, part.exit_steady);
     part.num_samples = static_cast<int32_t>(pattern.commands.size());
-    for (const TrackCommand& command : pattern.commands)
-      part.command.push_back({command.left, command.right});
+    for (const Command& command : pattern.commands)
+      part.command.push_back(valuesOf(command, set.content().channels.size()));
     for (const Pose2& pose : pattern.trajectory)
       part.trajectory.push_back({pose.x, pose.y, pose.yaw});
     parts.push_back(std::move(part));
@@ -219,7 +262,11 @@ std::optional<PatternSet> PatternSetAssembler::complete(Pending& pending) {
   content.version = first.set_version;
   content.parent_version = first.parent_version;
   content.utime = first.utime;
-  content.kind = static_cast<CommandKind>(first.set_command_kind);
+  content.channels.clear();
+  for (size_t i = 0; i < first.channel_name.size(); ++i)
+    content.channels.push_back({first.channel_name[i],
+                                static_cast<CommandKind>(first.channel_kind[i]),
+                                first.channel_lowest[i], first.channel_highest[i]});
   content.period_us = first.set_period;
   bool same_classes = true;
   for (const auto& [index, part] : pending.parts) {
@@ -287,13 +334,16 @@ program_slot_t toMessage(const PlannedExecution& slot) {
   message.execution_id = slot.execution_id;
   message.slot_pattern_id = slot.pattern_id;
   message.slot_set_version = slot.set->version();
-  message.command_kind = static_cast<int16_t>(content.kind);
   message.period = static_cast<int32_t>(content.period_us);
-  for (const TrackCommand& command : slot.pattern().commands) {
-    message.left.push_back(static_cast<float>(command.left));
-    message.right.push_back(static_cast<float>(command.right));
+  message.num_channels = static_cast<int32_t>(content.channels.size());
+  for (const CommandChannel& channel : content.channels)
+    message.channel_kind.push_back(static_cast<int16_t>(channel.kind));
+  for (const Command& command : slot.pattern().commands) {
+    std::vector<float>& values = message.command.emplace_back();
+    for (size_t i = 0; i < content.channels.size(); ++i)
+      values.push_back(static_cast<float>(command[i]));
   }
-  message.num_commands = static_cast<int32_t>(message.left.size());
+  message.num_commands = static_cast<int32_t>(message.command.size());
   return message;
 }
 
@@ -341,6 +391,22 @@ void ExecutionQueue::noteHandled(const ExecutionKey& key) {
   }
 }
 
+Command commandFrom(const motor_t& message) {
+  Command command;
+  // A channel that the robot does not have is NaN in the message, as is one that nobody knows.
+  for (size_t i = 0; i < Command::kMaxChannels; ++i)
+    if (message.channel_kind[i] != 0 || !std::isnan(message.command[i]))
+      command[i] = static_cast<double>(message.command[i]);
+  return command;
+}
+
+std::vector<CommandKind> kindsFrom(const motor_t& message) {
+  std::vector<CommandKind> kinds;
+  for (const int16_t kind : message.channel_kind)
+    if (kind != 0) kinds.push_back(static_cast<CommandKind>(kind));
+  return kinds;
+}
+
 void CommandWatch::add(const motor_t& motor) {
   if (motor.battery_voltage > 0.0F && std::isfinite(motor.battery_voltage)) {
     voltages_.push_back({motor.utime, static_cast<double>(motor.battery_voltage)});
@@ -349,9 +415,8 @@ void CommandWatch::add(const motor_t& motor) {
   if (motor.execution_id == 0 || motor.command_index < 0) return;
   given_.push_back({{motor.motor_run_id, motor.execution_id},
                     motor.command_index,
-                    motor.motor_command_kind,
-                    static_cast<double>(motor.command_left),
-                    static_cast<double>(motor.command_right)});
+                    kindsFrom(motor),
+                    commandFrom(motor)});
   if (given_.size() > kRememberedCommands) given_.pop_front();
 }
 
@@ -367,21 +432,20 @@ double CommandWatch::meanVoltage(int64_t from, int64_t to) const {
 }
 
 std::string CommandWatch::unexpectedCommand(const ExecutionKey& execution,
-                                            const MotionPattern& pattern, CommandKind kind) const {
+                                            const MotionPattern& pattern,
+                                            const CommandChannels& channels) const {
   for (const Given& given : given_) {
     if (given.execution != execution) continue;
-    if (given.kind != static_cast<int16_t>(kind))
+    if (given.kinds != kindsOf(channels))
       return "the motors got another kind of command than the pattern has";
     const auto index = static_cast<size_t>(given.index);
     if (index >= pattern.commands.size())
       return "the motors got more commands than the pattern has";
-    const TrackCommand& command = pattern.commands[index];
-    // Both by themselves: a NaN in one of them must not hide behind the other.
-    if (std::abs(given.left - command.left) <= kTolerance &&
-        std::abs(given.right - command.right) <= kTolerance)
-      continue;
-    return formatted("command %zu was (%.3f, %.3f) on the motors, (%.3f, %.3f) in the pattern",
-                     index, given.left, given.right, command.left, command.right);
+    const Command& command = pattern.commands[index];
+    if (sameCommand(given.command, command, channels.size())) continue;
+    return formatted("command %zu was (%s) on the motors, (%s) in the pattern", index,
+                     listed(given.command, channels.size()).c_str(),
+                     listed(command, channels.size()).c_str());
   }
   return {};
 }

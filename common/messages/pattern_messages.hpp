@@ -64,6 +64,11 @@ BridgeReading readingFrom(const motor_t& message);
 /// Whether the permission to drive is there in this state of the motor bridge (motor_t::STATE_*).
 bool mayDrive(int16_t bridge_state);
 std::vector<ExecutionReading> readingsFrom(const execution_t& message);
+/// The command of a MOTOR message: NaN where a channel that is played is, 0 where the robot has
+/// none.
+Command commandFrom(const motor_t& message);
+/// The kinds of the channels that are played; none while nothing is.
+std::vector<CommandKind> kindsFrom(const motor_t& message);
 program_slot_t toMessage(const PlannedExecution& slot);
 
 /// The executions that are over and not yet learned from, in the order in which they ended.
@@ -108,7 +113,7 @@ class CommandWatch {
   /// The first command of an execution that differs from the pattern's, in words; empty if none was
   /// seen.
   std::string unexpectedCommand(const ExecutionKey& execution, const MotionPattern& pattern,
-                                CommandKind kind) const;
+                                const CommandChannels& channels) const;
   /// Mean battery voltage in (from, to] [V]; NaN if none was told.
   double meanVoltage(int64_t from, int64_t to) const;
 
@@ -120,9 +125,8 @@ class CommandWatch {
   struct Given {
     ExecutionKey execution;
     int32_t index;
-    int16_t kind;
-    double left;
-    double right;
+    std::vector<CommandKind> kinds;
+    Command command;
   };
   std::deque<Given> given_;
   std::deque<Voltage> voltages_;

@@ -37,23 +37,38 @@ class Hash {
   uint64_t value_ = 0xcbf29ce484222325U;
 };
 
-void addClass(Hash& hash, const MotionClass& motion) {
-  hash.add(motion.name);
-  for (const double value : {motion.twist.v_x, motion.twist.v_y, motion.twist.omega,
-                             motion.steady.left, motion.steady.right})
-    hash.add(value);
+/// Two tracks are told by their kind alone, as always: sets of old logs keep their checksums.
+void addChannels(Hash& hash, const CommandChannels& channels) {
+  const auto kind = kindOfTracks(channels);
+  hash.add(kind ? static_cast<int64_t>(*kind) : 0);
+  if (kind) return;
+  hash.add(static_cast<uint64_t>(channels.size()));
+  for (const CommandChannel& channel : channels) {
+    hash.add(channel.name);
+    hash.add(static_cast<int64_t>(channel.kind));
+    hash.add(channel.lowest);
+    hash.add(channel.highest);
+  }
 }
 
-void addPattern(Hash& hash, const MotionPattern& pattern) {
+void addCommand(Hash& hash, const Command& command, size_t channels) {
+  for (size_t i = 0; i < channels; ++i) hash.add(command[i]);
+}
+
+void addClass(Hash& hash, const MotionClass& motion, size_t channels) {
+  hash.add(motion.name);
+  for (const double value : {motion.twist.v_x, motion.twist.v_y, motion.twist.omega})
+    hash.add(value);
+  addCommand(hash, motion.steady, channels);
+}
+
+void addPattern(Hash& hash, const MotionPattern& pattern, size_t channels) {
   hash.add(static_cast<int64_t>(pattern.id));
   hash.add(pattern.name);
   hash.add(pattern.entry_class);
   hash.add(pattern.exit_class);
   hash.add(static_cast<uint64_t>(pattern.commands.size()));
-  for (const TrackCommand& command : pattern.commands) {
-    hash.add(command.left);
-    hash.add(command.right);
-  }
+  for (const Command& command : pattern.commands) addCommand(hash, command, channels);
   hash.add(static_cast<uint64_t>(pattern.trajectory.size()));
   for (const Pose2& pose : pattern.trajectory) {
     hash.add(pose.x);
@@ -66,24 +81,25 @@ void addPattern(Hash& hash, const MotionPattern& pattern) {
 
 /// FNV-1a (64 bit), word by word and folded, over a canonical form of the content, cut to 63 bits
 /// so that it is never negative.
-/** In it: name, version, parent, kind, period, classes by name, patterns in their order; numbers by
- * their bit patterns, little end first, every NaN the same. Not in it: utime, which is a time stamp
- * of the content. */
+/** In it: name, version, parent, channels, period, classes by name, patterns in their order;
+ * numbers by their bit patterns, little end first, every NaN the same. Not in it: utime, which is a
+ * time stamp of the content. */
 int64_t checksumOf(const PatternSetContent& content) {
   Hash hash;
   hash.add(content.name);
   hash.add(content.version);
   hash.add(content.parent_version);
-  hash.add(static_cast<int64_t>(content.kind));
+  addChannels(hash, content.channels);
   hash.add(content.period_us);
   std::vector<const MotionClass*> classes;
   for (const MotionClass& motion : content.classes) classes.push_back(&motion);
   std::sort(classes.begin(), classes.end(),
             [](const MotionClass* a, const MotionClass* b) { return a->name < b->name; });
   hash.add(static_cast<uint64_t>(classes.size()));
-  for (const MotionClass* motion : classes) addClass(hash, *motion);
+  for (const MotionClass* motion : classes) addClass(hash, *motion, content.channels.size());
   hash.add(static_cast<uint64_t>(content.patterns.size()));
-  for (const MotionPattern& pattern : content.patterns) addPattern(hash, pattern);
+  for (const MotionPattern& pattern : content.patterns)
+    addPattern(hash, pattern, content.channels.size());
   return static_cast<int64_t>(hash.value() & 0x7fffffffffffffffU);
 }
 

@@ -14,31 +14,16 @@
 #include <vector>
 
 #include "common/geometry/se2.hpp"
+#include "common/pattern/command.hpp"
 
 namespace tread {
-
-/// What a command means: motor power or track speed.
-enum class CommandKind : int16_t { kPower = 1, kTrackSpeed = 2 };
-
-/// One command u_t: left and right track, power -1..1 [1] or track speed [m/s], + forward.
-struct TrackCommand {
-  double left = 0.0;
-  double right = 0.0;
-};
-
-inline bool operator==(const TrackCommand& a, const TrackCommand& b) {
-  return a.left == b.left && a.right == b.right;
-}
-inline bool operator!=(const TrackCommand& a, const TrackCommand& b) {
-  return !(a == b);
-}
 
 /// A steady motion in which patterns begin and end (a trim): what came before decides what a
 /// pattern does.
 struct MotionClass {
-  std::string name;     ///< for instance rest, cruise, reverse
-  Twist2 twist;         ///< v_body of the steady motion
-  TrackCommand steady;  ///< the command that keeps it
+  std::string name;  ///< for instance rest, cruise, reverse
+  Twist2 twist;      ///< v_body of the steady motion
+  Command steady;    ///< the command that keeps it
 
   /// Whether the vehicle stands in it: less than 0.02 m/s and 0.02 rad/s.
   bool standing() const {
@@ -60,10 +45,10 @@ inline constexpr PoseCovariance kUnknownCovariance = {
 struct MotionPattern {
   int id = 0;  ///< unique within its set
   std::string name;
-  std::string entry_class;             ///< name of the class in which it must begin
-  std::string exit_class;              ///< and of the one in which it ends
-  std::vector<TrackCommand> commands;  ///< U = (u_1..u_T); never changes
-  std::vector<Pose2> trajectory;       ///< R = (r_1..r_T): T_start_body after u_t, yaw unwrapped
+  std::string entry_class;        ///< name of the class in which it must begin
+  std::string exit_class;         ///< and of the one in which it ends
+  std::vector<Command> commands;  ///< U = (u_1..u_T); never changes
+  std::vector<Pose2> trajectory;  ///< R = (r_1..r_T): T_start_body after u_t, yaw unwrapped
   /// Of the prediction r_T: all six finite, or all six NaN = unknown.
   PoseCovariance end_covariance = kUnknownCovariance;
   int times_learned = 0;  ///< executions of this very pattern that changed R
@@ -79,7 +64,7 @@ struct PatternSetContent {
   int64_t version = 1;         ///< counts up for ever; >= 1
   int64_t parent_version = 0;  ///< 0 = none
   int64_t utime = 0;           ///< [us] of the newest measurement that is in it; 0 = shipped
-  CommandKind kind = CommandKind::kPower;
+  CommandChannels channels = trackChannels(CommandKind::kPower);
   int64_t period_us = 50'000;  ///< each command is held this long
   std::vector<MotionClass> classes;
   std::vector<MotionPattern> patterns;
@@ -91,11 +76,12 @@ class PatternSet {
  public:
   /// Checks and freezes. On failure returns nothing and one clear line in `why`: pattern, what,
   /// what is allowed.
-  /** Checked: names and ids unique; T >= 1 and |U| = |R|; all numbers finite; commands within the
-   * kind's range (power -1..1, track speed +-20 m/s); steps of R at most 20 m/s and 20 rad/s, the
+  /** Checked: names and ids unique; T >= 1 and |U| = |R|; all numbers finite; one to eight
+   * channels, their ranges within commandLimit() of their kinds; commands within the ranges and 0
+   * beyond the last channel; steps of R at most 20 m/s and 20 rad/s, the
    * first one taken from the origin; classes exist and each is used by a pattern (the bus carries
    * classes only with patterns); version >= 1; period 5 ms..1 s; at most 1000 patterns of at most
-   * 1000 samples. */
+   * 1000 samples, and 2000 numbers in their commands. */
   static std::optional<PatternSet> make(PatternSetContent content, std::string& why);
 
   const PatternSetContent& content() const { return *content_; }
@@ -134,17 +120,15 @@ std::vector<double> restToRestLengths(const PatternSet& set);
 
 /// What PatternSet::make allows; the file reader tells people the same limits.
 struct PatternLimits {
-  static constexpr double kMaxSpeed = 20.0;       ///< [m/s], track commands, twists and steps of R
-  static constexpr double kMaxYawRate = 20.0;     ///< [rad/s]
-  static constexpr int64_t kMinPeriodUs = 5'000;  ///< [us]
+  static constexpr double kMaxSpeed = 20.0;           ///< [m/s], twists and steps of R
+  static constexpr double kMaxYawRate = 20.0;         ///< [rad/s]
+  static constexpr int64_t kMinPeriodUs = 5'000;      ///< [us]
   static constexpr int64_t kMaxPeriodUs = 1'000'000;  ///< [us]
   static constexpr size_t kMaxPatterns = 1000;
   static constexpr size_t kMaxSamples = 1000;
+  static constexpr size_t kMaxNumbers = 2000;  ///< samples x channels: a PROGRAM holds no more
   static constexpr size_t kMaxNameLength = 64;
 };
-
-/// Largest magnitude of a command of a kind: 1 for power, PatternLimits::kMaxSpeed for track speed.
-double commandLimit(CommandKind kind);
 
 /// One thing that is wrong in a set, and where, so that a file reader can point at the line.
 struct PatternProblem {

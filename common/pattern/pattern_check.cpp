@@ -48,13 +48,41 @@ Finding nameProblem(const std::string& name) {
                        "either end"}};
 }
 
-std::string commandProblem(const TrackCommand& command, CommandKind kind) {
-  const double limit = commandLimit(kind);
-  const char* unit = kind == CommandKind::kPower ? "" : " m/s";
-  for (const double value : {command.left, command.right}) {
-    if (!(std::abs(value) <= limit))  // also catches NaN
-      return "command " + number(value) + unit + "; allowed is -" + number(limit) + " to " +
-             number(limit) + unit;
+std::string commandProblem(const Command& command, const CommandChannels& channels) {
+  for (size_t i = 0; i < Command::kMaxChannels; ++i) {
+    const double value = command[i];
+    if (i >= channels.size()) {
+      if (value != 0.0) return "command beyond the last channel; leave it 0";
+      continue;
+    }
+    const CommandChannel& channel = channels[i];
+    if (value >= channel.lowest && value <= channel.highest) continue;  // not for NaN
+    const std::string unit = unitOf(channel.kind);
+    const std::string what = kindOfTracks(channels) ? "command " : channel.name + " command ";
+    return what + number(value) + unit + "; allowed is " + number(channel.lowest) + " to " +
+           number(channel.highest) + unit;
+  }
+  return {};
+}
+
+Finding channelProblem(const CommandChannels& channels) {
+  if (channels.empty() || channels.size() > Command::kMaxChannels)
+    return {{"channels", std::to_string(channels.size()) + " command channels; allowed are 1 to " +
+                             std::to_string(Command::kMaxChannels)}};
+  std::set<std::string> names;
+  for (const CommandChannel& channel : channels) {
+    if (nameOf(channel.kind)[0] == '\0')
+      return {{"kind", "unknown command kind; allowed are power, track speed and steering angle"}};
+    if (!isName(channel.name) || !names.insert(channel.name).second)
+      return {{"channels", "channel " + quoted(channel.name) +
+                               "; each channel has a name of its own in printable ASCII"}};
+    const double limit = commandLimit(channel.kind);
+    if (!(channel.lowest >= -limit && channel.lowest <= 0.0 && channel.highest >= 0.0 &&
+          channel.highest <= limit && channel.lowest < channel.highest))
+      return {{"channels", "channel " + quoted(channel.name) + " from " + number(channel.lowest) +
+                               " to " + number(channel.highest) +
+                               "; a range holds 0 and lies within +-" + number(limit) +
+                               unitOf(channel.kind)}};
   }
   return {};
 }
@@ -80,8 +108,7 @@ Finding setProblem(const PatternSetContent& content) {
                                    std::to_string(content.version)}};
   if (content.utime < 0)
     return {{"utime", "utime " + std::to_string(content.utime) + " us; allowed is 0 or later"}};
-  if (content.kind != CommandKind::kPower && content.kind != CommandKind::kTrackSpeed)
-    return {{"kind", "unknown command kind; allowed are power and track speed"}};
+  if (Finding finding = channelProblem(content.channels)) return finding;
   if (content.period_us < PatternLimits::kMinPeriodUs ||
       content.period_us > PatternLimits::kMaxPeriodUs)
     return {{"period_us", "period " + std::to_string(content.period_us) + " us; allowed is " +
@@ -97,7 +124,7 @@ Finding classProblem(const MotionClass& motion, const PatternSetContent& content
   if (Finding finding = nameProblem(motion.name)) return finding;
   if (const std::string problem = twistProblem(motion.twist); !problem.empty())
     return {{"twist", problem}};
-  if (const std::string problem = commandProblem(motion.steady, content.kind); !problem.empty())
+  if (const std::string problem = commandProblem(motion.steady, content.channels); !problem.empty())
     return {{"steady", "steady " + problem}};
   const auto uses = [&](const MotionPattern& pattern) {
     return pattern.entry_class == motion.name || pattern.exit_class == motion.name;
@@ -116,11 +143,15 @@ std::string stepProblem(const Pose2& from, const Pose2& to, double period) {
   return problem.empty() ? problem : "the trajectory jumps: " + problem;
 }
 
-Finding lengthProblem(const MotionPattern& pattern) {
+Finding lengthProblem(const MotionPattern& pattern, size_t channels) {
   const size_t count = pattern.commands.size();
   if (count == 0 || count > PatternLimits::kMaxSamples)
     return {{"commands", std::to_string(count) + " commands; allowed are 1 to " +
                              std::to_string(PatternLimits::kMaxSamples)}};
+  if (count * channels > PatternLimits::kMaxNumbers)
+    return {{"commands", std::to_string(count) + " commands of " + std::to_string(channels) +
+                             " channels; allowed are " +
+                             std::to_string(PatternLimits::kMaxNumbers) + " numbers"}};
   if (pattern.trajectory.size() != count)
     return {{"trajectory", std::to_string(count) + " commands but " +
                                std::to_string(pattern.trajectory.size()) +
@@ -129,26 +160,29 @@ Finding lengthProblem(const MotionPattern& pattern) {
 }
 
 /// Whether a sample is right beyond doubt; most are, and need no words. NaN is in doubt.
-bool surelyRight(const TrackCommand& command, double command_limit, const Pose2& from,
+bool surelyRight(const Command& command, const CommandChannels& channels, const Pose2& from,
                  const Pose2& to, double period) {
+  for (size_t i = 0; i < channels.size(); ++i)
+    if (!(command[i] >= channels[i].lowest && command[i] <= channels[i].highest)) return false;
+  for (size_t i = channels.size(); i < Command::kMaxChannels; ++i)
+    if (command[i] != 0.0) return false;
   const double longest = 0.999 * PatternLimits::kMaxSpeed * period;
   const double dx = to.x - from.x, dy = to.y - from.y;
-  return std::abs(command.left) <= command_limit && std::abs(command.right) <= command_limit &&
-         dx * dx + dy * dy <= longest * longest &&
+  return dx * dx + dy * dy <= longest * longest &&
          std::abs(to.yaw - from.yaw) <= 0.999 * PatternLimits::kMaxYawRate * period;
 }
 
-Finding seriesProblem(const MotionPattern& pattern, CommandKind kind, double period) {
-  if (Finding finding = lengthProblem(pattern)) return finding;
-  const double command_limit = commandLimit(kind);
+Finding seriesProblem(const MotionPattern& pattern, const CommandChannels& channels,
+                      double period) {
+  if (Finding finding = lengthProblem(pattern, channels.size())) return finding;
   Pose2 last;
   for (size_t i = 0; i < pattern.commands.size(); ++i) {
-    if (surelyRight(pattern.commands[i], command_limit, last, pattern.trajectory[i], period)) {
+    if (surelyRight(pattern.commands[i], channels, last, pattern.trajectory[i], period)) {
       last = pattern.trajectory[i];
       continue;
     }
     const std::string sample = "sample " + std::to_string(i + 1) + ": ";
-    if (const std::string problem = commandProblem(pattern.commands[i], kind); !problem.empty())
+    if (const std::string problem = commandProblem(pattern.commands[i], channels); !problem.empty())
       return {{"commands", sample + problem}};
     const Pose2& pose = pattern.trajectory[i];
     if (const std::string problem = stepProblem(last, pose, period); !problem.empty())
@@ -194,7 +228,7 @@ Finding patternProblem(const MotionPattern& pattern, const PatternSetContent& co
              "times learned " + std::to_string(pattern.times_learned) + "; allowed is 0 or more"}};
   if (Finding finding = joinProblem(pattern, content)) return finding;
   const double period = static_cast<double>(content.period_us) * 1e-6;
-  if (Finding finding = seriesProblem(pattern, content.kind, period)) return finding;
+  if (Finding finding = seriesProblem(pattern, content.channels, period)) return finding;
   return covarianceProblem(pattern.end_covariance);
 }
 
@@ -231,10 +265,6 @@ std::optional<PatternProblem> firstPatternProblem(const PatternSetContent& conte
 }
 
 }  // namespace
-
-double commandLimit(CommandKind kind) {
-  return kind == CommandKind::kPower ? 1.0 : PatternLimits::kMaxSpeed;
-}
 
 std::string PatternProblem::line(const PatternSetContent& content) const {
   switch (place) {

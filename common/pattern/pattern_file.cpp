@@ -34,11 +34,31 @@ constexpr const char* kHeading =
     "#   each sample in the frame of the start; as many rows as samples. end_covariance: xx xy "
     "xyaw yy yyaw\n"
     "#   yawyaw of the last pose [m2, m rad, rad2]; leave it out if it is unknown.\n";
+// Of a vehicle that has no two tracks.
+constexpr const char* kChannelsHeading =
+    "# A set of motion patterns. Edit it with any editor; whoever reads it checks it.\n"
+    "# channels: what a command consists of: power (1), track_speed (m/s) or steering_angle (rad, "
+    "+ left).\n"
+    "# period_us: how long one sample is held. classes: steady motions in which patterns begin and "
+    "end:\n"
+    "#   twist = v_x, v_y [m/s], omega [rad/s]; steady = the command that keeps it.\n"
+    "# commands: [a value for each channel, samples] in their order. trajectory: [x, y, yaw] in m "
+    "and rad,\n"
+    "#   the pose after each sample in the frame of the start; as many rows as samples. "
+    "end_covariance: xx\n"
+    "#   xy xyaw yy yyaw yawyaw of the last pose [m2, m rad, rad2]; leave it out if it is "
+    "unknown.\n";
 
-std::vector<TrackCommand> expand(const Rows& rows, const ConfigReader& reader) {
-  std::vector<TrackCommand> commands;
+Command commandOf(const std::vector<double>& values, size_t channels) {
+  Command command;
+  for (size_t i = 0; i < channels; ++i) command[i] = values[i];
+  return command;
+}
+
+std::vector<Command> expand(const Rows& rows, size_t channels, const ConfigReader& reader) {
+  std::vector<Command> commands;
   for (size_t i = 0; i < rows.size(); ++i) {
-    const double samples = rows[i][2];
+    const double samples = rows[i][channels];
     const auto limit = static_cast<double>(PatternLimits::kMaxSamples - commands.size());
     if (samples < 1.0 || samples > limit || samples != std::floor(samples))
       throw reader.error("commands", "row " + std::to_string(i + 1) + " is held for " +
@@ -46,24 +66,24 @@ std::vector<TrackCommand> expand(const Rows& rows, const ConfigReader& reader) {
                                          " samples; allowed are whole numbers from 1, together up "
                                          "to " +
                                          std::to_string(PatternLimits::kMaxSamples));
-    commands.insert(commands.end(), static_cast<size_t>(samples), {rows[i][0], rows[i][1]});
+    commands.insert(commands.end(), static_cast<size_t>(samples), commandOf(rows[i], channels));
   }
   return commands;
 }
 
-MotionClass readClass(ConfigReader& reader) {
+MotionClass readClass(ConfigReader& reader, size_t channels) {
   MotionClass motion;
   reader.text("name", motion.name, true);
   std::vector<double> twist;
   reader.numbers("twist", twist, 3, kAnyNumber, "", true);
   motion.twist = {twist[0], twist[1], twist[2]};
   std::vector<double> steady;
-  reader.numbers("steady", steady, 2, kAnyNumber, "", true);
-  motion.steady = {steady[0], steady[1]};
+  reader.numbers("steady", steady, channels, kAnyNumber, "", true);
+  motion.steady = commandOf(steady, channels);
   return motion;
 }
 
-MotionPattern readPattern(ConfigReader& reader) {
+MotionPattern readPattern(ConfigReader& reader, size_t channels) {
   MotionPattern pattern;
   int64_t id = 0;
   reader.integer("id", id, kInt32, "", true);
@@ -80,12 +100,32 @@ MotionPattern readPattern(ConfigReader& reader) {
     std::copy(covariance.begin(), covariance.end(), pattern.end_covariance.begin());
   }
   Rows commands;
-  reader.table("commands", commands, 3, kAnyNumber, "", true);
-  pattern.commands = expand(commands, reader);
+  reader.table("commands", commands, channels + 1, kAnyNumber, "", true);
+  pattern.commands = expand(commands, channels, reader);
   Rows trajectory;
   reader.table("trajectory", trajectory, 3, kAnyNumber, "", true);
   for (const auto& row : trajectory) pattern.trajectory.push_back({row[0], row[1], row[2]});
   return pattern;
+}
+
+CommandChannels readChannels(ConfigReader& reader) {
+  CommandChannels channels;
+  for (ConfigReader& section : reader.sections("channels", true)) {
+    CommandChannel& channel = channels.emplace_back();
+    std::string kind;
+    section.text("name", channel.name, true);
+    section.choice("kind", kind, {"power", "track_speed", "steering_angle"}, true);
+    channel.kind = *kindNamed(kind);
+    channel.lowest = -commandLimit(channel.kind);
+    channel.highest = commandLimit(channel.kind);
+    section.number("lowest", channel.lowest, kAnyNumber, "");
+    section.number("highest", channel.highest, kAnyNumber, "");
+  }
+  if (channels.size() > Command::kMaxChannels)
+    throw reader.error("channels", std::to_string(channels.size()) +
+                                       " channels; allowed are up to " +
+                                       std::to_string(Command::kMaxChannels));
+  return channels;
 }
 
 void readHead(ConfigReader& reader, PatternSetContent& content) {
@@ -93,19 +133,24 @@ void readHead(ConfigReader& reader, PatternSetContent& content) {
   reader.integer("version", content.version, kCount, "");
   reader.integer("parent_version", content.parent_version, kCount, "");
   reader.integer("utime", content.utime, kCount, "us");
-  std::string kind;
-  reader.choice("kind", kind, {"power", "track_speed"}, true);
-  content.kind = kind == "power" ? CommandKind::kPower : CommandKind::kTrackSpeed;
+  if (reader.has("channels")) {
+    content.channels = readChannels(reader);
+  } else {
+    std::string kind;
+    reader.choice("kind", kind, {"power", "track_speed"}, true);
+    content.channels = trackChannels(*kindNamed(kind));
+  }
   reader.integer("period_us", content.period_us, kCount, "us", true);
 }
 
 PatternSet readSet(ConfigReader& reader) {
   PatternSetContent content;
   readHead(reader, content);
+  const size_t channels = content.channels.size();
   std::vector<ConfigReader> classes = reader.sections("classes", true);
-  for (ConfigReader& motion : classes) content.classes.push_back(readClass(motion));
+  for (ConfigReader& motion : classes) content.classes.push_back(readClass(motion, channels));
   std::vector<ConfigReader> patterns = reader.sections("patterns", true);
-  for (ConfigReader& pattern : patterns) content.patterns.push_back(readPattern(pattern));
+  for (ConfigReader& pattern : patterns) content.patterns.push_back(readPattern(pattern, channels));
   reader.finish();
   if (const auto problem = firstProblem(content)) {
     const ConfigReader& place =
@@ -124,19 +169,39 @@ std::string list(const std::vector<double>& values) {
   return "[" + text + "]";
 }
 
-bool sameBits(const TrackCommand& a, const TrackCommand& b) {
-  return a.left == b.left && a.right == b.right && std::signbit(a.left) == std::signbit(b.left) &&
-         std::signbit(a.right) == std::signbit(b.right);
+bool sameBits(const Command& a, const Command& b) {
+  for (size_t i = 0; i < Command::kMaxChannels; ++i)
+    if (a[i] != b[i] || std::signbit(a[i]) != std::signbit(b[i])) return false;
+  return true;
 }
 
-void writeSeries(std::ostringstream& out, const MotionPattern& pattern) {
+std::vector<double> valuesOf(const Command& command, size_t channels) {
+  std::vector<double> values;
+  for (size_t i = 0; i < channels; ++i) values.push_back(command[i]);
+  return values;
+}
+
+void writeChannels(std::ostringstream& out, const CommandChannels& channels) {
+  if (const auto kind = kindOfTracks(channels)) {
+    out << "kind: " << nameOf(*kind) << '\n';
+    return;
+  }
+  out << "channels:\n";
+  for (const CommandChannel& channel : channels)
+    out << "  - {name: " << formatText(channel.name) << ", kind: " << nameOf(channel.kind)
+        << ", lowest: " << formatNumber(channel.lowest)
+        << ", highest: " << formatNumber(channel.highest) << "}\n";
+}
+
+void writeSeries(std::ostringstream& out, const MotionPattern& pattern, size_t channels) {
   out << "    commands:\n";
   for (size_t i = 0; i < pattern.commands.size();) {
     size_t end = i + 1;
     while (end < pattern.commands.size() && sameBits(pattern.commands[i], pattern.commands[end]))
       ++end;
-    const TrackCommand& command = pattern.commands[i];
-    out << "      - " << list({command.left, command.right, static_cast<double>(end - i)}) << '\n';
+    std::vector<double> row = valuesOf(pattern.commands[i], channels);
+    row.push_back(static_cast<double>(end - i));
+    out << "      - " << list(row) << '\n';
     i = end;
   }
   out << "    trajectory:\n";
@@ -144,7 +209,7 @@ void writeSeries(std::ostringstream& out, const MotionPattern& pattern) {
     out << "      - " << list({pose.x, pose.y, pose.yaw}) << '\n';
 }
 
-void writePattern(std::ostringstream& out, const MotionPattern& pattern) {
+void writePattern(std::ostringstream& out, const MotionPattern& pattern, size_t channels) {
   out << "  - id: " << pattern.id << '\n';
   out << "    name: " << formatText(pattern.name) << '\n';
   out << "    entry: " << formatText(pattern.entry_class) << '\n';
@@ -153,7 +218,7 @@ void writePattern(std::ostringstream& out, const MotionPattern& pattern) {
   const PoseCovariance& covariance = pattern.end_covariance;
   if (!std::isnan(covariance[0]))
     out << "    end_covariance: " << list({covariance.begin(), covariance.end()}) << '\n';
-  writeSeries(out, pattern);
+  writeSeries(out, pattern, channels);
 }
 
 }  // namespace
@@ -171,21 +236,22 @@ PatternSet parsePatterns(const std::string& text, const std::string& name) {
 std::string formatPatterns(const PatternSet& set) {
   const PatternSetContent& content = set.content();
   std::ostringstream out;
-  out << kHeading;
+  out << (kindOfTracks(content.channels) ? kHeading : kChannelsHeading);
   out << "name: " << formatText(content.name) << '\n';
   out << "version: " << content.version << '\n';
   out << "parent_version: " << content.parent_version << '\n';
   out << "utime: " << content.utime << '\n';
-  out << "kind: " << (content.kind == CommandKind::kPower ? "power" : "track_speed") << '\n';
+  writeChannels(out, content.channels);
   out << "period_us: " << content.period_us << '\n';
   out << "classes:\n";
   for (const MotionClass& motion : content.classes) {
     out << "  - name: " << formatText(motion.name) << '\n';
     out << "    twist: " << list({motion.twist.v_x, motion.twist.v_y, motion.twist.omega}) << '\n';
-    out << "    steady: " << list({motion.steady.left, motion.steady.right}) << '\n';
+    out << "    steady: " << list(valuesOf(motion.steady, content.channels.size())) << '\n';
   }
   out << "patterns:\n";
-  for (const MotionPattern& pattern : content.patterns) writePattern(out, pattern);
+  for (const MotionPattern& pattern : content.patterns)
+    writePattern(out, pattern, content.channels.size());
   return out.str();
 }
 

@@ -32,7 +32,7 @@ PatternSet patternSet(const std::vector<SurfaceSummary>& surfaces, const Pattern
                       double baseline) {
   PatternSetContent content;
   content.name = recipe.name;
-  content.kind = CommandKind::kTrackSpeed;
+  content.channels = trackChannels(CommandKind::kTrackSpeed);
   content.period_us = std::llround(recipe.period * 1e6);
   for (size_t p = 0; p < recipe.patterns.size(); ++p) {
     const TwistLine mean = meanProfile(surfaces, p);

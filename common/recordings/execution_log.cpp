@@ -144,20 +144,22 @@ class LogMaker {
 
   void addMotor(const MotionPattern& pattern, int64_t start, int64_t end, int64_t last) {
     const int64_t period = shipped_.content().period_us;
+    const std::vector<CommandKind> kinds = kindsOf(shipped_.content().channels);
     for (int64_t utime = now_; utime <= last; utime += kMotorPeriodUs) {
       auto motor = blank<motor_t>();
       motor.utime = utime;
       motor.bridge_state = motor_t::STATE_DRIVING;
-      motor.motor_command_kind = static_cast<int16_t>(shipped_.content().kind);
-      TrackCommand command = utime < start ? pattern.commands.front() : pattern.commands.back();
+      Command command = utime < start ? pattern.commands.front() : pattern.commands.back();
       if (utime >= start && utime < end) {
         motor.motor_run_id = kRunId;
         motor.execution_id = execution_;
         motor.command_index = static_cast<int32_t>((utime - start) / period);
         command = pattern.commands[static_cast<size_t>(motor.command_index)];
       }
-      motor.command_left = static_cast<float>(command.left);
-      motor.command_right = static_cast<float>(command.right);
+      for (size_t i = 0; i < kinds.size(); ++i) {
+        motor.channel_kind[i] = static_cast<int16_t>(kinds[i]);
+        motor.command[i] = static_cast<float>(command[i]);
+      }
       log_.add(kMotor, motor);
     }
   }

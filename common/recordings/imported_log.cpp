@@ -170,14 +170,15 @@ class ImportMaker {
   static void fill(motor_t& motor, CommandKind kind, const DriveSample& sample) {
     motor.bridge_state = sample.automatic ? motor_t::STATE_DRIVING : motor_t::STATE_DISARMED;
     motor.state_reason = sample.automatic ? "" : "idle or driven by the operator";
-    if (sample.automatic) motor.motor_command_kind = static_cast<int16_t>(kind);
-    motor.command_left = static_cast<float>(sample.command.left);
-    motor.command_right = static_cast<float>(sample.command.right);
+    if (sample.automatic)
+      motor.channel_kind[0] = motor.channel_kind[1] = static_cast<int16_t>(kind);
+    motor.command[0] = static_cast<float>(sample.command.left);
+    motor.command[1] = static_cast<float>(sample.command.right);
     motor.battery_voltage = static_cast<float>(sample.voltage);
-    motor.current_left = static_cast<float>(sample.current.left);
-    motor.current_right = static_cast<float>(sample.current.right);
-    motor.track_speed_left = static_cast<float>(sample.speed.left);
-    motor.track_speed_right = static_cast<float>(sample.speed.right);
+    motor.current[0] = static_cast<float>(sample.current.left);
+    motor.current[1] = static_cast<float>(sample.current.right);
+    motor.measured[0] = static_cast<float>(sample.speed.left);
+    motor.measured[1] = static_cast<float>(sample.speed.right);
   }
 
   /// Names the execution that a sample belongs to, if it does.

@@ -171,7 +171,7 @@ void writePatterns(const std::string& path, const PatternSet& patterns) {
 std::string executedDifference(const PatternSet& recorded, const PatternSet& executed) {
   const PatternSetContent& there = recorded.content();
   const PatternSetContent& here = executed.content();
-  if (there.kind != here.kind) return "another kind of command";
+  if (there.channels != here.channels) return "another kind of command";
   if (there.period_us != here.period_us) return "another period";
   if (there.patterns.size() != here.patterns.size())
     return std::to_string(there.patterns.size()) + " patterns, not " +

@@ -206,9 +206,10 @@ MotionClass classOf(const VehicleModel& model, const std::string& name,
 
 void predict(const VehicleModel& model, double period, const MotionClass& entry,
              MotionPattern& pattern) {
-  const EntryState state = steadyEntry(model, entry.steady);
-  pattern.trajectory = simulate(model, pattern.commands, period, state);
-  pattern.end_covariance = endCovariance(model, pattern.commands, period, state);
+  const EntryState state = steadyEntry(model, entry.steady.tracks());
+  const std::vector<TrackCommand> commands = tracksOf(pattern.commands);
+  pattern.trajectory = simulate(model, commands, period, state);
+  pattern.end_covariance = endCovariance(model, commands, period, state);
 }
 
 namespace {

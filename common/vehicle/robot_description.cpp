@@ -125,6 +125,15 @@ FootprintSize readFootprint(ConfigReader reader) {
   return size;
 }
 
+CommandChannels DriveDescription::channels() const {
+  CommandChannels channels = trackChannels(kind);
+  for (CommandChannel& channel : channels) {
+    channel.lowest = -max_command;
+    channel.highest = max_command;
+  }
+  return channels;
+}
+
 RobotDescription readRobot(ConfigReader& reader) {
   ConfigReader robot = reader.file("robot", "robot.yaml");
   return readDescription(robot);

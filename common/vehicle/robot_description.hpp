@@ -28,6 +28,8 @@ struct DriveDescription {
 
   /// Command at which the controller gives all it can: power 1, or the full track speed [m/s].
   double fullCommand() const { return kind == CommandKind::kPower ? 1.0 : full_speed; }
+  /// What a command to the drive consists of, in the range that max_command allows.
+  CommandChannels channels() const;
 };
 
 /// What the robot does when its operator is lost: silent without having let go.

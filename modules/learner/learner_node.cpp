@@ -279,11 +279,9 @@ void LearnerNode::hear(const motor_t& motor) {
   const bool by_hand = motor.bridge_state == motor_t::STATE_MANUAL;
   const bool lost = motor.seq != seq_motor_ + 1;
   seq_motor_ = motor.seq;
-  hand_.add(
-      {motor.utime,
-       {static_cast<double>(motor.command_left), static_cast<double>(motor.command_right)},
-       by_hand && motor.motor_command_kind == static_cast<int16_t>(learner_.set().content().kind)},
-      lost);
+  hand_.add({motor.utime, commandFrom(motor),
+             by_hand && kindsFrom(motor) == kindsOf(learner_.set().content().channels)},
+            lost);
   auto message = blank<execution_t>();
   for (const HandDrivenPattern& driven : hand_.take(learner_.set(), learner_.learnsParts())) {
     auto record = blank<execution_record_t>();
@@ -359,7 +357,8 @@ ExecutionCut LearnerNode::cutOf(const execution_record_t& record,
   cut.completed = record.outcome == execution_record_t::OUTCOME_COMPLETED;
   cut.outcome_reason = record.outcome_reason;
   const PatternSet& set = learner_.set();
-  cut.unexpected_command = commands_.unexpectedCommand(keyOf(record), pattern, set.content().kind);
+  cut.unexpected_command =
+      commands_.unexpectedCommand(keyOf(record), pattern, set.content().channels);
   // Where a failsafe stops the robot it may have been held: that is no ground.
   cut.beginning = learner_.learnsParts() && !cut.completed &&
                   (cut.outcome_reason == kStoppedByPlanner || cut.outcome_reason == kLeftByHand);

@@ -116,11 +116,16 @@ ProgramSlot fromMessage(const program_slot_t& message) {
   slot.execution_id = message.execution_id;
   slot.pattern_id = message.slot_pattern_id;
   slot.set_version = message.slot_set_version;
-  slot.kind = static_cast<CommandKind>(message.command_kind);
+  for (const int16_t kind : message.channel_kind)
+    slot.kinds.push_back(static_cast<CommandKind>(kind));
   slot.period_us = message.period;
-  slot.series.reserve(message.left.size());
-  for (size_t i = 0; i < message.left.size(); ++i)
-    slot.series.push_back({message.left[i], message.right[i]});
+  slot.series.reserve(message.command.size());
+  for (const std::vector<float>& values : message.command) {
+    Command& command = slot.series.emplace_back();
+    // More channels than there can be are refused by their kinds.
+    for (size_t i = 0; i < std::min(values.size(), Command::kMaxChannels); ++i)
+      command[i] = static_cast<double>(values[i]);
+  }
   return slot;
 }
 
@@ -190,8 +195,7 @@ MotorBridgeConfig readMotorBridgeConfig(ConfigReader& reader) {
   config.bridge.fences = {robot.fences, robot.outline, robot.stopping_time};
   config.bridge.motion = readMotion(reader.section("motion_monitor"), robot);
   config.bridge.manual = readManual(reader.section("manual"), drive);
-  config.bridge.gate.slot.kind = drive.kind;
-  config.bridge.gate.slot.max_command = drive.max_command;
+  config.bridge.gate.slot.channels = drive.channels();
   config.make_controller = readMotorController(reader, drive, config.controller);
   reader.finish();
   config.effective = reader.effective();
@@ -257,22 +261,22 @@ execution_record_t toMessage(const ExecutionRecord& record) {
   return message;
 }
 
-motor_t toMessage(const BridgeOutput& output, const MotorTelemetry& telemetry) {
+motor_t toMessage(const BridgeOutput& output, const MotorTelemetry& telemetry, size_t channels) {
   auto message = blank<motor_t>();
   message.motor_run_id = output.run_id;
   message.execution_id = output.execution_id;
   message.command_index = output.command_index;
   message.bridge_state = toMessage(output.failsafe.state);
   message.state_reason = reasonOf(output.failsafe);
-  message.motor_command_kind = static_cast<int16_t>(output.kind);
-  message.command_left = static_cast<float>(output.command.left);
-  message.command_right = static_cast<float>(output.command.right);
+  for (size_t i = 0; i < output.kinds.size(); ++i)
+    message.channel_kind[i] = static_cast<int16_t>(output.kinds[i]);
+  for (size_t i = 0; i < channels; ++i) {
+    message.command[i] = static_cast<float>(output.command[i]);
+    message.current[i] = static_cast<float>(telemetry.current[i]);
+    message.measured[i] = static_cast<float>(telemetry.measured[i]);
+  }
   message.device_fault = telemetry.device_flags;
   message.battery_voltage = static_cast<float>(telemetry.battery_voltage);
-  message.current_left = static_cast<float>(telemetry.current_left);
-  message.current_right = static_cast<float>(telemetry.current_right);
-  message.track_speed_left = static_cast<float>(telemetry.speed_left);
-  message.track_speed_right = static_cast<float>(telemetry.speed_right);
   return message;
 }
 
@@ -371,7 +375,8 @@ void MotorBridgeNode::writeLink(const std::string& bytes, int64_t utime) {
 
 void MotorBridgeNode::publishMotor(int64_t utime) {
   if (utime < next_motor_ && sameToReaders(output_, published_)) return;
-  motor_t message = toMessage(output_, controller_->telemetry());
+  motor_t message =
+      toMessage(output_, controller_->telemetry(), config_.bridge.gate.slot.channels.size());
   message.utime = utime;
   message.seq = seq_motor_++;
   bus_.publish(kMotor, message);

@@ -53,7 +53,7 @@ ManualNotice fromMessage(const manual_t& message);
 /// One record of EXECUTION.
 execution_record_t toMessage(const ExecutionRecord& record);
 /// MOTOR, without utime and seq.
-motor_t toMessage(const BridgeOutput& output, const MotorTelemetry& telemetry);
+motor_t toMessage(const BridgeOutput& output, const MotorTelemetry& telemetry, size_t channels);
 
 /// The motor_bridge process. PROGRAM, OPERATOR, MANUAL, ARM, ESTOP, INS in; the controller, MOTOR,
 /// EXECUTION, HEALTH, CONFIG out.

@@ -74,7 +74,7 @@ Measurement ExecutionCollector::measure(const execution_record_t& record,
   cut.completed = record.outcome == execution_record_t::OUTCOME_COMPLETED;
   cut.outcome_reason = record.outcome_reason;
   cut.unexpected_command = commands_.unexpectedCommand(
-      {record.record_run_id, record.record_execution_id}, pattern, set_.content().kind);
+      {record.record_run_id, record.record_execution_id}, pattern, set_.content().channels);
   return tread::measure(ins_.history(), cut, pattern, set_.classNamed(pattern.entry_class),
                         set_.content().period_us, limits_);
 }

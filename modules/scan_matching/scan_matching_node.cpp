@@ -8,6 +8,7 @@
 
 #include "common/geometry/se2.hpp"
 #include "common/messages/blank.hpp"
+#include "common/messages/pattern_messages.hpp"
 
 namespace tread::scan_matching {
 namespace {
@@ -209,7 +210,7 @@ void ScanMatchingNode::hear(const ins_t& message) {
 void ScanMatchingNode::hear(const motor_t& message) {
   if (message.utime <= last_motor_) return;
   last_motor_ = message.utime;
-  const bool off = message.command_left == 0.0 && message.command_right == 0.0;
+  const bool off = commandFrom(message) == Command{};
   if (!off) off_since_.reset();
   if (off && !off_since_) off_since_ = message.utime;
 }

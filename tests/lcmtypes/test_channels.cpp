@@ -77,8 +77,7 @@ TEST_CASE("the largest messages that the types promise fit their channels") {
   auto program = testing::sampleOf<program_t>();
   for (program_slot_t* slot : {&program.running, &program.next}) {
     slot->num_commands = 1000;
-    slot->left.assign(1000, 0.0F);
-    slot->right.assign(1000, 0.0F);
+    slot->command.assign(1000, {0.0F, 0.0F});  // as many numbers as a pattern may have
   }
   CHECK(program.getEncodedSize() <= kProgram.max_bytes);
 }

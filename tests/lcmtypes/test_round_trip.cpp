@@ -43,7 +43,7 @@ TEST_CASE("decoded fields have the values that were sent") {
   CHECK(program.lease == 200'000);
   CHECK(program.running.execution_id == 51);
   CHECK(program.next.execution_id == 62);
-  CHECK(program.next.right == std::vector<float>{-0.5F, -0.75F, -1.0F});
+  CHECK(program.next.command[2] == std::vector<float>{1.0F, -1.0F});
   CHECK(program.inputs_heard == 63);
   CHECK(program.newest_input == "INS");
   CHECK(program.newest_input_utime == 1'000'012);

@@ -221,15 +221,15 @@ inline motor_t sampleOf<motor_t>() {
   m.command_index = 33;
   m.bridge_state = motor_t::STATE_DRIVING;
   m.state_reason = "playing";
-  m.motor_command_kind = program_slot_t::KIND_POWER;
-  m.command_left = 0.5F;
-  m.command_right = -0.25F;
+  m.channel_kind[0] = m.channel_kind[1] = program_slot_t::KIND_POWER;
+  m.command[0] = 0.5F;
+  m.command[1] = -0.25F;
   m.device_fault = 16;
   m.battery_voltage = 24.5F;
-  m.current_left = 3.5F;
-  m.current_right = -1.5F;
-  m.track_speed_left = std::numeric_limits<float>::quiet_NaN();
-  m.track_speed_right = 1.25F;
+  m.current[0] = 3.5F;
+  m.current[1] = -1.5F;
+  m.measured[0] = std::numeric_limits<float>::quiet_NaN();
+  m.measured[1] = 1.25F;
   return m;
 }
 
@@ -315,14 +315,18 @@ inline pattern_set_part_t sampleOf<pattern_set_part_t>() {
   m.part_count = 3;
   m.set_pattern_id = 5;
   m.pattern_name = "left";
-  m.set_command_kind = program_slot_t::KIND_TRACK_SPEED;
+  m.num_channels = 2;
+  m.channel_name = {"throttle", "steering"};
+  m.channel_kind = {program_slot_t::KIND_TRACK_SPEED, program_slot_t::KIND_STEERING_ANGLE};
+  m.channel_lowest = {-1.0, -0.5};
+  m.channel_highest = {2.0, 0.5};
   m.set_period = 50'000;
   m.entry_class = "cruise";
   m.exit_class = "rest";
   for (int i = 0; i < 3; ++i) m.entry_twist[i] = 1.0 + i;
   for (int i = 0; i < 3; ++i) m.exit_twist[i] = 0.5 * i;
-  for (int i = 0; i < 2; ++i) m.entry_steady[i] = 0.75 + i;
-  for (int i = 0; i < 2; ++i) m.exit_steady[i] = 0.25 * i;
+  m.entry_steady = {0.75, 1.75};
+  m.exit_steady = {0.0, 0.25};
   m.num_samples = 2;
   m.command = {{0.5, 1.0}, {-0.5, 0.25}};
   m.trajectory = {{0.125, 0.0, 0.25}, {0.25, 0.0625, 0.5}};
@@ -372,11 +376,11 @@ inline program_slot_t sampleOf<program_slot_t>() {
   m.execution_id = 51;
   m.slot_pattern_id = 52;
   m.slot_set_version = 53;
-  m.command_kind = program_slot_t::KIND_POWER;
+  m.num_channels = 2;
+  m.channel_kind = {program_slot_t::KIND_POWER, program_slot_t::KIND_STEERING_ANGLE};
   m.period = 50'000;
   m.num_commands = 3;
-  m.left = {0.5F, 0.75F, 1.0F};
-  m.right = {-0.5F, -0.75F, -1.0F};
+  m.command = {{0.5F, -0.5F}, {0.75F, -0.75F}, {1.0F, -1.0F}};
   return m;
 }
 

@@ -122,9 +122,9 @@ class FakeRobot : public Node {
     motor.motor_run_id = 5;
     motor.execution_id = number + 1;
     motor.command_index = static_cast<int32_t>((utime - startOf(number)) / 50'000);
-    motor.motor_command_kind = 1;
-    motor.command_left = static_cast<float>(command->second.left);
-    motor.command_right =
+    motor.channel_kind[0] = motor.channel_kind[1] = 1;
+    motor.command[0] = static_cast<float>(command->second.left);
+    motor.command[1] =
         static_cast<float>(command->second.right) * (driving_.wrong_commands ? 0.5F : 1.0F);
     bus_.publish(kMotor, motor);
   }

@@ -17,7 +17,7 @@ PatternSet drivenSet() {
   content.name = "driven";
   content.classes = {{"rest", {}, {}}, {"cruise", {1.0, 0.0, 0.0}, {1.0, 1.0}}};
   const auto add = [&](int id, const char* name, const char* entry, const char* exit,
-                       std::vector<TrackCommand> commands) {
+                       std::vector<Command> commands) {
     MotionPattern pattern;
     pattern.id = id;
     pattern.name = name;
@@ -28,13 +28,13 @@ PatternSet drivenSet() {
     pattern.commands = std::move(commands);
     content.patterns.push_back(pattern);
   };
-  add(1, "straight", "cruise", "cruise", std::vector<TrackCommand>(20, {1.0, 1.0}));
-  add(2, "short", "cruise", "cruise", std::vector<TrackCommand>(10, {1.0, 1.0}));
-  add(3, "stop", "cruise", "rest", std::vector<TrackCommand>(15, {0.0, 0.0}));
-  std::vector<TrackCommand> turn(20, {0.5, 1.0});
+  add(1, "straight", "cruise", "cruise", std::vector<Command>(20, {1.0, 1.0}));
+  add(2, "short", "cruise", "cruise", std::vector<Command>(10, {1.0, 1.0}));
+  add(3, "stop", "cruise", "rest", std::vector<Command>(15, {0.0, 0.0}));
+  std::vector<Command> turn(20, {0.5, 1.0});
   turn.resize(30, {1.0, 1.0});
   add(4, "left", "cruise", "cruise", turn);
-  add(5, "start", "rest", "cruise", std::vector<TrackCommand>(10, {1.0, 1.0}));
+  add(5, "start", "rest", "cruise", std::vector<Command>(10, {1.0, 1.0}));
   std::string why;
   const auto set = PatternSet::make(content, why);
   INFO(why);
@@ -49,7 +49,7 @@ struct Motors {
   int64_t now = 1'000'000;
   std::vector<HandDrivenPattern> found;
 
-  void give(TrackCommand command, double seconds, bool by_hand = true, bool lost = false) {
+  void give(Command command, double seconds, bool by_hand = true, bool lost = false) {
     for (const int64_t end = now + static_cast<int64_t>(seconds * 1e6); now < end; now += 50'000) {
       watch.add({now, command, by_hand}, lost);
       lost = false;
@@ -84,8 +84,8 @@ struct HandDriver {
       motor.utime = bench.bus.now();
       motor.seq = seq++;
       motor.bridge_state = motor_t::STATE_MANUAL;
-      motor.motor_command_kind = 1;
-      motor.command_left = motor.command_right = command;
+      motor.channel_kind[0] = motor.channel_kind[1] = 1;
+      motor.command[0] = motor.command[1] = command;
       robot.publish(kMotor, motor);
       bench.run(0.02);
     }
@@ -234,7 +234,7 @@ TEST_CASE("the learner learns from what a person drives, through the same gates"
 
 TEST_CASE("a command is steady after half a second of it without a break, whoever gave it") {
   Motors motors;
-  const TrackCommand full{1.0, 1.0};
+  const Command full{1.0, 1.0};
   motors.give({0.0, 0.0}, 1.0, false);
   motors.give(full, 0.45, false);
   REQUIRE_FALSE(motors.watch.steadyBefore(full, motors.now, 50'000));

@@ -148,12 +148,12 @@ TEST_CASE("a command on the motors that is no number is another command, whichev
     motor_t motor{};
     motor.motor_run_id = 5;
     motor.execution_id = 1;
-    motor.motor_command_kind = static_cast<int16_t>(CommandKind::kPower);
-    motor.command_left = static_cast<float>(on_left ? nan : left.commands[0].left);
-    motor.command_right = static_cast<float>(on_left ? left.commands[0].right : nan);
+    motor.channel_kind[0] = motor.channel_kind[1] = static_cast<int16_t>(CommandKind::kPower);
+    motor.command[0] = static_cast<float>(on_left ? nan : left.commands[0][0]);
+    motor.command[1] = static_cast<float>(on_left ? left.commands[0][1] : nan);
     CommandWatch watch;
     watch.add(motor);
-    REQUIRE_FALSE(watch.unexpectedCommand({5, 1}, left, CommandKind::kPower).empty());
+    REQUIRE_FALSE(watch.unexpectedCommand({5, 1}, left, trackChannels(CommandKind::kPower)).empty());
   }
 }
 

@@ -238,7 +238,7 @@ TEST_CASE("the track keeps its turns where the INS wraps yaw") {
 TEST_CASE("the largest speed of a set is that of its fastest class, command or step") {
   REQUIRE(largestSpeed(smallSet()) == Approx(1.0));
   PatternSetContent content = smallContent();
-  content.kind = CommandKind::kTrackSpeed;
+  content.channels = trackChannels(CommandKind::kTrackSpeed);
   content.patterns[0].commands.assign(20, {2.0, 3.0});
   REQUIRE(largestSpeed(checked(content)) == Approx(2.5));
 }

@@ -85,7 +85,7 @@ class Recording {
                      mean[t].yaw + execution[t].yaw / kExecutions};
       content.patterns.push_back(
           pattern(static_cast<int>(p) + 1, "p" + std::to_string(p), {1.0, 1.0}, mean));
-      content.patterns.back().commands = patterns[p];
+      content.patterns.back().commands = commandsOf(patterns[p]);
       content.patterns.back().end_covariance = spreadOf(executions_[p], mean.back());
     }
     set_ = checked(content);

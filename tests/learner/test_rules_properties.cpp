@@ -102,11 +102,11 @@ PatternSet mirrored(const PatternSet& set) {
   PatternSetContent content = set.content();
   for (MotionClass& entry : content.classes) {
     entry.twist = {entry.twist.v_x, -entry.twist.v_y, -entry.twist.omega};
-    std::swap(entry.steady.left, entry.steady.right);
+    std::swap(entry.steady[0], entry.steady[1]);
   }
   for (MotionPattern& pattern : content.patterns) {
     pattern.trajectory = mirrored(pattern.trajectory);
-    for (TrackCommand& command : pattern.commands) std::swap(command.left, command.right);
+    for (Command& command : pattern.commands) std::swap(command[0], command[1]);
     for (const size_t mixed : {1, 2}) pattern.end_covariance[mixed] *= -1.0;
   }
   return checked(content);

@@ -33,7 +33,7 @@ class EndlessPlanner {
   bool endless = true;  ///< false: never names a next slot
   bool stands = false;  ///< true: its programs are empty
   double least_power = 0.2;
-  std::optional<TrackCommand> always;            ///< the same power in each slot instead
+  std::optional<Command> always;                 ///< the same power in each slot instead
   std::function<ProgramSlot(int64_t id)> slots;  ///< or these
   double right = -1.0;  ///< power of the right track, as a share of the left one's
 
@@ -49,7 +49,7 @@ class EndlessPlanner {
   ProgramSlot fresh() {
     ++id_;
     if (slots) return slots(id_);
-    if (always) return makeSlot(id_, commands, always->left, always->right);
+    if (always) return makeSlot(id_, commands, (*always)[0], (*always)[1]);
     const double power = least_power + 0.01 * static_cast<double>(id_ % 50);
     return makeSlot(id_, commands, power, right * power);
   }

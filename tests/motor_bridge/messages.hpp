@@ -19,12 +19,14 @@ inline program_slot_t toMessage(const ProgramSlot& slot) {
   message.execution_id = slot.execution_id;
   message.slot_pattern_id = slot.pattern_id;
   message.slot_set_version = slot.set_version;
-  message.command_kind = static_cast<int16_t>(slot.kind);
+  for (const CommandKind kind : slot.kinds)
+    message.channel_kind.push_back(static_cast<int16_t>(kind));
+  message.num_channels = static_cast<int32_t>(slot.kinds.size());
   message.period = static_cast<int32_t>(slot.period_us);
   message.num_commands = static_cast<int32_t>(slot.series.size());
-  for (const TrackCommand& command : slot.series) {
-    message.left.push_back(static_cast<float>(command.left));
-    message.right.push_back(static_cast<float>(command.right));
+  for (const Command& command : slot.series) {
+    std::vector<float>& values = message.command.emplace_back();
+    for (size_t i = 0; i < slot.kinds.size(); ++i) values.push_back(static_cast<float>(command[i]));
   }
   return message;
 }

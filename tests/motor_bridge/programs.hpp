@@ -15,9 +15,9 @@ inline ProgramSlot makeSlot(int64_t execution_id, int commands, double left = 0.
   slot.execution_id = execution_id;
   slot.pattern_id = static_cast<int32_t>(100 + execution_id);
   slot.set_version = 7;
-  slot.kind = CommandKind::kPower;
+  slot.kinds = kindsOf(trackChannels(CommandKind::kPower));
   slot.period_us = 50'000;
-  slot.series.assign(static_cast<size_t>(commands), TrackCommand{left, right});
+  slot.series.assign(static_cast<size_t>(commands), Command{left, right});
   return slot;
 }
 

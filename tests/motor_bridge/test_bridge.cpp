@@ -47,7 +47,7 @@ TEST_CASE("it gives the planner's commands, unchanged, with their execution and 
   CHECK(world.out.execution_id == world.last().execution_id);
   CHECK(world.out.command_index == since_start / 50'000);
   CHECK(world.out.run_id == 1);
-  CHECK(world.out.kind == CommandKind::kPower);
+  CHECK(world.out.kinds == kindsOf(trackChannels(CommandKind::kPower)));
 }
 
 TEST_CASE("without ARM nothing ever moves") {
@@ -214,9 +214,9 @@ TEST_CASE("one bad slot in one program stops, whichever slot it is") {
       world.drive();
       Program program = world.planner.plan(world.now + 1, newest(world.bridge.executions()));
       ProgramSlot& slot = in_next ? program.next : program.running;
-      if (fault == 0) slot.series[1].left = std::numeric_limits<double>::quiet_NaN();
-      if (fault == 1) slot.series[1].left = 1.5;
-      if (fault == 2) slot.kind = CommandKind::kTrackSpeed;
+      if (fault == 0) slot.series[1][0] = std::numeric_limits<double>::quiet_NaN();
+      if (fault == 1) slot.series[1][0] = 1.5;
+      if (fault == 2) slot.kinds = kindsOf(trackChannels(CommandKind::kTrackSpeed));
       if (fault == 3) slot.period_us = 33'000;
       world.bridge.receive(program, world.now + 1);
       CHECK(timeToZero(world) == BridgeWorld::kStep);
@@ -312,7 +312,7 @@ TEST_CASE("an ARM given before the bridge started does not arm it, one given aft
 TEST_CASE("commands leave at 50 Hz, on every change, and zero at 10 Hz a while after a stop") {
   BridgeWorld world;
   world.drive();
-  TrackCommand sent = world.out.command;
+  Command sent = world.out.command;
   int sends = 0;
   for (int i = 0; i < 1'000; ++i) {
     world.step();

@@ -86,13 +86,13 @@ class Chaos {
     ProgramSlot& slot = chance(0.5) ? program.running : program.next;
     switch (random_() % 7) {
       case 0:
-        slot.series[0].left = std::numeric_limits<double>::quiet_NaN();
+        slot.series[0][0] = std::numeric_limits<double>::quiet_NaN();
         break;
       case 1:
-        slot.series[0].right = 1e9;
+        slot.series[0][1] = 1e9;
         break;
       case 2:
-        slot.kind = CommandKind::kTrackSpeed;
+        slot.kinds = kindsOf(trackChannels(CommandKind::kTrackSpeed));
         break;
       case 3:
         program.running = ProgramSlot{};

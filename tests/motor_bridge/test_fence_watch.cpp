@@ -60,8 +60,8 @@ struct FencedWorld : BridgeWorld {
   void move() {
     step();
     const double dt = 1e-6 * kStep;
-    left += (kSpeed * out.command.left - left) * dt / lag;
-    right += (kSpeed * out.command.right - right) * dt / lag;
+    left += (kSpeed * out.command[0] - left) * dt / lag;
+    right += (kSpeed * out.command[1] - right) * dt / lag;
     truth = truth * integrate({0.5 * (left + right), 0.0, 0.5 * (right - left) / kGauge}, dt);
     tell();
     least_room = std::min(least_room, roomAt(bridge.fences().fences(), truth, kBody).metres);

@@ -64,10 +64,11 @@ TEST_CASE("ages are not the sender's: a planner with a clock of its own cannot d
       program.run_id = 1;
       program.lease = 200'000;
       program.running.execution_id = 1;
-      program.running.command_kind = program_slot_t::KIND_POWER;
+      program.running.num_channels = 2;
+      program.running.channel_kind.assign(2, program_slot_t::KIND_POWER);
       program.running.period = 50'000;
       program.running.num_commands = 1;
-      program.running.left = program.running.right = {1.0F};
+      program.running.command = {{1.0F, 1.0F}};
       world.bus.outside().publish(kProgram, program);
       world.say(true);
       world.run(50'000);

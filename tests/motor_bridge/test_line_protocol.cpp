@@ -37,10 +37,10 @@ sim::DriveMeasurements someMeasurements() {
 
 void readsThem(const MotorTelemetry& told) {
   CHECK(told.battery_voltage == Approx(24.3));
-  CHECK(told.current_left == Approx(5.5));
-  CHECK(told.current_right == Approx(-6.5));
-  CHECK(told.speed_left == Approx(0.8).margin(0.002));
-  CHECK(told.speed_right == Approx(-0.4).margin(0.002));
+  CHECK(told.current[0] == Approx(5.5));
+  CHECK(told.current[1] == Approx(-6.5));
+  CHECK(told.measured[0] == Approx(0.8).margin(0.002));
+  CHECK(told.measured[1] == Approx(-0.4).margin(0.002));
 }
 
 /// What a Mole says to a start-up and to ten seconds of driving.
@@ -68,8 +68,8 @@ TEST_CASE("Roboteq's own protocol is a description: it drives the emulated contr
   rig.drive();
   rig.run(10'000'000);
   REQUIRE(rig.state() == State::kDriving);
-  CHECK(rig.device.output(rig.now)[0] == Approx(rig.out.command.left).margin(0.0006));
-  CHECK(rig.device.output(rig.now)[1] == Approx(rig.out.command.right).margin(0.0006));
+  CHECK(rig.device.output(rig.now)[0] == Approx(rig.out.command[0]).margin(0.0006));
+  CHECK(rig.device.output(rig.now)[1] == Approx(rig.out.command[1]).margin(0.0006));
   readsThem(rig.connection.telemetry());
   CHECK(rig.connection.notice().empty());
   for (const char* none : {"replies missing", "unexpected replies", "unreadable lines"})
@@ -95,12 +95,12 @@ TEST_CASE("a controller nobody has is driven by its description alone") {
   rig.run(5'000'000);
   REQUIRE(rig.state() == State::kDriving);
   CHECK(rig.device.watchdog() == 0.2);
-  CHECK(rig.device.output(rig.now)[1] == Approx(-rig.out.command.left).margin(1e-4));
-  CHECK(rig.device.output(rig.now)[0] == Approx(rig.out.command.right).margin(1e-4));
+  CHECK(rig.device.output(rig.now)[1] == Approx(-rig.out.command[0]).margin(1e-4));
+  CHECK(rig.device.output(rig.now)[0] == Approx(rig.out.command[1]).margin(1e-4));
   const MotorTelemetry told = rig.connection.telemetry();
-  CHECK(told.current_left == Approx(-6.5));
-  CHECK(told.speed_left == Approx(0.4));
-  CHECK(told.speed_right == Approx(0.8));
+  CHECK(told.current[0] == Approx(-6.5));
+  CHECK(told.measured[0] == Approx(0.4));
+  CHECK(told.measured[1] == Approx(0.8));
   CHECK(told.temperature == Approx(31.0));
   for (const char* none : {"replies missing", "wrong checksums", "unreadable lines"})
     CHECK(rig.count(none) == 0);

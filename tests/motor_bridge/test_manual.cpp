@@ -53,7 +53,7 @@ struct HandWorld : BridgeWorld {
     stick(1.0, 1.0);
     run(1'000'000);
     REQUIRE(state() == State::kManual);
-    REQUIRE(out.command == TrackCommand{0.5, 0.5});
+    REQUIRE(out.command == Command{0.5, 0.5});
   }
   /// Steps until `done`; returns how long it took [us].
   template <class Done>
@@ -75,7 +75,7 @@ TEST_CASE("a moved stick takes over within 100 ms of its message, and the progra
   world.tell();
   CHECK(world.until([&] { return world.state() == State::kManual; }) <= kBridgeStep);
   CHECK(world.stands());  // what the pattern gave is gone before the hand's command grows
-  CHECK(world.until([&] { return world.out.command.left > 0.0; }) <= 100'000 - kBridgeStep);
+  CHECK(world.until([&] { return world.out.command[0] > 0.0; }) <= 100'000 - kBridgeStep);
   CHECK(world.reason() == "driven by hand by operator");
   CHECK(world.last().execution_id == execution);
   CHECK(world.last().outcome == ExecutionOutcome::kAborted);
@@ -83,7 +83,7 @@ TEST_CASE("a moved stick takes over within 100 ms of its message, and the progra
   CHECK(world.out.execution_id == 0);
   CHECK(world.out.run_id == 0);
   CHECK(world.out.command_index == -1);
-  CHECK(world.out.kind == CommandKind::kPower);
+  CHECK(world.out.kinds == kindsOf(trackChannels(CommandKind::kPower)));
   world.run(5'000'000);
   CHECK(world.state() == State::kManual);
   CHECK(world.last().execution_id == execution);
@@ -95,24 +95,24 @@ TEST_CASE("by hand power has a limit and grows at a limited rate, less of it com
   world.drive();
   world.stick(1.0, -1.0);
   world.run(50'000);
-  double before = world.out.command.left;
+  double before = world.out.command[0];
   for (int i = 0; i < 200; ++i) {
     world.step();
-    REQUIRE(world.out.command.left - before <= 0.02 + 1e-9);
-    REQUIRE(std::abs(world.out.command.right) <= 0.5);
-    before = world.out.command.left;
+    REQUIRE(world.out.command[0] - before <= 0.02 + 1e-9);
+    REQUIRE(std::abs(world.out.command[1]) <= 0.5);
+    before = world.out.command[0];
   }
-  CHECK(world.out.command == TrackCommand{0.5, -0.5});
+  CHECK(world.out.command == Command{0.5, -0.5});
   world.stick(0.2, 0.0);
   world.tell();
   world.run(2 * kBridgeStep);
-  CHECK(world.out.command.left == Approx(0.1));
-  CHECK(world.out.command.right == 0.0);
+  CHECK(world.out.command[0] == Approx(0.1));
+  CHECK(world.out.command[1] == 0.0);
   world.stick(-1.0, 0.0);
   world.tell();
   world.run(2 * kBridgeStep);
-  CHECK(world.out.command.left <= 0.0);
-  CHECK(world.out.command.left >= -0.02 - 1e-9);
+  CHECK(world.out.command[0] <= 0.0);
+  CHECK(world.out.command[0] >= -0.02 - 1e-9);
 }
 
 TEST_CASE("a released dead-man's button: zero in the next step, armed, in the hand") {
@@ -270,7 +270,7 @@ TEST_CASE(
   }
   world.run(1'000'000);
   CHECK(world.state() == State::kManual);
-  CHECK(world.out.command == TrackCommand{0.5, 0.5});
+  CHECK(world.out.command == Command{0.5, 0.5});
   CHECK_FALSE(world.out.failsafe.standing_fault.empty());
   world.wish.give_back = true;
   world.run(50'000);
@@ -324,7 +324,7 @@ TEST_CASE("a second hand of the same operator is refused while the first is ther
     ++second.seq;
     world.bridge.receive(second, world.now);
     world.step();
-    REQUIRE(world.out.command == TrackCommand{0.5, 0.5});
+    REQUIRE(world.out.command == Command{0.5, 0.5});
   }
   CHECK(world.bridge.counters().at("MANUAL ignored: another program drives by hand") == 20);
 }
@@ -409,7 +409,7 @@ TEST_CASE(
   CHECK(world.stands());
   world.stick(1.0, 1.0);
   world.run(1'000'000);
-  CHECK(world.out.command == TrackCommand{0.5, 0.5});
+  CHECK(world.out.command == Command{0.5, 0.5});
 }
 
 TEST_CASE("without the button ARM needs what a program needs") {
@@ -444,10 +444,10 @@ TEST_CASE("a hand's command changes every 20 ms, and grows from zero when it tak
   world.until([&] { return world.state() == State::kManual; });
   CHECK(world.stands());
   std::vector<int64_t> changes;
-  for (TrackCommand before; world.out.command.left < 0.4; before = world.out.command) {
+  for (Command before; world.out.command[0] < 0.4; before = world.out.command) {
     world.step();
     if (!(world.out.command == before)) changes.push_back(world.now);
-    CHECK(world.out.command.left - before.left <= 0.02 + 1e-9);
+    CHECK(world.out.command[0] - before[0] <= 0.02 + 1e-9);
   }
   REQUIRE(changes.size() > 10);
   for (size_t i = 1; i < changes.size(); ++i) CHECK(changes[i] - changes[i - 1] == 20'000);
@@ -482,7 +482,7 @@ TEST_CASE("where the hand has limits of tilt or fences to keep, a silent INS sto
   CHECK(world.state() == State::kManual);
   world.stick(1.0, 1.0);
   world.run(1'000'000);
-  CHECK(world.out.command == TrackCommand{0.5, 0.5});
+  CHECK(world.out.command == Command{0.5, 0.5});
 }
 
 TEST_CASE("with fences a position that does not move with the robot stops the hand, too") {

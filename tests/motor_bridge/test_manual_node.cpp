@@ -55,11 +55,11 @@ TEST_CASE("a stick that is moved has the motors within 100 ms, and MOTOR says wh
   CHECK(world.device.motor2(world.now()) < 0);
   CHECK(world.motor.bridge_state == motor_t::STATE_MANUAL);
   CHECK(world.motor.state_reason == "driven by hand by operator");
-  CHECK(world.motor.motor_command_kind == program_slot_t::KIND_POWER);
+  CHECK(world.motor.channel_kind[0] == program_slot_t::KIND_POWER);
   CHECK(world.motor.execution_id == 0);
   world.runHand(1'000'000);
-  CHECK(world.motor.command_left == 0.5F);
-  CHECK(world.motor.command_right == -0.5F);
+  CHECK(world.motor.command[0] == 0.5F);
+  CHECK(world.motor.command[1] == -0.5F);
   CHECK(world.device.motor1(world.now()) == 500);
   CHECK(world.execution.records.back().outcome == execution_record_t::OUTCOME_ABORTED);
   const int64_t motors = world.motors;

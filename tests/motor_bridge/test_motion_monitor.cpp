@@ -223,20 +223,20 @@ TEST_CASE("motion: spinning and blocked tracks are told apart by what the motors
   checkTold(bare.run(3.0), "stuck or pose frozen");
 
   Drive spinning;
-  spinning.motors.speed_left = spinning.motors.speed_right = 0.8;
+  spinning.motors.measured[0] = spinning.motors.measured[1] = 0.8;
   spinning.good(0.8, 0.8);
   spinning.slip_left = spinning.slip_right = 0.0;
   checkTold(spinning.run(3.0), "tracks spin or pose frozen");
 
   Drive blocked;
-  blocked.motors.speed_left = blocked.motors.speed_right = 0.8;
+  blocked.motors.measured[0] = blocked.motors.measured[1] = 0.8;
   blocked.good(0.8, 0.8);
-  blocked.motors.speed_left = blocked.motors.speed_right = 0.0;
+  blocked.motors.measured[0] = blocked.motors.measured[1] = 0.0;
   checkTold(blocked.run(3.0), "both tracks blocked", 0.8);
 
   Drive bellied;
-  bellied.motors.current_left = 41.0;
-  bellied.motors.current_right = 38.0;
+  bellied.motors.current[0] = 41.0;
+  bellied.motors.current[1] = 38.0;
   bellied.good(0.0, 0.0);
   bellied.slip_left = bellied.slip_right = 0.0;
   bellied.command = {0.8, 0.8};
@@ -255,9 +255,9 @@ TEST_CASE("motion: a dead track is told by the turn towards it, or by its own sp
     CHECK(told.second.find("left track dead") != std::string::npos);
   }
   Drive known;
-  known.motors.speed_left = known.motors.speed_right = 0.9;
+  known.motors.measured[0] = known.motors.measured[1] = 0.9;
   known.good(0.9, 0.9);
-  known.motors.speed_right = 0.0;
+  known.motors.measured[1] = 0.0;
   checkTold(known.run(3.0), "right track dead", 0.8);
 }
 

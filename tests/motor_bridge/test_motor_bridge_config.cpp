@@ -34,8 +34,7 @@ TEST_CASE("without a word the bridge has its defaults, and says all of them") {
   const MotorBridgeConfig config = read("{}");
   CHECK(config.bridge.step_us == 10'000);
   CHECK(config.bridge.gate.lease_us == 200'000);
-  CHECK(config.bridge.gate.slot.kind == CommandKind::kPower);
-  CHECK(config.bridge.gate.slot.max_command == 1.0);
+  CHECK(config.bridge.gate.slot.channels == trackChannels(CommandKind::kPower));
   for (const char* key : {"address", "lease", "ins_period", "watchdog", "left_channel"})
     CHECK(config.effective.find(key) != std::string::npos);
 }
@@ -65,8 +64,8 @@ robot:
 )");
   CHECK(config.bridge.gate.slot.step_us == 5'000);
   CHECK(config.bridge.command_interval_us == 25'000);
-  CHECK(config.bridge.gate.slot.kind == CommandKind::kTrackSpeed);
-  CHECK(config.bridge.gate.slot.max_command == 2.0);
+  CHECK(config.bridge.gate.slot.channels.front().kind == CommandKind::kTrackSpeed);
+  CHECK(config.bridge.gate.slot.channels.back().highest == 2.0);
   CHECK(config.make_controller());
   REQUIRE(config.bridge.tilt);
   CHECK(config.bridge.tilt->roll == Approx(40 * kPi / 180));

@@ -22,8 +22,8 @@ TEST_CASE("armed, it drives, MOTOR, EXECUTION, HEALTH and CONFIG come at their r
   CHECK(world.health.health_state == health_t::HEALTH_OK);
   CHECK(world.config.config_process == "motor_bridge");
   CHECK(world.motor.battery_voltage == Approx(24.6));
-  CHECK(world.motor.current_right == Approx(-0.7));
-  CHECK(world.motor.motor_command_kind == program_slot_t::KIND_POWER);
+  CHECK(world.motor.current[1] == Approx(-0.7));
+  CHECK(world.motor.channel_kind[0] == program_slot_t::KIND_POWER);
   CHECK(world.motor.execution_id == world.execution.records.back().record_execution_id);
 }
 
@@ -41,7 +41,7 @@ TEST_CASE("the controller gets the commands of the series, and series follow wit
     CHECK(records[i].outcome == execution_record_t::OUTCOME_COMPLETED);
     CHECK(records[i].commands_played == 8);
   }
-  CHECK(world.device.motor1(world.now()) == std::lround(1000 * world.motor.command_left));
+  CHECK(world.device.motor1(world.now()) == std::lround(1000 * world.motor.command[0]));
 }
 
 TEST_CASE("it comes up disarmed and says what is missing") {

@@ -17,7 +17,7 @@ TEST_CASE("a slot within its limits has no fault, and an empty slot neither") {
 
 TEST_CASE("full power passes although 32-bit floats may round it up") {
   ProgramSlot slot = makeSlot(1, 20, 1.0, -1.0);
-  slot.series[3].left = std::nextafter(1.0F, 2.0F);
+  slot.series[3][0] = std::nextafter(1.0F, 2.0F);
   CHECK(checkSlot(slot, {}) == SlotFault::kNone);
 }
 
@@ -29,15 +29,15 @@ TEST_CASE("every fault of a slot is found and named") {
     expected = SlotFault::kBadId;
   }
   SECTION("no kind") {
-    slot.kind = kNoCommand;
+    slot.kinds.clear();
     expected = SlotFault::kUnknownKind;
   }
   SECTION("a kind the controller is not set up for") {
-    slot.kind = CommandKind::kTrackSpeed;
+    slot.kinds = kindsOf(trackChannels(CommandKind::kTrackSpeed));
     expected = SlotFault::kUnknownKind;
   }
   SECTION("a kind that does not exist") {
-    slot.kind = static_cast<CommandKind>(77);
+    slot.kinds[1] = static_cast<CommandKind>(77);
     expected = SlotFault::kUnknownKind;
   }
   SECTION("period 0") {
@@ -57,19 +57,19 @@ TEST_CASE("every fault of a slot is found and named") {
     expected = SlotFault::kNoCommands;
   }
   SECTION("more than a minute") {
-    slot.series.assign(1201, TrackCommand{});
+    slot.series.assign(1201, Command{});
     expected = SlotFault::kTooLong;
   }
   SECTION("NaN") {
-    slot.series.back().right = std::numeric_limits<double>::quiet_NaN();
+    slot.series.back()[1] = std::numeric_limits<double>::quiet_NaN();
     expected = SlotFault::kNotFinite;
   }
   SECTION("infinity") {
-    slot.series.front().left = -std::numeric_limits<double>::infinity();
+    slot.series.front()[0] = -std::numeric_limits<double>::infinity();
     expected = SlotFault::kNotFinite;
   }
   SECTION("out of range") {
-    slot.series[10].right = -1.01;
+    slot.series[10][1] = -1.01;
     expected = SlotFault::kOutOfRange;
   }
   CHECK(expected != SlotFault::kNone);

@@ -89,7 +89,7 @@ TEST_CASE(
 TEST_CASE("bad slots are refused in both places") {
   ProgramGate gate({});
   ProgramSlot bad = makeSlot(2, 4);
-  bad.series[0].left = 2.0;
+  bad.series[0][0] = 2.0;
   CHECK(gate.admit(makeProgram(kNow, bad), kNow, true).slot_fault == SlotFault::kOutOfRange);
   CHECK(gate.admit(makeProgram(kNow + 1, makeSlot(1, 4), bad), kNow + 1, true).refusal ==
         ProgramRefusal::kBadSlot);
@@ -250,10 +250,29 @@ TEST_CASE("what is just within the limits of a slot is let in, what is just beyo
   CHECK(checkSlot(makeSlot(1, 4, 1.0000011, 0.0), limits) == SlotFault::kOutOfRange);
   CHECK(checkSlot(makeSlot(1, 4, 0.0, -1.0000011), limits) == SlotFault::kOutOfRange);
   SlotLimits none;
-  none.kind = kNoCommand;
+  none.channels.clear();
   slot = makeSlot(1, 4);
-  slot.kind = kNoCommand;
+  slot.kinds.clear();
   CHECK(checkSlot(slot, none) == SlotFault::kUnknownKind);
+}
+
+TEST_CASE("each channel of a slot is held to its own kind and range") {
+  SlotLimits limits;
+  limits.channels = {{"throttle", CommandKind::kPower, -0.5, 1.0},
+                     {"steering", CommandKind::kSteeringAngle, -0.4, 0.4}};
+  ProgramSlot slot = makeSlot(1, 4, 0.9, 0.3);
+  CHECK(checkSlot(slot, limits) == SlotFault::kUnknownKind);
+  slot.kinds = kindsOf(limits.channels);
+  CHECK(checkSlot(slot, limits) == SlotFault::kNone);
+  for (const Command& wrong : {Command{-0.6, 0.0}, Command{0.0, 0.41}, Command{0.0, -0.41}}) {
+    slot.series[2] = wrong;
+    CHECK(checkSlot(slot, limits) == SlotFault::kOutOfRange);
+  }
+  slot.series[2] = {0.0, 0.0};
+  slot.series[2][2] = 0.1;  // a channel that the drive does not have
+  CHECK(checkSlot(slot, limits) == SlotFault::kOutOfRange);
+  slot.kinds.push_back(CommandKind::kPower);
+  CHECK(checkSlot(slot, limits) == SlotFault::kUnknownKind);
 }
 
 TEST_CASE("a program that names a long lease is not let in for longer") {

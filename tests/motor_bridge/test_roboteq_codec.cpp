@@ -92,13 +92,13 @@ TEST_CASE("telemetry in SI units, left and right by the layout") {
   layout.rpm_per_mps = 100.0;
   RoboteqTelemetry telemetry;
   CHECK(telemetry.take(parseReply("A=120:-70"), layout, 5));
-  CHECK(telemetry.current_left == Approx(-7.0));
-  CHECK(telemetry.current_right == Approx(12.0));
+  CHECK(telemetry.current[0] == Approx(-7.0));
+  CHECK(telemetry.current[1] == Approx(12.0));
   CHECK(telemetry.take(parseReply("V=135:246:4730"), layout, 5));
   CHECK(telemetry.battery_voltage == Approx(24.6));
   CHECK(telemetry.take(parseReply("S=50:-100"), layout, 5));
-  CHECK(telemetry.speed_left == Approx(1.0));
-  CHECK(telemetry.speed_right == Approx(0.5));
+  CHECK(telemetry.measured[0] == Approx(1.0));
+  CHECK(telemetry.measured[1] == Approx(0.5));
   CHECK(telemetry.take(parseReply("T=31:45:38"), layout, 5));
   CHECK(telemetry.temperature == 45.0);
   CHECK(telemetry.take(parseReply("FM=2:9"), layout, 5));

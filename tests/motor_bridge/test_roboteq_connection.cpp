@@ -92,8 +92,8 @@ TEST_CASE("ready, it gives commands and reads voltage, currents, speeds and flag
   CHECK(wire.device.watchdog() == 250);
   CHECK_FALSE(wire.device.echo());
   CHECK(wire.connection.telemetry().battery_voltage == Approx(24.6));
-  CHECK(wire.connection.telemetry().current_left == Approx(1.2));
-  CHECK(wire.connection.telemetry().speed_right == Approx(-0.5));
+  CHECK(wire.connection.telemetry().current[0] == Approx(1.2));
+  CHECK(wire.connection.telemetry().measured[1] == Approx(-0.5));
   CHECK(wire.linkFault().empty());
   CHECK(wire.connection.report(wire.now).device_fault.empty());
   CHECK(wire.count("replies missing") == 0);

@@ -33,13 +33,13 @@ TEST_CASE("emulated controller: started up, it gets what is played, and every li
   rig.drive();
   rig.run(10'000'000);
   REQUIRE(rig.state() == State::kDriving);
-  CHECK(rig.device.output(rig.now)[0] == Approx(rig.out.command.left).margin(0.0006));
-  CHECK(rig.device.output(rig.now)[1] == Approx(rig.out.command.right).margin(0.0006));
+  CHECK(rig.device.output(rig.now)[0] == Approx(rig.out.command[0]).margin(0.0006));
+  CHECK(rig.device.output(rig.now)[1] == Approx(rig.out.command[1]).margin(0.0006));
   const MotorTelemetry telemetry = rig.connection.telemetry();
   CHECK(telemetry.battery_voltage == Approx(24.3));
-  CHECK(telemetry.current_left == Approx(5.5));
-  CHECK(telemetry.speed_left == Approx(0.8).margin(0.002));
-  CHECK(telemetry.speed_right == Approx(-0.4).margin(0.002));
+  CHECK(telemetry.current[0] == Approx(5.5));
+  CHECK(telemetry.measured[0] == Approx(0.8).margin(0.002));
+  CHECK(telemetry.measured[1] == Approx(-0.4).margin(0.002));
   CHECK(rig.count("replies missing") == 0);
   CHECK(rig.count("unexpected replies") == 0);
   CHECK(rig.count("unreadable lines") == 0);
@@ -58,7 +58,7 @@ TEST_CASE(
   CHECK(rig.state() == State::kDriving);
   CHECK(rig.turning());
   CHECK(rig.count("queries refused") > 10);
-  CHECK(std::isnan(rig.connection.telemetry().speed_left));
+  CHECK(std::isnan(rig.connection.telemetry().measured[0]));
 }
 
 TEST_CASE("emulated controller: planner dead, bridge dead, controller silent: zero in time") {

@@ -56,8 +56,8 @@ TEST_CASE("an emulated Sabertooth gets what is played, and what it cannot say is
   SabertoothRig rig{sabertoothOf("{}")};
   requireDriving(rig);
   rig.run(5'000'000);
-  CHECK(rig.device.output(rig.now)[0] == Approx(rig.out.command.left).margin(0.005));
-  CHECK(rig.device.output(rig.now)[1] == Approx(rig.out.command.right).margin(0.005));
+  CHECK(rig.device.output(rig.now)[0] == Approx(rig.out.command[0]).margin(0.005));
+  CHECK(rig.device.output(rig.now)[1] == Approx(rig.out.command[1]).margin(0.005));
   CHECK(rig.device.timeoutUs() == 200'000);
   CHECK(rig.connection.notice().find("does not answer") != std::string::npos);
   CHECK(rig.device.badSums() == 0);

@@ -27,7 +27,7 @@ TEST_CASE("each command is held for one period, to the microsecond") {
   SeriesPlayer player;
   player.beginRun(1);
   ProgramSlot slot = makeSlot(1, 4);
-  for (size_t i = 0; i < 4; ++i) slot.series[i].left = 0.1 * static_cast<double>(i + 1);
+  for (size_t i = 0; i < 4; ++i) slot.series[i][0] = 0.1 * static_cast<double>(i + 1);
   player.offer(makeProgram(kStart, slot), kStart);
   player.start(kStart);
   for (int64_t t = 0; t < 200'000; t += 1'000) {

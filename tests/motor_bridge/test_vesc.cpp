@@ -47,15 +47,15 @@ void drivesAndReads(Rig& rig) {
   rig.drive();
   rig.run(5'000'000);
   REQUIRE(rig.state() == State::kDriving);
-  CHECK(rig.device.output(rig.now)[0] == Approx(rig.out.command.left).margin(1e-4));
-  CHECK(rig.device.output(rig.now)[1] == Approx(rig.out.command.right).margin(1e-4));
+  CHECK(rig.device.output(rig.now)[0] == Approx(rig.out.command[0]).margin(1e-4));
+  CHECK(rig.device.output(rig.now)[1] == Approx(rig.out.command[1]).margin(1e-4));
   const MotorTelemetry told = rig.connection.telemetry();
   CHECK(told.battery_voltage == Approx(24.3));
   CHECK(told.temperature == Approx(31.2));
-  CHECK(told.current_left == Approx(5.5).margin(0.11));
-  CHECK(told.current_right == Approx(6.5).margin(0.11));
-  CHECK(told.speed_left == Approx(0.8).margin(0.001));
-  CHECK(told.speed_right == Approx(-0.4).margin(0.001));
+  CHECK(told.current[0] == Approx(5.5).margin(0.11));
+  CHECK(told.current[1] == Approx(6.5).margin(0.11));
+  CHECK(told.measured[0] == Approx(0.8).margin(0.001));
+  CHECK(told.measured[1] == Approx(-0.4).margin(0.001));
   CHECK(rig.count("start-ups") == 1);
   CHECK(rig.count("garbage bytes") == 0);
 }
@@ -152,7 +152,7 @@ TEST_CASE("VESC: a speed command is held by the controller itself") {
     device.receive(connection.poll(now), now);
   }
   CHECK(speed == Approx(0.6).margin(0.02));
-  CHECK(connection.telemetry().speed_left == Approx(0.6).margin(0.02));
+  CHECK(connection.telemetry().measured[0] == Approx(0.6).margin(0.02));
 }
 
 TEST_CASE("VESC over UART: no timeout, or too long a one, keeps the robot standing") {

@@ -262,8 +262,8 @@ TEST_CASE("Its end empties the program, and the robot stands within half a secon
   drive.bus().kill("recorder");
   drive.bus().runUntil(drive.bus().now() + 100'000);
   CHECK(drive.program().running.execution_id == 0);
-  CHECK(drive.motor().command_left == 0.0F);
-  CHECK(drive.motor().command_right == 0.0F);
+  CHECK(drive.motor().command[0] == 0.0F);
+  CHECK(drive.motor().command[1] == 0.0F);
   drive.bus().runUntil(drive.bus().now() + 500'000);
   const Pose2 before = drive.truth();
   drive.bus().runUntil(drive.bus().now() + 500'000);

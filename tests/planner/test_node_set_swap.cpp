@@ -59,7 +59,7 @@ TEST_CASE("A set with other commands for what runs leaves the robot driving and 
   drive(yard);
   PatternSetContent content = samplePatterns(2).content();
   for (MotionPattern& pattern : content.patterns)
-    for (TrackCommand& command : pattern.commands) command.left *= 0.99;
+    for (Command& command : pattern.commands) command[0] *= 0.99;
   std::string why;
   const auto set = PatternSet::make(content, why);
   INFO(why);

@@ -31,7 +31,7 @@ TEST_CASE("A set with other commands for what is under way waits until that has 
   const auto spoil = [](PatternSetContent& content, int id, const std::string& how) {
     for (MotionPattern& pattern : content.patterns) {
       if (pattern.id != id) continue;
-      if (how == "commands") pattern.commands.back().left -= 0.01;
+      if (how == "commands") pattern.commands.back()[0] -= 0.01;
     }
     if (how == "gone")
       content.patterns.erase(

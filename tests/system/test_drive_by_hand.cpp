@@ -64,21 +64,19 @@ TEST_CASE("with real processes a recorded stick takes over, gives back, and the 
   const auto unless_stalled = [&](double seconds, const std::function<bool()>& condition) {
     return run.until(seconds, [&] { return condition() || !run.armed(); });
   };
-  CHECK(unless_stalled(3.0, [&] { return run.motor().message().command_left > 0.45F; }));
+  CHECK(unless_stalled(3.0, [&] { return run.motor().message().command[0] > 0.45F; }));
   if (run.armed()) {
     CHECK(byHand(run));
     // Meanwhile the planner shows what it would do, and orders nothing.
     CHECK(unless_stalled(1.0, [&] { return run.plan().message().num_patterns > 0; }));
     CHECK(run.program().message().running.execution_id == 0);
   }
-  CHECK(unless_stalled(6.0, [&] { return run.motor().message().command_left == 0.0F; }));
+  CHECK(unless_stalled(6.0, [&] { return run.motor().message().command[0] == 0.0F; }));
   CHECK(run.untilDriving(20.0, [&] { return run.driving(); }));
   hand->signal(SIGTERM);
   CHECK(hand->waitFor(5.0));
 
-  const auto moves_by_hand = [&] {
-    return run.motor().message().command_left > 0.4F && byHand(run);
-  };
+  const auto moves_by_hand = [&] { return run.motor().message().command[0] > 0.4F && byHand(run); };
   for (int tries = 0; tries < 3 && !moves_by_hand(); ++tries) {
     REQUIRE(run.untilDriving(20.0, [&] { return run.driving(); }));
     hand = handOf(run, kForward);

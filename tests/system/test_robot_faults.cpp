@@ -23,7 +23,7 @@ void driveOff(RobotRun& run) {
   if (!run.running("planner")) run.startAll();
   run.setGoal(30.0, 0.0);
   REQUIRE(run.arm(20.0));
-  const auto drives = [&] { return run.driving() && run.motor().message().command_left > 0.3; };
+  const auto drives = [&] { return run.driving() && run.motor().message().command[0] > 0.3; };
   REQUIRE(run.untilDriving(20.0, drives));
   run.wait(1.0);
   REQUIRE(run.untilDriving(20.0, drives));

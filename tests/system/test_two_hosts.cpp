@@ -41,8 +41,7 @@ uint16_t portOf(const std::string& url) {
 bool driveByStation(RobotRun& run, const TwoHosts& hosts) {
   for (int i = 0; i < 5; ++i) {
     run.setGoal(30.0, 0.0);
-    run.untilDriving(20.0,
-                     [&] { return run.driving() && run.motor().message().command_left > 0.3; });
+    run.untilDriving(20.0, [&] { return run.driving() && run.motor().message().command[0] > 0.3; });
     run.leaveTo(30.0, 1.0, hosts.atStation());
     run.wait(1.5);
     if (run.driving()) return true;

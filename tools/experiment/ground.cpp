@@ -239,9 +239,9 @@ PatternSet setOf(const TransitionWorld& world, int length) {
     pattern.id = static_cast<int>(content.patterns.size()) + 1;
     pattern.name = executed.name;
     pattern.entry_class = pattern.exit_class = "entry";
-    pattern.commands = heldLonger(executed.commands, length);
-    pattern.trajectory =
-        simulate(model, pattern.commands, world.period, steadyEntry(model, world.entry));
+    const std::vector<TrackCommand> commands = heldLonger(executed.commands, length);
+    pattern.commands = commandsOf(commands);
+    pattern.trajectory = simulate(model, commands, world.period, steadyEntry(model, world.entry));
     content.patterns.push_back(std::move(pattern));
   }
   std::string why;
@@ -283,7 +283,7 @@ recordings::PatternRecordings record(const TransitionWorld& world, uint64_t seed
       std::vector<Execution> executions;
       for (int64_t i = 0; i < world.recordings; ++i)
         executions.push_back(execute(world, world.surfaces[s].model,
-                                     recorded.patterns.patterns()[p].commands, random));
+                                     tracksOf(recorded.patterns.patterns()[p].commands), random));
       surface.executions.push_back(std::move(executions));
     }
     recorded.surfaces.push_back(std::move(surface));

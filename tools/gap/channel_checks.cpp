@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/messages/ins_messages.hpp"
+#include "common/messages/pattern_messages.hpp"
 #include "tools/gap/reading.hpp"
 
 namespace tread::gap {
@@ -74,8 +75,8 @@ void checkKinds(const SortedLog& log, Diagnostics& notes) {
   for (const motor_t& motor : log.motor) {
     const bool by_hand = motor.bridge_state == motor_t::STATE_MANUAL;
     if (motor.bridge_state != motor_t::STATE_DRIVING && !by_hand) continue;
-    power += motor.motor_command_kind == static_cast<int16_t>(CommandKind::kPower) ? 1 : 0;
-    speed += motor.motor_command_kind == static_cast<int16_t>(CommandKind::kTrackSpeed) ? 1 : 0;
+    power += motor.channel_kind[0] == static_cast<int16_t>(CommandKind::kPower) ? 1 : 0;
+    speed += motor.channel_kind[0] == static_cast<int16_t>(CommandKind::kTrackSpeed) ? 1 : 0;
     invalid += obeyed(motor) ? 0 : 1;
   }
   if (static_cast<double>(std::min(power, speed)) >
@@ -152,8 +153,7 @@ bool clash(const ins_t& a, const ins_t& b) {
          (first->position() - second->position()).norm() > 1e-6;
 }
 bool clash(const motor_t& a, const motor_t& b) {
-  return a.utime == b.utime &&
-         (a.command_left != b.command_left || a.command_right != b.command_right);
+  return a.utime == b.utime && commandFrom(a) != commandFrom(b);
 }
 
 /// How often neighbours in the log contradict each other.

@@ -25,7 +25,7 @@ CommandKind kindOf(const SortedLog& log) {
   std::map<int16_t, size_t> counts;
   for (const motor_t& motor : log.motor)
     if (motor.bridge_state == motor_t::STATE_DRIVING || motor.bridge_state == motor_t::STATE_MANUAL)
-      ++counts[motor.motor_command_kind];
+      ++counts[motor.channel_kind[0]];
   const auto power = static_cast<int16_t>(CommandKind::kPower);
   const auto speed = static_cast<int16_t>(CommandKind::kTrackSpeed);
   return counts[speed] > counts[power] ? CommandKind::kTrackSpeed : CommandKind::kPower;

@@ -65,7 +65,7 @@ PatternSet checked(PatternSetContent content) {
 }
 
 bool stands(const MotionClass& motion) {
-  return motion.steady == TrackCommand{};
+  return motion.steady == Command{};
 }
 
 /// Patterns on the shortest ways between classes: from[class] = pattern that leads there first.
@@ -221,7 +221,7 @@ void keepWithin(const Envelope& envelope, const VehicleModel& vehicle,
 }
 
 std::vector<Manoeuvre> manoeuvresOf(const PatternSet& set, const ModelDocument& model) {
-  if (set.content().kind != model.vehicle.kind)
+  if (set.content().channels != trackChannels(model.vehicle.kind))
     throw std::runtime_error(
         "plan: the patterns command another kind than the model; give "
         "patterns and model of one vehicle");
@@ -229,7 +229,8 @@ std::vector<Manoeuvre> manoeuvresOf(const PatternSet& set, const ModelDocument& 
     throw std::runtime_error("plan: the patterns' period is not 0.05 s; give such a set");
   std::vector<Manoeuvre> all;
   for (const MotionPattern& pattern : set.patterns())
-    all.push_back({pattern.name, set.classNamed(pattern.entry_class).steady, pattern.commands});
+    all.push_back({pattern.name, set.classNamed(pattern.entry_class).steady.tracks(),
+                   tracksOf(pattern.commands)});
   return all;
 }
 
@@ -237,14 +238,14 @@ PatternSet planSet(const ModelDocument& model, const std::vector<Manoeuvre>& man
                    const std::vector<size_t>& counts) {
   PatternSetContent content;
   content.name = "plan";
-  content.kind = model.vehicle.kind;
+  content.channels = trackChannels(model.vehicle.kind);
   content.classes = {classOf(model.vehicle, kRest, {})};
   for (size_t i = 0; i < manoeuvres.size(); ++i)
     for (size_t copy = 0; copy < counts[i]; ++copy) {
       MotionPattern pattern;
       pattern.name = copyName(manoeuvres[i].name, copy);
       pattern.entry_class = pattern.exit_class = kRest;
-      pattern.commands = manoeuvres[i].commands;
+      pattern.commands = commandsOf(manoeuvres[i].commands);
       predict(model.vehicle, kManoeuvrePeriod, content.classes.front(), pattern);
       content.patterns.push_back(std::move(pattern));
     }

@@ -153,8 +153,8 @@ std::optional<TrackCommand> obeyed(const motor_t& motor) {
   switch (motor.bridge_state) {
     case motor_t::STATE_DRIVING:
     case motor_t::STATE_MANUAL: {
-      const TrackCommand command{static_cast<double>(motor.command_left),
-                                 static_cast<double>(motor.command_right)};
+      const TrackCommand command{static_cast<double>(motor.command[0]),
+                                 static_cast<double>(motor.command[1])};
       if (!std::isfinite(command.left) || !std::isfinite(command.right)) return std::nullopt;
       return command;
     }
@@ -194,19 +194,19 @@ bool standsBetween(const CommandSpan& span, double from, double to) {
 std::vector<EncoderSample> encoderSamples(const SortedLog& log) {
   std::vector<EncoderSample> samples;
   for (const motor_t& motor : log.motor)
-    if (std::isfinite(motor.track_speed_left) && std::isfinite(motor.track_speed_right))
-      samples.push_back({log.seconds(motor.utime),
-                         {static_cast<double>(motor.track_speed_left),
-                          static_cast<double>(motor.track_speed_right)}});
+    if (std::isfinite(motor.measured[0]) && std::isfinite(motor.measured[1]))
+      samples.push_back(
+          {log.seconds(motor.utime),
+           {static_cast<double>(motor.measured[0]), static_cast<double>(motor.measured[1])}});
   return samples;
 }
 
 std::vector<CurrentSample> currentSamples(const SortedLog& log) {
   std::vector<CurrentSample> samples;
   for (const motor_t& motor : log.motor)
-    if (std::isfinite(motor.current_left) && std::isfinite(motor.current_right))
-      samples.push_back({log.seconds(motor.utime), static_cast<double>(motor.current_left),
-                         static_cast<double>(motor.current_right)});
+    if (std::isfinite(motor.current[0]) && std::isfinite(motor.current[1]))
+      samples.push_back({log.seconds(motor.utime), static_cast<double>(motor.current[0]),
+                         static_cast<double>(motor.current[1])});
   return samples;
 }
 

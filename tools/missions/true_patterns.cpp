@@ -21,21 +21,21 @@ constexpr double kCommandDelay = 0.010;  // [s]
 constexpr int kDisturbed = 60;           // executions that a covariance is taken of
 
 /// Velocities of the body through an execution, step by step, without chance.
-std::vector<Twist2> velocitiesOf(const MotionPattern& pattern, const TrackCommand& entry,
-                                 double period, const sim::VehicleParameters& parameters,
+std::vector<Twist2> velocitiesOf(const MotionPattern& pattern, const Command& entry, double period,
+                                 const sim::VehicleParameters& parameters,
                                  const sim::SurfaceParameters& surface) {
   sim::TrackedVehicle vehicle(parameters);
   const sim::Ground ground = sim::levelGround(surface);
-  const auto run = [&](const TrackCommand& power, double seconds, std::vector<Twist2>* kept) {
+  const auto run = [&](const Command& power, double seconds, std::vector<Twist2>* kept) {
     for (int i = 0; i < static_cast<int>(std::lround(seconds / kStep)); ++i) {
-      vehicle.step({power.left, power.right}, ground, kStep);
+      vehicle.step({power[0], power[1]}, ground, kStep);
       if (kept != nullptr) kept->push_back(vehicle.velocity());
     }
   };
   std::vector<Twist2> velocities;
   run(entry, kEntry, nullptr);
   run(entry, kCommandDelay, &velocities);
-  for (const TrackCommand& command : pattern.commands) run(command, period, &velocities);
+  for (const Command& command : pattern.commands) run(command, period, &velocities);
   velocities.resize(velocities.size() - static_cast<size_t>(std::lround(kCommandDelay / kStep)));
   return velocities;
 }
@@ -72,7 +72,7 @@ PoseCovariance covarianceOf(const std::vector<Twist2>& velocities,
   return covariance;
 }
 
-void makeTrue(MotionPattern& pattern, const TrackCommand& entry, double period,
+void makeTrue(MotionPattern& pattern, const Command& entry, double period,
               const sim::VehicleParameters& vehicle, const sim::SurfaceParameters& surface) {
   const std::vector<Twist2> velocities = velocitiesOf(pattern, entry, period, vehicle, surface);
   const size_t per_sample = velocities.size() / pattern.commands.size();

@@ -28,8 +28,7 @@ std::vector<GivenCommand> commandsOf(const DriveLog& log) {
     if (full_voltage == 0.0 && std::isfinite(voltage)) full_voltage = voltage;
     GivenCommand given;
     given.time = secondsBetween(log.motor.front().utime, motor.utime);
-    given.command = {static_cast<double>(motor.command_left),
-                     static_cast<double>(motor.command_right)};
+    given.command = {static_cast<double>(motor.command[0]), static_cast<double>(motor.command[1])};
     if (full_voltage > 0.0 && std::isfinite(voltage))
       given.battery_drop = 1.0 - voltage / full_voltage;
     commands.push_back(given);
@@ -245,7 +244,7 @@ LoggedDrive readLoggedDrive(const std::vector<std::string>& logs) {
                                "; a log of a drive has MOTOR and INS");
   int16_t kind = 0;
   for (const motor_t& motor : log.motor)
-    if (motor.motor_command_kind != 0) kind = motor.motor_command_kind;
+    if (motor.channel_kind[0] != 0) kind = motor.channel_kind[0];
   if (kind == 0) throw std::runtime_error(logs.front() + ": nothing was driven in it");
   drive.kind = static_cast<CommandKind>(kind);
   return drive;

@@ -55,27 +55,26 @@ const MotionClass& classNamed(ConfigReader& reader, const std::string& key,
   throw reader.error(key, "unknown class '" + name + "'; allowed are the classes of the recipe");
 }
 
-std::vector<TrackCommand> readCommands(ConfigReader& reader, double period) {
+std::vector<Command> readCommands(ConfigReader& reader, double period) {
   std::vector<std::vector<double>> rows;
   reader.table("commands", rows, 3, {-PatternLimits::kMaxSpeed, PatternLimits::kMaxSpeed}, "",
                true);
-  std::vector<TrackCommand> commands;
+  std::vector<Command> commands;
   for (const std::vector<double>& row : rows) {
     const double samples = std::round(row[2] / period);
     if (samples < 1.0 || std::abs(samples * period - row[2]) > 1e-9)
       throw reader.error("commands", "held for " + number(row[2]) +
                                          " s; allowed are multiples of " + "the period, " +
                                          number(period) + " s");
-    commands.insert(commands.end(), static_cast<size_t>(samples), {row[0], row[1]});
+    commands.insert(commands.end(), static_cast<size_t>(samples), Command(row[0], row[1]));
   }
   return commands;
 }
 
-double heldAtEnd(const std::vector<TrackCommand>& commands, const TrackCommand& steady,
-                 double period) {
+double heldAtEnd(const std::vector<Command>& commands, const Command& steady, double period) {
   size_t held = 0;
   for (size_t i = commands.size(); i > 0; --i, ++held)
-    if (commands[i - 1].left != steady.left || commands[i - 1].right != steady.right) break;
+    if (commands[i - 1] != steady) break;
   return static_cast<double>(held) * period;
 }
 
@@ -112,19 +111,15 @@ void readPattern(ConfigReader& reader, const VehicleModel& model, PatternSetCont
   addPattern(content, pattern, entry, model);
   if (!reader.has("mirror")) return;
   for (const MotionClass* motion : {&entry, &exit})
-    if (motion->steady.left != motion->steady.right)
+    if (motion->steady[0] != motion->steady[1])
       throw reader.error("mirror", "class '" + motion->name + "' turns; only patterns between " +
                                        "classes that go straight can be mirrored");
   reader.text("mirror", pattern.name);
-  for (TrackCommand& command : pattern.commands) std::swap(command.left, command.right);
+  for (Command& command : pattern.commands) std::swap(command[0], command[1]);
   addPattern(content, pattern, entry, model);
 }
 
 constexpr double kLeadIn = 3.0;  // [s], longer than any latency of an INS
-
-const char* kindName(CommandKind kind) {
-  return kind == CommandKind::kPower ? "power" : "track speed";
-}
 
 /// What a late, askew or biased INS says of an execution, relative to what it said at its start.
 recordings::Execution seenByIns(const ModelDocument& model, const MotionPattern& pattern,
@@ -135,7 +130,7 @@ recordings::Execution seenByIns(const ModelDocument& model, const MotionPattern&
   VehicleKernel kernel(model.vehicle, entry, noise);
   std::vector<MotionSample> motion{{begin, kernel.pose(), kernel.twist().omega}};
   for (size_t i = 0; i < before + pattern.commands.size(); ++i) {
-    kernel.step(i < before ? entry.command : pattern.commands[i - before], period);
+    kernel.step(i < before ? entry.command : pattern.commands[i - before].tracks(), period);
     const double time = begin + period * static_cast<double>(motion.size());
     motion.push_back({time, kernel.pose(), kernel.twist().omega});
   }
@@ -151,8 +146,9 @@ recordings::Execution execute(const ModelDocument& model, const MotionPattern& p
                               std::mt19937_64& random) {
   const ExecutionNoise noise = drawNoise(model.vehicle.spread, random);
   recordings::Execution measured =
-      isPerfect(model.measurement) ? simulate(model.vehicle, pattern.commands, period, entry, noise)
-                                   : seenByIns(model, pattern, period, entry, noise);
+      isPerfect(model.measurement)
+          ? simulate(model.vehicle, tracksOf(pattern.commands), period, entry, noise)
+          : seenByIns(model, pattern, period, entry, noise);
   std::normal_distribution<double> standard;
   for (Pose2& pose : measured) {
     pose.x += how.position * standard(random);
@@ -175,7 +171,7 @@ std::mt19937_64 randomFor(uint64_t seed, const std::string& surface, int pattern
 
 PatternSet makeSet(ConfigReader recipe, const VehicleModel& model) {
   PatternSetContent content;
-  content.kind = model.kind;
+  content.channels = trackChannels(model.kind);
   recipe.text("name", content.name, true);
   double period = 0.05;
   recipe.number("period", period, {0.005, 1.0}, "s", true);
@@ -192,9 +188,10 @@ PatternSet makeSet(ConfigReader recipe, const VehicleModel& model) {
 }
 
 void requireSameKind(const PatternSet& set, const VehicleModel& model) {
-  if (model.kind != set.content().kind)
-    throw std::runtime_error(std::string("the patterns command ") + kindName(set.content().kind) +
-                             ", the model takes " + kindName(model.kind) +
+  const CommandChannels taken = trackChannels(model.kind);
+  if (set.content().channels != taken)
+    throw std::runtime_error("the patterns command " + describe(set.content().channels) +
+                             ", the model takes " + describe(taken) +
                              "; give a model of the same vehicle");
 }
 
@@ -204,7 +201,8 @@ recordings::SurfaceRecordings recordModel(const PatternSet& set, const ModelDocu
   recordings::SurfaceRecordings recorded{surface, {}};
   for (const MotionPattern& pattern : set.patterns()) {
     std::mt19937_64 random = randomFor(how.seed, surface, pattern.id);
-    const EntryState entry = steadyEntry(model.vehicle, set.classNamed(pattern.entry_class).steady);
+    const EntryState entry =
+        steadyEntry(model.vehicle, set.classNamed(pattern.entry_class).steady.tracks());
     std::vector<recordings::Execution> executions;
     for (int e = 0; e < how.executions; ++e)
       executions.push_back(execute(model, pattern, set.periodSeconds(), entry, how, random));
@@ -216,8 +214,10 @@ recordings::SurfaceRecordings recordModel(const PatternSet& set, const ModelDocu
 Envelope envelopeOf(const VehicleModel& model, const PatternSet& set) {
   Envelope all;
   for (const MotionPattern& pattern : set.patterns()) {
-    const EntryState entry = steadyEntry(model, set.classNamed(pattern.entry_class).steady);
-    const Envelope one = tread::envelopeOf(model, pattern.commands, set.periodSeconds(), entry);
+    const EntryState entry =
+        steadyEntry(model, set.classNamed(pattern.entry_class).steady.tracks());
+    const Envelope one =
+        tread::envelopeOf(model, tracksOf(pattern.commands), set.periodSeconds(), entry);
     all.v = std::max(all.v, one.v);
     all.omega = std::max(all.omega, one.omega);
     all.v_omega = std::max(all.v_omega, one.v_omega);

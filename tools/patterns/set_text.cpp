@@ -28,12 +28,21 @@ double negated(double value) {
   return value == 0.0 ? 0.0 : -value;
 }
 
+/// Tracks exchanged, steering to the other side.
+Command mirroredCommand(const Command& command, const CommandChannels& channels) {
+  Command image = command;
+  if (kindOfTracks(channels)) std::swap(image[0], image[1]);
+  for (size_t i = 0; i < channels.size(); ++i)
+    if (channels[i].kind == CommandKind::kSteeringAngle) image[i] = negated(command[i]);
+  return image;
+}
+
 /// The class that is this one with left and right exchanged: itself where it goes straight.
 const MotionClass* mirrorClass(const PatternSet& set, const std::string& name) {
   const MotionClass& motion = set.classNamed(name);
-  if (motion.steady.left == motion.steady.right) return &motion;
   for (const MotionClass& other : set.content().classes)
-    if (other.steady.left == motion.steady.right && other.steady.right == motion.steady.left)
+    if (other.steady == mirroredCommand(motion.steady, set.content().channels) &&
+        (other.name == name || other.steady != motion.steady))
       return &other;
   return nullptr;
 }
@@ -65,7 +74,7 @@ void requireWorkFor(const PatternSet& set, const std::string& name) {
   const MotionPattern* pattern = set.findByName(name);
   if (pattern == nullptr)
     throw std::runtime_error("no " + quoted(name) + " in set '" + set.content().name + "'");
-  if (!turns(*pattern))
+  if (!turns(*pattern, set.content().channels))
     throw std::runtime_error(quoted(name) + " goes straight: it is its own mirror image");
   if (const MotionPattern* partner = mirrorPartner(set, *pattern))
     throw std::runtime_error(quoted(name) + " has its mirror image already: '" + partner->name +
@@ -116,7 +125,7 @@ std::vector<Pair> pairsOf(const PatternSet& a, const PatternSet& b, const std::s
       continue;
     }
     pairs.push_back({&pattern, other});
-    if (other->commands != pattern.commands || a.content().kind != b.content().kind ||
+    if (other->commands != pattern.commands || a.content().channels != b.content().channels ||
         a.content().period_us != b.content().period_us)
       remarks += formatted("'%s' has other commands in the two sets.\n", pattern.name.c_str());
   }
@@ -158,10 +167,10 @@ constexpr double kEndSpan = 0.1;    // [s] over which the twist at the end is ta
 void adviseClasses(const PatternSet& set, std::vector<std::string>& advice) {
   std::set<std::string> standing;
   for (const MotionClass& motion : set.content().classes)
-    if (motion.steady == TrackCommand{}) standing.insert(motion.name);
+    if (motion.steady == Command{}) standing.insert(motion.name);
   if (standing.empty()) {
     advice.push_back(
-        "no class stands still (steady command 0, 0): a robot can neither begin nor end with this "
+        "no class stands still (steady command all 0): a robot can neither begin nor end with this "
         "set");
     return;
   }
@@ -181,7 +190,7 @@ void adviseClasses(const PatternSet& set, std::vector<std::string>& advice) {
 
 void advisePartner(const PatternSet& set, const MotionPattern& pattern,
                    std::vector<std::string>& advice) {
-  if (turns(pattern) && mirrorPartner(set, pattern) == nullptr)
+  if (turns(pattern, set.content().channels) && mirrorPartner(set, pattern) == nullptr)
     advice.push_back(
         formatted("pattern '%s' has no mirror image; add it with tread-patterns mirror",
                   pattern.name.c_str()));
@@ -226,9 +235,10 @@ void adviseCovariances(const PatternSet& set, std::vector<std::string>& advice) 
 
 }  // namespace
 
-bool turns(const MotionPattern& pattern) {
-  return std::any_of(pattern.commands.begin(), pattern.commands.end(),
-                     [](const TrackCommand& command) { return command.left != command.right; });
+bool turns(const MotionPattern& pattern, const CommandChannels& channels) {
+  return std::any_of(pattern.commands.begin(), pattern.commands.end(), [&](const Command& command) {
+    return mirroredCommand(command, channels) != command;
+  });
 }
 
 std::string mirroredName(const std::string& name) {
@@ -251,8 +261,8 @@ const MotionPattern* mirrorPartner(const PatternSet& set, const MotionPattern& p
   const MotionClass* entry = mirrorClass(set, pattern.entry_class);
   const MotionClass* exit = mirrorClass(set, pattern.exit_class);
   if (entry == nullptr || exit == nullptr) return nullptr;
-  const auto isImage = [](const TrackCommand& a, const TrackCommand& b) {
-    return a.left == b.right && a.right == b.left;
+  const auto isImage = [&](const Command& a, const Command& b) {
+    return a == mirroredCommand(b, set.content().channels);
   };
   for (const MotionPattern& other : set.patterns())
     if (other.entry_class == entry->name && other.exit_class == exit->name &&
@@ -262,11 +272,11 @@ const MotionPattern* mirrorPartner(const PatternSet& set, const MotionPattern& p
   return nullptr;
 }
 
-MotionPattern mirrored(const MotionPattern& pattern) {
+MotionPattern mirrored(const MotionPattern& pattern, const CommandChannels& channels) {
   MotionPattern image = pattern;
   image.name = mirroredName(pattern.name);
   image.times_learned = 0;
-  for (TrackCommand& command : image.commands) std::swap(command.left, command.right);
+  for (Command& command : image.commands) command = mirroredCommand(command, channels);
   for (Pose2& pose : image.trajectory) pose = {pose.x, negated(pose.y), negated(pose.yaw)};
   // Of x with y and of x with yaw; y and yaw change sign together.
   for (const size_t i : {size_t{1}, size_t{2}})
@@ -278,7 +288,7 @@ namespace {
 
 /// The mirror image, between the mirror images of its classes.
 MotionPattern imageIn(const PatternSet& set, const MotionPattern& pattern) {
-  MotionPattern image = mirrored(pattern);
+  MotionPattern image = mirrored(pattern, set.content().channels);
   image.entry_class = mirrorClass(set, pattern.entry_class)->name;
   image.exit_class = mirrorClass(set, pattern.exit_class)->name;
   return image;
@@ -293,7 +303,7 @@ PatternSet withMirrors(const PatternSet& set, const std::optional<std::string>& 
   PatternSetContent content = set.content();
   for (const MotionPattern& pattern : set.patterns()) {
     if (only && pattern.name != *only) continue;
-    if (!turns(pattern) || mirrorPartner(set, pattern) != nullptr) continue;
+    if (!turns(pattern, set.content().channels) || mirrorPartner(set, pattern) != nullptr) continue;
     if (const std::string why = obstacle(set, pattern); !why.empty())
       notes.push_back(quoted(pattern.name) + " not mirrored: " + why);
     else
@@ -305,17 +315,33 @@ PatternSet withMirrors(const PatternSet& set, const std::optional<std::string>& 
   return *result;
 }
 
+namespace {
+
+/// "power" or "track speed" of two tracks, else the names of the channels.
+std::string commandWords(const CommandChannels& channels) {
+  const auto kind = kindOfTracks(channels);
+  if (!kind) return describe(channels);
+  return *kind == CommandKind::kPower ? "power" : "track speed";
+}
+
+std::string listed(const Command& command, size_t channels) {
+  std::string text;
+  for (size_t i = 0; i < channels; ++i) text += formatted(i == 0 ? "%g" : ", %g", command[i]);
+  return text;
+}
+
+}  // namespace
+
 std::string table(const PatternSet& set) {
   const PatternSetContent& content = set.content();
-  const bool power = content.kind == CommandKind::kPower;
   std::string text =
       formatted("%s: version %lld, %zu patterns, %s, %g ms a sample\n", content.name.c_str(),
                 static_cast<long long>(content.version), content.patterns.size(),
-                power ? "power" : "track speed", set.periodSeconds() * 1e3);
+                commandWords(content.channels).c_str(), set.periodSeconds() * 1e3);
   for (const MotionClass& motion : content.classes)
-    text += formatted("  %-8s %.3f m/s, %.3f m/s to the left, %.3f rad/s at command %g, %g\n",
+    text += formatted("  %-8s %.3f m/s, %.3f m/s to the left, %.3f rad/s at command %s\n",
                       motion.name.c_str(), motion.twist.v_x, motion.twist.v_y, motion.twist.omega,
-                      motion.steady.left, motion.steady.right);
+                      listed(motion.steady, content.channels.size()).c_str());
   text += formatted("%4s  %-16s %-8s %-8s %5s %7s  %7s %7s %7s  %s\n", "id", "name", "entry",
                     "exit", "s", "m", "end x", "end y", "deg", "spread x y m, deg");
   for (const MotionPattern& pattern : content.patterns) text += row(pattern, set.periodSeconds());

@@ -10,8 +10,9 @@
 
 namespace tread::patterns {
 
-/// Whether a pattern commands its tracks differently anywhere; else it is its own mirror image.
-bool turns(const MotionPattern& pattern);
+/// Whether a pattern commands its tracks differently, or steers, anywhere; else it is its own
+/// mirror image.
+bool turns(const MotionPattern& pattern, const CommandChannels& channels);
 
 /// The name of the mirror image: the words left and right exchanged, else with _mirrored behind it.
 std::string mirroredName(const std::string& name);
@@ -22,7 +23,7 @@ const MotionPattern* mirrorPartner(const PatternSet& set, const MotionPattern& p
 
 /// Left and right exchanged: commands, name, y, yaw and their signs in the covariance; never
 /// learned. The id is the caller's to give.
-MotionPattern mirrored(const MotionPattern& pattern);
+MotionPattern mirrored(const MotionPattern& pattern, const CommandChannels& channels);
 
 /// The set with the mirror image of every pattern that turns and has no partner, or of the named
 /// one only; `notes` tells what was added and what could not be.

@@ -21,8 +21,8 @@ std::map<ExecutionKey, AppliedCommands> appliedCommands(const DriveLog& log) {
   for (const motor_t& motor : log.motor)
     if (motor.execution_id != 0 && motor.command_index >= 0)
       commands[{motor.motor_run_id, motor.execution_id}].emplace(
-          motor.command_index, TrackCommand{static_cast<double>(motor.command_left),
-                                            static_cast<double>(motor.command_right)});
+          motor.command_index, TrackCommand{static_cast<double>(motor.command[0]),
+                                            static_cast<double>(motor.command[1])});
   return commands;
 }
 
@@ -30,7 +30,7 @@ std::map<ExecutionKey, AppliedCommands> appliedCommands(const DriveLog& log) {
 CommandKind kindOf(const DriveLog& log) {
   for (auto motor = log.motor.rbegin(); motor != log.motor.rend(); ++motor)
     if (motor->execution_id != 0 && motor->command_index >= 0)
-      return static_cast<CommandKind>(motor->motor_command_kind);
+      return static_cast<CommandKind>(motor->channel_kind[0]);
   return CommandKind::kTrackSpeed;
 }
 
@@ -46,24 +46,20 @@ std::vector<TrackCommand> seriesOf(const AppliedCommands& applied, int32_t count
   return series;
 }
 
-bool same(const TrackCommand& a, const TrackCommand& b) {
-  return a.left == b.left && a.right == b.right;
-}
-
 /// A class for each pattern: what it does depends on the steady motion in which it begins.
 void addPattern(PatternSetContent& content, const VehicleModel& model, int id,
-                std::vector<TrackCommand> commands) {
+                const std::vector<TrackCommand>& commands) {
   MotionPattern pattern;
   pattern.id = id;
   pattern.name = "step " + std::to_string(id);
-  pattern.commands = std::move(commands);
+  pattern.commands = commandsOf(commands);
   const std::string steady = "steady " + std::to_string(id);
-  const MotionClass entry = classOf(model, steady, pattern.commands.front());
+  const MotionClass entry = classOf(model, steady, commands.front());
   content.classes.push_back(entry);
   pattern.entry_class = pattern.exit_class = steady;
-  if (!same(pattern.commands.front(), pattern.commands.back())) {
+  if (pattern.commands.front() != pattern.commands.back()) {
     pattern.exit_class = "after " + std::to_string(id);
-    content.classes.push_back(classOf(model, pattern.exit_class, pattern.commands.back()));
+    content.classes.push_back(classOf(model, pattern.exit_class, commands.back()));
   }
   predict(model, static_cast<double>(content.period_us) * 1e-6, entry, pattern);
   const ExecutionSpread& spread = model.spread;
@@ -142,7 +138,7 @@ PatternSet predictedSet(const DriveLog& log, const VehicleModel& model) {
                              model.name + "' (power or track speed); give another --model");
   PatternSetContent content;
   content.name = log.name;
-  content.kind = model.kind;
+  content.channels = trackChannels(model.kind);
   const std::map<ExecutionKey, AppliedCommands> commands = appliedCommands(log);
   std::set<int> known;
   for (const execution_record_t& record : log.executions) {

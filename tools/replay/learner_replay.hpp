@@ -60,7 +60,7 @@ ErrorSummary summarise(const std::vector<learning_t>& learned);
 
 /// forward, forward turn, counter-rotating, reverse turn, reverse or standing: what a series asks
 /// for.
-std::string commandClass(const MotionPattern& pattern);
+std::string commandClass(const MotionPattern& pattern, const CommandChannels& channels);
 
 /// The report over a log: executions in, measured, refused with reasons; errors by surface and by
 /// class of command, with the runs side by side. The first run is the one the others are compared

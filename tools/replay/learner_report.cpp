@@ -50,7 +50,7 @@ bool isScored(const learning_t& learned) {
 Belongs isOfClass(const PatternSet& set, const std::string& name) {
   return [&set, name](const learning_t& learned) {
     const MotionPattern* pattern = set.find(learned.learned_pattern_id);
-    return pattern != nullptr && commandClass(*pattern) == name;
+    return pattern != nullptr && commandClass(*pattern, set.content().channels) == name;
   };
 }
 
@@ -220,7 +220,7 @@ void drawBars(Picture& canvas, const report::Box& box, const PatternSet& set,
   std::set<std::string> known;
   for (const learning_t& one : runs.front().learned)
     if (const MotionPattern* pattern = set.find(one.learned_pattern_id))
-      if (one.accepted) known.insert(commandClass(*pattern));
+      if (one.accepted) known.insert(commandClass(*pattern, set.content().channels));
   const std::vector<std::string> names(known.begin(), known.end());
   const auto meanOf = [&](const LearnerRun& run, const std::string& name) {
     return error.mean(summarise(filtered(run.learned, isOfClass(set, name))));
@@ -259,12 +259,29 @@ ErrorSummary summarise(const std::vector<learning_t>& learned) {
   return {position.size(), mean(position), median(position), mean(yaw), median(yaw)};
 }
 
-std::string commandClass(const MotionPattern& pattern) {
+namespace {
+
+std::string steeredClass(const MotionPattern& pattern, const CommandChannels& channels) {
+  double drive = 0.0, steering = 0.0;
+  for (const Command& command : pattern.commands)
+    for (size_t i = 0; i < channels.size(); ++i) {
+      const bool steers = channels[i].kind == CommandKind::kSteeringAngle;
+      (steers ? steering : drive) += steers ? std::abs(command[i]) : command[i];
+    }
+  const double little = 0.02 * static_cast<double>(pattern.commands.size());
+  if (std::abs(drive) < little) return "standing";
+  return std::string(drive > 0.0 ? "forward" : "reverse") + (steering > little ? " turn" : "");
+}
+
+}  // namespace
+
+std::string commandClass(const MotionPattern& pattern, const CommandChannels& channels) {
+  if (!kindOfTracks(channels)) return steeredClass(pattern, channels);
   double left = 0.0;
   double right = 0.0;
-  for (const TrackCommand& command : pattern.commands) {
-    left += command.left;
-    right += command.right;
+  for (const Command& command : pattern.commands) {
+    left += command[0];
+    right += command[1];
   }
   const double sum = std::abs(left) + std::abs(right);
   if (sum < 0.02 * static_cast<double>(pattern.commands.size())) return "standing";

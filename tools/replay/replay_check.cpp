@@ -129,14 +129,13 @@ constexpr std::array<const char*, 3> kAxes{" x [m]", " y [m]", " yaw [rad]"};
 
 void compareSamples(FieldComparison<pattern_set_part_t>& compare, const pattern_set_part_t& log,
                     const pattern_set_part_t& replay) {
-  static constexpr std::array<const char*, 2> kTracks{" left", " right"};
   compare.values("number of samples", log.num_samples, replay.num_samples);
   if (log.num_samples != replay.num_samples) return;
   for (size_t i = 0; i < log.trajectory.size(); ++i) {
     const std::string at = " sample " + std::to_string(i + 1);
-    for (size_t track = 0; track < kTracks.size(); ++track)
-      compare.values("command" + at + kTracks[track], log.command[i][track],
-                     replay.command[i][track]);
+    for (size_t channel = 0; channel < log.channel_name.size(); ++channel)
+      compare.values("command" + at + " " + log.channel_name[channel], log.command[i][channel],
+                     replay.command[i][channel]);
     for (size_t axis = 0; axis < kAxes.size(); ++axis)
       compare.values("trajectory" + at + kAxes[axis], log.trajectory[i][axis],
                      replay.trajectory[i][axis]);
@@ -148,14 +147,16 @@ void compareSlots(FieldComparison<program_t>& compare, const std::string& name,
   compare.values(name + " pattern", log.slot_pattern_id, replay.slot_pattern_id);
   compare.values(name + " execution", log.execution_id, replay.execution_id);
   compare.values(name + " set version", log.slot_set_version, replay.slot_set_version);
-  compare.values(name + " command kind", log.command_kind, replay.command_kind);
+  compare.values(name + " number of channels", log.num_channels, replay.num_channels);
   compare.values(name + " period [us]", log.period, replay.period);
   compare.values(name + " number of commands", log.num_commands, replay.num_commands);
-  if (log.num_commands != replay.num_commands) return;
-  for (size_t i = 0; i < log.left.size(); ++i) {
-    const std::string at = name + " command " + std::to_string(i + 1);
-    compare.values(at + " left", log.left[i], replay.left[i]);
-    compare.values(at + " right", log.right[i], replay.right[i]);
+  if (log.num_commands != replay.num_commands || log.num_channels != replay.num_channels) return;
+  for (size_t channel = 0; channel < log.channel_kind.size(); ++channel) {
+    const std::string of = " channel " + std::to_string(channel + 1);
+    compare.values(name + of + " kind", log.channel_kind[channel], replay.channel_kind[channel]);
+    for (size_t i = 0; i < log.command.size(); ++i)
+      compare.values(name + " command " + std::to_string(i + 1) + of, log.command[i][channel],
+                     replay.command[i][channel]);
   }
 }
 
@@ -167,19 +168,25 @@ std::string differenceOf(const pattern_set_part_t& log, const pattern_set_part_t
   FieldComparison<M> compare(log, replay, tolerance);
   compare.field("pattern id", &M::set_pattern_id);
   compare.field("pattern name", &M::pattern_name);
-  compareSamples(compare, log, replay);
+  compare.values("number of channels", log.num_channels, replay.num_channels);
+  if (log.num_channels == replay.num_channels) {
+    compare.numbers("channel name", log.channel_name, replay.channel_name);
+    compare.numbers("command kind", log.channel_kind, replay.channel_kind);
+    compare.numbers("lowest command", log.channel_lowest, replay.channel_lowest);
+    compare.numbers("highest command", log.channel_highest, replay.channel_highest);
+    compare.numbers("entry steady", log.entry_steady, replay.entry_steady);
+    compare.numbers("exit steady", log.exit_steady, replay.exit_steady);
+    compareSamples(compare, log, replay);
+  }
   compare.field("end covariance", &M::end_covariance);
   compare.field("times learned", &M::times_learned);
   compare.field("entry class", &M::entry_class);
   compare.field("exit class", &M::exit_class);
   compare.field("entry twist", &M::entry_twist);
   compare.field("exit twist", &M::exit_twist);
-  compare.field("entry steady", &M::entry_steady);
-  compare.field("exit steady", &M::exit_steady);
   compare.field("number of patterns", &M::part_count);
   compare.field("set name", &M::set_name);
   compare.field("period [us]", &M::set_period);
-  compare.field("command kind", &M::set_command_kind);
   compare.field("newest measurement [us]", &M::utime);
   compare.field("parent version", &M::parent_version);
   if (tolerance == 0.0) compare.field("checksum (another pattern differs)", &M::set_checksum);

@@ -81,7 +81,7 @@ void HandRecord::hear(const motor_t& motor) {
   }
   if (by_hand_) {
     spans_.back().end = motor.utime;
-    if (last_.command_left != 0.0F || last_.command_right != 0.0F)
+    if (commandFrom(last_) != Command{})
       moving_ += secondsOf(std::max<int64_t>(0, motor.utime - last_.utime));
     if (!now) ++(armed ? given_back_ : stopped_);
   }

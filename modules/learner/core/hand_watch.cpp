@@ -39,13 +39,15 @@ const GivenCommand* HandWatch::at(int64_t utime) const {
   return after == given_.begin() ? nullptr : &*std::prev(after);
 }
 
-bool HandWatch::given(const TrackCommand& command, int64_t utime) const {
+bool HandWatch::given(const Command& command, int64_t utime) const {
   const GivenCommand* found = at(utime);
-  return found != nullptr && std::abs(found->command.left - command.left) <= kSameCommand &&
-         std::abs(found->command.right - command.right) <= kSameCommand;
+  if (found == nullptr) return false;
+  for (size_t i = 0; i < Command::kMaxChannels; ++i)
+    if (!(std::abs(found->command[i] - command[i]) <= kSameCommand)) return false;
+  return true;
 }
 
-bool HandWatch::steadyBefore(const TrackCommand& command, int64_t utime, int64_t period_us) const {
+bool HandWatch::steadyBefore(const Command& command, int64_t utime, int64_t period_us) const {
   for (int64_t before = utime - kSteady; before < utime - kEdge; before += period_us)
     if (!given(command, before)) return false;
   return true;

@@ -14,7 +14,7 @@ namespace tread::learner {
 /// What the motors were given from a time on.
 struct GivenCommand {
   int64_t utime = 0;  ///< [us]
-  TrackCommand command;
+  Command command;
   bool by_hand = false;
 };
 
@@ -37,7 +37,7 @@ class HandWatch {
   /// Takes the commands in the order of time. `lost`: some before this one are missing.
   void add(const GivenCommand& given, bool lost);
   /// Whether a command, from whomever, was given without a break for half a second before a time.
-  bool steadyBefore(const TrackCommand& command, int64_t utime, int64_t period_us) const;
+  bool steadyBefore(const Command& command, int64_t utime, int64_t period_us) const;
   /// The patterns of a set that have ended since the last call, in the order of time, with or
   /// without beginnings.
   std::vector<HandDrivenPattern> take(const PatternSet& set, bool beginnings);
@@ -49,7 +49,7 @@ class HandWatch {
                                int64_t start) const;
   std::optional<HandDrivenPattern> longestFrom(int64_t start, const PatternSet& set,
                                                bool beginnings, bool& not_yet) const;
-  bool given(const TrackCommand& command, int64_t utime) const;
+  bool given(const Command& command, int64_t utime) const;
   const GivenCommand* at(int64_t utime) const;
   int64_t nextStart(int64_t start, int64_t period_us) const;
 

@@ -172,8 +172,8 @@ BridgeOutput Bridge::step(int64_t now, const DeviceReport& device) {
       !requests_.estop() && (since_.estop_cleared || (in.arm && device.stop_latched));
   command(now, out);
   schedule(now, out);
-  motion_.command(out.command, now);
-  fences_.command(out.command, now);
+  motion_.command(out.command.tracks(), now);
+  fences_.command(out.command.tracks(), now);
   stopping_.command(isZero(out.command), now);
   player_.dropCandidate();
   since_ = Since{};
@@ -277,12 +277,12 @@ void Bridge::command(int64_t now, BridgeOutput& out) {
     player_.abort(now, out.failsafe.reason);
     if (out.failsafe.state != State::kManual) return;
     out.command = manual_.command(now);
-    out.kind = config_.gate.slot.kind;
+    out.kinds = kindsOf(config_.gate.slot.channels);
     return;
   }
   if (!player_.playing()) player_.start(now);
   out.command = player_.give();
-  out.kind = player_.current().kind;
+  out.kinds = player_.current().kinds;
   out.run_id = player_.runId().value_or(0);
   out.execution_id = player_.current().execution_id;
   out.command_index = player_.index();

@@ -38,9 +38,9 @@ struct BridgeConfig {
 /// What a step decided.
 struct BridgeOutput {
   FailsafeOutputs failsafe;
-  TrackCommand command;              ///< zero unless driving
+  Command command;                   ///< zero unless driving
   bool send = false;                 ///< the command is to be given to the controller now
-  CommandKind kind = kNoCommand;     ///< of the series played, or of what is driven by hand
+  std::vector<CommandKind> kinds;    ///< of the series played, or of what is driven by hand
   int64_t run_id = 0;                ///< of the series played; 0 = none
   int64_t execution_id = 0;          ///< being played; 0 = none
   int32_t command_index = -1;        ///< in the series; -1 = none
@@ -117,7 +117,7 @@ class Bridge {
   Since since_;
   std::optional<int64_t> last_step_;
   std::optional<int64_t> last_sent_;
-  TrackCommand sent_;
+  Command sent_;
   int64_t moved_at_ = 0;  ///< [us] of the newest command that is not zero
   std::map<std::string, int64_t> counters_;
 };

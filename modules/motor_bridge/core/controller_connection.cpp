@@ -58,13 +58,13 @@ std::string ControllerConnection::zeros(int times) const {
   return bytes;
 }
 
-void ControllerConnection::command(const TrackCommand& command, int64_t now) {
+void ControllerConnection::command(const Command& command, int64_t now) {
   if (!ready()) return;
   // A fifth before the watchdog expires, because the line takes time, too.
   const bool silent = 5 * (now - commanded_at_) > 4 * times_.watchdog_us;
   if (silent && !isZero(command)) ++counters_["zero before resuming"];
   commanded_at_ = now;
-  give(silent ? TrackCommand{} : command, now);
+  give(silent ? Command{} : command, now);
 }
 
 std::string ControllerConnection::poll(int64_t now) {

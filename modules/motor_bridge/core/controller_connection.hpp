@@ -33,7 +33,7 @@ class ControllerConnection : public MotorController {
   void open() override;
   void close(const std::string& problem) override;
   bool isOpen() const override { return phase_ != Phase::kClosed; }
-  void command(const TrackCommand& command, int64_t now) override;
+  void command(const Command& command, int64_t now) override;
   std::string poll(int64_t now) override;
   std::string zeros(int times) const override;
   DeviceReport report(int64_t now) const override;
@@ -59,7 +59,7 @@ class ControllerConnection : public MotorController {
   /// The last step of the start-up was done at now [us].
   virtual void begin(int64_t now) = 0;
   /// A command to a controller that was started up, to be sent with the next talk().
-  virtual void give(const TrackCommand& command, int64_t now) = 0;
+  virtual void give(const Command& command, int64_t now) = 0;
   /// Timeouts and queries of a controller that was started up; all bytes to be written now [us].
   virtual std::string talk(int64_t now) = 0;
   /// Why the controller must be started up anew; empty = all is well.

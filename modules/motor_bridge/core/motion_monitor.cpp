@@ -68,16 +68,16 @@ double leastOf(double min, double max) {
 
 /// Commanded and not done: what the motors say names it. `least` [m] of the tracks' way.
 std::string tooLittle(const MotionSums& sums, const MotorTelemetry& motors, double least) {
-  const double left = std::abs(motors.speed_left), right = std::abs(motors.speed_right);
+  const double left = std::abs(motors.measured[0]), right = std::abs(motors.measured[1]);
   const double asked = least / sums.seconds();
   const std::string told =
       words("%2 m, %0 deg in %1 s where tracks make %2 m at least",
             {sums.position.norm(), toDegrees(sums.turned), sums.seconds(), least});
   if (std::min(left, right) > 0.5 * asked)
     return "tracks spin or pose frozen: " + told + "; look, then ARM";
-  if (std::isfinite(motors.current_left) && std::isfinite(motors.current_right))
+  if (std::isfinite(motors.current[0]) && std::isfinite(motors.current[1]))
     return "stuck or pose frozen: " + told +
-           words(" (%0, %0 A); look, then ARM", {motors.current_left, motors.current_right});
+           words(" (%0, %0 A); look, then ARM", {motors.current[0], motors.current[1]});
   return "stuck or pose frozen: " + told + "; look, then ARM";
 }
 
@@ -221,7 +221,7 @@ std::string MotionMonitor::fault(int64_t now) const {
 }
 
 void MotionMonitor::watchTracks(int64_t utime) {
-  const double speeds[] = {motors_.speed_left, motors_.speed_right};
+  const double speeds[] = {motors_.measured[0], motors_.measured[1]};
   for (int i = 0; i < 2; ++i) {
     const double least = track_.least(i);
     const double along = least < 0.0 ? -speeds[i] : speeds[i];
@@ -239,7 +239,7 @@ std::string MotionMonitor::standingTrack(int64_t utime) const {
                      : left        ? "left track dead"
                                    : "right track dead") +
          words(": %2 and %2 m/s where %2 and %2 are the least; free or mend it, then ARM",
-               {motors_.speed_left, motors_.speed_right, track_.least(0), track_.least(1)});
+               {motors_.measured[0], motors_.measured[1], track_.least(0), track_.least(1)});
 }
 
 std::string MotionMonitor::surelyWrong() const {

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -19,13 +20,19 @@ struct DeviceReport {
   bool stop_latched = false;  ///< the controller holds an emergency stop
 };
 
+/// A number for each channel of the commands; NaN = unknown.
+using ChannelReadings = std::array<double, Command::kMaxChannels>;
+inline constexpr ChannelReadings kNoReadings = [] {
+  ChannelReadings readings{};
+  for (double& reading : readings) reading = std::numeric_limits<double>::quiet_NaN();
+  return readings;
+}();
+
 /// What a controller last told about itself; NaN = unknown.
 struct MotorTelemetry {
   double battery_voltage = std::numeric_limits<double>::quiet_NaN();  ///< [V]
-  double current_left = std::numeric_limits<double>::quiet_NaN();     ///< [A]
-  double current_right = std::numeric_limits<double>::quiet_NaN();
-  double speed_left = std::numeric_limits<double>::quiet_NaN();  ///< track speed [m/s], + forward
-  double speed_right = std::numeric_limits<double>::quiet_NaN();
+  ChannelReadings current = kNoReadings;   ///< [A] of the channels' motors
+  ChannelReadings measured = kNoReadings;  ///< speed [m/s] or steering angle [rad] of the channels
   double temperature = std::numeric_limits<double>::quiet_NaN();  ///< of the hottest part [degC]
   int32_t device_flags =
       0;  ///< of MOTOR's device_fault, as the controller's own documents have them
@@ -47,7 +54,7 @@ class MotorController {
   /// Bytes from the controller.
   virtual void receive(std::string_view bytes, int64_t now) = 0;
   /// A command in the unit of the robot's drive; dropped unless the controller is ready.
-  virtual void command(const TrackCommand& command, int64_t now) = 0;
+  virtual void command(const Command& command, int64_t now) = 0;
   /// Holds the controller's own emergency stop as long as true.
   virtual void holdStop(bool hold) = 0;
   virtual void releaseStop(int64_t now) = 0;

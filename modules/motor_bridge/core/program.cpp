@@ -11,36 +11,39 @@ namespace {
 /// Commands travel as 32-bit floats: 1.0 must not fail for its last bit.
 constexpr double kRangeTolerance = 1e-6;
 
-SlotFault checkSeries(const std::vector<TrackCommand>& series, double max_command) {
-  for (const TrackCommand& command : series) {
-    if (!std::isfinite(command.left) || !std::isfinite(command.right)) return SlotFault::kNotFinite;
+SlotFault checkSeries(const std::vector<Command>& series, const CommandChannels& channels) {
+  SlotFault fault = SlotFault::kNone;
+  for (const Command& command : series) {
+    for (size_t i = 0; i < Command::kMaxChannels; ++i) {
+      if (!std::isfinite(command[i])) return SlotFault::kNotFinite;
+      const double lowest = i < channels.size() ? channels[i].lowest : 0.0;
+      const double highest = i < channels.size() ? channels[i].highest : 0.0;
+      if (command[i] < lowest - kRangeTolerance || command[i] > highest + kRangeTolerance)
+        fault = SlotFault::kOutOfRange;
+    }
   }
-  const double limit = max_command + kRangeTolerance;
-  const bool in_range = std::all_of(series.begin(), series.end(), [limit](const TrackCommand& c) {
-    return std::abs(c.left) <= limit && std::abs(c.right) <= limit;
-  });
-  return in_range ? SlotFault::kNone : SlotFault::kOutOfRange;
+  return fault;
 }
 
 }  // namespace
 
 bool sameOrder(const ProgramSlot& a, const ProgramSlot& b) {
   return a.execution_id == b.execution_id && a.pattern_id == b.pattern_id &&
-         a.set_version == b.set_version && a.kind == b.kind && a.period_us == b.period_us &&
+         a.set_version == b.set_version && a.kinds == b.kinds && a.period_us == b.period_us &&
          a.series == b.series;
 }
 
 SlotFault checkSlot(const ProgramSlot& slot, const SlotLimits& limits) {
   if (slot.empty()) return SlotFault::kNone;
   if (slot.execution_id < 0) return SlotFault::kBadId;
-  if (slot.kind == kNoCommand || slot.kind != limits.kind) return SlotFault::kUnknownKind;
+  if (slot.kinds.empty() || slot.kinds != kindsOf(limits.channels)) return SlotFault::kUnknownKind;
   if (slot.period_us <= 0 || slot.period_us > limits.max_period_us ||
       slot.period_us % limits.step_us != 0) {
     return SlotFault::kBadPeriod;
   }
   if (slot.series.empty()) return SlotFault::kNoCommands;
   if (slot.durationUs() > limits.max_duration_us) return SlotFault::kTooLong;
-  return checkSeries(slot.series, limits.max_command);
+  return checkSeries(slot.series, limits.channels);
 }
 
 const char* describe(SlotFault fault) {

@@ -10,12 +10,9 @@
 
 namespace tread::motor {
 
-/// No command: the kind of an empty slot.
-inline constexpr CommandKind kNoCommand{};
-
-/// True for the command that stops both tracks.
-inline bool isZero(const TrackCommand& command) {
-  return command == TrackCommand{};
+/// True for the command that stops the vehicle.
+inline bool isZero(const Command& command) {
+  return command == Command{};
 }
 
 /// One pattern execution as ordered: a command series played at a fixed period.
@@ -23,9 +20,9 @@ struct ProgramSlot {
   int64_t execution_id = 0;  ///< counts up within a run; 0 = empty slot
   int32_t pattern_id = 0;
   int64_t set_version = 0;
-  CommandKind kind = kNoCommand;
-  int64_t period_us = 0;             ///< each command is held this long [us]
-  std::vector<TrackCommand> series;  ///< u_1 .. u_T
+  std::vector<CommandKind> kinds;  ///< of the channels of its commands
+  int64_t period_us = 0;           ///< each command is held this long [us]
+  std::vector<Command> series;     ///< u_1 .. u_T
 
   bool empty() const { return execution_id == 0; }
   int64_t durationUs() const { return period_us * static_cast<int64_t>(series.size()); }
@@ -46,11 +43,10 @@ struct Program {
 
 /// What a slot must keep to.
 struct SlotLimits {
-  CommandKind kind = CommandKind::kPower;  ///< what the controller is set up for
-  double max_command = 1.0;                ///< largest magnitude, in the units of the kind
-  int64_t step_us = 10'000;                ///< a period must be a multiple of this [us]
-  int64_t max_period_us = 200'000;         ///< [us]
-  int64_t max_duration_us = 60'000'000;    ///< of one series [us]
+  CommandChannels channels = trackChannels(CommandKind::kPower);  ///< what the controller takes
+  int64_t step_us = 10'000;              ///< a period must be a multiple of this [us]
+  int64_t max_period_us = 200'000;       ///< [us]
+  int64_t max_duration_us = 60'000'000;  ///< of one series [us]
 };
 
 /// What is wrong with a slot. Everything but kNone stops a moving robot.

@@ -143,7 +143,7 @@ void SeriesPlayer::abort(int64_t now, const std::string& reason) {
   candidate_ = Program{};
 }
 
-TrackCommand SeriesPlayer::give() {
+Command SeriesPlayer::give() {
   if (given_ <= index_) {
     log_.countCommand();
     given_ = index_ + 1;

@@ -107,7 +107,7 @@ class SeriesPlayer {
   /// Ends the running series at now [us] and forgets what was pending.
   void abort(int64_t now, const std::string& reason);
   /// Command of the current period, counted as given to the controller; needs playing().
-  TrackCommand give();
+  Command give();
 
   bool playing() const { return !current_.empty(); }
   const ProgramSlot& current() const { return current_; }

@@ -46,9 +46,9 @@ bool LineConnection::readsFaults() const {
                      [](const LineExchange& query) { return query.expect.has("faults"); });
 }
 
-LineValues LineConnection::commandValues(const TrackCommand& command) const {
-  double left = countsOf(command.left, line_.invert_left, line_);
-  double right = countsOf(command.right, line_.invert_right, line_);
+LineValues LineConnection::commandValues(const Command& command) const {
+  double left = countsOf(command[0], line_.invert_left, line_);
+  double right = countsOf(command[1], line_.invert_right, line_);
   if (line_.swapped) std::swap(left, right);
   return {{"left", left}, {"right", right}};
 }
@@ -98,7 +98,7 @@ void LineConnection::begin(int64_t now) {
   heard_at_ = queried_at_ = now;
   faults_read_at_.reset();
   watchdog_mismatches_ = 0;
-  given_ = TrackCommand{};
+  given_ = Command{};
   repeat_ = latched_ = false;
 }
 
@@ -185,10 +185,10 @@ void LineConnection::takeValues(const LineTemplate& reply, const LineValues& val
   MotorTelemetry& told = telemetry_;
   reading("battery_voltage", line_.battery_voltage, told.battery_voltage);
   reading("temperature", line_.temperature, told.temperature);
-  reading("current_" + one, line_.current, told.current_left);
-  reading("current_" + two, line_.current, told.current_right);
-  reading("speed_" + one, line_.invert_left ? -line_.speed : line_.speed, told.speed_left);
-  reading("speed_" + two, line_.invert_right ? -line_.speed : line_.speed, told.speed_right);
+  reading("current_" + one, line_.current, told.current[0]);
+  reading("current_" + two, line_.current, told.current[1]);
+  reading("speed_" + one, line_.invert_left ? -line_.speed : line_.speed, told.measured[0]);
+  reading("speed_" + two, line_.invert_right ? -line_.speed : line_.speed, told.measured[1]);
   const auto faults = values.find("faults");
   if (faults != values.end() && faults->second >= 0.0 && faults->second <= 2147483647.0) {
     told.device_flags = static_cast<int32_t>(faults->second);
@@ -209,7 +209,7 @@ void LineConnection::sendCommand(const std::string& line, int64_t now) {
   if (!line_.acknowledge.empty()) pending_.commandSent(now);
 }
 
-void LineConnection::give(const TrackCommand& command, int64_t now) {
+void LineConnection::give(const Command& command, int64_t now) {
   given_ = command;
   repeat_ = false;
   const LineValues values = commandValues(command);

@@ -36,14 +36,14 @@ class LineConnection : public ControllerConnection {
   bool isAnswered(int step) const override;
   void forget() override;
   void begin(int64_t now) override;
-  void give(const TrackCommand& command, int64_t now) override;
+  void give(const Command& command, int64_t now) override;
   std::string talk(int64_t now) override;
   std::string lost(int64_t now) const override;
   DeviceReport reported(int64_t now) const override;
   std::map<std::string, int64_t> counted() const override;
 
   const LineExchange* exchangeOf(int step) const;
-  LineValues commandValues(const TrackCommand& command) const;
+  LineValues commandValues(const Command& command) const;
   void sendCommand(const std::string& line, int64_t now);
   void takeLine(const std::string& line, int64_t now);
   void takeStartup(const std::string& line, int64_t now);
@@ -66,7 +66,7 @@ class LineConnection : public ControllerConnection {
   size_t next_query_ = 0;
   int64_t queried_at_ = 0;
   int watchdog_mismatches_ = 0;
-  TrackCommand given_;
+  Command given_;
   bool repeat_ = false;  ///< the last command was refused
   bool latched_ = false;
   bool hold_stop_ = false;

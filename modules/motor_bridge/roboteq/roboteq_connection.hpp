@@ -38,7 +38,7 @@ class RoboteqConnection : public ControllerConnection {
   std::string startupName(int step) const override;
   void forget() override { lines_.clear(); }
   void begin(int64_t now) override { session_.begin(now); }
-  void give(const TrackCommand& command, int64_t now) override { session_.give(command, now); }
+  void give(const Command& command, int64_t now) override { session_.give(command.tracks(), now); }
   std::string talk(int64_t now) override { return session_.poll(now); }
   std::string lost(int64_t /*now*/) const override { return session_.problem(); }
   DeviceReport reported(int64_t now) const override;

@@ -152,14 +152,14 @@ bool RoboteqTelemetry::take(const RoboteqReply& reply, const RoboteqLayout& layo
   const std::vector<long>& values = reply.values;
   if (reply.key == "A" && values.size() >= 2) {
     const auto [left, right] = toSides(values, layout);
-    current_left = left / 10.0;
-    current_right = right / 10.0;
+    current[0] = left / 10.0;
+    current[1] = right / 10.0;
   } else if (reply.key == "V" && values.size() >= 2) {
     battery_voltage = static_cast<double>(values[1]) / 10.0;
   } else if (reply.key == "S" && values.size() >= 2 && layout.rpm_per_mps > 0.0) {
     const auto [left, right] = toSides(values, layout);
-    speed_left = (layout.invert_left ? -left : left) / layout.rpm_per_mps;
-    speed_right = (layout.invert_right ? -right : right) / layout.rpm_per_mps;
+    measured[0] = (layout.invert_left ? -left : left) / layout.rpm_per_mps;
+    measured[1] = (layout.invert_right ? -right : right) / layout.rpm_per_mps;
   } else if (reply.key == "T" && !values.empty()) {
     temperature = static_cast<double>(*std::max_element(values.begin(), values.end()));
   } else if (reply.key == "FM" && areMotorFlags(values)) {

@@ -74,8 +74,8 @@ void SabertoothConnection::receive(std::string_view bytes, int64_t /*now*/) {
   unexpected_ += static_cast<int64_t>(bytes.size());
 }
 
-void SabertoothConnection::give(const TrackCommand& command, int64_t /*now*/) {
-  output_ += commandBytes(command);
+void SabertoothConnection::give(const Command& command, int64_t /*now*/) {
+  output_ += commandBytes(command.tracks());
   ++commands_;
 }
 

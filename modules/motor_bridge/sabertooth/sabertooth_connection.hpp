@@ -56,7 +56,7 @@ class SabertoothConnection : public ControllerConnection {
   bool isAnswered(int /*step*/) const override { return false; }
   void forget() override { output_.clear(); }
   void begin(int64_t now) override { set_up_at_ = now; }
-  void give(const TrackCommand& command, int64_t now) override;
+  void give(const Command& command, int64_t now) override;
   std::string talk(int64_t now) override;
   std::string lost(int64_t /*now*/) const override { return ""; }
   DeviceReport reported(int64_t /*now*/) const override { return {}; }

@@ -12,7 +12,7 @@ constexpr size_t kLargestValues = 128;      // bytes of a reply to COMM_GET_VALU
 
 }  // namespace
 
-std::string VescConnection::commandBytes(const TrackCommand& command) const {
+std::string VescConnection::commandBytes(const Command& command) const {
   std::string bytes;
   for (const int id : config_.ids()) bytes += addressed(id, vescCommand(command, id, config_));
   return bytes;
@@ -23,7 +23,7 @@ void VescConnection::begin(int64_t now) {
   group_.begin(now);
 }
 
-void VescConnection::give(const TrackCommand& command, int64_t /*now*/) {
+void VescConnection::give(const Command& command, int64_t /*now*/) {
   output_ += commandBytes(command);
   ++commands_;
 }

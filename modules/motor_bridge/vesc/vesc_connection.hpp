@@ -31,10 +31,10 @@ class VescConnection : public ControllerConnection {
   /// A command on its way to one controller.
   virtual std::string addressed(int id, const VescCommand& command) const = 0;
 
-  std::string commandBytes(const TrackCommand& command) const;
+  std::string commandBytes(const Command& command) const;
   std::string zero() const override { return commandBytes({}); }
   void begin(int64_t now) override;
-  void give(const TrackCommand& command, int64_t now) override;
+  void give(const Command& command, int64_t now) override;
   std::string lost(int64_t now) const override;
   DeviceReport reported(int64_t now) const override;
 

@@ -74,10 +74,10 @@ VescConfig readVescConfig(ConfigReader& reader, const DriveDescription& drive) {
   return config;
 }
 
-VescCommand vescCommand(const TrackCommand& command, int id, const VescConfig& config) {
+VescCommand vescCommand(const Command& command, int id, const VescConfig& config) {
   const bool left = contains(config.left, id);
   const bool invert = left ? config.invert_left : config.invert_right;
-  const double value = left ? command.left : command.right;
+  const double value = command[left ? 0 : 1];
   const double finite = std::isfinite(value) ? value : 0.0;
   const double wanted = invert ? -finite : finite;
   using Kind = VescCommand::Kind;
@@ -169,10 +169,10 @@ double VescGroup::currentOf(bool left) const {
 
 MotorTelemetry VescGroup::telemetry() const {
   MotorTelemetry all;
-  all.speed_left = speedOf(true);
-  all.speed_right = speedOf(false);
-  all.current_left = currentOf(true);
-  all.current_right = currentOf(false);
+  all.measured[0] = speedOf(true);
+  all.measured[1] = speedOf(false);
+  all.current[0] = currentOf(true);
+  all.current[1] = currentOf(false);
   for (const Member& member : members_) {
     const VescReading& told = member.told;
     if (told.voltage) all.battery_voltage = std::fmin(all.battery_voltage, *told.voltage);

@@ -34,7 +34,7 @@ struct VescConfig {
 VescConfig readVescConfig(ConfigReader& reader, const DriveDescription& drive);
 
 /// What one controller is to do for a command of the tracks. NaN becomes zero.
-VescCommand vescCommand(const TrackCommand& command, int id, const VescConfig& config);
+VescCommand vescCommand(const Command& command, int id, const VescConfig& config);
 
 /// All controllers of a robot, as they last told of themselves.
 class VescGroup {

@@ -105,7 +105,7 @@ ExcitationPlanner::ExcitationPlanner(const PatternSet& set, double room) : room_
   standing_ = classes.size();
   for (size_t c = 0; c < classes.size(); ++c) {
     class_names_.push_back(classes[c].name);
-    if (standing_ == classes.size() && classes[c].steady == TrackCommand{}) standing_ = c;
+    if (standing_ == classes.size() && classes[c].steady == Command{}) standing_ = c;
   }
   if (standing_ == classes.size())
     throw std::runtime_error("no class of set '" + set.content().name +

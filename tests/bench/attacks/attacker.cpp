@@ -122,8 +122,8 @@ void Attacker::forge() {
     case 2: {
       program_t program = program_;
       for (program_slot_t* slot : {&program.running, &program.next})
-        for (auto* side : {&slot->left, &slot->right})
-          for (float& command : *side) command = 1.0F;
+        for (std::vector<float>& values : slot->command)
+          for (float& value : values) value = 1.0F;
       return sendForged(kProgram, program);
     }
     case 3: {

@@ -175,7 +175,7 @@ class Run {
 
   /// What happened at all: a rule that nothing ever tries proves nothing.
   void note(const motor_t& motor) {
-    const bool moves = motor.command_left != 0.0F || motor.command_right != 0.0F;
+    const bool moves = motor.command[0] != 0.0F || motor.command[1] != 0.0F;
     const auto says = [&](const char* words) {
       return motor.state_reason.find(words) != std::string::npos;
     };

@@ -69,11 +69,11 @@ void Forger::program(double strength) {
   message.running.execution_id = 1;
   message.running.slot_pattern_id = 1;
   message.running.slot_set_version = 1;
-  message.running.command_kind = program_slot_t::KIND_POWER;
+  message.running.num_channels = 2;
+  message.running.channel_kind.assign(2, program_slot_t::KIND_POWER);
   message.running.period = 50'000;
   message.running.num_commands = 40;
-  message.running.left.assign(40, strength < 0.1 ? 2.0F : 1.0F);
-  message.running.right.assign(40, 1.0F);
+  message.running.command.assign(40, {strength < 0.1 ? 2.0F : 1.0F, 1.0F});
   message.next = blank<program_slot_t>();
   inject(kProgram, message, bus_.now());
 }

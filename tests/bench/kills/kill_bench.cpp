@@ -120,7 +120,7 @@ class KillBench {
       const motor_t& motor = run_.motor().message();
       if (run_.plan().message().plan_status == plan_t::PLAN_ARRIVED) nextGoal();
       if (!run_.driving() && motor.bridge_state != motor_t::STATE_ARMED) run_.arm(5.0);
-      return run_.driving() && motor.command_left > 0.3F && motor.command_right > 0.3F;
+      return run_.driving() && motor.command[0] > 0.3F && motor.command[1] > 0.3F;
     };
     std::uniform_real_distribution<double> more(0.2, 1.2);
     for (int i = 0; i < 20; ++i) {

@@ -54,9 +54,10 @@ PatternSet setOf(size_t patterns, size_t samples) {
     pattern.id = static_cast<int>(p) + 1;
     pattern.name = "p" + std::to_string(p);
     pattern.entry_class = pattern.exit_class = "entry";
-    pattern.commands.assign(samples,
-                            p % 2 == 0 ? TrackCommand{slow, 1.0} : TrackCommand{1.0, slow});
-    pattern.trajectory = simulate(model, pattern.commands, kPeriod, steadyEntry(model, full));
+    const std::vector<TrackCommand> commands(
+        samples, p % 2 == 0 ? TrackCommand{slow, 1.0} : TrackCommand{1.0, slow});
+    pattern.commands = commandsOf(commands);
+    pattern.trajectory = simulate(model, commands, kPeriod, steadyEntry(model, full));
     content.patterns.push_back(std::move(pattern));
   }
   std::string why;
@@ -90,7 +91,7 @@ std::vector<Driven> drives(const PatternSet& set, bool parts = false) {
       driven.pattern = random() % set.patterns().size();
       const MotionPattern& pattern = set.patterns()[driven.pattern];
       driven.measurement.trajectory =
-          simulate(model, pattern.commands, kPeriod, steadyEntry(model, {1.0, 1.0}),
+          simulate(model, tracksOf(pattern.commands), kPeriod, steadyEntry(model, {1.0, 1.0}),
                    drawNoise(model.spread, random));
       driven.measurement.covered = pattern.commands.size();
       if (parts && i % 2 == 1)

@@ -81,7 +81,7 @@ class Wanderer : public Node {
  private:
   static std::string restOf(const PatternSet& set) {
     for (const MotionClass& one : set.content().classes)
-      if (one.steady == TrackCommand{}) return one.name;
+      if (one.steady == Command{}) return one.name;
     return set.content().classes.front().name;
   }
   motor::ProgramSlot next(int64_t id) {
@@ -92,7 +92,7 @@ class Wanderer : public Node {
     slot.execution_id = id;
     slot.pattern_id = pattern.id;
     slot.set_version = set_.version();
-    slot.kind = set_.content().kind;
+    slot.kinds = kindsOf(set_.content().channels);
     slot.period_us = set_.content().period_us;
     slot.series = pattern.commands;
     return slot;
@@ -152,7 +152,7 @@ void drive(const missions::RobotConfig& robot, uint64_t seed, Counts& counts) {
   while (bus.now() < end) {
     bus.runUntil(bus.now() + static_cast<int64_t>(period * 1e6));
     beacon.step(bus.now());
-    const bool moves = motor.command_left != 0.0F || motor.command_right != 0.0F;
+    const bool moves = motor.command[0] != 0.0F || motor.command[1] != 0.0F;
     if (was != motor_t::STATE_DISARMED) stood_since = bus.now();
     // In the middle of a pattern, too, and what follows begins at rest.
     const bool disarms = random() % kDisarmed == 0;

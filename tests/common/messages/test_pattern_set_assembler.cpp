@@ -120,6 +120,25 @@ TEST_CASE("an older version that is incomplete is dropped when a newer one is co
   CHECK_FALSE(addAll(assembler, old_parts));
 }
 
+TEST_CASE("a set with three channels goes over the bus as it is, in its commands and programs") {
+  std::string why;
+  const auto set = PatternSet::make(tread::testing::threeChannels(), why);
+  REQUIRE(set);
+  PatternSetAssembler assembler;
+  const auto received = addAll(assembler, toMessages(*set));
+  REQUIRE(received);
+  CHECK(received->content().channels == set->content().channels);
+  CHECK(received->patterns()[1].commands == set->patterns()[1].commands);
+  PlannedExecution planned;
+  planned.execution_id = 4;
+  planned.pattern_id = 2;
+  planned.set = *set;
+  const program_slot_t slot = toMessage(planned);
+  REQUIRE(slot.num_channels == 3);
+  CHECK(slot.channel_kind[2] == program_slot_t::KIND_STEERING_ANGLE);
+  CHECK(slot.command[1] == std::vector<float>{0.25F, 0.25F, -0.2F});
+}
+
 TEST_CASE("parts of two versions may come mixed") {
   const auto first = partsOf(7);
   const auto second = partsOf(8);
@@ -142,7 +161,11 @@ TEST_CASE("every field of a part is checked, with one line that says what is wro
       {"part count", [](auto& p) { p.part_count = 1 << 30; }},
       {"part number", [](auto& p) { p.part = -1; }},
       {"part number", [](auto& p) { p.part = p.part_count; }},
-      {"command kind", [](auto& p) { p.set_command_kind = 3; }},
+      {"command kind", [](auto& p) { p.channel_kind[0] = p.channel_kind[1] = 9; }},
+      {"number of channels", [](auto& p) { p.num_channels = 0; }},
+      {"number of channels", [](auto& p) { p.num_channels = 9; }},
+      {"lengths", [](auto& p) { p.channel_lowest.pop_back(); }},
+      {"lengths", [](auto& p) { p.entry_steady.push_back(0.0); }},
       {"period", [](auto& p) { p.set_period = -50000; }},
       {"name", [](auto& p) { p.pattern_name.clear(); }},
       {"name", [](auto& p) { p.entry_class = std::string(65, 'x'); }},

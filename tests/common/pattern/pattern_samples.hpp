@@ -40,4 +40,19 @@ inline PatternSetContent goodContent() {
   return content;
 }
 
+/// The same for a vehicle with throttle, steering and a rear steering of its own.
+inline PatternSetContent threeChannels() {
+  PatternSetContent content = goodContent();
+  content.channels = {{"throttle", CommandKind::kPower, -0.5, 1.0},
+                      {"steering", CommandKind::kSteeringAngle, -0.4, 0.4},
+                      {"rear steering", CommandKind::kSteeringAngle, -0.2, 0.2}};
+  content.classes[1].steady = {0.8, 0.1};
+  for (MotionPattern& pattern : content.patterns)
+    for (size_t i = 0; i < pattern.commands.size(); ++i) {
+      pattern.commands[i] = {0.25 * static_cast<double>(i), 0.375 - 0.125 * static_cast<double>(i)};
+      pattern.commands[i][2] = -0.2;
+    }
+  return content;
+}
+
 }  // namespace tread::testing

@@ -74,8 +74,7 @@ PatternSetContent awkwardContent(unsigned seed) {
   content.patterns[0].commands[0] = {-0.0, 0.0};
   content.patterns[0].commands[1] = {0.0, -0.0};
   content.patterns[0].trajectory[0] = {-0.0, std::numeric_limits<double>::denorm_min(), 1e-300};
-  for (TrackCommand& command : content.patterns[1].commands)
-    command = {share(random), share(random)};
+  for (Command& command : content.patterns[1].commands) command = {share(random), share(random)};
   for (Pose2& pose : content.patterns[1].trajectory)
     pose = {tiny(random), tiny(random), tiny(random) * 1e-9};
   content.patterns[1].end_covariance[1] = -std::numeric_limits<double>::max();
@@ -107,8 +106,8 @@ TEST_CASE("A pattern file comes back bit for bit") {
 TEST_CASE("Commands are written in runs: left, right, samples") {
   const PatternSet set = parsePatterns(kGood, "tiny.yaml");
   REQUIRE(set.patterns()[0].commands.size() == 3);
-  CHECK(set.patterns()[0].commands[1].left == 0.5);
-  CHECK(set.patterns()[0].commands[2].left == 0.0);
+  CHECK(set.patterns()[0].commands[1][0] == 0.5);
+  CHECK(set.patterns()[0].commands[2][0] == 0.0);
   const std::string text = formatPatterns(set);
   CHECK(text.find("- [0.5, 0.5, 2]\n      - [0, 0, 1]\n") != std::string::npos);
 }

@@ -59,7 +59,7 @@ TEST_CASE("A set with a bad head is refused with one line") {
       {"parent version 7", [](auto& c) { c.parent_version = 7; }},
       {"parent version -1", [](auto& c) { c.parent_version = -1; }},
       {"utime -1", [](auto& c) { c.utime = -1; }},
-      {"command kind", [](auto& c) { c.kind = static_cast<CommandKind>(9); }},
+      {"command kind", [](auto& c) { c.channels[0].kind = static_cast<CommandKind>(9); }},
       {"period 4999 us", [](auto& c) { c.period_us = 4'999; }},
       {"period 1000001 us", [](auto& c) { c.period_us = 1'000'001; }},
       {"0 patterns", [](auto& c) { c.patterns.clear(); }},
@@ -71,7 +71,7 @@ TEST_CASE("A set with a bad motion class is refused with one line") {
   expectRefusals({
       {"class 'cruise': yaw rate nan", [](auto& c) { c.classes[1].twist.omega = kNan; }},
       {"class 'cruise': speed 21 m/s", [](auto& c) { c.classes[1].twist.v_x = 21.0; }},
-      {"class 'rest': steady command 1.1", [](auto& c) { c.classes[0].steady.left = 1.1; }},
+      {"class 'rest': steady command 1.1", [](auto& c) { c.classes[0].steady[0] = 1.1; }},
       {"name used twice", [](auto& c) { c.classes.push_back(c.classes[1]); }},
       {"class 'idle': no pattern begins or ends",
        [](auto& c) {
@@ -99,8 +99,8 @@ TEST_CASE("A set with bad commands or a bad trajectory is refused with one line"
       {"1001 commands", [](auto& c) { c.patterns[2].commands.resize(1001); }},
       {"pattern 'left': 3 commands but 2 poses",
        [](auto& c) { c.patterns[1].trajectory.pop_back(); }},
-      {"sample 2: command nan", [](auto& c) { c.patterns[1].commands[1].left = kNan; }},
-      {"sample 1: command -1.5", [](auto& c) { c.patterns[1].commands[0].right = -1.5; }},
+      {"sample 2: command nan", [](auto& c) { c.patterns[1].commands[1][0] = kNan; }},
+      {"sample 1: command -1.5", [](auto& c) { c.patterns[1].commands[0][1] = -1.5; }},
       {"sample 3: pose is not finite", [](auto& c) { c.patterns[1].trajectory[2].yaw = kNan; }},
       {"sample 1: pose is not finite", [](auto& c) { c.patterns[1].trajectory[0].x = kInfinity; }},
       {"sample 1: the trajectory jumps: speed",
@@ -114,7 +114,7 @@ TEST_CASE("A set with bad commands or a bad trajectory is refused with one line"
 
 TEST_CASE("Track speeds may be up to 20 m/s where power ends at 1") {
   PatternSetContent content = goodContent();
-  content.kind = CommandKind::kTrackSpeed;
+  content.channels = trackChannels(CommandKind::kTrackSpeed);
   content.patterns[1].commands[0] = {-20.0, 20.0};
   std::string why;
   CHECK(PatternSet::make(content, why).has_value());

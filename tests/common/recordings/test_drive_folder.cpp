@@ -116,7 +116,8 @@ TEST_CASE("a robot that was driven slowly gets smaller commands, and the report 
                                                 {"two", "Snail", "soft", kSoft, 24, 0.5, 1.0}});
   DriveRequest request = requestOf(path, "");
   const DriveRecordings drives = recordingsFromDrives(request);
-  const TrackCommand straight = drives.recordings.patterns.findByName("straight")->commands.front();
+  const TrackCommand straight =
+      drives.recordings.patterns.findByName("straight")->commands.front().tracks();
   CHECK(straight.left > 0.2);
   CHECK(straight.left < 0.3);
   CHECK(drives.notes.front().find("the robot was driven too slowly for the recipe") == 0);

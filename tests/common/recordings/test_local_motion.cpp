@@ -110,11 +110,11 @@ TEST_CASE("each pattern begins and ends in its own steady motion, the mean of th
                    defaultRecipe(), 1.0, 2);
   const PatternSet& set = drives.recordings.patterns;
   REQUIRE(set.patterns().size() == 8);
-  CHECK(set.content().kind == CommandKind::kTrackSpeed);
+  CHECK(set.content().channels == trackChannels(CommandKind::kTrackSpeed));
   CHECK(set.content().period_us == 50'000);
   const MotionPattern& left = *set.findByName("left");
   CHECK(left.commands.size() == 40);
-  CHECK(left.commands.front() == TrackCommand{1.75, 3.25});
+  CHECK(left.commands.front() == Command{1.75, 3.25});
   CHECK(left.entry_class == left.exit_class);
   const MotionClass& steady = set.classNamed(left.entry_class);
   CHECK(steady.twist.v_x == Approx(0.9 * 2.5).margin(1e-6));

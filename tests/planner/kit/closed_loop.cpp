@@ -45,7 +45,7 @@ void ToyBridge::close(ExecutionReading::State state, const std::string& reason) 
   executions_.back().reason = reason;
 }
 
-TrackCommand ToyBridge::step(int64_t now) {
+Command ToyBridge::step(int64_t now) {
   while (!current_.empty() && now >= started_ + current_.durationUs()) {
     const int64_t end = started_ + current_.durationUs();
     close(ExecutionReading::State::kCompleted, "");
@@ -118,7 +118,7 @@ class Drive {
       bridge_.receive(77, orders_.front().running, orders_.front().next, now_);
       orders_.pop_front();
     }
-    const TrackCommand command = bridge_.step(now_);
+    const Command command = bridge_.step(now_);
     if (bridge_.executionId() != drawn_for_) {
       drawn_for_ = bridge_.executionId();
       gain_ = 1.0 + normal(options_.errors.gain);

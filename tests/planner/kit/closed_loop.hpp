@@ -20,7 +20,7 @@ class ToyBridge {
   void receive(int64_t run_id, const PlannedExecution& running, const PlannedExecution& next,
                int64_t now);
   /// The command of now.
-  TrackCommand step(int64_t now);
+  Command step(int64_t now);
   void setArmed(bool armed) { armed_ = armed; }
 
   BridgeReading reading() const { return reading_; }

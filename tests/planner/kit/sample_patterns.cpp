@@ -15,7 +15,7 @@ constexpr double kFine = 0.005;
 
 /// A part of a command series: the same command for a time.
 struct Phase {
-  TrackCommand command;
+  Command command;
   double time;
 };
 
@@ -35,8 +35,8 @@ void add(PatternSetContent& content, const std::string& name, const std::string&
   pattern.end_covariance.fill(std::numeric_limits<double>::quiet_NaN());
   const TrackModel model;
   TrackState state;
-  state.left = classOf(content, entry).steady.left * model.top_speed;
-  state.right = classOf(content, entry).steady.right * model.top_speed;
+  state.left = classOf(content, entry).steady[0] * model.top_speed;
+  state.right = classOf(content, entry).steady[1] * model.top_speed;
   for (const Phase& phase : phases) {
     for (int i = 0; i < static_cast<int>(std::lround(phase.time / kPeriod)); ++i) {
       for (int k = 0; k < static_cast<int>(std::lround(kPeriod / kFine)); ++k)
@@ -56,8 +56,8 @@ PatternSet checked(PatternSetContent content) {
 }
 
 void addCruise(PatternSetContent& content, double error) {
-  const TrackCommand full{1.0, 1.0};
-  const auto turn = [&](const std::string& name, TrackCommand command) {
+  const Command full{1.0, 1.0};
+  const auto turn = [&](const std::string& name, Command command) {
     add(content, name, "cruise", "cruise", {{command, 0.55}, {full, 0.45}}, error);
   };
   add(content, "straight", "cruise", "cruise", {{full, 1.0}}, error);
@@ -71,8 +71,8 @@ void addCruise(PatternSetContent& content, double error) {
 }
 
 void addSlow(PatternSetContent& content, double error) {
-  const TrackCommand back{-0.5, -0.5};
-  const TrackCommand zero{0.0, 0.0};
+  const Command back{-0.5, -0.5};
+  const Command zero{0.0, 0.0};
   add(content, "back", "rest", "reverse", {{back, 0.8}}, error);
   add(content, "reverse", "reverse", "reverse", {{back, 1.0}}, error);
   add(content, "reverse_left", "reverse", "reverse", {{{-0.35, -0.5}, 0.55}, {back, 0.45}}, error);
@@ -90,11 +90,11 @@ void addSlow(PatternSetContent& content, double error) {
 
 }  // namespace
 
-TrackState moveOn(TrackState state, TrackCommand power, double dt, const TrackModel& model,
-                  double gain, double turn_gain, double drift) {
+TrackState moveOn(TrackState state, Command power, double dt, const TrackModel& model, double gain,
+                  double turn_gain, double drift) {
   const double follow = 1.0 - std::exp(-dt / model.lag);
-  state.left += follow * (model.top_speed * power.left - state.left);
-  state.right += follow * (model.top_speed * power.right - state.right);
+  state.left += follow * (model.top_speed * power[0] - state.left);
+  state.right += follow * (model.top_speed * power[1] - state.right);
   const double speed = gain * (state.left + state.right) / 2.0;
   const Twist2 twist{speed, speed * std::tan(drift),
                      turn_gain * (state.right - state.left) / model.gauge};

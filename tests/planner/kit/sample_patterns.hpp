@@ -23,7 +23,7 @@ struct TrackState {
 
 /// Moves it on by dt under a power command. `gain` and `turn_gain` [1] are what the ground makes of
 /// it.
-TrackState moveOn(TrackState state, TrackCommand power, double dt, const TrackModel& model,
+TrackState moveOn(TrackState state, Command power, double dt, const TrackModel& model,
                   double gain = 1.0, double turn_gain = 1.0, double drift = 0.0);
 
 /// A set like the paper's with start, stop, reverse and turns on the spot, predicted by the model.

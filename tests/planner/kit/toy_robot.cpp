@@ -61,7 +61,8 @@ void ToyRobot::play(int64_t now) {
   if (current_.execution_id == 0) return;
   index_ = static_cast<int>((now - started_) / current_.period);
   const auto i = static_cast<size_t>(index_);
-  command_ = {static_cast<double>(current_.left[i]), static_cast<double>(current_.right[i])};
+  command_ = {static_cast<double>(current_.command[i][0]),
+              static_cast<double>(current_.command[i][1])};
 }
 
 void ToyRobot::publishMotor(int64_t utime) {

@@ -50,7 +50,7 @@ class ToyRobot : public Node {
   std::vector<Tile> tiles_;
   size_t turn_ = 0;
   TrackState state_;
-  TrackCommand command_;
+  Command command_;
   program_slot_t current_{};
   std::vector<execution_record_t> records_;
   int64_t armed_at_ = 0;

@@ -64,7 +64,7 @@ Defect flipGyro(int64_t when, std::vector<LogEvent>& events) {
 
 Defect swapTracks(int64_t when, std::vector<LogEvent>& events) {
   editEach(events, kMotor, [when](motor_t& motor) {
-    if (motor.utime >= when) std::swap(motor.command_left, motor.command_right);
+    if (motor.utime >= when) std::swap(motor.command[0], motor.command[1]);
   });
   return {1.0, at("left and right of MOTOR are swapped from", when)};
 }

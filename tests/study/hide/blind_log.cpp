@@ -67,8 +67,8 @@ class LogMaker {
       const MotorSample& sample = drive_.motor[i];
       // A Roboteq tells tenths of a volt and of an ampere.
       motor.battery_voltage = tenths(sample.voltage + 0.03 * gaussian_.draw());
-      motor.current_left = tenths(sample.current_left);
-      motor.current_right = tenths(sample.current_right);
+      motor.current[0] = tenths(sample.current_left);
+      motor.current[1] = tenths(sample.current_right);
       log_.add(kMotor, motor);
     }
   }
@@ -103,10 +103,10 @@ class LogMaker {
 
   static motor_t armedMotor() {
     auto motor = blank<motor_t>();
-    motor.command_left = motor.command_right = 0.0F;
+    motor.command[0] = motor.command[1] = 0.0F;
     motor.bridge_state = motor_t::STATE_ARMED;
     motor.state_reason = "armed, no program";
-    motor.motor_command_kind = kKindPower;
+    motor.channel_kind[0] = motor.channel_kind[1] = kKindPower;
     return motor;
   }
 
@@ -117,8 +117,8 @@ class LogMaker {
     motor.motor_run_id = pattern.run;
     motor.execution_id = static_cast<int64_t>(at) + 1;
     motor.command_index = static_cast<int32_t>((time - pattern.start) / kCommandUs);
-    motor.command_left = static_cast<float>(pattern.power.left);
-    motor.command_right = static_cast<float>(pattern.power.right);
+    motor.command[0] = static_cast<float>(pattern.power.left);
+    motor.command[1] = static_cast<float>(pattern.power.right);
   }
 
   static float tenths(double value) { return static_cast<float>(std::round(10.0 * value) / 10.0); }

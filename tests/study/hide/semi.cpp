@@ -115,11 +115,11 @@ void editCommands(Events& events,
   const int64_t first = motors.front().utime;
   const auto span = static_cast<double>(std::max<int64_t>(1, motors.back().utime - first));
   editEach(events, kMotor, [&](motor_t& motor) {
-    double left = static_cast<double>(motor.command_left);
-    double right = static_cast<double>(motor.command_right);
+    double left = static_cast<double>(motor.command[0]);
+    double right = static_cast<double>(motor.command[1]);
     change(static_cast<double>(motor.utime - first) / span, left, right);
-    motor.command_left = static_cast<float>(left);
-    motor.command_right = static_cast<float>(right);
+    motor.command[0] = static_cast<float>(left);
+    motor.command[1] = static_cast<float>(right);
   });
 }
 

@@ -79,8 +79,8 @@ TEST_CASE("every pattern is an execution of 40 commands, begun and ended at a co
     CHECK(record.started == played.front().utime);
     CHECK(std::abs(static_cast<double>(record.ended - record.started - 2'000'000)) <= 300.0);
     for (const motor_t& motor : played) {
-      CHECK(motor.command_left == played.front().command_left);
-      CHECK(std::abs(motor.command_left) <= 1.0f);
+      CHECK(motor.command[0] == played.front().command[0]);
+      CHECK(std::abs(motor.command[0]) <= 1.0f);
     }
   }
 }
@@ -93,7 +93,7 @@ TEST_CASE("the vehicle stands at both ends of a log") {
   for (const motor_t& motor : motors) {
     const bool end = motor.utime - motors.front().utime < 24'000'000 ||
                      motors.back().utime - motor.utime < 24'000'000;
-    if (end) CHECK(motor.command_left == 0.0f);
+    if (end) CHECK(motor.command[0] == 0.0f);
   }
 }
 
@@ -112,7 +112,7 @@ TEST_CASE("nothing in a log tells what is hidden") {
   REQUIRE(plain.size() == hidden.size());
   for (size_t i = 0; i < plain.size(); ++i) {
     CHECK(plain[i].utime == hidden[i].utime);
-    CHECK(plain[i].command_left == hidden[i].command_left);
+    CHECK(plain[i].command[0] == hidden[i].command[0]);
     CHECK(plain[i].state_reason == hidden[i].state_reason);
   }
 }

@@ -106,19 +106,19 @@ TEST_CASE("commands are those that a vehicle with the effect would have needed")
   const auto before = asymmetry.motorBefore();
   const auto uneven = asymmetry.motorAfter(), wide = dead.motorAfter(), strong = sag.motorAfter();
   for (size_t i = 0; i < before.size(); ++i) {
-    const double left = static_cast<double>(before[i].command_left);
-    const double right = static_cast<double>(before[i].command_right);
-    CHECK(static_cast<double>(uneven[i].command_left) * (1.0 + asymmetry.value()) ==
+    const double left = static_cast<double>(before[i].command[0]);
+    const double right = static_cast<double>(before[i].command[1]);
+    CHECK(static_cast<double>(uneven[i].command[0]) * (1.0 + asymmetry.value()) ==
           Approx(left).margin(1e-6));
-    CHECK(static_cast<double>(uneven[i].command_right) * (1.0 - asymmetry.value()) ==
+    CHECK(static_cast<double>(uneven[i].command[1]) * (1.0 - asymmetry.value()) ==
           Approx(right).margin(1e-6));
-    const double u = static_cast<double>(wide[i].command_left);
+    const double u = static_cast<double>(wide[i].command[0]);
     const double heard = std::copysign(std::max(0.0, std::abs(u) - dead.value()), u);
     CHECK(heard == Approx(left).margin(1e-6));
   }
-  const double last = static_cast<double>(before[before.size() * 4 / 5].command_left);
+  const double last = static_cast<double>(before[before.size() * 4 / 5].command[0]);
   const double share = 0.8;
-  CHECK(static_cast<double>(strong[before.size() * 4 / 5].command_left) ==
+  CHECK(static_cast<double>(strong[before.size() * 4 / 5].command[0]) ==
         Approx(last / (1.0 - sag.value() * share)).margin(1e-3));
 }
 
@@ -128,14 +128,14 @@ TEST_CASE("from a moment on the vehicle yaws less than before") {
   const double when = pair.truth.parameters.back().value;
   const auto a = pair.motorBefore(), b = pair.motorAfter();
   for (size_t i = 0; i < a.size(); ++i) {
-    const double half_a = static_cast<double>(a[i].command_right - a[i].command_left);
-    const double half_b = static_cast<double>(b[i].command_right - b[i].command_left);
+    const double half_a = static_cast<double>(a[i].command[1] - a[i].command[0]);
+    const double half_b = static_cast<double>(b[i].command[1] - b[i].command[0]);
     const double share = static_cast<double>(a[i].utime - a.front().utime) /
                          static_cast<double>(a.back().utime - a.front().utime);
     const double gain = share < when ? 1.0 : 1.0 / 0.6;
     CHECK(half_b == Approx(gain * half_a).margin(1e-5));
-    CHECK(static_cast<double>(b[i].command_right + b[i].command_left) ==
-          Approx(static_cast<double>(a[i].command_right + a[i].command_left)).margin(1e-5));
+    CHECK(static_cast<double>(b[i].command[1] + b[i].command[0]) ==
+          Approx(static_cast<double>(a[i].command[1] + a[i].command[0])).margin(1e-5));
   }
 }
 

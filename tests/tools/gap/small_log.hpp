@@ -39,14 +39,15 @@ class SmallLog {
     motor_.seq = seq_motor_++;
     motor_.bridge_state = state;
     motor_.state_reason = reason;
-    motor_.motor_command_kind = static_cast<int16_t>(CommandKind::kTrackSpeed);
-    motor_.command_left = static_cast<float>(command.left);
-    motor_.command_right = static_cast<float>(command.right);
+    motor_.channel_kind[0] = motor_.channel_kind[1] =
+        static_cast<int16_t>(CommandKind::kTrackSpeed);
+    motor_.command[0] = static_cast<float>(command.left);
+    motor_.command[1] = static_cast<float>(command.right);
     motor_.battery_voltage = voltage;
-    motor_.current_left = current_left;
-    motor_.current_right = current_right;
-    motor_.track_speed_left = static_cast<float>(speed.left);
-    motor_.track_speed_right = static_cast<float>(speed.right);
+    motor_.current[0] = current_left;
+    motor_.current[1] = current_right;
+    motor_.measured[0] = static_cast<float>(speed.left);
+    motor_.measured[1] = static_cast<float>(speed.right);
     add(kMotor, motor_);
   }
 

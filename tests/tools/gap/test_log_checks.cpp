@@ -270,7 +270,7 @@ TEST_CASE("commands of two kinds cannot be explained by one model") {
   for (int i = 0; i < 100; ++i) {
     log.motor(30.0 + 0.05 * i, {0.1, 0.1});
     motor_t motor = log.lastMotor();
-    motor.motor_command_kind = 1;
+    motor.channel_kind[0] = motor.channel_kind[1] = 1;
     log.events.pop_back();
     log.add(kMotor, motor);
   }

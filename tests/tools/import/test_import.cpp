@@ -133,10 +133,10 @@ TEST_CASE("steps: steps are never chained, a silence and a jump lie between them
 TEST_CASE("steps: commands and track speeds are metres per second at the rim") {
   const Imported log = importedSteps();
   REQUIRE(log.motor.size() == 242);
-  REQUIRE(log.motor[0].command_left == 1.0F);
-  REQUIRE(log.motor[0].command_right == 2.0F);
-  REQUIRE(log.motor[0].track_speed_left == Approx(0.95));
-  REQUIRE(log.motor[0].motor_command_kind == 2);
+  REQUIRE(log.motor[0].command[0] == 1.0F);
+  REQUIRE(log.motor[0].command[1] == 2.0F);
+  REQUIRE(log.motor[0].measured[0] == Approx(0.95));
+  REQUIRE(log.motor[0].channel_kind[0] == 2);
   REQUIRE(std::isnan(log.motor[0].battery_voltage));
 }
 
@@ -207,10 +207,10 @@ TEST_CASE("continuous: the operator's part, the battery and the commands of body
   REQUIRE(log.motor[50].bridge_state == motor_t::STATE_DRIVING);
   REQUIRE(std::isnan(log.motor[59].battery_voltage));
   REQUIRE(log.motor[60].battery_voltage == 48.5F);
-  REQUIRE(log.motor[60].current_right == 5.0F);
+  REQUIRE(log.motor[60].current[1] == 5.0F);
   // v = 1 m/s, w = 0.5 rad/s over a baseline of 1 m.
-  REQUIRE(log.motor[200].command_left == 0.75F);
-  REQUIRE(log.motor[200].command_right == 1.25F);
+  REQUIRE(log.motor[200].command[0] == 0.75F);
+  REQUIRE(log.motor[200].command[1] == 1.25F);
   REQUIRE(log.ins[0].device_utc == Approx((1.7e9 + 0.05 - 0.2) * 1e6));
   REQUIRE((log.ins[0].ins_status & ins_t::STATUS_NO_ATTITUDE) == 0);
 }

@@ -69,9 +69,9 @@ class Log {
   static motor_t motor(int i) {
     motor_t message{};
     message.utime = 1'000'000 + 50'000 * i;
-    message.motor_command_kind = 1;
-    message.command_left = static_cast<float>(commandAt(i).left);
-    message.command_right = static_cast<float>(commandAt(i).right);
+    message.channel_kind[0] = message.channel_kind[1] = 1;
+    message.command[0] = static_cast<float>(commandAt(i).left);
+    message.command[1] = static_cast<float>(commandAt(i).right);
     message.battery_voltage = 25.0F;
     return message;
   }

@@ -13,6 +13,8 @@
 using namespace tread;
 using namespace tread::patterns;
 
+const CommandChannels kTracks = trackChannels(CommandKind::kPower);
+
 TEST_CASE("The name of a mirror image exchanges left and right, words only") {
   CHECK(mirroredName("left") == "right");
   CHECK(mirroredName("turn_right_90") == "turn_left_90");
@@ -23,10 +25,10 @@ TEST_CASE("The name of a mirror image exchanges left and right, words only") {
 
 TEST_CASE("A mirror image has y, yaw and their covariances with x negated") {
   const MotionPattern left = *kit::withoutRight().findByName("left");
-  const MotionPattern right = mirrored(left);
+  const MotionPattern right = mirrored(left, kTracks);
   CHECK(right.name == "right");
-  CHECK(right.commands[0].left == left.commands[0].right);
-  CHECK(right.commands[0].right == left.commands[0].left);
+  CHECK(right.commands[0][0] == left.commands[0][1]);
+  CHECK(right.commands[0][1] == left.commands[0][0]);
   CHECK(right.end().x == left.end().x);
   CHECK(right.end().y == -left.end().y);
   CHECK(right.end().yaw == -left.end().yaw);
@@ -50,8 +52,8 @@ TEST_CASE("A mirror image of the shipped set's patterns is the shipped partner")
     INFO(pattern.name);
     const MotionPattern* partner = mirrorPartner(shipped, pattern);
     CHECK((partner != nullptr) == true);
-    if (!turns(pattern)) continue;
-    const MotionPattern image = mirrored(pattern);
+    if (!turns(pattern, shipped.content().channels)) continue;
+    const MotionPattern image = mirrored(pattern, shipped.content().channels);
     CHECK(image.name == partner->name);
     for (size_t t = 0; t < image.trajectory.size(); ++t) {
       CHECK(image.trajectory[t].y == partner->trajectory[t].y);
@@ -104,9 +106,9 @@ TEST_CASE("The mirror image of a mirror image is the pattern itself, with its ow
   const PatternSet shipped =
       readPatternFile(std::string(TREAD_SOURCE_DIR) + "/config/patterns/teodor.yaml");
   for (const MotionPattern& pattern : shipped.patterns()) {
-    if (!turns(pattern)) continue;
+    if (!turns(pattern, shipped.content().channels)) continue;
     INFO(pattern.name);
-    const MotionPattern twice = mirrored(mirrored(pattern));
+    const MotionPattern twice = mirrored(mirrored(pattern, kTracks), kTracks);
     CHECK(twice.name == pattern.name);
     CHECK(twice.commands == pattern.commands);
     CHECK(twice.end_covariance == pattern.end_covariance);
@@ -122,12 +124,12 @@ TEST_CASE("The mirror image of a mirror image is the pattern itself, with its ow
 TEST_CASE("A mirror image was never learned, and keeps the length of its path") {
   MotionPattern left = *kit::withoutRight().findByName("left");
   left.times_learned = 7;
-  const MotionPattern right = mirrored(left);
+  const MotionPattern right = mirrored(left, kTracks);
   CHECK(right.times_learned == 0);
   CHECK(right.pathLength() == left.pathLength());
   // A straight sample has no negative zero, which a file would show as -0.
   MotionPattern straight = *kit::withoutRight().findByName("straight");
-  for (const Pose2& pose : mirrored(straight).trajectory) {
+  for (const Pose2& pose : mirrored(straight, kTracks).trajectory) {
     CHECK_FALSE(std::signbit(pose.y));
     CHECK_FALSE(std::signbit(pose.yaw));
   }

@@ -34,12 +34,10 @@ std::set<std::string> reachableFrom(const std::string& first) {
 }
 
 double secondsHeldAtEnd(const MotionPattern& pattern) {
-  const TrackCommand steady = shipped().classNamed(pattern.exit_class).steady;
+  const Command steady = shipped().classNamed(pattern.exit_class).steady;
   size_t held = 0;
   for (size_t i = pattern.commands.size(); i > 0; --i, ++held)
-    if (pattern.commands[i - 1].left != steady.left ||
-        pattern.commands[i - 1].right != steady.right)
-      break;
+    if (pattern.commands[i - 1] != steady) break;
   return static_cast<double>(held) * shipped().periodSeconds();
 }
 
@@ -101,7 +99,7 @@ TEST_CASE("Shipped pairs of left and right are exact mirror images") {
     REQUIRE(right != nullptr);
     REQUIRE(right->trajectory.size() == left.trajectory.size());
     for (size_t i = 0; i < left.trajectory.size(); ++i) {
-      CHECK(right->commands[i].left == left.commands[i].right);
+      CHECK(right->commands[i][0] == left.commands[i][1]);
       CHECK(right->trajectory[i].x == left.trajectory[i].x);
       CHECK(right->trajectory[i].y == -left.trajectory[i].y);
       CHECK(right->trajectory[i].yaw == -left.trajectory[i].yaw);

@@ -39,6 +39,17 @@ TEST_CASE("from a recording to a report on the command line") {
   REQUIRE(std::filesystem::file_size(report) == replay.printed.size());
 }
 
+TEST_CASE("a log with left and right commands, of an older version, teaches the same sets today") {
+  // What it is, and how it was recorded: tests/common/log/test_older_types.cpp.
+  const CalledProgram replay = called("tread-replay learner " + std::string(TREAD_SOURCE_DIR) +
+                                      "/tests/data/logs/two_tracks.lcmlog");
+  INFO(replay.printed);
+  REQUIRE(replay.status == 0);
+  REQUIRE(replay.printed.find("PATTERN_SET: 4 versions equal, 0 different, 0 only in the log") !=
+          std::string::npos);
+  REQUIRE(replay.printed.find("LEARNING: 3 executions equal, 0 different") != std::string::npos);
+}
+
 TEST_CASE("a truncated recording is one line, and no log is left behind") {
   const Folder folder("command_line_bad");
   const std::string csv = folder.file("drive.csv", kStepsHeader + stepRows(1));

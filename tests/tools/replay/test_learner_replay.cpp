@@ -53,7 +53,7 @@ TEST_CASE("a model predicts one pattern per command step of a log, from the comm
   REQUIRE(set.content().period_us == 50'000);
   for (const MotionPattern& pattern : set.patterns()) {
     REQUIRE(pattern.commands.size() == 40);
-    const TrackCommand& command = pattern.commands.front();
+    const TrackCommand command = pattern.commands.front().tracks();
     // Single precision in MOTOR.
     REQUIRE(pattern.end().yaw == Approx(2.0 * (command.right - command.left)).margin(1e-6));
   }
@@ -139,7 +139,7 @@ TEST_CASE("commands are told apart by what they ask for") {
   const auto classOf = [](double left, double right) {
     MotionPattern pattern;
     pattern.commands.assign(10, {left, right});
-    return commandClass(pattern);
+    return commandClass(pattern, trackChannels(CommandKind::kPower));
   };
   REQUIRE(classOf(1.0, 1.0) == "forward");
   REQUIRE(classOf(0.6, 1.0) == "forward turn");

@@ -47,8 +47,9 @@ program_t program() {
   message.utime = 3'000'000;
   message.running.execution_id = 4;
   message.running.num_commands = 2;
-  message.running.left = {0.5F, 0.5F};
-  message.running.right = {0.5F, 0.25F};
+  message.running.num_channels = 2;
+  message.running.channel_kind.assign(2, program_slot_t::KIND_POWER);
+  message.running.command = {{0.5F, 0.5F}, {0.5F, 0.25F}};
   return message;
 }
 
@@ -141,14 +142,14 @@ TEST_CASE("a plan of fewer patterns differs in their number, and none is looked 
         "PLAN on INS of 2000000 us, number of patterns: log 2, replay 1");
 }
 
-TEST_CASE("a program's first different command is named by slot and track") {
+TEST_CASE("a program's first different command is named by slot and channel") {
   program_t replay = program();
   replay.next.execution_id = 6;
   CHECK(differenceOf(program(), replay) ==
         "PROGRAM at 3000000 us, next execution: log 0, replay 6");
-  replay.running.right[1] = 0.75F;
+  replay.running.command[1][1] = 0.75F;
   CHECK(differenceOf(program(), replay) ==
-        "PROGRAM at 3000000 us, running command 2 right: log 0.25, replay 0.75");
+        "PROGRAM at 3000000 us, running command 2 channel 2: log 0.25, replay 0.75");
 }
 
 TEST_CASE("an execution that the log accepted and the replay did not is told in words") {

@@ -12,7 +12,7 @@ using namespace tread::samples;
 
 motor_t handAt(double seconds, float command) {
   motor_t motor = motorAt(seconds, motor_t::STATE_MANUAL);
-  motor.command_left = motor.command_right = command;
+  motor.command[0] = motor.command[1] = command;
   return motor;
 }
 

@@ -48,7 +48,7 @@ class RuleWalker : public Walker {
       : pieces_(std::move(pieces)), history_(history), first_(first) {
     PatternSetContent content;
     content.name = "pieces";
-    content.kind = pieces_.back().known->session.kind;
+    content.channels = trackChannels(pieces_.back().known->session.kind);
     content.period_us = std::lround(kPeriod * 1e6);
     content.classes.push_back({"driving", {}, {}});
     for (const Driven& driven : pieces_)

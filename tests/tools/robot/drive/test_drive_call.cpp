@@ -77,7 +77,7 @@ struct Cockpit {
     motor.bridge_state = state;
     motor.state_reason = "so it is";
     motor.battery_voltage = 24.5F;
-    motor.command_left = motor.command_right = 0.25F;
+    motor.command[0] = motor.command[1] = 0.25F;
     robot->publish(kMotor, motor);
   }
 };

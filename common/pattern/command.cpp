@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/pattern/command.hpp"
+
+namespace tread {
+namespace {
+
+struct KindWords {
+  CommandKind kind;
+  const char* name;
+  const char* unit;  ///< behind a number
+  double limit;
+};
+
+constexpr KindWords kKinds[] = {{CommandKind::kPower, "power", "", 1.0},
+                                {CommandKind::kTrackSpeed, "track_speed", " m/s", 20.0},
+                                {CommandKind::kSteeringAngle, "steering_angle", " rad", 1.2}};
+
+const KindWords* wordsOf(CommandKind kind) {
+  for (const KindWords& words : kKinds)
+    if (words.kind == kind) return &words;
+  return nullptr;
+}
+
+}  // namespace
+
+const char* nameOf(CommandKind kind) {
+  const KindWords* words = wordsOf(kind);
+  return words != nullptr ? words->name : "";
+}
+
+std::optional<CommandKind> kindNamed(const std::string& name) {
+  for (const KindWords& words : kKinds)
+    if (words.name == name) return words.kind;
+  return std::nullopt;
+}
+
+const char* unitOf(CommandKind kind) {
+  const KindWords* words = wordsOf(kind);
+  return words != nullptr ? words->unit : "";
+}
+
+double commandLimit(CommandKind kind) {
+  const KindWords* words = wordsOf(kind);
+  return words != nullptr ? words->limit : 0.0;
+}
+
+bool operator==(const CommandChannel& a, const CommandChannel& b) {
+  return a.name == b.name && a.kind == b.kind && a.lowest == b.lowest && a.highest == b.highest;
+}
+
+std::vector<CommandKind> kindsOf(const CommandChannels& channels) {
+  std::vector<CommandKind> kinds;
+  for (const CommandChannel& channel : channels) kinds.push_back(channel.kind);
+  return kinds;
+}
+
+CommandChannels trackChannels(CommandKind kind) {
+  const double limit = commandLimit(kind);
+  return {{"left", kind, -limit, limit}, {"right", kind, -limit, limit}};
+}
+
+std::optional<CommandKind> kindOfTracks(const CommandChannels& channels) {
+  for (const CommandKind kind : {CommandKind::kPower, CommandKind::kTrackSpeed})
+    if (channels == trackChannels(kind)) return kind;
+  return std::nullopt;
+}
+
+std::string describe(const CommandChannels& channels) {
+  std::string text;
+  for (const CommandChannel& channel : channels) {
+    const std::string unit = unitOf(channel.kind);
+    text += (text.empty() ? "" : ", ") + channel.name + " [" +
+            (unit.empty() ? "1" : unit.substr(1)) + "]";
+  }
+  return text;
+}
+
+std::vector<Command> commandsOf(const std::vector<TrackCommand>& tracks) {
+  return {tracks.begin(), tracks.end()};
+}
+
+std::vector<TrackCommand> tracksOf(const std::vector<Command>& commands) {
+  std::vector<TrackCommand> tracks;
+  tracks.reserve(commands.size());
+  for (const Command& command : commands) tracks.push_back(command.tracks());
+  return tracks;
+}
+
+}  // namespace tread

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tread {
+
+/// What the value of a channel means, with its unit; the numbers are those of
+/// program_slot_t.KIND_*.
+enum class CommandKind : int16_t {
+  kPower = 1,         ///< share of a motor's power, -1..1 [1], + forward
+  kTrackSpeed = 2,    ///< of a track or wheel [m/s], + forward
+  kSteeringAngle = 3  ///< of the steered axle in its middle [rad], + left
+};
+
+/// "power", "track_speed" or "steering_angle"; empty for a kind that nobody knows.
+const char* nameOf(CommandKind kind);
+/// The kind with this name; nothing if there is none.
+std::optional<CommandKind> kindNamed(const std::string& name);
+/// " m/s", " rad" or nothing, to be written behind a number.
+const char* unitOf(CommandKind kind);
+/// Largest magnitude of a command of a kind: 1 for power, 20 m/s, 1.2 rad.
+double commandLimit(CommandKind kind);
+
+/// One channel of the commands to a vehicle.
+struct CommandChannel {
+  std::string name;  ///< for instance left, right, throttle, steering
+  CommandKind kind = CommandKind::kPower;
+  double lowest = 0.0;  ///< in the unit of the kind
+  double highest = 0.0;
+};
+
+bool operator==(const CommandChannel& a, const CommandChannel& b);
+inline bool operator!=(const CommandChannel& a, const CommandChannel& b) {
+  return !(a == b);
+}
+
+/// The channels of a vehicle's commands, in their order: 1 to Command::kMaxChannels.
+using CommandChannels = std::vector<CommandChannel>;
+
+/// The kinds of channels, in their order.
+std::vector<CommandKind> kindsOf(const CommandChannels& channels);
+/// Channels left and right of a vehicle with two tracks, in the whole range of a kind.
+CommandChannels trackChannels(CommandKind kind);
+/// The kind if these are trackChannels(); nothing for another vehicle.
+std::optional<CommandKind> kindOfTracks(const CommandChannels& channels);
+/// "left [m/s], right [m/s]".
+std::string describe(const CommandChannels& channels);
+
+/// A command to two tracks: power -1..1 [1] or track speed [m/s], + forward.
+struct TrackCommand {
+  double left = 0.0;
+  double right = 0.0;
+};
+
+inline bool operator==(const TrackCommand& a, const TrackCommand& b) {
+  return a.left == b.left && a.right == b.right;
+}
+inline bool operator!=(const TrackCommand& a, const TrackCommand& b) {
+  return !(a == b);
+}
+
+/// One command u_t: a value for each channel, in their order; beyond the last channel all are 0.
+/** No channel commanded to anything but 0 is the command that stops, of whatever vehicle. */
+class Command {
+ public:
+  static constexpr size_t kMaxChannels = 8;
+
+  constexpr Command() = default;
+  constexpr Command(double first, double second) : values_{first, second} {}
+  constexpr Command(const TrackCommand& tracks) : Command(tracks.left, tracks.right) {}
+
+  constexpr double& operator[](size_t channel) { return values_[channel]; }
+  constexpr double operator[](size_t channel) const { return values_[channel]; }
+  /// The first two channels, of a vehicle with two tracks.
+  TrackCommand tracks() const { return {values_[0], values_[1]}; }
+
+  friend bool operator==(const Command& a, const Command& b) { return a.values_ == b.values_; }
+  friend bool operator!=(const Command& a, const Command& b) { return !(a == b); }
+
+ private:
+  std::array<double, kMaxChannels> values_{};
+};
+
+/// A series for two tracks as the patterns hold it, and back.
+std::vector<Command> commandsOf(const std::vector<TrackCommand>& tracks);
+std::vector<TrackCommand> tracksOf(const std::vector<Command>& commands);
+
+}  // namespace tread

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// data/logs/two_tracks.lcmlog was recorded while each command was left and right, by that version's
+//     tread-missions --missions 1 --seed 1 --length 25 --rule collective --log two_tracks.lcmlog
+//       --robot tests/data/robots/skid4 --set learner.patterns=FEW
+// FEW: straight, left, right, start and stop of skid4's patterns. Of it the first 8 s of CONFIG of
+// the learner, MOTOR, EXECUTION, INS, each tenth PROGRAM, PATTERN_SET, LEARNER_STATE, LEARNING,
+// ARM.
+#include <cmath>
+#include <map>
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include <tread_before/motor_t.hpp>
+
+#include "common/log/drive_log.hpp"
+#include "common/log/older_types.hpp"
+#include "common/messages/pattern_messages.hpp"
+
+namespace tread {
+namespace {
+
+std::vector<LogEvent> olderEvents() {
+  std::string problem;
+  std::vector<LogEvent> events =
+      readEvents({std::string(TREAD_SOURCE_DIR) + "/tests/data/logs/two_tracks.lcmlog"}, problem);
+  REQUIRE(problem.empty());
+  return events;
+}
+
+template <class Message>
+std::vector<Message> messagesOn(const Channel<Message>& channel) {
+  std::vector<Message> messages;
+  for (const LogEvent& event : olderEvents()) {
+    if (event.channel != channel.name) continue;
+    Message message{};
+    REQUIRE(decode(event, channel, message));
+    messages.push_back(message);
+  }
+  return messages;
+}
+
+}  // namespace
+
+TEST_CASE("an older log is read as if it were of today, no message is left out") {
+  const DriveLog log = toDriveLog("two_tracks", olderEvents());
+  CHECK(log.invalid == 0);
+  REQUIRE(log.motor.size() == 141);
+  const motor_t& driven = log.motor.back();
+  REQUIRE(driven.bridge_state == motor_t::STATE_DRIVING);
+  CHECK(kindsFrom(driven) == kindsOf(trackChannels(CommandKind::kTrackSpeed)));
+  CHECK(driven.command[0] == 0.8F);
+  CHECK(std::isnan(driven.command[2]));
+  CHECK(driven.channel_kind[2] == 0);
+  CHECK(std::abs(driven.measured[0] - 0.8F) < 0.2F);
+  CHECK(driven.battery_voltage > 20.0F);
+  CHECK(log.motor_stamps.back().seq == driven.seq);
+}
+
+TEST_CASE("the sets of an older log are complete, and their checksums are those of today") {
+  PatternSetAssembler assembler;
+  std::map<int64_t, PatternSet> sets;
+  for (const pattern_set_part_t& part : messagesOn(kPatternSet))
+    if (auto set = assembler.add(part)) sets.emplace(set->version(), *set);
+  CHECK(assembler.refused() == 0);
+  REQUIRE(sets.size() == 4);
+  const PatternSet& set = sets.rbegin()->second;
+  CHECK(set.content().channels == trackChannels(CommandKind::kTrackSpeed));
+  CHECK(set.findByName("left")->commands.front() != Command{});
+}
+
+TEST_CASE("the programs of an older log order what the patterns of its sets command") {
+  const std::vector<pattern_set_part_t> parts = messagesOn(kPatternSet);
+  size_t compared = 0;
+  for (const program_t& program : messagesOn(kProgram)) {
+    const program_slot_t& slot = program.running;
+    if (slot.execution_id == 0) continue;
+    for (const pattern_set_part_t& part : parts) {
+      if (part.set_pattern_id != slot.slot_pattern_id || part.set_version != slot.slot_set_version)
+        continue;
+      CHECK(slot.channel_kind == part.channel_kind);
+      REQUIRE(slot.command.size() == part.command.size());
+      for (size_t i = 0; i < slot.command.size(); ++i)
+        for (size_t channel = 0; channel < 2; ++channel)
+          CHECK(slot.command[i][channel] == static_cast<float>(part.command[i][channel]));
+      ++compared;
+    }
+  }
+  CHECK(compared > 5);
+}
+
+TEST_CASE("only whole messages of their own channel are taken for older ones") {
+  const std::vector<uint8_t> older = encoded(tread_before::motor_t{});
+  LogEvent event{0, "MOTOR", older, false};
+  renew(event);
+  motor_t motor{};
+  CHECK(decode(event, kMotor, motor));
+  LogEvent elsewhere{0, "ARM", older, false};
+  renew(elsewhere);
+  CHECK(elsewhere.bytes == older);
+  LogEvent broken{0, "MOTOR", {older.begin(), older.end() - 1}, false};
+  renew(broken);
+  CHECK(broken.bytes.size() == older.size() - 1);
+}
+
+}  // namespace tread
