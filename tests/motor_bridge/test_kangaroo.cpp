@@ -105,11 +105,11 @@ TEST_CASE("an emulated Kangaroo holds what is played and tells its speeds") {
   rig.device.measure(measured);
   requireDriving(rig);
   rig.run(5'000'000);
-  CHECK((*rig.device.heldSpeeds())[0] == Approx(rig.out.command.left).margin(0.001));
-  CHECK((*rig.device.heldSpeeds())[1] == Approx(rig.out.command.right).margin(0.001));
+  CHECK((*rig.device.heldSpeeds())[0] == Approx(rig.out.command[0]).margin(0.001));
+  CHECK((*rig.device.heldSpeeds())[1] == Approx(rig.out.command[1]).margin(0.001));
   CHECK(rig.device.timeoutUs() == 187'500);
-  CHECK(rig.connection.telemetry().speed_left == Approx(0.8).margin(0.001));
-  CHECK(rig.connection.telemetry().speed_right == Approx(-0.4).margin(0.001));
+  CHECK(rig.connection.telemetry().measured[0] == Approx(0.8).margin(0.001));
+  CHECK(rig.connection.telemetry().measured[1] == Approx(-0.4).margin(0.001));
   CHECK(rig.connection.notice().find("serial timeout") != std::string::npos);
   CHECK(rig.device.badSums() == 0);
   CHECK(rig.count("start-ups") == 1);

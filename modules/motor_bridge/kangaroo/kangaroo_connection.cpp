@@ -121,8 +121,8 @@ void KangarooConnection::take(const KangarooStatus& status, int64_t now) {
   }
 }
 
-void KangarooConnection::give(const TrackCommand& command, int64_t /*now*/) {
-  output_ += commandBytes(command);
+void KangarooConnection::give(const Command& command, int64_t /*now*/) {
+  output_ += commandBytes(command.tracks());
   ++commands_;
 }
 
@@ -179,8 +179,7 @@ double KangarooConnection::speedOf(bool left) const {
 
 MotorTelemetry KangarooConnection::telemetry() const {
   MotorTelemetry telemetry;
-  telemetry.speed_left = speedOf(true);
-  telemetry.speed_right = speedOf(false);
+  telemetry.measured = {speedOf(true), speedOf(false)};
   return telemetry;
 }
 

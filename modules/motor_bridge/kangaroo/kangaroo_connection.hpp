@@ -63,7 +63,7 @@ class KangarooConnection : public ControllerConnection {
   bool isAnswered(int step) const override { return step != kZero; }
   void forget() override;
   void begin(int64_t now) override;
-  void give(const TrackCommand& command, int64_t now) override;
+  void give(const Command& command, int64_t now) override;
   std::string talk(int64_t now) override;
   std::string lost(int64_t now) const override;
   DeviceReport reported(int64_t now) const override;

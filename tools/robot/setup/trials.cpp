@@ -18,8 +18,8 @@ constexpr double kStandsSpeed = 0.05;  // [m/s] by the INS
 
 /// Turning of a side as the controller tells it: speed where it has one, else current.
 double toldMotion(const motor::MotorTelemetry& telemetry, int side) {
-  const double speed = side == 0 ? telemetry.speed_left : telemetry.speed_right;
-  const double current = side == 0 ? telemetry.current_left : telemetry.current_right;
+  const double speed = telemetry.measured[static_cast<size_t>(side)];
+  const double current = telemetry.current[static_cast<size_t>(side)];
   return std::abs(std::isfinite(speed) ? 10.0 * speed : current);
 }
 
@@ -67,7 +67,7 @@ class Lift {
     }
     hold(1.5, ofSide(side, kLiftedLevel));
     const motor::MotorTelemetry running = robot_.telemetry();
-    lifted.current = side == 0 ? running.current_left : running.current_right;
+    lifted.current = running.current[static_cast<size_t>(side)];
     if (told && toldMotion(running, side) < idle + 0.3)
       report_.problems.push_back(std::string("the configured ") + (side == 0 ? "left" : "right") +
                                  " side draws no current and does not turn at 40 %: look at its "
