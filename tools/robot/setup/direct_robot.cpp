@@ -102,7 +102,9 @@ std::string DirectRobot::run(double seconds, const Choose& choose,
     exchange();
     if (silent_) continue;
     const std::string words = fault();
-    if (!words.empty()) return words;
+    if (words.empty()) continue;
+    commands_.push_back({site_.now(), {}});  // a lost controller is given zero
+    return words;
   }
   silent_ = false;
   return "";

@@ -14,6 +14,7 @@ namespace {
 constexpr double kSilence = 1.2;       // [s] in which the watchdog must trip
 constexpr double kRampStep = 0.02;     // of the full command
 constexpr double kRampEvery = 0.15;    // [s]
+constexpr int kDisturbances = 4;       // of the motor line in one drive
 constexpr double kStandsSpeed = 0.05;  // [m/s] by the INS
 
 /// Turning of a side as the controller tells it: speed where it has one, else current.
@@ -49,6 +50,8 @@ class Lift {
   }
 
   void hold(double seconds, const std::optional<TrackCommand>& command) {
+    if (robot_.run(seconds, [&](int64_t) { return command; }).empty()) return;
+    require(robot_.begin());
     require(robot_.run(seconds, [&](int64_t) { return command; }));
   }
 
@@ -136,9 +139,14 @@ GroundReport tryWheelsDown(Site& site, const Drivers& drivers, const WiringDrive
   if (!report.problem.empty()) return report;
   robot.run(0.5, [](int64_t) { return TrackCommand{}; });
   WiringDrive drive(how);
-  const std::string fault = robot.run(
-      2.0 * how.seconds + 10.0, [&](int64_t now) { return drive.step(now, robot.takePose()); },
-      [&] { return drive.done(); });
+  std::string fault;
+  // A line that was disturbed for a moment does not end it.
+  for (int i = 0; i < kDisturbances && (i == 0 || robot.begin().empty()); ++i) {
+    fault = robot.run(
+        2.0 * how.seconds + 10.0, [&](int64_t now) { return drive.step(now, robot.takePose()); },
+        [&] { return drive.done(); });
+    if (fault.empty()) break;
+  }
   robot.run(0.5, [](int64_t) { return TrackCommand{}; });
   report.problem = fault.empty() ? drive.problem() : fault;
   report.commands = robot.commands();
