@@ -157,8 +157,12 @@ class Search {
   std::vector<Candidate> controllers(const std::string& address) {
     if (parseLinkAddress(address).kind == Kind::kCan)
       return {{"vesc_can", "vesc_can:\n  watchdog: 0.2\n", ""}};
-    std::vector<Candidate> all{{"roboteq", "roboteq:\n  watchdog: 0.2           # s\n", ""},
-                               {"vesc", "vesc:\n  watchdog: 0.2           # s\n", ""}};
+    std::vector<Candidate> all{
+        {"roboteq", "roboteq:\n  watchdog: 0.2           # s\n", ""},
+        {"vesc",
+         "vesc:\n  local: 1                # on the line, forwards to the other\n"
+         "  watchdog: 0.2           # s\n",
+         ""}};
     std::istringstream files(person_.ask("line_protocols"));
     for (std::string file; std::getline(files, file, ',');) {
       if (file == "none") continue;

@@ -88,17 +88,19 @@ TEST_CASE("swapped sides behind a Roboteq: from its ports to the first goal") {
   CHECK(result.findings.robot.drive.left_channel == 2);
 }
 
-TEST_CASE("a weak track behind VESCs, a NovAtel INS in a corner: to the first goal") {
+TEST_CASE("a weak track behind swapped VESCs, a NovAtel INS in a corner: to the first goal") {
   OwnFolder folder;
   HiddenMachine hidden = machine("vesc", "gravel", 5);
   hidden.settings.source = "novatel";
   hidden.settings.robot.vehicle.left_power = 0.75;
+  hidden.settings.robot.wiring.left_channel = 2;
   hidden.settings.robot.ins.mounting.p_body = {-0.4, 0.2, 0.9};
   const SetupResult result =
-      brought(hidden, "first_track: left\nfirst_direction: forward\n", folder);
+      brought(hidden, "first_track: right\nfirst_direction: forward\n", folder);
   CHECK(result.problem == "");
   CHECK(result.goal.arrived);
   CHECK(result.minutes < 30.0);
+  CHECK(result.findings.wiring.has(FaultKind::kSwapped));
   CHECK(result.findings.wiring.has(FaultKind::kWeak, Side::kLeft));
   CHECK(result.findings.wiring.has(FaultKind::kInsElsewhere));
   CHECK(std::abs(result.findings.robot.ins.p_body.x() + 0.4) < 0.15);
