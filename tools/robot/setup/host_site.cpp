@@ -17,6 +17,7 @@
 
 #include "common/bus/host_clock.hpp"
 #include "common/bus/lcm_bus.hpp"
+#include "common/seal/key_file.hpp"
 #include "tools/robot/launch/host.hpp"
 #include "tools/robot/launch/launch_file.hpp"
 
@@ -25,8 +26,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int64_t kSlice = 2'000;  // [us] of waiting at once
-constexpr int kCanHardware = 280;  // ARPHRD_CAN
+constexpr int64_t kLaunchPatience = 10'000'000;  // [us]
+constexpr int64_t kSlice = 2'000;                // [us] of waiting at once
+constexpr int kCanHardware = 280;                // ARPHRD_CAN
 constexpr const char* kSickPort = ":2111";
 constexpr const char* kVelodyne = "udp:2368";
 
@@ -101,12 +103,9 @@ class LaunchedRobot : public RunningRobot {
                              "--run", options.run, "--lcm-url", launched.lcm_url});
       _exit(127);
     }
-    bus_ = std::make_unique<LcmBus>(launched.lcm_url, TimeSource::kFollow);
+    openBus(launched);
   }
-  ~LaunchedRobot() override {
-    kill(pid_, SIGINT);
-    waitpid(pid_, nullptr, 0);
-  }
+  ~LaunchedRobot() override { end(); }
 
   Bus& bus() override { return *bus_; }
   void pass(int64_t duration) override {
@@ -119,6 +118,26 @@ class LaunchedRobot : public RunningRobot {
   }
 
  private:
+  /// Some providers are there only once tread-launch runs.
+  void openBus(const launch::LaunchFile& launched) {
+    for (const int64_t patient = hostNow() + kLaunchPatience; bus_ == nullptr;) {
+      try {
+        bus_ = std::make_unique<LcmBus>(BusAccess{launched.lcm_url, hostSealer(launched.key)},
+                                        TimeSource::kFollow);
+      } catch (const std::runtime_error&) {
+        if (hostNow() > patient || interrupted_) {
+          end();
+          throw;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      }
+    }
+  }
+  void end() const {
+    kill(pid_, SIGINT);
+    waitpid(pid_, nullptr, 0);
+  }
+
   const std::atomic<bool>& interrupted_;
   std::string run_;
   pid_t pid_ = -1;

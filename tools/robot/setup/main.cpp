@@ -60,8 +60,10 @@ int preDriveHere(const std::string& folder, Site& site) {
 int run(SetupOptions options) {
   namespace fs = std::filesystem;
   const std::string installed = launch::ownFolder() + "/../config/launch";
-  options.host.launch_folder =
-      fs::exists(installed) ? fs::canonical(installed).string() : TREAD_CONFIG_DIR "/launch";
+  std::string& launch = options.host.launch_folder;
+  if (launch.empty())
+    launch = fs::exists(installed) ? installed : std::string(TREAD_CONFIG_DIR) + "/launch";
+  launch = fs::canonical(launch).string();
   if (options.host.run.empty()) options.host.run = launch::defaultRunFolder("setup");
   options.host.run = fs::absolute(options.host.run).lexically_normal().string();
   HostSite site(options.host, stopRequest(0));
@@ -91,6 +93,10 @@ int main(int argc, char** argv) {
       ->take_all();
   app.add_option("--run", options.host.run,
                  "folder for states and logs; default ~/.local/state/tread/setup");
+  app.add_option("--launch", options.host.launch_folder,
+                 "folder of robot.yaml and recording.yaml, which start the processes and name the "
+                 "key; default config/launch")
+      ->check(CLI::ExistingDirectory);
   app.add_option("--lcm-url", options.host.lcm_url, "LCM provider, instead of the launch files'");
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   return runProgram("tread-setup-robot", [&] { return run(options); });

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <random>
 
 #include "tests/helpers.hpp"
 #include "tests/tools/called_program.hpp"
@@ -161,6 +162,39 @@ TEST_CASE("a Sabertooth that never answers, an INS turned by a quarter: to the f
   CHECK(result.findings.wiring.has(FaultKind::kSwapped));
   CHECK(result.findings.wiring.has(FaultKind::kReversed, Side::kLeft));
   CHECK(result.findings.wiring.has(FaultKind::kInsTurned));
+}
+
+TEST_CASE("machines drawn at random, wired in any way: to the first goal", "[statistics]") {
+  std::mt19937_64 random(8);
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random() >> 11) * 0x1.0p-53;
+  };
+  const auto one = [&](const std::vector<std::string>& of) { return of[random() % of.size()]; };
+  int arrived = 0;
+  const int machines = 8;
+  for (int i = 0; i < machines; ++i) {
+    OwnFolder folder;
+    HiddenMachine hidden = machine(one({"roboteq", "vesc"}),
+                                   one({"grass", "cinder", "gravel", "tarmac", "sand"}), random());
+    auto& robot = hidden.settings.robot;
+    hidden.settings.source = one({"nmea", "novatel", "ublox", "vectornav"});
+    robot.wiring = {1 + static_cast<int>(random() % 2), random() % 2 == 0, random() % 2 == 0, {}};
+    robot.ins.mounting.angles.yaw = uniform(-kPi, kPi);
+    robot.ins.mounting.p_body = {uniform(-0.4, 0.4), uniform(-0.2, 0.2), 0.8};
+    robot.vehicle.gauge *= uniform(0.9, 1.5);
+    robot.vehicle.drive.free_speed *= uniform(0.6, 1.6);
+    robot.vehicle.drive.power_lag = uniform(0.03, 0.25);
+    robot.vehicle.drive.dead_power = uniform(0.0, 0.12);
+    robot.vehicle.right_power = uniform(0.8, 1.0);
+    const bool left = robot.wiring.left_channel == 1;
+    const bool forward = !(left ? robot.wiring.invert_left : robot.wiring.invert_right);
+    const std::string answers = std::string("first_track: ") + (left ? "left" : "right") +
+                                "\nfirst_direction: " + (forward ? "forward" : "backward") + "\n";
+    const SetupResult result = brought(hidden, answers, folder);
+    UNSCOPED_INFO(i << ": " << result.problem);
+    arrived += result.problem.empty() && result.minutes < 30.0;
+  }
+  CHECK(arrived == machines);
 }
 
 namespace {
