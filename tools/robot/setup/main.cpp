@@ -87,8 +87,9 @@ int main(int argc, char** argv) {
                      "or turned")
           ->check(CLI::ExistingDirectory);
   answers->excludes(pre_drive);
-  app.add_option("--port", options.host.ports,
-                 "look at this address only, again and again; else at all ports of the host")
+  app.add_option(
+         "--port", options.host.ports,
+         "look only at this address (may be given several times); else at all ports of the host")
       ->expected(1)
       ->take_all();
   app.add_option("--run", options.host.run,
