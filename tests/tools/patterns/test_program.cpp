@@ -66,7 +66,7 @@ TEST_CASE("tread-patterns warns where patterns ask for more than a model was mad
   const Run other =
       run("check " + kSet + " --model " + kConfigFolder + "models/warthog_nominal.yaml");
   CHECK(other.status == 2);
-  CHECK(other.says("the model takes track speed"));
+  CHECK(other.says("the model takes left [m/s], right [m/s]"));
 }
 
 TEST_CASE("tread-patterns says in one line what is wrong") {
