@@ -69,8 +69,10 @@ TEST_CASE("The same seed records the same, another seed or surface does not") {
 
 TEST_CASE("Patterns of one vehicle are not recorded on the model of another") {
   const ModelDocument warthog = readModelDocument(kConfigFolder + "models/warthog_nominal.yaml");
-  CHECK_THROWS_WITH(recordModel(shipped(), warthog, "x", {}),
-                    Catch::Contains("the patterns command power, the model takes track speed"));
+  CHECK_THROWS_WITH(
+      recordModel(shipped(), warthog, "x", {}),
+      Catch::Contains(
+          "the patterns command left [1], right [1], the model takes left [m/s], right [m/s]"));
 }
 
 TEST_CASE("What the model file says of the INS is in what is recorded") {
