@@ -57,15 +57,38 @@ int64_t lastMessageOf(const RobotLog& log, const LearnerLife& life) {
   return 0;
 }
 
+/// Times at which the learner stepped, of the steps that say it: those that sent its HEALTH [us].
+std::vector<int64_t> knownSteps(const RobotLog& log, const LearnerLife& life) {
+  std::vector<int64_t> steps;
+  for (size_t i = life.first_event; i < life.end_event; ++i) {
+    health_t health;
+    if (decode(log.events[i].event, kHealth, health) && health.process == "learner" &&
+        (steps.empty() || health.utime > steps.back()))
+      steps.push_back(health.utime);
+  }
+  return steps;
+}
+
 void playLife(const RobotLog& log, const LearnerLife& life,
               const learner::LearnerNodeConfig& config, Published& published) {
   MemoryStore store;
   LogBus bus(life.boot_id);
   learner::LearnerNode node(config, bus, store);
   node.resume(life.state, life.earlier);
-  int64_t next_step = log.events[life.first_event].heard;
+  // What it heard just before a step and what just behind decides what it publishes: steps are
+  // where it says, and a period apart between.
+  const int64_t begin = log.events[life.first_event].heard;
+  const std::vector<int64_t> known = knownSteps(log, life);
+  size_t next_known = 0;
+  int64_t next_step = begin;
+  if (!known.empty() && known.front() > begin)
+    next_step = known.front() - (known.front() - begin) / node.period() * node.period();
   const auto stepUntil = [&](int64_t utime) {
     for (; next_step <= utime; next_step += node.period()) {
+      while (next_known < known.size() && known[next_known] < next_step - node.period() / 2)
+        ++next_known;
+      if (next_known < known.size() && known[next_known] <= next_step + node.period() / 2)
+        next_step = known[next_known++];
       bus.setNow(next_step);
       node.step(next_step);
     }
