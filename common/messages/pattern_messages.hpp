@@ -64,8 +64,7 @@ BridgeReading readingFrom(const motor_t& message);
 /// Whether the permission to drive is there in this state of the motor bridge (motor_t::STATE_*).
 bool mayDrive(int16_t bridge_state);
 std::vector<ExecutionReading> readingsFrom(const execution_t& message);
-/// The command of a MOTOR message: NaN where a channel that is played is, 0 where the robot has
-/// none.
+/// The command of a MOTOR message; 0 for channels that the robot does not have.
 Command commandFrom(const motor_t& message);
 /// The kinds of the channels that are played; none while nothing is.
 std::vector<CommandKind> kindsFrom(const motor_t& message);
@@ -102,34 +101,6 @@ class ExecutionQueue {
   std::set<ExecutionKey> known_;    ///< waiting or handled
   std::deque<ExecutionKey> order_;  ///< handled, oldest first
   int64_t invalid_ = 0;
-};
-
-/// Remembers what the motors were given lately, so that R is compared with what its own commands
-/// did and no other.
-class CommandWatch {
- public:
-  void add(const motor_t& motor);
-
-  /// The first command of an execution that differs from the pattern's, in words; empty if none was
-  /// seen.
-  std::string unexpectedCommand(const ExecutionKey& execution, const MotionPattern& pattern,
-                                const CommandChannels& channels) const;
-  /// Mean battery voltage in (from, to] [V]; NaN if none was told.
-  double meanVoltage(int64_t from, int64_t to) const;
-
- private:
-  struct Voltage {
-    int64_t utime;
-    double volts;
-  };
-  struct Given {
-    ExecutionKey execution;
-    int32_t index;
-    std::vector<CommandKind> kinds;
-    Command command;
-  };
-  std::deque<Given> given_;
-  std::deque<Voltage> voltages_;
 };
 
 }  // namespace tread

@@ -11,6 +11,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/config/config_reader.hpp"
+#include "common/messages/command_watch.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "common/pattern/pattern.hpp"

@@ -8,65 +8,9 @@
 #include "common/messages/blank.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "common/messages/operator_beacon.hpp"
-#include "modules/motor_bridge/kangaroo/kangaroo_connection.hpp"
-#include "modules/motor_bridge/line_protocol/line_connection.hpp"
-#include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
-#include "modules/motor_bridge/sabertooth/sabertooth_connection.hpp"
-#include "modules/motor_bridge/vesc/vesc_connection.hpp"
 
 namespace tread::motor {
 namespace {
-
-template <class Connection, class Config>
-MakeMotorController making(const Config& config) {
-  return [config] { return std::make_unique<Connection>(config); };
-}
-
-MakeMotorController roboteq(ConfigReader& reader, const DriveDescription& drive) {
-  ConfigReader section = reader.section("roboteq");
-  return making<RoboteqConnection>(readRoboteqConfig(section, drive));
-}
-
-MakeMotorController lineProtocol(ConfigReader& reader, const DriveDescription& drive) {
-  ConfigReader description = reader.file("line_protocol", "line_protocol.yaml");
-  return making<LineConnection>(readLineDescription(description, drive));
-}
-
-MakeMotorController kangaroo(ConfigReader& reader, const DriveDescription& drive) {
-  if (drive.kind != CommandKind::kTrackSpeed)
-    throw reader.error("controller",
-                       "kangaroo holds speeds only, the robot's drive is power: make it "
-                       "track_speed, or take sabertooth");
-  ConfigReader section = reader.section("kangaroo");
-  return making<KangarooConnection>(readKangarooConfig(section, drive));
-}
-
-MakeMotorController sabertooth(ConfigReader& reader, const DriveDescription& drive) {
-  if (drive.kind != CommandKind::kPower)
-    throw reader.error("controller",
-                       "sabertooth takes power only, the robot's drive is track_speed");
-  ConfigReader section = reader.section("sabertooth");
-  return making<SabertoothConnection>(readSabertoothConfig(section, drive));
-}
-
-template <class Connection>
-MakeMotorController vesc(ConfigReader section, const DriveDescription& drive) {
-  return making<Connection>(readVescConfig(section, drive));
-}
-
-/// A new controller is one line here and a folder of its own.
-const std::map<std::string, MakeMotorController (*)(ConfigReader&, const DriveDescription&)>
-    kControllers{{"kangaroo", kangaroo},
-                 {"line_protocol", lineProtocol},
-                 {"roboteq", roboteq},
-                 {"sabertooth", sabertooth},
-                 {"vesc",
-                  [](ConfigReader& reader, const DriveDescription& drive) {
-                    return vesc<VescUart>(reader.section("vesc"), drive);
-                  }},
-                 {"vesc_can", [](ConfigReader& reader, const DriveDescription& drive) {
-                    return vesc<VescCan>(reader.section("vesc_can"), drive);
-                  }}};
 
 void readTimes(ConfigReader& reader, BridgeConfig& bridge) {
   reader.seconds("step", bridge.step_us, {0.001, 0.02});
@@ -175,14 +119,6 @@ bool sameToReaders(const BridgeOutput& a, const BridgeOutput& b) {
 }
 
 }  // namespace
-
-MakeMotorController readMotorController(ConfigReader& reader, const DriveDescription& drive,
-                                        std::string& name) {
-  std::vector<std::string> known;
-  for (const auto& [each, read] : kControllers) known.push_back(each);
-  reader.choice("controller", name, known);
-  return kControllers.at(name)(reader, drive);
-}
 
 MotorBridgeConfig readMotorBridgeConfig(ConfigReader& reader) {
   MotorBridgeConfig config;

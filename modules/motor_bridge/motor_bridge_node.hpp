@@ -21,15 +21,9 @@
 #include "modules/motor_bridge/core/bridge.hpp"
 #include "modules/motor_bridge/core/command_periods.hpp"
 #include "modules/motor_bridge/core/motor_controller.hpp"
+#include "modules/motor_bridge/motor_controllers.hpp"
 
 namespace tread::motor {
-
-using MakeMotorController = std::function<std::unique_ptr<MotorController>()>;
-
-/// Reads which controller the robot has (key `controller`, into `name`) and the section of that
-/// name.
-MakeMotorController readMotorController(ConfigReader& reader, const DriveDescription& drive,
-                                        std::string& name);
 
 /// Configuration of motor_bridge, with its defaults.
 struct MotorBridgeConfig {

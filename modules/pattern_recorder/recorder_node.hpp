@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/execution/measurement.hpp"
+#include "common/messages/command_watch.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "common/messages/operator_beacon.hpp"
 #include "common/messages/pattern_messages.hpp"

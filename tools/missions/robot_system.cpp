@@ -10,6 +10,7 @@
 #include "common/bus/channels.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/config/scalars.hpp"
+#include "common/geometry/microseconds.hpp"
 #include "common/messages/blank.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "modules/simulator/simulator_files.hpp"
@@ -70,10 +71,6 @@ class RobotFiles {
 
 constexpr Range kShare{0.0, 1.0};
 constexpr Range kTime{0.0, 1e6};
-
-int64_t toMicroseconds(double seconds) {
-  return std::llround(seconds * 1e6);
-}
 
 MessageFault readMessageFault(ConfigReader& reader) {
   MessageFault fault;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/geometry/microseconds.hpp"
+
 namespace tread::motor {
 namespace {
 
@@ -23,11 +25,6 @@ std::string centimetres(double metres) {
 
 double effort(const TrackCommand& command) {
   return std::abs(command.left) + std::abs(command.right);
-}
-
-/// [us]
-int64_t toMicroseconds(double seconds) {
-  return static_cast<int64_t>(1e6 * seconds);
 }
 
 /// Adds what moves and is not there yet.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/geometry/microseconds.hpp"
 #include "common/geometry/se2.hpp"
 
 namespace tread::motor {
@@ -18,10 +19,6 @@ constexpr double kBrokenSpeed = 10.0;     // [1] of full speed: not a measuremen
 constexpr double kMostTravel = 1.25;      // [1] of the commanded: slopes, tyres, calibration
 constexpr double kMostTurn = 1.4;         // [1]
 constexpr double kTurnToTravel = 0.25;    // [1] travel that turning explains, of half the gauge
-
-int64_t toMicroseconds(double seconds) {
-  return static_cast<int64_t>(std::llround(seconds * 1e6));
-}
 
 /// The least of what a speed may become if a share of it beyond `dead`, or `most` of it, arrives.
 double atLeast(double speed, double dead, double share, double most) {

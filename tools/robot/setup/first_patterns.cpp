@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "common/geometry/degrees.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "common/report/text.hpp"
 #include "modules/pattern_recorder/recorder_node.hpp"
@@ -22,6 +23,9 @@ constexpr int kExecutions = 4;                       // of each pattern
 constexpr double kRecordingRoom = 4.5;               // [m]
 constexpr int64_t kStep = 50'000;                    // [us]
 constexpr int64_t kRecordingPatience = 900'000'000;  // [us]
+constexpr int64_t kStopped = 4'000'000;              // [us] that a stop lasts before it is told
+constexpr size_t kMostStops = 3;                     // of one drive; the fourth ends it
+constexpr int64_t kMapMade = 3'000'000;              // [us]
 constexpr int64_t kGoalPatience = 180'000'000;       // [us]
 const std::string kOperator = "setup";
 
@@ -102,7 +106,7 @@ class Recipe {
   void turn(double degrees) {
     const double level = std::min(1.0, kTurnLevel / cruise_);
     const double rate = 2.0 * cruise_ * level * least_ / model_.gauge;
-    const double seconds = std::max(kPeriod, degrees * kPi / 180.0 / rate);
+    const double seconds = std::max(kPeriod, toRadians(degrees) / rate);
     const std::string angle = fixed(degrees, 0);
     pattern("turn_left_" + angle, "rest", "rest", {{-level, level, seconds}, {0, 0, hold_}});
     pattern("turn_right_" + angle, "rest", "rest", {{level, -level, seconds}, {0, 0, hold_}});
@@ -169,12 +173,22 @@ RecordedPatterns recordPatterns(Site& site, Interview& person, const std::string
     robot->pass(kStep);
     step();
   }
-  const auto armed = arm(*robot, "recording of patterns", step);
+  std::vector<std::unique_ptr<operators::ArmCall>> armed;
+  armed.push_back(arm(*robot, "recording of patterns", step));
   using State = pattern_recorder::RecorderNode::State;
+  int64_t drove = bus.now();
   for (const int64_t end = bus.now() + kRecordingPatience;
        recorder.state() == State::kRunning && bus.now() < end;) {
     robot->pass(kStep);
     step();
+    if (recorder.reason().empty()) drove = bus.now();
+    if (bus.now() - drove < kStopped) continue;
+    if (armed.size() > kMostStops) break;
+    // Something has stopped it: a person decides anew.
+    person.say("stopped: " + recorder.reason());
+    person.confirm("record");
+    armed.push_back(arm(*robot, "recording goes on", step));
+    drove = bus.now();
   }
   recorder.shutdown(bus.now());
   robot->pass(kStep);
@@ -195,25 +209,35 @@ GoalDrive driveAhead(Site& site, Interview& person, const std::string& folder, d
   Bus& bus = robot->bus();
   Latest<ins_t> ins(bus, kIns);
   GoalDrive drive;
-  Pose2 start = presentPose(*robot, ins);
-  robot->pass(3'000'000);  // the map is made
-  start = presentPose(*robot, ins);
-  const auto armed = arm(*robot, "first goal", [] {});
+  presentPose(*robot, ins);
+  robot->pass(kMapMade);
   operators::GoalRequest request;
-  request.T_map_goal = start * Pose2{ahead, 0.0, 0.0};
-  operators::GoalCall call(bus, request, kOperator, bus.now(), {});
-  operators::CallResult result = operators::CallResult::kPending;
-  for (const int64_t end = bus.now() + kGoalPatience;
-       result == operators::CallResult::kPending && bus.now() < end;) {
-    robot->pass(kStep);
-    result = call.step(bus.now());
-    if (ins.any())
+  request.T_map_goal = presentPose(*robot, ins) * Pose2{ahead, 0.0, 0.0};
+  // Calls listen to the bus as long as it is handled.
+  std::vector<std::unique_ptr<operators::ArmCall>> armed;
+  std::vector<std::unique_ptr<operators::GoalCall>> calls;
+  while (!drive.arrived && calls.size() <= kMostStops) {
+    if (!calls.empty()) {
+      person.say("stopped: " + drive.words);
+      person.confirm("go");
+    }
+    armed.push_back(arm(*robot, "first goal", [] {}));
+    calls.push_back(
+        std::make_unique<operators::GoalCall>(bus, request, kOperator, bus.now(), nullptr));
+    operators::GoalCall& call = *calls.back();
+    operators::CallResult result = operators::CallResult::kPending;
+    for (const int64_t end = bus.now() + kGoalPatience;
+         result == operators::CallResult::kPending && bus.now() < end;) {
+      robot->pass(kStep);
+      result = call.step(bus.now());
+      if (!ins.any()) continue;
       if (const auto pose = planarPose(ins.message())) drive.track.push_back(*pose);
+    }
+    drive.words = call.describe(bus.now());
+    drive.arrived = result == operators::CallResult::kDone;
+    if (result == operators::CallResult::kPending) call.cancel(bus.now());
+    call.letGo(bus.now());
   }
-  drive.words = call.describe(bus.now());
-  drive.arrived = result == operators::CallResult::kDone;
-  if (result == operators::CallResult::kPending) call.cancel(bus.now());
-  call.letGo(bus.now());
   robot->pass(kStep);
   if (!drive.track.empty())
     drive.distance = distanceBetween(drive.track.back(), request.T_map_goal);

@@ -88,8 +88,7 @@ std::string robotText(const RobotDescription& robot) {
       sizeText(robot.footprint) + "height: " + rounded(robot.height) +
       "\ngauge: " + rounded(robot.gauge) +
       "                # m, as it turns on the ground\ndrive:\n" +
-      "  kind: " + (robot.drive.kind == CommandKind::kPower ? "power" : "track_speed") +
-      "\n  full_speed: " + rounded(robot.drive.full_speed) +
+      "  kind: " + nameOf(robot.drive.kind) + "\n  full_speed: " + rounded(robot.drive.full_speed) +
       "         # m/s of a track at full command\n  max_command: " +
       rounded(robot.drive.max_command) +
       "\n  left_channel: " + std::to_string(robot.drive.left_channel) +

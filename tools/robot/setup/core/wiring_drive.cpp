@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/geometry/microseconds.hpp"
+
 namespace tread::setup {
 namespace {
 
@@ -33,10 +35,6 @@ constexpr Pulse kRound[] = {
     {1, 1, false, 0.7},  {-1, -1, false, 0.7},  {-1, 1, false, 1},   {1, -1, false, 0.6},
     {1, 0.5, true, 0.8}, {-1, -0.5, true, 0.8}, {0.5, 1, true, 0.8}, {-0.5, -1, true, 0.8}};
 constexpr size_t kPulses = sizeof kRound / sizeof kRound[0];
-
-int64_t inMicroseconds(double seconds) {
-  return std::llround(1e6 * seconds);
-}
 
 }  // namespace
 
@@ -109,7 +107,7 @@ void WiringDrive::feel() {
 }
 
 void WiringDrive::begin(int64_t utime) {
-  if (utime - *start_ > inMicroseconds(config_.seconds) && pulse_ % 2 == 0) return end("");
+  if (utime - *start_ > toMicroseconds(config_.seconds) && pulse_ % 2 == 0) return end("");
   const double slow = std::min(1.0, std::max(0.5, level_ + kLevelStep));
   Pulse pulse = kRound[pulse_ % kPulses];
   double level = pulse.full && config_.travel > 0.5 ? 1.0 : slow;
@@ -127,8 +125,8 @@ void WiringDrive::begin(int64_t utime) {
                             : config_.shortest;
   pulse_start_ = *last_;
   command_ = {level * pulse.left, level * pulse.right};
-  pulse_end_ = utime + inMicroseconds(time);
-  pause_end_ = pulse_end_ + inMicroseconds(config_.pause);
+  pulse_end_ = utime + toMicroseconds(time);
+  pause_end_ = pulse_end_ + toMicroseconds(config_.pause);
 }
 
 }  // namespace tread::setup

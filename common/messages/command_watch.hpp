@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include <tread/motor_t.hpp>
+
+#include "common/messages/pattern_messages.hpp"
+
+namespace tread {
+
+/// Remembers what the motors were given lately, so that R is compared with what its own commands
+/// did and no other.
+class CommandWatch {
+ public:
+  void add(const motor_t& motor);
+
+  /// The first command of an execution that differs from the pattern's, in words; empty if none was
+  /// seen.
+  std::string unexpectedCommand(const ExecutionKey& execution, const MotionPattern& pattern,
+                                const CommandChannels& channels) const;
+  /// Mean battery voltage in (from, to] [V]; NaN if none was told.
+  double meanVoltage(int64_t from, int64_t to) const;
+
+ private:
+  struct Voltage {
+    int64_t utime;
+    double volts;
+  };
+  struct Given {
+    ExecutionKey execution;
+    int32_t index;
+    std::vector<CommandKind> kinds;
+    Command command;
+  };
+  std::deque<Given> given_;
+  std::deque<Voltage> voltages_;
+};
+
+}  // namespace tread
