@@ -14,6 +14,7 @@
 #include "modules/ins_driver/novatel/novatel_ins.hpp"
 #include "modules/ins_driver/ublox/ublox_ins.hpp"
 #include "modules/ins_driver/vectornav/vectornav_ins.hpp"
+#include "modules/ins_driver/xsens/xsens_ins.hpp"
 
 namespace tread::ins {
 namespace {
@@ -28,7 +29,8 @@ const std::map<std::string, MakeInsSource (*)(ConfigReader&, const RobotDescript
     {"nmea", device<NmeaIns, readNmeaConfig>},
     {"novatel", device<NovatelIns, readNovatelConfig>},
     {"ublox", device<UbloxIns, readUbloxConfig>},
-    {"vectornav", device<VectornavIns, readVectornavConfig>}};
+    {"vectornav", device<VectornavIns, readVectornavConfig>},
+    {"xsens", device<XsensIns, readVectornavConfig>}};
 
 constexpr double kDegPerRad = 180.0 / kPi;
 

@@ -27,6 +27,7 @@
 #include "modules/ins_driver/novatel/novatel_ins.hpp"
 #include "modules/ins_driver/ublox/ublox_ins.hpp"
 #include "modules/ins_driver/vectornav/vectornav_ins.hpp"
+#include "modules/ins_driver/xsens/xsens_ins.hpp"
 #include "modules/learner/core/learner.hpp"
 #include "modules/learner/core/rules/multi_model.hpp"
 #include "modules/learner/learner_node.hpp"
@@ -355,6 +356,7 @@ const std::map<std::string, Target>& targets() {
         {"vesc_frames", vescFrames},
         {"vesc_reply", vescReply},
         {"world", world},
+        {"xsens", insBytes<ins::XsensIns>},
     };
     addRangeFinderTargets(all);
 #ifdef TREAD_WITH_TOOLS

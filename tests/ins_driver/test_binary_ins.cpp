@@ -10,9 +10,11 @@
 #include "modules/ins_driver/novatel/novatel_ins.hpp"
 #include "modules/ins_driver/ublox/ublox_ins.hpp"
 #include "modules/ins_driver/vectornav/vectornav_ins.hpp"
+#include "modules/ins_driver/xsens/xsens_ins.hpp"
 #include "modules/simulator/emulators/novatel/novatel_emulator.hpp"
 #include "modules/simulator/emulators/ublox/ublox_emulator.hpp"
 #include "modules/simulator/emulators/vectornav/vectornav_emulator.hpp"
+#include "modules/simulator/emulators/xsens/xsens_emulator.hpp"
 
 namespace tread::ins::binary {
 namespace {
@@ -73,6 +75,8 @@ Device deviceOf(const std::string& name, const InsConfig& config = deviceConfig(
     return {std::make_unique<NovatelIns>(config), std::make_unique<sim::NovatelEmulator>(map, 5)};
   if (name == "ublox")
     return {std::make_unique<UbloxIns>(config), std::make_unique<sim::UbloxEmulator>(map, 5)};
+  if (name == "xsens")
+    return {std::make_unique<XsensIns>(config), std::make_unique<sim::XsensEmulator>(map, 5)};
   return {std::make_unique<VectornavIns>(config), std::make_unique<sim::VectornavEmulator>(map, 5)};
 }
 
@@ -115,7 +119,7 @@ double grainOf(const std::string& name) {
   return name == "ublox" ? 0.015 : 2e-3;
 }
 
-const char* const kDevices[] = {"novatel", "ublox", "vectornav"};
+const char* const kDevices[] = {"novatel", "ublox", "vectornav", "xsens"};
 
 }  // namespace
 

@@ -408,6 +408,7 @@ TEST_CASE("the configuration is checked: unknown keys, ranges and wrong types na
             .empty());
   CHECK(problem("source: ublox\nheadings: [dual_antenna, course]\nlast_message: NAV-PVT").empty());
   CHECK(problem("source: vectornav\norigin_max_std: 2\ndrives_backward: false").empty());
+  CHECK(problem("source: xsens\ngeoid_separation: 47").empty());
   CHECK(problem("headings: [attitude, compass]").find("test:1") != std::string::npos);
   CHECK(problem("headings: [attitude, attitude]").find("twice") != std::string::npos);
   CHECK(problem("source: vectornav\nimu_rate: 200").find("imu_rate") != std::string::npos);

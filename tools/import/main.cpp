@@ -13,6 +13,7 @@
 #include "common/recordings/imported_log.hpp"
 #include "tools/import/csv_drive.hpp"
 #include "tools/import/foreign_log.hpp"
+#include "tools/import/rawlog.hpp"
 
 using namespace tread;
 using namespace tread::recordings;
@@ -41,7 +42,7 @@ RecordedDrive read(const Arguments& arguments, const Session& session) {
 
 /// Of robots that the project's own recordings are not of.
 bool isForeign(const std::string& format) {
-  return format == "lcm" || format == "csv";
+  return format == "lcm" || format == "rawlog" || format == "csv";
 }
 
 /// Aligned files hold neither the gyro nor the times at which poses were logged.
@@ -95,8 +96,10 @@ void tell(const import::ForeignDrive& foreign) {
 }
 
 RecordedDrive readForeign(const Arguments& arguments, Session& session) {
-  if (arguments.format == "lcm") {
-    import::ForeignDrive foreign = import::readForeignLog(arguments.csv, arguments.robot);
+  if (arguments.format != "csv") {
+    import::ForeignDrive foreign = arguments.format == "lcm"
+                                       ? import::readForeignLog(arguments.csv, arguments.robot)
+                                       : import::readRawlog(arguments.csv);
     tell(foreign);
     session = foreignSession(arguments, foreign.drive);
     return std::move(foreign.drive);
@@ -139,12 +142,13 @@ void run(const Arguments& arguments) {
 int parseAndRun(int argc, char** argv) {
   Arguments arguments;
   CLI::App app{
-      "Turns a recording of a drive (CSV, or an LCM log of a MAEBot or MBot) into an LCM log: INS, "
-      "MOTOR, SCAN, EXECUTION, MARK"};
+      "Turns a recording of a drive (CSV, an LCM log of a MAEBot or MBot, or an MRPT rawlog) into "
+      "an "
+      "LCM log: INS, MOTOR, SCAN, EXECUTION, MARK"};
   app.add_option("--format", arguments.format,
-                 "which kind of file: lcm; csv as --mapping says; or one with --sessions")
+                 "which kind of file: lcm; rawlog; csv as --mapping says; or one with --sessions")
       ->required()
-      ->check(CLI::IsMember({"steps", "aligned", "continuous", "lcm", "csv"}));
+      ->check(CLI::IsMember({"steps", "aligned", "continuous", "lcm", "rawlog", "csv"}));
   app.add_option("--mapping", arguments.mapping,
                  "csv: what its columns mean, as config/imports/example.yaml does");
   app.add_option("--set", arguments.overrides,
@@ -152,7 +156,7 @@ int parseAndRun(int argc, char** argv) {
       ->expected(1)
       ->take_all();
   app.add_option("--sessions", arguments.sessions,
-                 "sessions.csv: radius, baseline, pose lag; not with lcm and csv");
+                 "sessions.csv: radius, baseline, pose lag; not with lcm, rawlog and csv");
   app.add_option("--pose-channel", arguments.robot.pose_channel,
                  "lcm: whose poses become INS, if several channels hold poses");
   app.add_option("--baseline", arguments.robot.baseline,

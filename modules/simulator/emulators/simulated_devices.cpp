@@ -20,6 +20,7 @@
 #include "modules/simulator/emulators/vectornav/vectornav_emulator.hpp"
 #include "modules/simulator/emulators/velodyne/velodyne_emulator.hpp"
 #include "modules/simulator/emulators/vesc/vesc_emulators.hpp"
+#include "modules/simulator/emulators/xsens/xsens_emulator.hpp"
 
 namespace tread::sim {
 namespace {
@@ -74,6 +75,7 @@ const Table<InsEmulator> kSources{
     {"novatel", binaryIns<NovatelEmulator>},
     {"ublox", binaryIns<UbloxEmulator>},
     {"vectornav", binaryIns<VectornavEmulator>},
+    {"xsens", binaryIns<XsensEmulator>},
     {"nmea", [](const Settings& settings, uint64_t seed) -> std::unique_ptr<InsEmulator> {
        return std::make_unique<NmeaInsEmulator>(NmeaInsSettings{settings.ins, {}}, seed);
      }}};

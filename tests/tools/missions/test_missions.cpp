@@ -130,6 +130,7 @@ TEST_CASE("robots with other instruments and controllers drive by their configur
   const std::vector<std::pair<std::string, std::vector<std::string>>> robots{
       {"skid4", {}},  // NovAtel; VESCs that hold track speeds
       {"skid4", {"ins_driver.source=vectornav", "ins_driver.geoid_separation=47"}},
+      {"skid4", {"ins_driver.source=xsens", "ins_driver.geoid_separation=47"}},
       {"small", {"motor_bridge.controller=sabertooth"}},
       {"small", {"motor_bridge.controller=vesc_can"}}};
   for (const auto& [name, overrides] : robots) {

@@ -29,6 +29,11 @@ constexpr double kLeastInsRate = 5.0;   // [Hz]
 constexpr int kRates[] = {115200, 460800, 38400, 9600, 57600, 230400, 921600};
 
 /// Bytes there now.
+/// Whether such an INS tells heights above the ellipsoid, so that its file must tell the geoid's.
+bool tellsEllipsoidHeight(const std::string& kind) {
+  return kind == "vectornav" || kind == "xsens";
+}
+
 std::string received(Link& link) {
   std::string bytes;
   std::array<uint8_t, 4096> buffer;
@@ -117,8 +122,8 @@ class Search {
     if (!link) return false;
     std::vector<Heard> all;
     RobotFindings as = findings_;
-    for (const char* kind : {"nmea", "novatel", "ublox", "vectornav"}) {
-      as.ins = {kind, address, std::string(kind) == "vectornav" ? "geoid_separation: 0\n" : "", 0};
+    for (const char* kind : {"nmea", "novatel", "ublox", "vectornav", "xsens"}) {
+      as.ins = {kind, address, tellsEllipsoidHeight(kind) ? "geoid_separation: 0\n" : "", 0};
       all.push_back({as.ins, driversOf(as).make_ins(std::nullopt)});
     }
     for (const int64_t end = site_.now() + kListen; site_.now() < end; site_.pass(kLookEvery)) {

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 #include "common/geometry/degrees.hpp"
-#include "common/report/text.hpp"
 #include "tools/robot/setup/core/wiring_geometry.hpp"
 
 namespace tread::setup {
@@ -34,12 +35,18 @@ double motionOf(const WiringFit& fit, int side) {
          std::max(fit.response.block<2, 1>(0, side).norm(), 0.3 * std::abs(fit.response(2, side)));
 }
 
+std::string fixedText(double value, int decimals) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(decimals) << value;
+  return text.str();
+}
+
 std::string inMetres(double value) {
-  return fixed(value, 2) + " m";
+  return fixedText(value, 2) + " m";
 }
 
 std::string inDegrees(double angle) {
-  return fixed(toDegrees(angle), 0) + " deg";
+  return fixedText(toDegrees(angle), 0) + " deg";
 }
 
 class Check {
@@ -235,9 +242,9 @@ class Check {
     if (share > tolerance_.weak || weak.high > strong.low) return;
     const Side side = left_is_weak ? Side::kLeft : Side::kRight;
     add(FaultKind::kWeak, side, share,
-        std::string("the ") + nameOf(side) + " track gives " + fixed(100.0 * share, 0) +
-            " % of the other one's speed (" + fixed(weak.value, 2) + " against " +
-            fixed(strong.value, 2) +
+        std::string("the ") + nameOf(side) + " track gives " + fixedText(100.0 * share, 0) +
+            " % of the other one's speed (" + fixedText(weak.value, 2) + " against " +
+            fixedText(strong.value, 2) +
             " m/s): look for a dragging brake, a slack chain or a limit of the controller");
   }
 
