@@ -38,7 +38,7 @@ class CloudInsertion {
   }
 
  private:
-  static constexpr unsigned kSeenBits = 16;
+  static constexpr unsigned kSeenBits = 15;
   static constexpr uint64_t kNoKey = ~uint64_t{0};
 
   /// Not always right about old ones: a voxel that was forgotten is traced again, to the same end.
