@@ -64,6 +64,19 @@ TEST_CASE("the ground is no higher than the lowest voxel that was seen, within t
   REQUIRE(classified(at(-2.0), at(0.55), 0.0, 0.1) == kObstacle);
 }
 
+TEST_CASE("ground seen more than a step below the neighbour's is a drop") {
+  const ColumnClassifier classifier(ObstacleConfig{0.15, 1.2}, 0.1);
+  const int low = classifier.surface(columnOf(at(0.55), at(-0.45) | at(0.75)), kLower, {});
+  const int high = classifier.surface(columnOf(at(0.55), at(-0.05)), kLower, {});
+  CHECK(low == 27);
+  CHECK(high == 31);
+  CHECK(classifier.surface(columnOf(at(0.55), 0), kLower, {}) == -1);
+  CHECK(classifier.isDrop(low, high));
+  CHECK_FALSE(classifier.isDrop(high, low));
+  CHECK_FALSE(classifier.isDrop(high - 2, high));  // up to two voxels may be one step
+  CHECK_FALSE(classifier.isDrop(-1, high));
+}
+
 TEST_CASE("ground far above or below the column's voxels calls nothing free or obstacle") {
   REQUIRE(classified(at(0.55), at(0.75), 50.0) == kUnknown);
   REQUIRE(classified(at(0.55), at(0.75), -50.0) == kUnknown);

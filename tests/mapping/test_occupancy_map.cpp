@@ -186,6 +186,42 @@ TEST_CASE("on rolling ground of a few degrees nothing near the robot is an obsta
   }
 }
 
+TEST_CASE("behind an edge there is no way down, neither seen at a slant nor from above") {
+  for (const double look_down : {0.26, 0.8}) {
+    SmallWorld world;
+    world.ground = [](double x, double) { return x > 4.0 ? -0.6 : 0.0; };
+    Mapper mapper;
+    mapper.range_finder.T_body_sensor = isometryFrom({0.4, 0.0, 0.9}, {0.0, look_down, 0.0});
+    mapper.range_finder.field_of_view = 1.2;
+    mapper.range_finder.beams = 241;
+    mapper.drive(world, {0.0, 0.0}, {3.2, 0.0});
+    CAPTURE(look_down);
+    for (double x = 1.0; x < 3.9; x += 0.1) CHECK(isFree(mapper.at(x, 0.05)));
+    // Somewhere within reach of the edge a row across the way is not free.
+    int closed = 0;
+    for (double x = 4.0; x < 4.6; x += 0.1) {
+      bool free = false;
+      for (double y = -0.3; y < 0.4; y += 0.1) free = free || isFree(mapper.at(x + 0.05, y + 0.05));
+      closed += free ? 0 : 1;
+    }
+    CHECK(closed > 0);
+  }
+}
+
+TEST_CASE("a slope down that the robot can drive is free once its ground is seen") {
+  SmallWorld world;
+  world.ground = [](double x, double) { return x > 4.0 ? -0.15 * (x - 4.0) : 0.0; };
+  Mapper mapper;
+  mapper.range_finder.T_body_sensor = isometryFrom({0.4, 0.0, 0.9}, {0.0, 0.35, 0.0});
+  mapper.range_finder.field_of_view = 1.2;
+  mapper.range_finder.beams = 241;
+  mapper.drive(world, {0.0, 0.0}, {6.0, 0.0});
+  for (double x = 4.05; x < 7.0; x += 0.1) {
+    CAPTURE(x, int(mapper.at(x, 0.05)));
+    CHECK(isFree(mapper.at(x, 0.05)));
+  }
+}
+
 TEST_CASE("an obstacle stays one while the robot drives past on rolling ground and away") {
   SmallWorld world;
   world.ground = [](double x, double) { return 0.11 * std::sin(0.449 * x + 0.7); };

@@ -34,6 +34,11 @@ uint64_t above(uint64_t bits) {
   return ~bits;
 }
 
+/// Index of the highest bit that is set, or -1.
+int highestBit(uint64_t bits) {
+  return bits == 0 ? -1 : kColumnHeight - 1 - __builtin_clzll(bits);
+}
+
 /// OctoMap numbers 2^15 voxels to each side of the origin.
 constexpr double kMostCells = 32000.0;
 /// A new stand counts after so much way or height: rocking on the spot tells nothing new.
@@ -135,6 +140,11 @@ Cell ColumnClassifier::classify(const Column& column, int lower_z,
   return (column.free() & seen) != 0 ? kFree : kUnknown;
 }
 
+int ColumnClassifier::surface(const Column& column, int lower_z, const GroundHeight& ground) const {
+  const double step = ground.z + config_.step + ground.doubt;
+  return highestBit(column.occupied & lowBits(std::ceil(step / cell_size_ - lower_z - 0.5)));
+}
+
 OccupancyMap::OccupancyMap(const OccupancyMapConfig& config)
     : config_(config),
       voxels_(config.voxels, config.tile_cells * config.window_tiles),
@@ -169,7 +179,8 @@ OccupancyMap::Refusal OccupancyMap::insert(const Scan& scan) {
   learnGround(*plane, moved);
   voxels_.insert(raysOf(scan));
   for (const size_t offset : voxels_.touched()) tileOf(offset).utime = utime_;
-  for (const size_t offset : voxels_.changed()) classify(offset);
+  for (const size_t offset : voxels_.changed()) classifyAround(offset);
+  learnEdges();
   if (config_.roughness.range_noise > 0.0) learnRoughness();
   standAt(planar(plane->p_map, Eigen::Quaterniond(scan.T_map_body_last.linear())));
   return Refusal::kNone;
@@ -221,6 +232,32 @@ void OccupancyMap::learnGround(const GroundPlane& plane, bool window_moved) {
   }
 }
 
+/// From the beams of the last scan that ended deep below the ground.
+void OccupancyMap::learnEdges() {
+  const double cell_size = config_.voxels.cell_size;
+  for (const Ray& ray : rays_) {
+    const Eigen::Vector3d back = ray.from - ray.to;
+    const CellIndex end = grid_.indexOf(ray.to.head<2>());
+    if (back.z() <= 0.0 || !grid_.contains(end)) continue;
+    const GroundHeight below = ground_.at(end);
+    if (ray.to.z() > below.z - below.doubt - config_.obstacle.step - cell_size) continue;
+    const double share = cell_size / std::max(back.head<2>().norm(), cell_size);
+    for (double way = 0.0; way < 1.0; way += share) {
+      const Eigen::Vector3d p_map = ray.to + way * back;
+      const CellIndex cell = grid_.indexOf(p_map.head<2>());
+      const GroundHeight ground = ground_.at(cell);
+      if (p_map.z() > ground.z + ground.doubt) break;
+      const size_t offset = trust_.offset(cell);
+      const Column& column = voxels_.columns()[offset];
+      const bool seen = classifier_.surface(column, voxels_.lowerZ(), ground) >= 0;
+      if (seen && way > 0.0) break;
+      if (seen || trust_[offset].missed) continue;
+      trust_[offset].missed = true;
+      classify(offset);
+    }
+  }
+}
+
 /// From the returns of the last scan on free ground.
 void OccupancyMap::learnRoughness() {
   std::vector<GroundPoint> points;
@@ -253,7 +290,7 @@ void OccupancyMap::standAt(const Pose2& T_map_body) {
                         std::abs(p_body.y()) < config_.robot.half_width;
     if (!inside || !trust_.contains(cell)) continue;
     const size_t offset = trust_.offset(cell);
-    trust_[offset] = {true, true};
+    trust_[offset].stood_on = trust_[offset].under_robot = true;
     under_robot_.push_back(offset);
     tileOf(offset).utime = utime_;
   }
@@ -286,18 +323,60 @@ const std::vector<Ray>& OccupancyMap::raysOf(const Scan& scan) {
 
 void OccupancyMap::classify(size_t offset) {
   const Trust& trust = trust_[offset];
+  const CellIndex index = trust_.indexOf(offset);
   Cell cell = kFree;
   if (!trust.under_robot) {
     const Column& column = voxels_.columns()[offset];
-    cell = classifier_.classify(column, voxels_.lowerZ(), ground_.at(trust_.indexOf(offset)));
+    cell = classifier_.classify(column, voxels_.lowerZ(), ground_.at(index));
+    if (cell == kFree && trust.missed && !groundSeenAt(index)) cell = kUnknown;
     if (cell == kUnknown && trust.stood_on) cell = kFree;
   }
-  if (cell == kFree) cell = roughness_.at(trust_.indexOf(offset));
+  if (cell == kFree && !trust.under_robot && isBelowEdge(index)) cell = kObstacle;
+  if (cell == kFree) cell = roughness_.at(index);
   if (grid_.cells()[offset] == cell) return;
   grid_.cells()[offset] = cell;
   TileState& tile = tileOf(offset);
   tile.changed = true;
   tile.utime = utime_;
+}
+
+/// Ground that was seen makes edges with that of the neighbours.
+void OccupancyMap::classifyAround(size_t offset) {
+  classify(offset);
+  if (voxels_.columns()[offset].occupied == 0) return;
+  const CellIndex cell = trust_.indexOf(offset);
+  for (int y = cell.y - 1; y <= cell.y + 1; ++y)
+    for (int x = cell.x - 1; x <= cell.x + 1; ++x)
+      if (trust_.contains({x, y}) && (x != cell.x || y != cell.y)) classify(trust_.offset({x, y}));
+}
+
+/// As in ColumnClassifier.
+int OccupancyMap::surfaceAt(CellIndex cell) const {
+  const Column& column = voxels_.columns().at(cell);
+  if (column.occupied == 0) return -1;
+  return classifier_.surface(column, voxels_.lowerZ(), ground_.at(cell));
+}
+
+/// In the cell or on both sides of it: returns on a slope are farther apart than cells.
+bool OccupancyMap::groundSeenAt(CellIndex cell) const {
+  if (surfaceAt(cell) >= 0) return true;
+  for (const CellIndex step : {CellIndex{1, 0}, {0, 1}, {1, 1}, {1, -1}}) {
+    const CellIndex one{cell.x + step.x, cell.y + step.y};
+    const CellIndex other{cell.x - step.x, cell.y - step.y};
+    if (trust_.contains(one) && trust_.contains(other) && surfaceAt(one) >= 0 &&
+        surfaceAt(other) >= 0)
+      return true;
+  }
+  return false;
+}
+
+bool OccupancyMap::isBelowEdge(CellIndex cell) const {
+  const int surface = surfaceAt(cell);
+  if (surface < 0) return false;
+  for (int y = cell.y - 1; y <= cell.y + 1; ++y)
+    for (int x = cell.x - 1; x <= cell.x + 1; ++x)
+      if (trust_.contains({x, y}) && classifier_.isDrop(surface, surfaceAt({x, y}))) return true;
+  return false;
 }
 
 void OccupancyMap::classifyPatch(CellIndex lower, int side) {

@@ -82,7 +82,8 @@ class GroundMap {
 
 /// What counts as an obstacle for this robot.
 struct ObstacleConfig {
-  double step = 0.15;         ///< [m] above the ground: lower things are driven over
+  /// [m] above the ground: lower things are driven over; also below it: what is deeper is a drop.
+  double step = 0.15;
   double robot_height = 0.0;  ///< [m] above the ground: higher things are driven under
 };
 
@@ -101,6 +102,12 @@ class ColumnClassifier {
       : config_(config), cell_size_(cell_size) {}
 
   Cell classify(const Column& column, int lower_z, const GroundHeight& ground) const;
+  /// Bit of the highest voxel that the ground occupies: below the band; -1 if none was seen.
+  int surface(const Column& column, int lower_z, const GroundHeight& ground) const;
+  /// Whether whoever drives from a column over the other's edge falls deeper than a step.
+  bool isDrop(int surface, int neighbour) const {
+    return surface >= 0 && (neighbour - surface - 1) * cell_size_ > config_.step;
+  }
 
  private:
   uint64_t band(double from, double to, int lower_z) const;
@@ -143,6 +150,10 @@ struct OccupancyMapConfig {
  *  2. The rays go into the voxels (VoxelMap), the robot's stand into the ground (GroundMap).
  *     Returns on free ground go into its roughness (RoughnessMap), which is the cost of free cells.
  *  3. Columns are classified again (ColumnClassifier) where their voxels or their ground changed.
+ *     A free one whose ground was seen more than a step below that of a neighbour is an obstacle.
+ *  4. Where a beam went on through the ground and ended more than a step below it, the columns
+ *     under its way are unknown until ground is seen in them. Ground that slopes less than the
+ *     beams do is seen when the robot comes nearer, that behind an edge never.
  *  Free without having been seen are: the cells under the robot (even if something was marked
  *  there: the robot stands in it); the cells that it stood on before, and, where a map begins, all
  *  within start_free_radius, because a range finder that looks over its own robot sees neither
@@ -177,21 +188,27 @@ class OccupancyMap {
     int64_t utime = 0;  // of the newest scan that touched it
     bool changed = false;
   };
-  /// Cells that are free without having been seen.
+  /// What makes cells free without having been seen, or not free although they were.
   struct Trust {
     bool stood_on = false;  // or assumed free at the start
     bool under_robot = false;
+    bool missed = false;  // a beam that met no ground here went deep below it: is there any?
   };
 
   bool place(const Eigen::Isometry3d& T_map_body);
   void moveWindow(CellIndex lower, int lower_z);
   void learnGround(const GroundPlane& plane, bool window_moved);
+  void learnEdges();
   void learnRoughness();
   void assumeStartFree(const Eigen::Vector2d& p_map);
   void standAt(const Pose2& T_map_body);
   const std::vector<Ray>& raysOf(const Scan& scan);
   bool isOwnBody(const Eigen::Vector3d& p_body) const;
   void classify(size_t offset);
+  void classifyAround(size_t offset);
+  int surfaceAt(CellIndex cell) const;
+  bool groundSeenAt(CellIndex cell) const;
+  bool isBelowEdge(CellIndex cell) const;
   void classifyPatch(CellIndex lower, int side);
   TileState& tileOf(size_t offset);
 

@@ -159,6 +159,9 @@ LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings) 
   readValues(reader, settings, folder, placeholders);
   reader.text("key", launch.key);
   if (reader.has("key")) launch.key = keyPath(reader, launch.key, placeholders, folder);
+  reader.text("pre_drive", launch.pre_drive);
+  launch.pre_drive = replaced(reader, "pre_drive", launch.pre_drive, placeholders);
+  if (!launch.pre_drive.empty()) launch.pre_drive = absolutePath(launch.pre_drive, folder);
   std::set<std::string> names{"supervisord"};  // whose log is beside theirs
   for (ConfigReader& item : reader.sections("processes", true)) {
     launch.processes.push_back(readProcess(item, placeholders, folder));

@@ -33,6 +33,8 @@ struct LaunchFile {
   std::string lcm_url;
   std::string key;         ///< absolute path of the robot's key; empty = messages are not sealed
   bool simulated = false;  ///< no robot: what only a robot's network needs is an advice
+  std::string
+      pre_drive;  ///< folder of the robot whose wiring is tried before the start; empty: none
   std::vector<LaunchProcess> processes;
 };
 
@@ -49,12 +51,11 @@ struct LaunchSettings {
 std::string readLaunchName(const std::string& file);
 
 /// Reads a launch file; throws ConfigError with file:line.
-/** Keys: name, lcm_url, key, simulated, values (further placeholders with their defaults) and
- * processes, a list of maps: name, program, config, arguments, external, stop_signal, stop_time,
- * start_time, watchdog.
- * Placeholders in key, program, config and arguments: {run}, {lcm_url}, {bin}, {here} (the file's
- * folder) and those in `values`. Paths are relative to the file's folder. A value that names a file
- * or folder there becomes its absolute path. */
+/** Keys: name, lcm_url, key, simulated, pre_drive, values (further placeholders with their
+ * defaults) and processes, a list of maps: name, program, config, arguments, external, stop_signal,
+ * stop_time, start_time, watchdog. Placeholders in key, pre_drive, program, config and arguments:
+ * {run}, {lcm_url}, {bin}, {here} (the file's folder) and those in `values`. Paths are relative to
+ * the file's folder. A value that names a file or folder there becomes its absolute path. */
 LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings);
 
 /// The words that start a process: ours get --config, --lcm-url, --with-parent and, where there is

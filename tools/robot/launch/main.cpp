@@ -35,6 +35,7 @@ struct Options {
   bool status = false;
   bool stop = false;
   bool no_watchdog = false;
+  bool pre_drive = false;
 };
 
 void declare(CLI::App& app, Options& options) {
@@ -56,6 +57,9 @@ void declare(CLI::App& app, Options& options) {
                               "becomes this one process, without a supervisor (for systemd)");
   app.add_flag("--no-watchdog", options.no_watchdog,
                "ends no process that gives no sign of life: for a debugger, which halts it");
+  app.add_flag(
+      "--pre-drive", options.pre_drive,
+      "yes to the drive of 10 s by which the file's pre_drive tries the wiring; else asks");
   check->excludes(status)->excludes(stop)->excludes(only);
   status->excludes(stop)->excludes(only);
   stop->excludes(only);
@@ -99,11 +103,42 @@ bool checksPass(const LaunchFile& launch, const LaunchSettings& settings) {
   return !anyCritical(findings);
 }
 
-int start(const LaunchFile& launch, const LaunchSettings& settings, bool watch) {
+/// Whether the robot may move before anything watches over it: only somebody who stands by knows.
+bool mayMove(const LaunchFile& launch, bool agreed) {
+  if (agreed) return true;
+  if (isatty(STDIN_FILENO) == 0) {
+    std::cout << launch.name << ": wiring not tried: nobody here to say yes, see --pre-drive"
+              << std::endl;
+    return false;
+  }
+  std::cout << launch.name << ": tries the wiring: 10 s to and fro within a metre, nothing sees "
+            << "obstacles. Emergency stop at hand, go? [y/N] " << std::flush;
+  std::string answer;
+  std::getline(std::cin, answer);
+  return answer == "y" || answer == "yes";
+}
+
+/// Tries the robot's wiring; false if something is wrong with it.
+bool preDrivePasses(const LaunchFile& launch, const Options& options) {
+  constexpr double kLongest = 120.0;  // [s]
+  if (options.pre_drive && launch.pre_drive.empty())
+    throw std::runtime_error(options.settings.file + ": names no robot under pre_drive");
+  if (launch.pre_drive.empty() || !mayMove(launch, options.pre_drive)) return true;
+  const std::string program = findProgram("tread-setup-robot", options.settings.bin);
+  const CommandOutcome outcome = runCommand({program, "--pre-drive", launch.pre_drive}, kLongest);
+  std::cout << outcome.output << std::flush;
+  if (outcome.code == 0) return true;
+  std::cerr << launch.name << ": nothing is started: the wiring is not right" << std::endl;
+  return false;
+}
+
+int start(const LaunchFile& launch, const Options& options) {
+  const LaunchSettings& settings = options.settings;
   if (!checksPass(launch, settings)) return 1;
   const RunPaths paths(settings.run);
   std::filesystem::create_directories(paths.logs);
   const RunLock lock(paths.lock);
+  if (!preDrivePasses(launch, options)) return 1;
   std::optional<TcpRelay> relay;
   if (const auto address = parseLcmUrl(launch.lcm_url); address && address->provider == "tcpq")
     relay.emplace(address->port);
@@ -114,7 +149,7 @@ int start(const LaunchFile& launch, const LaunchSettings& settings, bool watch) 
   std::cout << launch.name << ": starting " << launch.processes.size() << " processes; logs in "
             << paths.logs << std::endl;
   const Announcement announcement({launch.name, launch.lcm_url, launch.key});
-  return supervise(launch, paths, lock, watch);
+  return supervise(launch, paths, lock, !options.no_watchdog);
 }
 
 int only(const LaunchFile& launch, const Options& options) {
@@ -171,7 +206,7 @@ int run(int argc, char** argv) {
   if (options.stop) return stopRun(launch.name, paths);
   if (options.status) return status(launch, paths);
   if (!options.only.empty()) return only(launch, options);
-  if (!options.check) return start(launch, options.settings, !options.no_watchdog);
+  if (!options.check) return start(launch, options);
   if (!checksPass(launch, options.settings)) return 1;
   std::cout << launch.name << ": ready to start" << std::endl;
   return 0;

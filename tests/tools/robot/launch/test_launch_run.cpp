@@ -47,6 +47,26 @@ TEST_CASE("processes start, one that is killed comes back, and all are gone afte
   CHECK(log.find("stopped: p1 (exit status 0)") < log.find("stopped: p0 (exit status 0)"));
 }
 
+TEST_CASE(
+    "where the wiring is to be tried, it is with a yes, and nothing starts where it is wrong") {
+  const Launched unasked({"good"}, TREAD_STAND_IN, "simulated: true\npre_drive: \"{here}\"\n");
+  Process launch("tread-launch", unasked.arguments(), unasked.output());
+  CHECK(unasked.says("trial: wiring not tried: nobody here to say yes, see --pre-drive"));
+  CHECK(unasked.says("trial: all 2 processes run after"));
+  launch.signal(SIGINT);
+  REQUIRE(launch.waitFor(10));
+
+  const Launched wrong({"good"}, TREAD_STAND_IN, "simulated: true\npre_drive: \"{here}\"\n");
+  const CommandOutcome tried = call(wrong, {"--pre-drive"});
+  CHECK(tried.code == 1);
+  CHECK_THAT(tried.output, Contains("robot.yaml") && Contains("trial: nothing is started"));
+  CHECK(wrong.pids().empty());
+
+  const CommandOutcome nothing = call(Launched({"good"}, TREAD_STAND_IN), {"--pre-drive"});
+  CHECK(nothing.code == 1);
+  CHECK_THAT(nothing.output, Contains("names no robot under pre_drive"));
+}
+
 TEST_CASE("the key goes to every process of ours and to no other, and a bad one starts nothing") {
   const Launched launched({"good"}, TREAD_STAND_IN, "simulated: true\nkey: robot.key\n");
   const std::string key = (launched.folder / "robot.key").string();
