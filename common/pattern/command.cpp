@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include "common/pattern/command.hpp"
 
+#include <cmath>
+
 namespace tread {
 namespace {
 
@@ -58,6 +60,18 @@ std::vector<CommandKind> kindsOf(const CommandChannels& channels) {
 CommandChannels trackChannels(CommandKind kind) {
   const double limit = commandLimit(kind);
   return {{"left", kind, -limit, limit}, {"right", kind, -limit, limit}};
+}
+
+CommandChannels carChannels(CommandKind kind) {
+  const double drive = commandLimit(kind);
+  const double angle = commandLimit(CommandKind::kSteeringAngle);
+  return {{kind == CommandKind::kPower ? "throttle" : "speed", kind, -drive, drive},
+          {"steering", CommandKind::kSteeringAngle, -angle, angle}};
+}
+
+TrackCommand rearWheels(double speed, double angle, double wheelbase, double gauge) {
+  const double share = 0.5 * gauge * std::tan(angle) / wheelbase;
+  return {speed * (1.0 - share), speed * (1.0 + share)};
 }
 
 std::optional<CommandKind> kindOfTracks(const CommandChannels& channels) {

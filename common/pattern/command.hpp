@@ -49,6 +49,8 @@ using CommandChannels = std::vector<CommandChannel>;
 std::vector<CommandKind> kindsOf(const CommandChannels& channels);
 /// Channels left and right of a vehicle with two tracks, in the whole range of a kind.
 CommandChannels trackChannels(CommandKind kind);
+/// Channels of a car, in the whole range of each: throttle (power) or speed, then steering.
+CommandChannels carChannels(CommandKind kind);
 /// The kind if these are trackChannels(); nothing for another vehicle.
 std::optional<CommandKind> kindOfTracks(const CommandChannels& channels);
 /// "left [m/s], right [m/s]".
@@ -89,7 +91,12 @@ class Command {
   std::array<double, kMaxChannels> values_{};
 };
 
-/// A series for two tracks as the patterns hold it, and back.
+/// The two rear wheels of a car that moves by Ackermann's law: `speed` in the middle of the rear
+/// axle (in any unit), steering angle [rad] in the middle of the front axle, wheelbase and gauge
+/// [m].
+TrackCommand rearWheels(double speed, double angle, double wheelbase, double gauge);
+
+/// A series for two tracks as the patterns hold it, and back; of a car, the first two values.
 std::vector<Command> commandsOf(const std::vector<TrackCommand>& tracks);
 std::vector<TrackCommand> tracksOf(const std::vector<Command>& commands);
 

@@ -63,11 +63,12 @@ VehicleKernel::VehicleKernel(const VehicleModel& model, const EntryState& entry,
                          entry.ramps.value_or(entry.track_speeds).left, entry.heat.left)),
       right_(enteredTrack(model.effects, entry.track_speeds.right,
                           entry.ramps.value_or(entry.track_speeds).right, entry.heat.right)),
-      on_ground_(entry.track_speeds),
+      steering_(entry.steering.value_or(entry.command.right)),
+      on_ground_(model.onGround(entry.track_speeds, steering_)),
       acting_(entry.command) {
   setNoise(noise);
   const ChangesInForce changes = changesAt(model_.effects, context_.session_time, 0.0);
-  led_to_ = groundMotion(model_, noise_, changes, entry.track_speeds);
+  led_to_ = groundMotion(model_, noise_, changes, on_ground_);
   body_ = entry.body ? *entry.body : led_to_;
 }
 
@@ -118,14 +119,22 @@ void VehicleKernel::advance(double duration) {
 
 void VehicleKernel::integrateStep(const TrackCommand& asked, double dt) {
   const EffectValues& effects = model_.effects;
-  on_ground_ = {driveTrack(model_, supplied(model_, context_, asked.left), 1.0, dt, left_),
-                driveTrack(model_, supplied(model_, context_, asked.right), -1.0, dt, right_)};
+  const TrackCommand driven{
+      driveTrack(model_, supplied(model_, context_, asked.left), 1.0, dt, left_),
+      driveTrack(model_, supplied(model_, context_, asked.right), -1.0, dt, right_)};
+  on_ground_ = model_.onGround(driven, steer(dt));
   const ChangesInForce changes = changesAt(effects, context_.session_time, dt);
   const PlaneMotion steady = groundMotion(model_, noise_, changes, on_ground_);
   const Twist2 v_body =
       bodyTwist(effects, tan_crab_, changes, context_, on_ground_, moveBody(changes, steady, dt));
   T_start_body_ = T_start_body_ * integrate(v_body, dt);
   context_.session_time += dt;
+}
+
+double VehicleKernel::steer(double dt) {
+  const Followed angle = follow(steering_, acting_.right, model_.steering_lag, dt);
+  steering_ = angle.end;
+  return angle.mean;
 }
 
 PlaneMotion VehicleKernel::moveBody(const ChangesInForce& changes, const PlaneMotion& mean,
@@ -138,7 +147,9 @@ PlaneMotion VehicleKernel::moveBody(const ChangesInForce& changes, const PlaneMo
   // Tracks that are quick for the step jump to where they stay; of slack only means are known.
   const bool gradual = model_.driveLag() >= dt && effects.track_backlash == 0.0;
   const PlaneMotion begin = gradual ? led_to_ : mean;
-  const PlaneMotion end = gradual ? groundMotion(model_, noise_, changes, trackSpeeds()) : mean;
+  const PlaneMotion end =
+      gradual ? groundMotion(model_, noise_, changes, model_.onGround(trackSpeeds(), steering_))
+              : mean;
   const Followed v = follow(body_.v, {begin.v, mean.v, end.v}, effects.body_inertia, dt);
   const Followed omega =
       follow(body_.omega, {begin.omega, mean.omega, end.omega}, effects.yaw_inertia, dt);
@@ -150,7 +161,8 @@ PlaneMotion VehicleKernel::moveBody(const ChangesInForce& changes, const PlaneMo
 Twist2 VehicleKernel::twist() const {
   const EffectValues& effects = model_.effects;
   const ChangesInForce changes = changesAt(effects, context_.session_time, 0.0);
-  const TrackCommand tracks = effects.track_backlash == 0.0 ? trackSpeeds() : on_ground_;
+  const TrackCommand tracks =
+      effects.track_backlash == 0.0 ? model_.onGround(trackSpeeds(), steering_) : on_ground_;
   PlaneMotion motion = groundMotion(model_, noise_, changes, tracks);
   if (effects.body_inertia > 0.0) motion.v = body_.v;
   if (effects.yaw_inertia > 0.0) motion.omega = body_.omega;
@@ -165,6 +177,7 @@ EntryState VehicleKernel::state() const {
   state.body = body_;
   state.heat = {left_.heat, right_.heat};
   state.ramps = {left_.ramp, right_.ramp};
+  state.steering = steering_;
   return state;
 }
 

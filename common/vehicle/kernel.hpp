@@ -24,6 +24,7 @@ struct EntryState {
   TrackCommand heat{};  ///< [1] low-pass of the duty of each side's motor, see thermal_derating
   /// [m/s] that the drives are asked for by their ramps, see slew_limit; else their speeds.
   std::optional<TrackCommand> ramps = std::nullopt;
+  std::optional<double> steering = std::nullopt;  ///< [rad] of a car; else that of the command
 };
 
 /// The state that a command leads to when it is held for long (motors cold).
@@ -81,6 +82,8 @@ class VehicleKernel {
   void hold(double duration);
   void advance(double duration);
   void integrateStep(const TrackCommand& asked, double dt);
+  /// Moves a car's steering on by dt; returns its mean angle meanwhile [rad].
+  double steer(double dt);
   /// Forward speed and yaw rate of a body that follows the tracks over dt; its mean meanwhile.
   PlaneMotion moveBody(const ChangesInForce& changes, const PlaneMotion& mean, double dt);
 
@@ -91,6 +94,7 @@ class VehicleKernel {
   Pose2 T_start_body_;
   TrackState left_;
   TrackState right_;
+  double steering_;         ///< [rad] of a car
   TrackCommand on_ground_;  ///< [m/s] mean speeds of the tracks in the last step of integration
   PlaneMotion body_;
   PlaneMotion led_to_;  ///< by the tracks at the end of the last step, for the body's inertia

@@ -114,25 +114,40 @@ struct DriveContext {
 };
 
 /// A vehicle on one ground: nominal two-track model and the effects that are on.
-/** v_x = forward_gain (vl + vr) / 2, omega = yaw_gain (vr - vl) / gauge, v_y = 0; track speeds
+/** A car is its two rear wheels: both follow the throttle, and the steered front wheels lead one to
+ * run ahead of the other by Ackermann's law (rearWheels()); on them the effects act as on tracks.
+ * Its commands are throttle or speed, and steering angle, in the places of left and right.
+ *
+ * v_x = forward_gain (vl + vr) / 2, omega = yaw_gain (vr - vl) / gauge, v_y = 0; track speeds
  * follow the commands after a delay with a first-order lag; then the effects act. */
 struct VehicleModel {
   std::string name;
   CommandKind kind = CommandKind::kPower;
-  double full_speed = 1.0;    ///< [m/s] track speed at power 1; not used for track speed commands
-  double lag = 0.0;           ///< [s] time constant of the track speeds
-  double delay = 0.0;         ///< [s] before a command begins to act
-  double gauge = 1.0;         ///< [m] between the middles of the tracks
+  double full_speed = 1.0;  ///< [m/s] track speed at power 1; not used for track speed commands
+  double lag = 0.0;         ///< [s] time constant of the track speeds
+  double delay = 0.0;       ///< [s] before a command begins to act
+  double gauge = 1.0;       ///< [m] between the middles of the tracks, of a car's rear wheels
+  double wheelbase = 0.0;   ///< [m] of a car, whose body origin is on its rear axle; 0 = two tracks
+  double steering_lag = 0.0;  ///< [s] time constant of a car's steering
   double forward_gain = 1.0;  ///< [1] ground speed over mean track speed
   double yaw_gain = 1.0;      ///< [1] yaw rate over that of the track speeds
   double step = 0.005;        ///< [s] longest step of integration
   EffectValues effects;
   ExecutionSpread spread;
 
-  /// Track speeds that a command asks for, left and right [m/s].
+  bool isCar() const { return wheelbase > 0.0; }
+  /// What its commands consist of, each channel in its whole range.
+  CommandChannels channels() const { return isCar() ? carChannels(kind) : trackChannels(kind); }
+  /// Track speeds that a command asks for, left and right [m/s]; of a car those of its drive.
   TrackCommand trackSpeeds(const TrackCommand& command) const {
-    if (kind == CommandKind::kTrackSpeed) return command;
-    return {full_speed * command.left, full_speed * command.right};
+    const double unit = kind == CommandKind::kTrackSpeed ? 1.0 : full_speed;
+    return {unit * command.left, unit * (isCar() ? command.left : command.right)};
+  }
+  /// Speeds of tracks on the ground that turn so fast; a car's by its steering angle [rad].
+  TrackCommand onGround(const TrackCommand& driven, double steering) const {
+    if (!isCar()) return driven;
+    const TrackCommand share = rearWheels(1.0, steering, wheelbase, gauge);
+    return {driven.left * share.left, driven.right * share.right};
   }
   /// Delay of commands with the effect on it [s].
   double commandDelay() const { return std::max(0.0, delay + effects.command_delay); }

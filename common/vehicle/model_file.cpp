@@ -29,6 +29,10 @@ void readTracks(ConfigReader& reader, VehicleModel& model) {
   else if (reader.has("full_speed"))
     throw reader.error("full_speed", "is for power commands; track_speed commands are in m/s");
   reader.number("gauge", model.gauge, {0.05, 10.0}, "m", true);
+  reader.number("wheelbase", model.wheelbase, {0.2, 10.0}, "m");
+  if (reader.has("steering_lag") && !model.isCar())
+    throw reader.error("steering_lag", "is for a car; give its wheelbase, too");
+  reader.number("steering_lag", model.steering_lag, {0.0, 2.0}, "s");
   reader.number("lag", model.lag, {0.0, 5.0}, "s");
   reader.number("delay", model.delay, {0.0, 2.0}, "s");
   reader.number("forward_gain", model.forward_gain, kGain, "");
@@ -214,6 +218,11 @@ void writeNominal(std::ostringstream& out, const VehicleModel& model) {
   out << "kind: " << (power ? "power" : "track_speed") << '\n';
   if (power) line(out, "full_speed", model.full_speed, "m/s, track speed at power 1");
   line(out, "gauge", model.gauge, "m, between the middles of the tracks");
+  if (model.isCar()) {
+    line(out, "wheelbase", model.wheelbase,
+         "m, of a car; the second command is its steering angle");
+    line(out, "steering_lag", model.steering_lag, "s, time constant of the steering");
+  }
   line(out, "lag", model.lag, "s, time constant of the track speeds");
   line(out, "delay", model.delay, "s, before a command begins to act");
   line(out, "forward_gain", model.forward_gain, "ground speed over mean track speed");

@@ -11,14 +11,31 @@
 namespace tread {
 namespace {
 
+/// Wheelbase and steering of a car.
+void readSteering(ConfigReader& reader, DriveDescription& drive) {
+  reader.number("wheelbase", drive.wheelbase, {0.2, 10.0}, "m", true);
+  reader.number("max_steering", drive.max_steering,
+                {0.05, commandLimit(CommandKind::kSteeringAngle)}, "rad", true);
+  reader.flag("invert_throttle", drive.invert_left);
+  reader.flag("invert_steering", drive.invert_right);
+}
+
 DriveDescription readDrive(ConfigReader reader) {
   DriveDescription drive;
+  std::string layout = "tracks";
+  reader.choice("layout", layout, {"tracks", "skid_steer_4", "throttle_steering"});
+  if (layout == "skid_steer_4") drive.layout = DriveLayout::kSkidSteer4;
+  if (layout == "throttle_steering") drive.layout = DriveLayout::kThrottleSteering;
   std::string kind;
   reader.choice("kind", kind, {"power", "track_speed"}, true);
   drive.kind = kind == "power" ? CommandKind::kPower : CommandKind::kTrackSpeed;
   reader.number("full_speed", drive.full_speed, {0.05, 20.0}, "m/s", true);
   reader.number("max_command", drive.max_command, {0.0, drive.fullCommand()},
                 kind == "power" ? "1" : "m/s", true);
+  if (drive.isCar()) {
+    readSteering(reader, drive);
+    return drive;
+  }
   int64_t left_channel = drive.left_channel;
   reader.integer("left_channel", left_channel, {1, 2}, "1");
   drive.left_channel = static_cast<int>(left_channel);
@@ -126,10 +143,10 @@ FootprintSize readFootprint(ConfigReader reader) {
 }
 
 CommandChannels DriveDescription::channels() const {
-  CommandChannels channels = trackChannels(kind);
+  CommandChannels channels = isCar() ? carChannels(kind) : trackChannels(kind);
   for (CommandChannel& channel : channels) {
-    channel.lowest = -max_command;
-    channel.highest = max_command;
+    channel.highest = channel.kind == CommandKind::kSteeringAngle ? max_steering : max_command;
+    channel.lowest = -channel.highest;
   }
   return channels;
 }

@@ -17,15 +17,26 @@ namespace tread {
 
 class ConfigReader;
 
-/// What drives the tracks, and how it is wired.
+/// What a vehicle stands on and is moved by.
+enum class DriveLayout {
+  kTracks,           ///< two, a motor each
+  kSkidSteer4,       ///< four wheels that are not steered, a motor each
+  kThrottleSteering  ///< a car: rear wheels driven together, front wheels steered
+};
+
+/// What drives the tracks or wheels, and how it is wired.
 struct DriveDescription {
-  CommandKind kind = CommandKind::kPower;
-  double full_speed = 0.0;   ///< [m/s] of a track at full command
+  DriveLayout layout = DriveLayout::kTracks;
+  CommandKind kind = CommandKind::kPower;  ///< of the tracks or the throttle
+  double full_speed = 0.0;   ///< [m/s] of a track at full command; of a car straight ahead
   double max_command = 0.0;  ///< largest magnitude of a command: power [1] or track speed [m/s]
   int left_channel = 1;      ///< 1 or 2, of the motor controller; the right track has the other one
-  bool invert_left = false;  ///< the left motor is mounted the other way round
-  bool invert_right = false;
+  bool invert_left = false;  ///< the left motor is mounted the other way round; a car's throttle
+  bool invert_right = false;  ///< a car's steering
+  double wheelbase = 0.0;  ///< [m] of a car, between its axles; the body origin is on the rear one
+  double max_steering = 0.0;  ///< [rad] of a car, to either side
 
+  bool isCar() const { return layout == DriveLayout::kThrottleSteering; }
   /// Command at which the controller gives all it can: power 1, or the full track speed [m/s].
   double fullCommand() const { return kind == CommandKind::kPower ? 1.0 : full_speed; }
   /// What a command to the drive consists of, in the range that max_command allows.
@@ -63,7 +74,7 @@ struct RobotDescription {
   FootprintSize outline;    ///< the body seen from above
   FootprintSize footprint;  ///< what plans keep free: the outline, and what turns swing beyond it
   double height = 0.0;      ///< [m] above the ground
-  double gauge = 0.0;       ///< [m] between the middles of the tracks
+  double gauge = 0.0;       ///< [m] between the middles of the tracks, or of a car's rear wheels
   DriveDescription drive;
   Mounting ins;  ///< p_body: the point whose position the INS reports
   Mounting range_finder;

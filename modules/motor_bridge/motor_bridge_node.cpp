@@ -28,6 +28,8 @@ MotionLimits readMotion(ConfigReader section, const RobotDescription& robot) {
   MotionLimits motion;
   const bool power = robot.drive.kind == CommandKind::kPower;
   motion.gauge = robot.gauge;
+  motion.wheelbase = robot.drive.wheelbase;
+  motion.max_steering = robot.drive.max_steering;
   motion.full_speed = robot.drive.full_speed;
   motion.speed_per_command = power ? robot.drive.full_speed : 1.0;
   motion.dead_band = power ? 0.15 : 0.05;

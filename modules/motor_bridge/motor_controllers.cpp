@@ -72,6 +72,11 @@ MakeMotorController readMotorController(ConfigReader& reader, const DriveDescrip
   std::vector<std::string> known;
   for (const auto& [each, read] : kControllers) known.push_back(each);
   reader.choice("controller", name, known);
+  // Over CAN a VESC knows no command for its servo output.
+  if (drive.isCar() && name != "vesc")
+    throw reader.error("controller", name +
+                                         " cannot steer a car (drive.layout: "
+                                         "throttle_steering); take vesc, which has a servo output");
   return kControllers.at(name)(reader, drive);
 }
 

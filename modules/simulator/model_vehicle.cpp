@@ -71,9 +71,10 @@ InsInput ModelIns::sensed(int64_t utime, const InsInput& truth) {
 }
 
 ModelVehicle::ModelVehicle(const ModelDocument& document, std::optional<uint64_t> noise_seed,
-                           double top_speed)
+                           double top_speed, double max_steering)
     : model_(document.vehicle),
       full_command_(model_.kind == CommandKind::kTrackSpeed ? top_speed : 1.0),
+      max_steering_(max_steering),
       kernel_(document.vehicle, EntryState{}),
       mean_(document.vehicle, EntryState{}),
       known_(document.envelope),
@@ -86,8 +87,9 @@ ModelVehicle::ModelVehicle(const ModelDocument& document, std::optional<uint64_t
 void ModelVehicle::step(const MotorPower& power, const Ground& ground, double dt) {
   if (noise_ && steps_ % kStepsPerNoise == 0) varyNoise();
   ++steps_;
-  const TrackCommand command{std::clamp(power.left, -full_command_, full_command_),
-                             std::clamp(power.right, -full_command_, full_command_)};
+  TrackCommand command{std::clamp(power.left, -full_command_, full_command_),
+                       std::clamp(power.right, -full_command_, full_command_)};
+  if (model_.isCar()) command.right = max_steering_ * std::clamp(power.right, -1.0, 1.0);
   DriveContext context;
   context.session_time = session_time_;
   context.battery_drop = 1.0 - battery_.voltage / drive_.full_voltage;
@@ -112,7 +114,8 @@ void ModelVehicle::varyNoise() {
 
 void ModelVehicle::drawCurrent(const TrackCommand& command, double dt) {
   const TrackCommand speeds = kernel_.trackSpeeds();
-  const TrackCommand power{command.left / full_command_, command.right / full_command_};
+  const double right = model_.isCar() ? 0.0 : command.right;
+  const TrackCommand power{command.left / full_command_, right / full_command_};
   left_ = {power.left, speeds.left, kFullCurrent * power.left};
   right_ = {power.right, speeds.right, kFullCurrent * power.right};
   stepBattery(drive_, left_, right_, dt, battery_);
@@ -140,8 +143,8 @@ RobotParts partsOf(const ModelDocument& document, const RobotSettings& settings)
   RobotParts parts;
   std::optional<uint64_t> noise_seed;
   if (settings.motion_noise) noise_seed = streamSeed(settings.seed, kModelStream);
-  parts.vehicle =
-      std::make_unique<ModelVehicle>(document, noise_seed, settings.wiring.top_speed.value_or(1.0));
+  parts.vehicle = std::make_unique<ModelVehicle>(
+      document, noise_seed, settings.wiring.top_speed.value_or(1.0), settings.vehicle.max_steering);
   if (!isPerfect(document.measurement))
     parts.ins_errors = std::make_unique<ModelIns>(document.measurement, settings.start_utime);
   return parts;

@@ -47,8 +47,9 @@ class ModelIns final : public InsErrors {
 class ModelVehicle final : public Plant {
  public:
   /// `noise_seed`: of the spread; without it every execution is the mean. `top_speed` [m/s]: for a
-  /// model of track speeds, the largest that it is asked for.
-  ModelVehicle(const ModelDocument& document, std::optional<uint64_t> noise_seed, double top_speed);
+  /// model of track speeds, the largest that it is asked for; `max_steering` [rad]: of a car.
+  ModelVehicle(const ModelDocument& document, std::optional<uint64_t> noise_seed, double top_speed,
+               double max_steering = 0.0);
 
   bool takesSpeeds() const override { return model_.kind == CommandKind::kTrackSpeed; }
   void step(const MotorPower& power, const Ground& ground, double dt) override;
@@ -73,6 +74,7 @@ class ModelVehicle final : public Plant {
 
   VehicleModel model_;
   double full_command_;  ///< power 1, or the top speed [m/s]
+  double max_steering_;  ///< [rad]
   VehicleKernel kernel_;
   VehicleKernel mean_;  ///< the same without noise
   std::optional<Envelope> known_;

@@ -126,6 +126,8 @@ void readBody(ConfigReader& reader, VehicleParameters& vehicle, bool required) {
   reader.number("contact_length", vehicle.contact_length, {0.2, 3.0}, "m", required);
   reader.number("centre", vehicle.centre, {-0.5, 0.5}, "m", required);
   reader.number("mass_height", vehicle.mass_height, {0.0, 2.0}, "m", required);
+  if (vehicle.wheelbase > 0.0)
+    reader.number("steering_rate", vehicle.steering_rate, {0.1, 10.0}, "rad/s");
   reader.number("mass_ahead", vehicle.mass_ahead, {-0.15, 0.15}, "m");
 }
 
@@ -214,6 +216,10 @@ void readSimulatedRobot(ConfigReader& reader, RobotSettings& settings) {
   const RobotDescription robot = readRobot(reader);
   settings.vehicle.outline = robot.outline;
   settings.vehicle.gauge = robot.gauge;
+  settings.vehicle.wheelbase = robot.drive.wheelbase;
+  settings.vehicle.max_steering = robot.drive.max_steering;
+  if (robot.drive.isCar() && robot.drive.kind == CommandKind::kTrackSpeed)
+    throw reader.error("robot", "a simulated car takes power, not speeds: drive.kind power");
   settings.vehicle.drive.free_speed = robot.drive.full_speed;
   settings.wiring = {
       robot.drive.left_channel, robot.drive.invert_left, robot.drive.invert_right, {}};

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
+#include <cmath>
+
 #include "modules/motor_bridge/motor_bridge_node.hpp"
 #include "modules/motor_bridge/roboteq/roboteq_connection.hpp"
 
@@ -37,6 +39,21 @@ TEST_CASE("without a word the bridge has its defaults, and says all of them") {
   CHECK(config.bridge.gate.slot.channels == trackChannels(CommandKind::kPower));
   for (const char* key : {"address", "lease", "ins_period", "watchdog", "left_channel"})
     CHECK(config.effective.find(key) != std::string::npos);
+}
+
+TEST_CASE("a car is steered through vesc only, and a hand at the stick drives it, too") {
+  const std::string car = "robot: ../../../tests/data/robots/car/robot.yaml\n";
+  CHECK(refusal(car + "controller: roboteq").find("roboteq cannot steer a car") !=
+        std::string::npos);
+  CHECK(refusal(car + "controller: vesc_can").find("take vesc") != std::string::npos);
+  const MotorBridgeConfig config = read(car + "controller: vesc");
+  CHECK(describe(config.bridge.gate.slot.channels) == "throttle [1], steering [rad]");
+  const MotionLimits& motion = config.bridge.motion;
+  CHECK(motion.fromHand({0.5, 0.5}, 0.5) == Command(0.5, 0.0));
+  CHECK(motion.fromHand({0.0, 0.5}, 0.5) == Command(0.25, 0.25));
+  const TrackCommand wheels = motion.tracks({1.0, 0.5});
+  CHECK(wheels.left == Approx(1.0 - 0.35 * std::tan(0.5) / 0.9));
+  CHECK(wheels.left + wheels.right == Approx(2.0));
 }
 
 TEST_CASE("everything about the controller's wiring can be told") {

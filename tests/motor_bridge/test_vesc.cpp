@@ -101,6 +101,65 @@ TEST_CASE("VESC commands: duty or electrical speed by side, clamped, NaN is zero
   CHECK(vescCommand({}, 1, config).value == 12'000);
 }
 
+namespace {
+
+DriveDescription drivenCar() {
+  DriveDescription drive;
+  drive.layout = DriveLayout::kThrottleSteering;
+  drive.full_speed = 1.3;
+  drive.max_command = 1.0;
+  drive.wheelbase = 0.9;
+  drive.max_steering = 0.5;
+  return drive;
+}
+
+}  // namespace
+
+TEST_CASE("VESC: a car's throttle is its duty, the steering the servo output, NaN goes straight") {
+  DriveDescription drive = drivenCar();
+  const VescConfig config = configOf("{servo_left: 0.8, servo_right: 0.3}", drive);
+  CHECK(config.ids() == std::vector<int>{1});
+  CHECK(vescCommand({0.5, 0.2}, 1, config).value == 50'000);
+  CHECK(servoCommand({0.5, 0.0}, config).value == 550);
+  CHECK(servoCommand({0.5, 0.5}, config).value == 800);
+  CHECK(servoCommand({0.5, -0.25}, config).value == 425);
+  CHECK(servoCommand({0.5, -9.0}, config).value == 300);
+  CHECK(servoCommand({0.5, std::nan("")}, config).value == 550);
+  CHECK(vescPayload(servoCommand({0.5, 0.5}, config)) == std::string("\x0c\x03\x20", 3));
+  drive.invert_right = true;
+  CHECK(servoCommand({0.0, 0.5}, configOf("{servo_left: 0.8, servo_right: 0.3}", drive)).value ==
+        300);
+  CHECK(refusal("{throttle: [1], steering: 2}", drive).find("steering") != std::string::npos);
+  CHECK(refusal("{left: [1]}", drive).find("left") != std::string::npos);
+}
+
+TEST_CASE("VESC over UART: a car's servo follows, and goes straight when the drive is stopped") {
+  sim::VescSettings settings;
+  settings.controllers = 1;
+  settings.servo = true;
+  UartRig rig(configOf("{}", drivenCar()), settings);
+  rig.drive();
+  rig.run(5'000'000);
+  REQUIRE(rig.state() == State::kDriving);
+  CHECK(rig.device.output(rig.now)[0] == Approx(rig.out.command[0]).margin(1e-4));
+  CHECK(rig.device.output(rig.now)[1] ==
+        Approx(std::clamp(rig.out.command[1] / 0.5, -1.0, 1.0)).margin(3e-3));
+  rig.planner_alive = false;
+  rig.run(1'000'000);
+  CHECK(rig.device.output(rig.now)[0] == 0.0);
+  CHECK(rig.device.output(rig.now)[1] == Approx(0.0).margin(1e-9));
+}
+
+TEST_CASE("VESC: four wheels that are not steered are the controllers 1 to 4 unless told") {
+  DriveDescription drive;
+  drive.layout = DriveLayout::kSkidSteer4;
+  CHECK(configOf("{}", drive).left == std::vector<int>{1, 3});
+  CHECK(configOf("{}", drive).right == std::vector<int>{2, 4});
+  drive.left_channel = 2;
+  CHECK(configOf("{}", drive).left == std::vector<int>{2, 4});
+  CHECK(configOf("{right: [7]}", drive).right == std::vector<int>{7});
+}
+
 TEST_CASE("a VESC section is refused with its line") {
   DriveDescription speed;
   speed.kind = CommandKind::kTrackSpeed;

@@ -150,7 +150,8 @@ TEST_CASE("every emulated controller lets its driver drive the simulated robot, 
             "kangaroo: {units_per_metre: 1000}}",
         TREAD_SOURCE_DIR "/tests/data/bridge.yaml");
     DriveDescription drive;
-    if (name == "kangaroo") drive = {CommandKind::kTrackSpeed, 1.1, 1.1};
+    if (name == "kangaroo") drive.kind = CommandKind::kTrackSpeed;
+    drive.full_speed = drive.max_command = 1.1;
     std::string read;
     const auto motor = motor::readMotorController(reader, drive, read)();
     CHECK(read == name);

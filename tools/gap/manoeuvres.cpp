@@ -221,7 +221,7 @@ void keepWithin(const Envelope& envelope, const VehicleModel& vehicle,
 }
 
 std::vector<Manoeuvre> manoeuvresOf(const PatternSet& set, const ModelDocument& model) {
-  if (set.content().channels != trackChannels(model.vehicle.kind))
+  if (set.content().channels != model.vehicle.channels())
     throw std::runtime_error(
         "plan: the patterns command another kind than the model; give "
         "patterns and model of one vehicle");
@@ -238,7 +238,7 @@ PatternSet planSet(const ModelDocument& model, const std::vector<Manoeuvre>& man
                    const std::vector<size_t>& counts) {
   PatternSetContent content;
   content.name = "plan";
-  content.channels = trackChannels(model.vehicle.kind);
+  content.channels = model.vehicle.channels();
   content.classes = {classOf(model.vehicle, kRest, {})};
   for (size_t i = 0; i < manoeuvres.size(); ++i)
     for (size_t copy = 0; copy < counts[i]; ++copy) {

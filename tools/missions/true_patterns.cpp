@@ -3,11 +3,12 @@
 #include "tools/missions/robot_system.hpp"
 
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <vector>
 
+#include "modules/simulator/core/car.hpp"
 #include "modules/simulator/core/noise.hpp"
-#include "modules/simulator/core/vehicle.hpp"
 
 namespace tread::missions {
 namespace {
@@ -24,12 +25,13 @@ constexpr int kDisturbed = 60;           // executions that a covariance is take
 std::vector<Twist2> velocitiesOf(const MotionPattern& pattern, const Command& entry, double period,
                                  const sim::VehicleParameters& parameters,
                                  const sim::SurfaceParameters& surface) {
-  sim::TrackedVehicle vehicle(parameters);
+  const std::unique_ptr<sim::Plant> vehicle = sim::makeVehicle(parameters);
+  const double steering = parameters.wheelbase > 0.0 ? parameters.max_steering : 1.0;
   const sim::Ground ground = sim::levelGround(surface);
   const auto run = [&](const Command& power, double seconds, std::vector<Twist2>* kept) {
     for (int i = 0; i < static_cast<int>(std::lround(seconds / kStep)); ++i) {
-      vehicle.step({power[0], power[1]}, ground, kStep);
-      if (kept != nullptr) kept->push_back(vehicle.velocity());
+      vehicle->step({power[0], power[1] / steering}, ground, kStep);
+      if (kept != nullptr) kept->push_back(vehicle->velocity());
     }
   };
   std::vector<Twist2> velocities;

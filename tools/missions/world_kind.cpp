@@ -71,6 +71,7 @@ WorldKind readWorldKind(const std::string& name, const sim::VehicleParameters& v
     rough.number("share", kind.rough_share, {0.0, 1.0}, "1");
   }
   if (reader.has("vehicle")) {
+    if (vehicle.wheelbase > 0.0) throw reader.error("vehicle", "changes tracked vehicles only");
     reader.number("after", kind.after, {0.0, 1000.0}, "m");
     kind.vehicle = vehicle;
     sim::readVehicle(reader.section("vehicle"), *kind.vehicle);

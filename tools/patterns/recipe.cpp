@@ -12,6 +12,7 @@
 
 #include "common/report/text.hpp"
 #include "common/vehicle/kernel.hpp"
+#include "tools/patterns/set_text.hpp"
 
 namespace tread::patterns {
 namespace {
@@ -35,7 +36,8 @@ MotionClass readClass(ConfigReader& reader, const VehicleModel& model) {
   std::string name;
   reader.text("name", name, true);
   std::vector<double> steady;
-  const double limit = commandLimit(model.kind);
+  const CommandChannels channels = model.channels();
+  const double limit = std::max(channels[0].highest, channels[1].highest);
   reader.numbers("steady", steady, 2, {-limit, limit}, "", true);
   MotionClass motion = classOf(model, name, {steady[0], steady[1]});
   motion.twist = {roundedTo(motion.twist.v_x, 1e-6), roundedTo(motion.twist.v_y, 1e-6),
@@ -111,11 +113,11 @@ void readPattern(ConfigReader& reader, const VehicleModel& model, PatternSetCont
   addPattern(content, pattern, entry, model);
   if (!reader.has("mirror")) return;
   for (const MotionClass* motion : {&entry, &exit})
-    if (motion->steady[0] != motion->steady[1])
+    if (mirroredCommand(motion->steady, content.channels) != motion->steady)
       throw reader.error("mirror", "class '" + motion->name + "' turns; only patterns between " +
                                        "classes that go straight can be mirrored");
   reader.text("mirror", pattern.name);
-  for (Command& command : pattern.commands) std::swap(command[0], command[1]);
+  for (Command& command : pattern.commands) command = mirroredCommand(command, content.channels);
   addPattern(content, pattern, entry, model);
 }
 
@@ -171,7 +173,7 @@ std::mt19937_64 randomFor(uint64_t seed, const std::string& surface, int pattern
 
 PatternSet makeSet(ConfigReader recipe, const VehicleModel& model) {
   PatternSetContent content;
-  content.channels = trackChannels(model.kind);
+  content.channels = model.channels();
   recipe.text("name", content.name, true);
   double period = 0.05;
   recipe.number("period", period, {0.005, 1.0}, "s", true);
@@ -188,7 +190,7 @@ PatternSet makeSet(ConfigReader recipe, const VehicleModel& model) {
 }
 
 void requireSameKind(const PatternSet& set, const VehicleModel& model) {
-  const CommandChannels taken = trackChannels(model.kind);
+  const CommandChannels taken = model.channels();
   if (set.content().channels != taken)
     throw std::runtime_error("the patterns command " + describe(set.content().channels) +
                              ", the model takes " + describe(taken) +

@@ -28,7 +28,8 @@ double negated(double value) {
   return value == 0.0 ? 0.0 : -value;
 }
 
-/// Tracks exchanged, steering to the other side.
+}  // namespace
+
 Command mirroredCommand(const Command& command, const CommandChannels& channels) {
   Command image = command;
   if (kindOfTracks(channels)) std::swap(image[0], image[1]);
@@ -36,6 +37,8 @@ Command mirroredCommand(const Command& command, const CommandChannels& channels)
     if (channels[i].kind == CommandKind::kSteeringAngle) image[i] = negated(command[i]);
   return image;
 }
+
+namespace {
 
 /// The class that is this one with left and right exchanged: itself where it goes straight.
 const MotionClass* mirrorClass(const PatternSet& set, const std::string& name) {

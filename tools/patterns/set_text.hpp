@@ -10,6 +10,9 @@
 
 namespace tread::patterns {
 
+/// Tracks exchanged, steering to the other side.
+Command mirroredCommand(const Command& command, const CommandChannels& channels);
+
 /// Whether a pattern commands its tracks differently, or steers, anywhere; else it is its own
 /// mirror image.
 bool turns(const MotionPattern& pattern, const CommandChannels& channels);

@@ -172,8 +172,9 @@ BridgeOutput Bridge::step(int64_t now, const DeviceReport& device) {
       !requests_.estop() && (since_.estop_cleared || (in.arm && device.stop_latched));
   command(now, out);
   schedule(now, out);
-  motion_.command(out.command.tracks(), now);
-  fences_.command(out.command.tracks(), now);
+  const TrackCommand tracks = config_.motion.tracks(out.command);
+  motion_.command(tracks, now);
+  fences_.command(tracks, now);
   stopping_.command(isZero(out.command), now);
   player_.dropCandidate();
   since_ = Since{};
@@ -276,7 +277,7 @@ void Bridge::command(int64_t now, BridgeOutput& out) {
   if (!out.failsafe.may_drive) {
     player_.abort(now, out.failsafe.reason);
     if (out.failsafe.state != State::kManual) return;
-    out.command = manual_.command(now);
+    out.command = config_.motion.fromHand(manual_.command(now), config_.manual.max_command);
     out.kinds = kindsOf(config_.gate.slot.channels);
     return;
   }

@@ -126,6 +126,9 @@ std::vector<std::string> VescPackets::push(std::string_view bytes) {
 }
 
 std::string vescPayload(const VescCommand& command) {
+  if (command.kind == VescCommand::Kind::kServo)
+    return std::string(1, static_cast<char>(kCommSetServo)) +
+           bigEndian(static_cast<uint32_t>(command.value), 2);
   const uint8_t comm = command.kind == VescCommand::Kind::kDuty           ? kCommSetDuty
                        : command.kind == VescCommand::Kind::kBrakeCurrent ? kCommSetBrakeCurrent
                                                                           : kCommSetRpm;

@@ -12,9 +12,10 @@ namespace tread::motor {
 
 /// A command to one VESC motor controller.
 /** Numbers of the VESC firmware (datatypes.h, commands.c, comm_can.c): duty in 1e-5, brake current
-    in mA, speed in electrical revolutions per minute. */
+    in mA, speed in electrical revolutions per minute, position of the servo output in 1e-3 of its
+    range. */
 struct VescCommand {
-  enum class Kind { kDuty, kBrakeCurrent, kRpm };
+  enum class Kind { kDuty, kBrakeCurrent, kRpm, kServo };
   Kind kind = Kind::kDuty;
   int32_t value = 0;
 };
@@ -63,6 +64,7 @@ enum VescComm : uint8_t {
   kCommSetDuty = 5,
   kCommSetBrakeCurrent = 7,
   kCommSetRpm = 8,
+  kCommSetServo = 12,
   kCommGetAppConfiguration = 17,
   kCommForwardCan = 34,
 };

@@ -15,6 +15,7 @@ constexpr size_t kLargestValues = 128;      // bytes of a reply to COMM_GET_VALU
 std::string VescConnection::commandBytes(const Command& command) const {
   std::string bytes;
   for (const int id : config_.ids()) bytes += addressed(id, vescCommand(command, id, config_));
+  if (config_.servo) bytes += addressed(config_.servo->id, servoCommand(command, config_));
   return bytes;
 }
 

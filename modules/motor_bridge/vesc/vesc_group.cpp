@@ -14,8 +14,10 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDutyUnit = 1e-5;
 constexpr double kLargestRpm = 1e6;  // electrical [1/min]
 
-std::vector<int> readIds(ConfigReader& reader, const std::string& key, int usual) {
+/// `second`: 0 where usually there is only one.
+std::vector<int> readIds(ConfigReader& reader, const std::string& key, int usual, int second = 0) {
   std::vector<double> numbers{static_cast<double>(usual)};
+  if (second > 0) numbers.push_back(second);
   reader.numbers(key, numbers, 0, {0.0, 253.0}, "");
   std::vector<int> ids;
   for (const double number : numbers) {
@@ -50,15 +52,41 @@ std::vector<int> VescConfig::ids() const {
   return all;
 }
 
+namespace {
+
+void readCarIds(ConfigReader& reader, const DriveDescription& drive, VescConfig& config) {
+  config.left = readIds(reader, "throttle", 1);
+  config.right.clear();
+  VescServo& servo = config.servo.emplace();
+  int64_t id = config.left.front();
+  reader.integer("steering", id, {0.0, 253.0}, "");
+  servo.id = static_cast<int>(id);
+  reader.number("servo_left", servo.at_left, {0.0, 1.0}, "");
+  reader.number("servo_right", servo.at_right, {0.0, 1.0}, "");
+  servo.max_steering = drive.max_steering;
+  if (!contains(config.left, servo.id))
+    throw reader.error("steering", "must be one of the ids in throttle: its timeout is watched");
+}
+
+void readTrackIds(ConfigReader& reader, const DriveDescription& drive, VescConfig& config) {
+  const bool four = drive.layout == DriveLayout::kSkidSteer4;
+  const int left = drive.left_channel == 2 ? 2 : 1;
+  config.left = readIds(reader, "left", left, four ? left + 2 : 0);
+  config.right = readIds(reader, "right", 3 - left, four ? 5 - left : 0);
+}
+
+}  // namespace
+
 VescConfig readVescConfig(ConfigReader& reader, const DriveDescription& drive) {
   VescConfig config;
   config.kind = drive.kind;
   config.full_scale = drive.fullCommand();
   config.invert_left = drive.invert_left;
   config.invert_right = drive.invert_right;
-  const bool swapped = drive.left_channel == 2;
-  config.left = readIds(reader, "left", swapped ? 2 : 1);
-  config.right = readIds(reader, "right", swapped ? 1 : 2);
+  if (drive.isCar())
+    readCarIds(reader, drive, config);
+  else
+    readTrackIds(reader, drive, config);
   std::vector<int> ids = config.ids();
   int64_t local = ids.front();
   std::sort(ids.begin(), ids.end());
@@ -89,6 +117,16 @@ VescCommand vescCommand(const Command& command, int id, const VescConfig& config
   const double rpm =
       std::clamp(share * config.full_scale * config.erpm_per_mps, -kLargestRpm, kLargestRpm);
   return {Kind::kRpm, static_cast<int32_t>(std::lround(rpm))};
+}
+
+VescCommand servoCommand(const Command& command, const VescConfig& config) {
+  const VescServo& servo = *config.servo;
+  const double angle = std::isfinite(command[1]) ? command[1] : 0.0;
+  const double wanted = config.invert_right ? -angle : angle;
+  const double share = std::clamp(wanted / servo.max_steering, -1.0, 1.0);
+  const double position =
+      0.5 * (servo.at_left + servo.at_right) + 0.5 * share * (servo.at_left - servo.at_right);
+  return {VescCommand::Kind::kServo, static_cast<int32_t>(std::lround(1000.0 * position))};
 }
 
 VescGroup::VescGroup(const VescConfig& config) : config_(config) {

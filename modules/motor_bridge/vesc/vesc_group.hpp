@@ -14,11 +14,20 @@
 
 namespace tread::motor {
 
-/// VESC motor controllers of a robot: one or two on each side.
+/// A car's steering servo, at the servo output of a controller.
+struct VescServo {
+  int id = 1;                 ///< of that controller
+  double at_left = 0.9;       ///< position, 0..1, at the largest angle to the left
+  double at_right = 0.1;      ///< and to the right
+  double max_steering = 0.5;  ///< [rad] that angle
+};
+
+/// VESC motor controllers of a robot: one or two on each side, or those of a car's throttle.
 struct VescConfig {
-  std::vector<int> left{1};  ///< CAN ids of the left track's (or wheels') controllers
+  std::vector<int> left{1};  ///< CAN ids of the left track's (or wheels') controllers; a car's all
   std::vector<int> right{2};
-  int local = 1;  ///< over UART: the one on the line; it forwards to the others
+  std::optional<VescServo> servo;  ///< of a car
+  int local = 1;                   ///< over UART: the one on the line; it forwards to the others
   CommandKind kind = CommandKind::kPower;
   bool invert_left = false;
   bool invert_right = false;
@@ -35,6 +44,8 @@ VescConfig readVescConfig(ConfigReader& reader, const DriveDescription& drive);
 
 /// What one controller is to do for a command of the tracks. NaN becomes zero.
 VescCommand vescCommand(const Command& command, int id, const VescConfig& config);
+/// Where the servo is to be for a command of a car. NaN becomes straight ahead.
+VescCommand servoCommand(const Command& command, const VescConfig& config);
 
 /// All controllers of a robot, as they last told of themselves.
 class VescGroup {

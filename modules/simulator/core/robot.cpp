@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "modules/simulator/core/car.hpp"
+
 namespace tread::sim {
 namespace {
 
@@ -58,8 +60,7 @@ SimulatedRobot::SimulatedRobot(std::shared_ptr<const World> world, const RobotSe
                                RobotParts parts)
     : world_(std::move(world)),
       settings_(settings),
-      vehicle_(parts.vehicle ? std::move(parts.vehicle)
-                             : std::make_unique<TrackedVehicle>(settings.vehicle)),
+      vehicle_(parts.vehicle ? std::move(parts.vehicle) : makeVehicle(settings.vehicle)),
       noise_(streamSeed(settings.seed, kMotionStream), kStep * kStepsPerGround),
       laser_(settings.laser, streamSeed(settings.seed, kLaserStream), settings.start_utime),
       ins_(settings.ins, streamSeed(settings.seed, kInsStream), settings.start_utime),

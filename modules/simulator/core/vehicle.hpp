@@ -165,6 +165,9 @@ struct VehicleParameters {
   double contact_length = 0.0;  ///< of each track on the ground [m]
   double centre = 0.0;          ///< x_body of the middle of the contact patches [m]
   double mass_height = 0.0;     ///< of the centre of mass above the ground [m]
+  double wheelbase = 0.0;       ///< [m] of a car (car.hpp); 0: it has tracks
+  double max_steering = 0.0;    ///< [rad] of a car, to either side
+  double steering_rate = 2.0;   ///< [rad/s] of a car's servo
   double mass_ahead = 0.0;      ///< of the middle of the contact patches: the centre of mass [m]
   FootprintSize outline;        ///< what obstacles stop
   double left_power = 1.0;      ///< what the left drive gives of the power that it is told to [1]

@@ -61,8 +61,11 @@ const Table<MotorEmulator> kControllers{
        return std::make_unique<SabertoothEmulator>();
      }},
     {"vesc",
-     [](const Settings&, uint64_t) -> std::unique_ptr<MotorEmulator> {
-       return std::make_unique<VescUartEmulator>();
+     [](const Settings& settings, uint64_t) -> std::unique_ptr<MotorEmulator> {
+       VescSettings vesc;
+       vesc.servo = settings.robot.vehicle.wheelbase > 0.0;
+       if (vesc.servo) vesc.controllers = 1;
+       return std::make_unique<VescUartEmulator>(vesc);
      }},
     {"vesc_can", [](const Settings&, uint64_t) -> std::unique_ptr<MotorEmulator> {
        return std::make_unique<VescCanEmulator>();

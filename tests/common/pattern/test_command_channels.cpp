@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <cmath>
 #include <functional>
 #include <string>
 #include <utility>
@@ -36,6 +37,15 @@ TEST_CASE("a set with three channels comes back from its file as it was") {
   CHECK(read.content().channels == set.content().channels);
   CHECK(read.checksum() == set.checksum());
   CHECK(formatPatterns(read) == text);
+}
+
+TEST_CASE("a car's rear wheels run ahead of each other by the angle, wheelbase and gauge") {
+  const TrackCommand wheels = rearWheels(2.0, std::atan(0.5), 1.0, 0.8);
+  CHECK(wheels.left == Approx(1.6));
+  CHECK(wheels.right == Approx(2.4));
+  CHECK(rearWheels(-1.0, 0.0, 1.0, 0.8) == TrackCommand{-1.0, -1.0});
+  CHECK(describe(carChannels(CommandKind::kPower)).find("throttle") == 0);
+  CHECK_FALSE(kindOfTracks(carChannels(CommandKind::kPower)));
 }
 
 TEST_CASE("a set of two tracks names its kind only, as it always did") {

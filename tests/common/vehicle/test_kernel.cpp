@@ -48,6 +48,30 @@ TEST_CASE("A steady command from its steady motion drives the circle of the clos
   CHECK(poses.back().yaw > 2.0 * kPi);  // unwrapped
 }
 
+TEST_CASE(
+    "A car drives Ackermann's circle about its rear axle, and straight once its steering is") {
+  VehicleModel model = plainModel();
+  model.wheelbase = 1.2;
+  model.steering_lag = 0.2;
+  const TrackCommand command{0.5, 0.3};
+  const double v = 1.1 * 0.5;
+  const double omega = v * std::tan(0.3) / 1.2;
+  const auto poses = simulate(model, held(command, 100), 0.05, steadyEntry(model, command));
+  expectSame(poses.back(), integrate({v, 0.0, omega}, 5.0), 1e-9);
+  CHECK(steadyTwist(model, command).omega == Approx(omega));
+  CHECK(steadyTwist(model, {0.0, 0.3}).omega == 0.0);
+
+  VehicleKernel kernel(model, steadyEntry(model, {0.5, 0.0}));
+  for (int i = 0; i < 4; ++i) kernel.step(command, 0.05);
+  const double after_one_lag = kernel.twist().omega;
+  CHECK(after_one_lag == Approx(v * std::tan(0.3 * (1.0 - std::exp(-1.0))) / 1.2).epsilon(1e-6));
+  VehicleKernel copy(model, kernel.state());
+  kernel.step({0.5, 0.0}, 2.0);
+  copy.step({0.5, 0.0}, 2.0);
+  CHECK(copy.twist().omega == Approx(kernel.twist().omega).margin(1e-12));
+  CHECK(std::abs(kernel.twist().omega) < 1e-4);
+}
+
 TEST_CASE("A body behind lagging tracks moves the same in long steps and in short ones") {
   VehicleModel model = plainModel();
   model.effects.yaw_inertia = 0.03;

@@ -89,6 +89,31 @@ TEST_CASE("what is missing or wrong in a robot is told with its key and file") {
              Contains("power, track_speed"));
 }
 
+TEST_CASE("a car has throttle and steering with their ranges, and needs its wheelbase") {
+  const std::string car = "drive: {layout: throttle_steering, kind: power, full_speed: 2, ";
+  const RobotDescription robot =
+      robotOf(smallWith("drive:", car + "max_command: 0.8, wheelbase: 1.1, max_steering: 0.4, "
+                                        "invert_steering: true}"),
+              "p.yaml");
+  CHECK(robot.drive.isCar());
+  CHECK(robot.drive.invert_right);
+  const CommandChannels channels = robot.drive.channels();
+  REQUIRE(channels.size() == 2);
+  CHECK(channels[0].name == "throttle");
+  CHECK(channels[0].highest == 0.8);
+  CHECK(channels[1].name == "steering");
+  CHECK(channels[1].kind == CommandKind::kSteeringAngle);
+  CHECK(channels[1].lowest == -0.4);
+  CHECK_THAT(refusalOf(smallWith("drive:", car + "max_command: 1, max_steering: 0.4}"), "p.yaml"),
+             Contains("wheelbase"));
+  CHECK_THAT(refusalOf(smallWith("drive:", car + "max_command: 1, wheelbase: 1, max_steering: 0.4, "
+                                                 "left_channel: 2}"),
+                       "p.yaml"),
+             Contains("left_channel"));
+  CHECK_THAT(refusalOf(smallWith("drive:", "drive: {layout: legs, kind: power}"), "p.yaml"),
+             Contains("skid_steer_4"));
+}
+
 TEST_CASE("limits of tilt stand in degrees, and a robot without any is not watched") {
   const RobotDescription robot = robotOf("{}", kSmall + "x.yaml");
   REQUIRE(robot.tilt);

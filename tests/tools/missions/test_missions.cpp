@@ -131,6 +131,7 @@ TEST_CASE("robots with other instruments and controllers drive by their configur
       {"skid4", {}},  // NovAtel; VESCs that hold track speeds
       {"skid4", {"ins_driver.source=vectornav", "ins_driver.geoid_separation=47"}},
       {"skid4", {"ins_driver.source=xsens", "ins_driver.geoid_separation=47"}},
+      {"car", {}},  // throttle and steering, which cannot turn on the spot
       {"small", {"motor_bridge.controller=sabertooth"}},
       {"small", {"motor_bridge.controller=vesc_can"}}};
   for (const auto& [name, overrides] : robots) {

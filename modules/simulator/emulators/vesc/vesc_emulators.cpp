@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/simulator/emulators/vesc/vesc_emulators.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -71,7 +72,7 @@ std::string frame(unsigned packet, int id, const std::string& data) {
 
 }  // namespace
 
-VescBank::VescBank(const VescSettings& settings) {
+VescBank::VescBank(const VescSettings& settings) : has_servo_(settings.servo) {
   for (int id = 1; id <= settings.controllers; ++id) motors_.emplace_back(id, settings);
 }
 
@@ -84,12 +85,13 @@ VescMotor* VescBank::find(int id) {
 std::array<double, 2> VescBank::output(int64_t utime) {
   std::array<double, 2> sum{0.0, 0.0};
   for (size_t i = 0; i < motors_.size(); ++i) sum[i % 2] += motors_[i].output(utime);
+  if (has_servo_) return {sum[0], std::clamp((servo_ - 0.5) / 0.4, -1.25, 1.25)};
   const double share = 2.0 / static_cast<double>(motors_.size());
   return {sum[0] * share, sum[1] * share};
 }
 
 void VescBank::measure(const DriveMeasurements& seen) {
-  const double share = 2.0 / static_cast<double>(motors_.size());
+  const double share = has_servo_ ? 1.0 : 2.0 / static_cast<double>(motors_.size());
   for (size_t i = 0; i < motors_.size(); ++i)
     motors_[i].measure(seen.track_speed[i % 2], share * seen.motor_current[i % 2],
                        seen.battery_voltage);
@@ -97,6 +99,7 @@ void VescBank::measure(const DriveMeasurements& seen) {
 
 void VescBank::powerUp() {
   for (VescMotor& motor : motors_) motor.powerUp();
+  servo_ = 0.5;
 }
 
 VescUartEmulator::VescUartEmulator(const VescSettings& settings)
@@ -140,6 +143,8 @@ void VescUartEmulator::execute(VescMotor& motor, const std::string& payload, int
   if (comm == 5 && has_number) motor.setDuty(number(payload, 1) / 1e5, utime);
   if (comm == 7 && has_number) motor.setBrake(number(payload, 1) / 1e3, utime);
   if (comm == 8 && has_number) motor.setRpm(number(payload, 1), utime);
+  if (comm == 12 && payload.size() == 3)
+    bank_.setServo(number(std::string(2, '\0') + payload.substr(1), 0) / 1e3);
   if (comm != 34 || payload.size() < 3) return;
   VescMotor* const other = bank_.find(static_cast<unsigned char>(payload[1]));
   if (other != nullptr && payload[2] != 34) execute(*other, payload.substr(2), utime);

@@ -13,7 +13,8 @@
 
 namespace tread::sim {
 
-/// Controllers that drive two channels: odd ids the first, even ids the second.
+/// Controllers that drive two channels: odd ids the first, even ids the second. With a servo, that
+/// is the second: -1..1 from its position 0.1 to 0.9, which is held whatever the motors' timeout.
 class VescBank {
  public:
   explicit VescBank(const VescSettings& settings);
@@ -23,18 +24,21 @@ class VescBank {
   std::vector<VescMotor>& motors() { return motors_; }
   std::array<double, 2> output(int64_t utime);
   std::array<double, 2> heldSpeeds() const {
-    return {motors_[0].heldSpeed(), motors_[1].heldSpeed()};
+    return {motors_.front().heldSpeed(), motors_.size() > 1 ? motors_[1].heldSpeed() : 0.0};
   }
+  void setServo(double position) { servo_ = position; }
   void measure(const DriveMeasurements& measurements);
   void powerUp();
 
  private:
   std::vector<VescMotor> motors_;
+  bool has_servo_;
+  double servo_ = 0.5;
 };
 
 /// VESC controllers behind the UART of the one with id 1, after the firmware's packet.c and
-/// commands.c: COMM_FW_VERSION, GET_VALUES, SET_DUTY, SET_CURRENT_BRAKE, SET_RPM, GET_APPCONF,
-/// ALIVE, FORWARD_CAN. What it does not know it does not answer.
+/// commands.c: COMM_FW_VERSION, GET_VALUES, SET_DUTY, SET_CURRENT_BRAKE, SET_RPM, SET_SERVO_POS,
+/// GET_APPCONF, ALIVE, FORWARD_CAN. What it does not know it does not answer.
 class VescUartEmulator final : public SerialMotorEmulator {
  public:
   explicit VescUartEmulator(const VescSettings& settings = {});

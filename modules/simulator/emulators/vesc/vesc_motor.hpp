@@ -8,10 +8,12 @@ namespace tread::sim {
 
 /// How the emulated VESC controllers are set up.
 struct VescSettings {
-  int controllers = 2;       ///< ids 1, 2 (left, right) or 1 to 4 (left, right, left, right)
+  /// Ids 1, 2 (left, right) or 1 to 4 (left, right, left, right); 1 with a servo.
+  int controllers = 2;
   int64_t timeout_ms = 200;  ///< without a command until the motor is let go; 0 = never
   double erpm_per_mps = 5000.0;
   bool statuses = true;  ///< CAN status messages are switched on
+  bool servo = false;    ///< the first one steers: its servo output is the second channel
 };
 
 /// The firmware of one controller: its command, its timeout, its speed control.
