@@ -73,10 +73,12 @@ MakeMotorController readMotorController(ConfigReader& reader, const DriveDescrip
   for (const auto& [each, read] : kControllers) known.push_back(each);
   reader.choice("controller", name, known);
   // Over CAN a VESC knows no command for its servo output.
-  if (drive.isCar() && name != "vesc")
-    throw reader.error("controller", name +
-                                         " cannot steer a car (drive.layout: "
-                                         "throttle_steering); take vesc, which has a servo output");
+  if (drive.isCar() && name != "vesc" && name != "line_protocol")
+    throw reader.error(
+        "controller",
+        name +
+            " cannot steer a car (drive.layout: "
+            "throttle_steering); take vesc, which has a servo output, or line_protocol");
   return kControllers.at(name)(reader, drive);
 }
 

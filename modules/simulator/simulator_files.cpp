@@ -223,6 +223,7 @@ void readSimulatedRobot(ConfigReader& reader, RobotSettings& settings) {
   settings.vehicle.drive.free_speed = robot.drive.full_speed;
   settings.wiring = {
       robot.drive.left_channel, robot.drive.invert_left, robot.drive.invert_right, {}};
+  settings.wiring.four_motors = robot.drive.layout == DriveLayout::kSkidSteer4;
   if (robot.drive.kind == CommandKind::kTrackSpeed)
     settings.wiring.top_speed = robot.drive.fullCommand();
   settings.laser.mounting = robot.range_finder;

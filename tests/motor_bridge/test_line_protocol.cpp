@@ -60,6 +60,44 @@ std::string talkOfMole() {
 
 }  // namespace
 
+TEST_CASE(
+    "a described controller steers a car: the servo's counts about its centre, also at zero") {
+  DriveDescription car;
+  car.layout = DriveLayout::kThrottleSteering;
+  car.full_speed = car.max_command = 1.0;
+  car.wheelbase = 0.9;
+  car.max_steering = 0.5;
+  const std::string head = "name: servo car\ncommand: [\"T{throttle:+d} S{steering:04d}\"]\n";
+  ConfigReader reader = ConfigReader::fromText(
+      head + "full_command: 500\nsteering_centre: 1500\nfull_steering: -400\n", "car.yaml");
+  LineConnection connection(readLineDescription(reader, car));
+  reader.finish();
+  connection.open();
+  std::string sent;
+  const auto run = [&](const Command& command) {
+    sent.clear();
+    for (int64_t now = 0; now < 1'000'000; now += 10'000) {
+      connection.command(command, 10'000'000 + now);
+      sent += connection.poll(10'000'000 + now);
+    }
+  };
+  run({});
+  CHECK(sent.find("T+0 S1500\r") != std::string::npos);
+  CHECK(sent.find("S0000") == std::string::npos);
+  run({0.5, 0.25});
+  CHECK(sent.find("T+250 S1300\r") != std::string::npos);
+  run({-1.0, -9.0});
+  CHECK(sent.find("T-500 S1900\r") != std::string::npos);
+  const auto refused = [&](const std::string& text) {
+    ConfigReader bad = ConfigReader::fromText(text, "car.yaml");
+    CHECK_THROWS_AS(readLineDescription(bad, car), ConfigError);
+  };
+  refused("name: x\ncommand: [\"M {left} {right}\"]\n");
+  refused("name: x\ncommand: [\"T {throttle}\"]\n");
+  refused(head + "full_steering: 0\n");
+  refused("name: x\ncommand: [\"T {throttle} S {steering:04x}\"]\nfull_steering: 5\n");
+}
+
 TEST_CASE("Roboteq's own protocol is a description: it drives the emulated controller") {
   sim::RoboteqSettings settings;
   settings.encoders = true;

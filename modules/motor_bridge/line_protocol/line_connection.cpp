@@ -23,6 +23,13 @@ double countsOf(double value, bool invert, const LineDescription& line) {
   return (invert ? -1.0 : 1.0) * std::clamp(share, -1.0, 1.0) * line.full_command;
 }
 
+/// Of a car's steering angle [rad]; NaN goes straight.
+double steeringCounts(double angle, const LineDescription& line) {
+  const double share =
+      std::isfinite(angle) ? std::clamp(angle / line.max_steering, -1.0, 1.0) : 0.0;
+  return line.steering_centre + (line.invert_right ? -share : share) * line.full_steering;
+}
+
 }  // namespace
 
 LineConnection::LineConnection(const LineDescription& line)
@@ -48,6 +55,8 @@ bool LineConnection::readsFaults() const {
 
 LineValues LineConnection::commandValues(const Command& command) const {
   double left = countsOf(command[0], line_.invert_left, line_);
+  if (line_.max_steering > 0.0)
+    return {{"throttle", left}, {"steering", steeringCounts(command[1], line_)}};
   double right = countsOf(command[1], line_.invert_right, line_);
   if (line_.swapped) std::swap(left, right);
   return {{"left", left}, {"right", right}};
@@ -56,7 +65,7 @@ LineValues LineConnection::commandValues(const Command& command) const {
 std::string LineConnection::zero() const {
   std::string bytes;
   for (const LineTemplate& line : line_.stop.empty() ? line_.command : line_.stop)
-    bytes += line_.framed(line.format({}));
+    bytes += line_.framed(line.format(commandValues({})));
   return bytes;
 }
 
@@ -213,7 +222,7 @@ void LineConnection::give(const Command& command, int64_t now) {
   given_ = command;
   repeat_ = false;
   const LineValues values = commandValues(command);
-  const bool stop = !line_.stop.empty() && values.at("left") == 0.0 && values.at("right") == 0.0;
+  const bool stop = !line_.stop.empty() && command == Command{};
   for (const LineTemplate& line : stop ? line_.stop : line_.command)
     sendCommand(line.format(values), now);
 }

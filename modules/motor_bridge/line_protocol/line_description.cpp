@@ -3,6 +3,7 @@
 #include "modules/motor_bridge/line_protocol/line_description.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <stdexcept>
 
@@ -12,7 +13,6 @@ namespace tread::motor {
 namespace {
 
 const std::set<std::string> kNone;
-const std::set<std::string> kTracks{"left", "right"};
 const std::set<std::string> kWatchdog{"watchdog"};
 const std::set<std::string> kReadings{"watchdog",      "battery_voltage", "current_left",
                                       "current_right", "speed_left",      "speed_right",
@@ -77,16 +77,29 @@ void readFrame(ConfigReader& reader, LineDescription& line) {
   line.checksum_skip = static_cast<size_t>(skip);
 }
 
+void readSteering(ConfigReader& reader, LineDescription& line) {
+  reader.number("full_steering", line.full_steering, {-1e8, 1e8}, "counts");
+  reader.number("steering_centre", line.steering_centre, {-1e8, 1e8}, "counts");
+  if (line.full_steering == 0.0)
+    throw reader.error("full_steering", "is zero: nothing would be steered");
+}
+
 void readCommands(ConfigReader& reader, LineDescription& line) {
-  line.command = templatesOf(reader, "command", kTracks, true, true);
-  for (const char* side : {"left", "right"}) {
+  const bool car = line.max_steering > 0.0;
+  const std::set<std::string> names =
+      car ? std::set<std::string>{"throttle", "steering"} : std::set<std::string>{"left", "right"};
+  line.command = templatesOf(reader, "command", names, true, true);
+  if (car) readSteering(reader, line);
+  for (const std::string& name : names) {
     if (std::none_of(line.command.begin(), line.command.end(),
-                     [side](const LineTemplate& text) { return text.has(side); }))
-      throw reader.error("command", std::string("nowhere says {") + side + "}; give both tracks");
+                     [&](const LineTemplate& text) { return text.has(name); }))
+      throw reader.error("command", "nowhere says {" + name + "}; give " +
+                                        (car ? "throttle and steering" : "both tracks"));
+    if (name == "steering" && line.steering_centre >= std::abs(line.full_steering)) continue;
     for (const LineTemplate& text : line.command)
-      if (!text.takesNegative(side))
-        throw reader.error("command", std::string("{") + side + "} cannot be negative; write " +
-                                          "a hexadecimal with +, as {" + side + ":+04x}");
+      if (!text.takesNegative(name))
+        throw reader.error("command", "{" + name + "} cannot be negative; write a hexadecimal " +
+                                          "with +, as {" + name + ":+04x}");
   }
   line.stop = templatesOf(reader, "stop", kNone, true);
   reader.number("full_command", line.full_command, {0.01, 1e8}, "counts");
@@ -149,6 +162,7 @@ LineDescription readLineDescription(ConfigReader& reader, const DriveDescription
   LineDescription line;
   line.full_scale = drive.fullCommand();
   line.swapped = drive.left_channel == 2;
+  line.max_steering = drive.max_steering;
   line.invert_left = drive.invert_left;
   line.invert_right = drive.invert_right;
   reader.text("name", line.name, true);

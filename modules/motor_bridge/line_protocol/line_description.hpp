@@ -37,27 +37,31 @@ struct LineDescription {
   LineChecksum checksum = LineChecksum::kNone;
   std::string checksum_mark;  ///< text between a line and its checksum, which is in hexadecimal
   size_t checksum_skip = 0;   ///< so many characters in front are not covered
-  std::vector<LineTemplate> command;  ///< lines with {left} and {right}
-  std::vector<LineTemplate> stop;     ///< lines for zero; empty: the command with zeros
-  std::string acknowledge;            ///< reply to each of these lines; empty = none comes
-  std::vector<LineTemplate> errors;   ///< replies that refuse
-  std::string restarted;              ///< a line that only a restarted controller says
+  std::vector<LineTemplate>
+      command;                     ///< lines with {left} and {right}, or {throttle} and {steering}
+  std::vector<LineTemplate> stop;  ///< lines for zero; empty: the command with zeros
+  std::string acknowledge;         ///< reply to each of these lines; empty = none comes
+  std::vector<LineTemplate> errors;  ///< replies that refuse
+  std::string restarted;             ///< a line that only a restarted controller says
   std::vector<LineExchange> start;
   std::vector<LineExchange> queries;
   std::string emergency_stop;  ///< line that latches the controller's own stop; empty = none
   std::string release_stop;
   std::vector<LineFault> faults;
-  double full_command = 1000.0;  ///< {left} and {right} at full command
-  double watchdog_unit = 0.001;  ///< [s] of a count of {watchdog}
-  double battery_voltage = 1.0;  ///< [V] of a count
-  double current = 1.0;          ///< [A] of a count
-  double speed = 1.0;            ///< [m/s] of track of a count
-  double temperature = 1.0;      ///< [degC] of a count
+  double full_command = 1000.0;   ///< {left} and {right}, or {throttle}, at full command
+  double full_steering = 1000.0;  ///< {steering} at the largest angle to the left, above the centre
+  double steering_centre = 0.0;   ///< {steering} straight ahead, as the 1500 us of a servo
+  double watchdog_unit = 0.001;   ///< [s] of a count of {watchdog}
+  double battery_voltage = 1.0;   ///< [V] of a count
+  double current = 1.0;           ///< [A] of a count
+  double speed = 1.0;             ///< [m/s] of track of a count
+  double temperature = 1.0;       ///< [degC] of a count
   int64_t query_interval_us = 20'000;
   ConnectionTimes times;
   // Of the robot.
-  double full_scale = 1.0;  ///< command that is full, in the unit of the drive
-  bool swapped = false;     ///< the right track hangs on the controller's {left}
+  double full_scale = 1.0;    ///< command that is full, in the unit of the drive
+  double max_steering = 0.0;  ///< [rad] of a car; 0 = tracks
+  bool swapped = false;       ///< the right track hangs on the controller's {left}
   bool invert_left = false;
   bool invert_right = false;
 
@@ -72,7 +76,8 @@ struct LineDescription {
 };
 
 /// Reads a description; throws ConfigError with file:line. tests/data/controllers has two.
-/** Names of numbers: {left}, {right} in `command` (counts; full_command is full ahead), {watchdog}
+/** Names of numbers: {left}, {right} in `command` (counts; full_command is full ahead), of a car
+ * {throttle} and {steering} (full_steering and steering_centre: counts); {watchdog}
  * in `start` and `queries`; in replies also battery_voltage, current_left, current_right,
  * speed_left, speed_right, temperature, faults. {left} is what robot.yaml's channel 1 is. */
 LineDescription readLineDescription(ConfigReader& reader, const DriveDescription& drive);

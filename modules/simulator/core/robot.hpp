@@ -23,7 +23,8 @@ struct MotorWiring {
   bool invert_left = false;
   bool invert_right = false;
   std::optional<double>
-      top_speed;  ///< [m/s] held at full command; none: the controller gives power
+      top_speed;             ///< [m/s] held at full command; none: the controller gives power
+  bool four_motors = false;  ///< two on each side, each with a controller of its own
 };
 
 /// How a simulated robot is built.

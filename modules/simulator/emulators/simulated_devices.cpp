@@ -38,6 +38,14 @@ double drivingCurrent(const TrackDrive& track) {
   return std::copysign(1.0, track.power) * track.current;
 }
 
+/// As many as the robot has motors; a car's only one has the servo, too.
+VescSettings vescsOf(const RobotSettings& robot) {
+  VescSettings vesc;
+  vesc.servo = robot.vehicle.wheelbase > 0.0;
+  vesc.controllers = vesc.servo ? 1 : robot.wiring.four_motors ? 4 : 2;
+  return vesc;
+}
+
 // A new device is one line in one of these tables and a folder of its own.
 using Settings = SimulatorSettings;
 template <class Kind, class From = Settings>
@@ -62,13 +70,10 @@ const Table<MotorEmulator> kControllers{
      }},
     {"vesc",
      [](const Settings& settings, uint64_t) -> std::unique_ptr<MotorEmulator> {
-       VescSettings vesc;
-       vesc.servo = settings.robot.vehicle.wheelbase > 0.0;
-       if (vesc.servo) vesc.controllers = 1;
-       return std::make_unique<VescUartEmulator>(vesc);
+       return std::make_unique<VescUartEmulator>(vescsOf(settings.robot));
      }},
-    {"vesc_can", [](const Settings&, uint64_t) -> std::unique_ptr<MotorEmulator> {
-       return std::make_unique<VescCanEmulator>();
+    {"vesc_can", [](const Settings& settings, uint64_t) -> std::unique_ptr<MotorEmulator> {
+       return std::make_unique<VescCanEmulator>(vescsOf(settings.robot));
      }}};
 template <class Device>
 std::unique_ptr<InsEmulator> binaryIns(const Settings& settings, uint64_t seed) {

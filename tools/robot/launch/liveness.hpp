@@ -11,8 +11,8 @@
 namespace tread::launch {
 
 /// Which processes hang: those that run, but have given no sign of life (LifeSign) for too long.
-/** They are aborted, which may leave a core, and killed a second later if they are still there;
- * what restarts crashed processes restarts them, too. */
+/** They are aborted, which may leave a core (halted ones are killed at once), and killed a second
+ * later if they are still there; what restarts crashed processes restarts them, too. */
 class Liveness {
  public:
   /// External processes give no signs and are not watched.

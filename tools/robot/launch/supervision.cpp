@@ -137,6 +137,15 @@ pid_t parentOf(const std::string& pid) {
   return parentIn({std::istreambuf_iterator<char>(file), {}});
 }
 
+/// Whether it was halted by a signal or a debugger.
+bool isHalted(pid_t pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
+  const std::string stat{std::istreambuf_iterator<char>(file), {}};
+  const size_t name_end = stat.rfind(')');
+  if (name_end == std::string::npos || name_end + 2 >= stat.size()) return false;
+  return stat[name_end + 2] == 'T' || stat[name_end + 2] == 't';
+}
+
 std::vector<pid_t> children() {
   std::vector<pid_t> pids;
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
@@ -304,8 +313,9 @@ void Run::watch() {
 void Run::end(const Liveness::Hung& hung) {
   if (parentOf(std::to_string(hung.pid)) != supervisor_) return;  // it has ended by itself
   std::cout << name_ << ": " << hung.line << std::endl;
-  kill(hung.pid, hung.kill ? SIGKILL : SIGABRT);
-  kill(hung.pid, SIGCONT);  // a halted one takes the signal then, before it does anything else
+  // A halted one would have to go on to take SIGABRT, and while one of its threads does, another
+  // may still send a command that it had at hand when it was halted.
+  kill(hung.pid, hung.kill || isHalted(hung.pid) ? SIGKILL : SIGABRT);
   calls_left_ = std::max(calls_left_, kCallsAfterAbort);
   if (hung.kill) return;
   auto& [times, line] = hung_[hung.process];

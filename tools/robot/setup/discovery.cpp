@@ -157,17 +157,21 @@ class Search {
 
   struct Candidate {
     std::string kind, section, description;
+    DriveLayout layout = DriveLayout::kTracks;
   };
 
   std::vector<Candidate> controllers(const std::string& address) {
+    // Four controllers hold two, so that they are asked for first.
+    const DriveLayout four = DriveLayout::kSkidSteer4;
+    const std::string can = "vesc_can:\n  watchdog: 0.2\n";
     if (parseLinkAddress(address).kind == Kind::kCan)
-      return {{"vesc_can", "vesc_can:\n  watchdog: 0.2\n", ""}};
-    std::vector<Candidate> all{
-        {"roboteq", "roboteq:\n  watchdog: 0.2           # s\n", ""},
-        {"vesc",
-         "vesc:\n  local: 1                # on the line, forwards to the other\n"
-         "  watchdog: 0.2           # s\n",
-         ""}};
+      return {{"vesc_can", can, "", four}, {"vesc_can", can, ""}};
+    const std::string vesc =
+        "vesc:\n  local: 1                # on the line, forwards to the others\n"
+        "  watchdog: 0.2           # s\n";
+    std::vector<Candidate> all{{"roboteq", "roboteq:\n  watchdog: 0.2           # s\n", ""},
+                               {"vesc", vesc, "", four},
+                               {"vesc", vesc, ""}};
     std::istringstream files(person_.ask("line_protocols"));
     for (std::string file; std::getline(files, file, ',');) {
       if (file == "none") continue;
@@ -183,6 +187,7 @@ class Search {
     for (const Candidate& candidate : controllers(address)) {
       RobotFindings as = findings_;
       as.controller = {candidate.kind, address, candidate.section, 0.0};
+      as.robot.drive.layout = candidate.layout;
       const auto controller = driversOf(as).make_motor();
       controller->open();
       for (const int64_t end = site_.now() + kAnswer; site_.now() < end && !controller->ready();
@@ -193,8 +198,11 @@ class Search {
       }
       if (!controller->ready()) continue;
       findings_.controller = as.controller;
+      findings_.robot.drive.layout = candidate.layout;
       findings_.line_description = candidate.description;
-      person_.say("motor controller: " + candidate.kind + " on " + address);
+      const char* const wheels =
+          candidate.layout == DriveLayout::kSkidSteer4 ? ", four of them" : "";
+      person_.say("motor controller: " + candidate.kind + " on " + address + wheels);
       return true;
     }
     return false;

@@ -88,6 +88,7 @@ std::string robotText(const RobotDescription& robot) {
       sizeText(robot.footprint) + "height: " + rounded(robot.height) +
       "\ngauge: " + rounded(robot.gauge) +
       "                # m, as it turns on the ground\ndrive:\n" +
+      (robot.drive.layout == DriveLayout::kSkidSteer4 ? "  layout: skid_steer_4\n" : "") +
       "  kind: " + nameOf(robot.drive.kind) + "\n  full_speed: " + rounded(robot.drive.full_speed) +
       "         # m/s of a track at full command\n  max_command: " +
       rounded(robot.drive.max_command) +

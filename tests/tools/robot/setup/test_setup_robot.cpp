@@ -107,6 +107,22 @@ TEST_CASE("a weak track behind swapped VESCs, a NovAtel INS in a corner: to the 
   CHECK(std::abs(result.findings.robot.ins.p_body.x() + 0.4) < 0.15);
 }
 
+TEST_CASE("four wheels, each with a VESC, of which one side is reversed: to the first goal") {
+  OwnFolder folder;
+  HiddenMachine hidden = machine("vesc", "grass", 11);
+  hidden.settings.source = "xsens";
+  hidden.settings.robot.wiring.four_motors = true;
+  hidden.settings.robot.wiring.invert_left = true;
+  const SetupResult result =
+      brought(hidden, "first_track: left\nfirst_direction: backward\n", folder);
+  CHECK(result.problem == "");
+  CHECK(result.goal.arrived);
+  CHECK(result.minutes < 30.0);
+  CHECK(result.findings.robot.drive.layout == DriveLayout::kSkidSteer4);
+  CHECK(result.findings.robot.drive.invert_left);
+  CHECK_FALSE(result.findings.robot.drive.invert_right);
+}
+
 TEST_CASE("a line protocol and an INS upside down, so that it is mirrored: to the first goal") {
   OwnFolder folder;
   HiddenMachine hidden = machine("line_protocol", "tarmac", 7);

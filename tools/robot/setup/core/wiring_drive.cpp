@@ -99,7 +99,12 @@ void WiringDrive::feel() {
   const double went =
       distanceBetween(then, now) + kTurnAsTravel * std::abs(wrapAngle(now.yaw - then.yaw));
   fastest_ = std::max(fastest_, went / time / share);
-  if (felt_) return;
+  tried_ = true;
+}
+
+/// Did the last pulse move it? Asked after the pause: on soft ground it moves late and coasts.
+void WiringDrive::judge() {
+  const Pose2& now = recent_.empty() ? *last_ : recent_.back().second;
   felt_ = distanceBetween(pulse_start_, now) > kMovedAway ||
           std::abs(wrapAngle(now.yaw - pulse_start_.yaw)) > kMovedRound;
   if (!felt_ && level_ >= 1.0) end("");  // both sides at full command: nothing moves
@@ -107,6 +112,8 @@ void WiringDrive::feel() {
 }
 
 void WiringDrive::begin(int64_t utime) {
+  if (tried_ && !felt_) judge();
+  if (done_) return;
   if (utime - *start_ > toMicroseconds(config_.seconds) && pulse_ % 2 == 0) return end("");
   const double slow = std::min(1.0, std::max(0.5, level_ + kLevelStep));
   Pulse pulse = kRound[pulse_ % kPulses];

@@ -48,6 +48,7 @@ class WiringDrive {
   void follow(const Pose2& pose);
   void begin(int64_t utime);
   void feel();
+  void judge();
   void end(const std::string& problem);
 
   WiringDriveConfig config_;
@@ -57,6 +58,7 @@ class WiringDrive {
   std::deque<std::pair<int64_t, Pose2>> recent_;  ///< of the last 0.3 s
   double path_ = 0.0;
   double fastest_ = 0.0;  ///< [m/s] per share of a full command
+  bool tried_ = false;    ///< some pulse is over
   bool felt_ = false;     ///< it moves at level_
   double level_ = 0.0;
   Pose2 pulse_start_;
