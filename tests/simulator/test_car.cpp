@@ -37,9 +37,10 @@ double curvatureOn(const SurfaceParameters& surface, double throttle) {
 }  // namespace
 
 TEST_CASE("a car without power stays, on level ground and on a slope, however it is steered") {
-  Ground slope = levelGround(surfaceOf("tarmac"));
+  const SurfaceParameters tarmac = surfaceOf("tarmac"), grass = surfaceOf("grass");
+  Ground slope = levelGround(tarmac);
   slope.slope_along = 0.15;
-  for (const Ground& ground : {levelGround(surfaceOf("grass")), slope}) {
+  for (const Ground& ground : {levelGround(grass), slope}) {
     Car car{carOfTests()};
     const Pose2 moved = driveCar(car, {0.0, 1.0}, ground, 20.0);
     CHECK(std::hypot(moved.x, moved.y) < 0.05);

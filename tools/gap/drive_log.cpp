@@ -31,6 +31,13 @@ CommandKind kindOf(const SortedLog& log) {
   return counts[speed] > counts[power] ? CommandKind::kTrackSpeed : CommandKind::kPower;
 }
 
+void refuseCars(const SortedLog& log, const std::string& name) {
+  for (const motor_t& motor : log.motor)
+    if (motor.channel_kind[1] == static_cast<int16_t>(CommandKind::kSteeringAngle))
+      throw std::runtime_error(name +
+                               ": its commands steer a car; tread-gap takes two tracks only");
+}
+
 std::vector<HeardSpan> heardSpans(const SortedLog& log) {
   std::vector<HeardSpan> spans;
   for (CommandSpan& span : knownCommands(log)) {
@@ -115,6 +122,7 @@ std::optional<ImportNote> importNoteOf(const config_t& config) {
 
 Drive toDrive(const DriveLog& messages) {
   const SortedLog log(messages);
+  refuseCars(log, messages.name);
   const std::vector<HeardSpan> spans = heardSpans(log);
   Drive drive;
   drive.name = messages.name;

@@ -9,6 +9,7 @@
 
 #include "common/log/drive_log.hpp"
 #include "common/messages/ins_messages.hpp"
+#include "common/messages/pattern_messages.hpp"
 #include "common/report/plot.hpp"
 #include "common/report/text.hpp"
 #include "common/vehicle/kernel.hpp"
@@ -236,17 +237,15 @@ void drawErrors(Picture& page, Box box, const std::vector<Piece>& pieces,
 
 LoggedDrive readLoggedDrive(const std::vector<std::string>& logs) {
   const DriveLog log = readDriveLog(logs);
-  LoggedDrive drive{CommandKind::kPower, commandsOf(log), trackOf(log)};
+  LoggedDrive drive{{}, commandsOf(log), trackOf(log)};
   for (const auto& [channel, empty] :
        {std::pair{"MOTOR", drive.commands.empty()}, std::pair{"INS", drive.track.empty()}})
     if (empty)
       throw std::runtime_error(logs.front() + ": holds no " + channel +
                                "; a log of a drive has MOTOR and INS");
-  int16_t kind = 0;
   for (const motor_t& motor : log.motor)
-    if (motor.channel_kind[0] != 0) kind = motor.channel_kind[0];
-  if (kind == 0) throw std::runtime_error(logs.front() + ": nothing was driven in it");
-  drive.kind = static_cast<CommandKind>(kind);
+    if (motor.channel_kind[0] != 0) drive.kinds = kindsFrom(motor);
+  if (drive.kinds.empty()) throw std::runtime_error(logs.front() + ": nothing was driven in it");
   return drive;
 }
 
@@ -262,10 +261,11 @@ double Piece::yawError(size_t model, size_t sample) const {
 std::vector<Piece> replay(const LoggedDrive& drive, const std::vector<ModelDocument>& models,
                           double length) {
   for (const ModelDocument& model : models)
-    if (model.vehicle.kind != drive.kind)
-      throw std::runtime_error("model " + model.vehicle.name +
-                               " takes another kind of command than the log has (power, or track "
-                               "speed); give a model of the same vehicle");
+    if (kindsOf(model.vehicle.channels()) != drive.kinds)
+      throw std::runtime_error(
+          "model " + model.vehicle.name +
+          " takes another kind of command than the log has (power, track speed "
+          "or steering); give a model of the same vehicle");
   const auto samples = static_cast<size_t>(std::round(length / kSample)) + 1;
   std::vector<Piece> pieces;
   for (double begin = kLeadIn; begin + length < drive.commands.back().time; begin += length) {

@@ -27,7 +27,7 @@ struct MeasuredPose {
 
 /// What was commanded and what was measured, in the order of time.
 struct LoggedDrive {
-  CommandKind kind = CommandKind::kPower;
+  std::vector<CommandKind> kinds;  ///< of the channels of its commands
   std::vector<GivenCommand> commands;
   std::vector<MeasuredPose> track;
 };

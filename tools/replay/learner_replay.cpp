@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "common/bus/virtual_bus.hpp"
+#include "common/messages/pattern_messages.hpp"
 #include "common/vehicle/kernel.hpp"
 
 namespace tread::replay {
@@ -26,12 +27,11 @@ std::map<ExecutionKey, AppliedCommands> appliedCommands(const DriveLog& log) {
   return commands;
 }
 
-/// The kind of the last command that belongs to an execution.
-CommandKind kindOf(const DriveLog& log) {
+/// The kinds of the last command that belongs to an execution; without one, of a model.
+std::vector<CommandKind> kindsIn(const DriveLog& log, const VehicleModel& model) {
   for (auto motor = log.motor.rbegin(); motor != log.motor.rend(); ++motor)
-    if (motor->execution_id != 0 && motor->command_index >= 0)
-      return static_cast<CommandKind>(motor->channel_kind[0]);
-  return CommandKind::kTrackSpeed;
+    if (motor->execution_id != 0 && motor->command_index >= 0) return kindsFrom(*motor);
+  return kindsOf(model.channels());
 }
 
 /// The series that was applied in an execution; a sample that the log misses holds the one before.
@@ -133,12 +133,13 @@ DriveLog readLearnerLog(const std::string& path) {
 }
 
 PatternSet predictedSet(const DriveLog& log, const VehicleModel& model) {
-  if (kindOf(log) != model.kind)
+  if (kindsIn(log, model) != kindsOf(model.channels()))
     throw std::runtime_error(log.name + ": its commands are not of the kind of model '" +
-                             model.name + "' (power or track speed); give another --model");
+                             model.name +
+                             "' (power, track speed or steering); give another --model");
   PatternSetContent content;
   content.name = log.name;
-  content.channels = trackChannels(model.kind);
+  content.channels = model.channels();
   const std::map<ExecutionKey, AppliedCommands> commands = appliedCommands(log);
   std::set<int> known;
   for (const execution_record_t& record : log.executions) {

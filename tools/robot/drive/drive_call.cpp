@@ -117,8 +117,11 @@ std::string DriveCall::describe(int64_t utime) const {
   if (!motor_.any()) return operators::kNoMotor + operators::keyWords(bus_);
   if (motor_.age(utime) > kSilent) return "MOTOR has fallen silent: look at tread-motor-bridge";
   const motor_t& motor = motor_.message();
-  std::string words = formatted("%-16s", stateWord(motor.bridge_state)) +
-                      formatted("  left %+.2f right %+.2f", motor.command[0], motor.command[1]);
+  const bool car = motor.channel_kind[1] == static_cast<int16_t>(CommandKind::kSteeringAngle);
+  std::string words =
+      formatted("%-16s", stateWord(motor.bridge_state)) +
+      formatted(car ? "  throttle %+.2f steering %+.2f" : "  left %+.2f right %+.2f",
+                motor.command[0], motor.command[1]);
   if (std::isfinite(motor.battery_voltage)) words += formatted("  %.1f V", motor.battery_voltage);
   words += wishes_.hold ? "  held" : "  not held";
   return words + "  " + motor.state_reason + operators::keyWords(bus_);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <set>
@@ -28,12 +29,12 @@ constexpr double kHokuyoRange = 15.0;   // [m]
 constexpr double kLeastInsRate = 5.0;   // [Hz]
 constexpr int kRates[] = {115200, 460800, 38400, 9600, 57600, 230400, 921600};
 
-/// Bytes there now.
 /// Whether such an INS tells heights above the ellipsoid, so that its file must tell the geoid's.
 bool tellsEllipsoidHeight(const std::string& kind) {
   return kind == "vectornav" || kind == "xsens";
 }
 
+/// Bytes there now.
 std::string received(Link& link) {
   std::string bytes;
   std::array<uint8_t, 4096> buffer;
@@ -232,7 +233,35 @@ class Search {
       }
       if (askFinder(kind, address)) return true;
     }
-    return false;
+    return askHokuyo(address);
+  }
+
+  /// Its scans come through a library that insists on its own process; what it is it says in text
+  /// (SCIP 2.0, PP).
+  bool askHokuyo(const std::string& address) {
+    try {
+      lidar::checkDeviceAddress("hokuyo", address);
+    } catch (const std::invalid_argument&) {
+      return false;
+    }
+    const auto link = opened(address);
+    if (!link) return false;
+    send(*link, "QT\nPP\n");
+    const std::string key = "\nDMAX:";  // greatest range [mm]
+    std::string told;
+    size_t at = std::string::npos;
+    for (const int64_t end = site_.now() + kAnswer; site_.now() < end; site_.pass(kLookEvery)) {
+      told += received(*link);
+      at = told.find(key);
+      if (at != std::string::npos && told.find('\n', at + 1) != std::string::npos) break;
+    }
+    if (at == std::string::npos) return false;
+    const double range = 1e-3 * std::strtod(told.c_str() + at + key.size(), nullptr);
+    if (!(range >= 0.5)) return false;
+    findings_.range_finder = {"hokuyo", address, "", 0.0};
+    findings_.range = std::min(range, 300.0);
+    person_.say("range finder: hokuyo on " + address + ", sees to " + fixed(range, 0) + " m");
+    return true;
   }
 
   bool askFinder(const std::string& kind, const std::string& address) {
@@ -263,7 +292,7 @@ class Search {
     return true;
   }
 
-  /// It is reached through a library that insists on its own process: that one will tell.
+  /// One that did not answer, for instance behind an address that no host knows by itself.
   void takeHokuyo() {
     const std::string address = person_.ask("hokuyo");
     if (address == "none") return;

@@ -10,6 +10,7 @@
 #include "tests/helpers.hpp"
 #include "tests/tools/called_program.hpp"
 #include "tests/tools/robot/setup/virtual_site.hpp"
+#include "tools/robot/setup/discovery.hpp"
 #include "tools/robot/setup/setup.hpp"
 
 using namespace tread;
@@ -158,6 +159,28 @@ TEST_CASE("front and rear exchanged for the INS, both motors reversed: to the fi
   CHECK(result.findings.wiring.has(FaultKind::kReversed, Side::kLeft));
   CHECK(result.findings.wiring.has(FaultKind::kReversed, Side::kRight));
   CHECK(result.findings.wiring.has(FaultKind::kInsTurned));
+}
+
+TEST_CASE("a Hokuyo is found by what it says of itself") {
+  const char* const port = "tcp:192.168.0.10:10940";
+  HiddenMachine hidden = machine("roboteq", "grass", 3);
+  hidden.settings.device = "hokuyo";
+  hidden.laser_port = port;
+  VirtualSite site(hidden);
+  VirtualPerson person(site, kAnswers);
+  RobotFindings findings;
+  RobotDescription& robot = findings.robot;
+  robot.name = "found";
+  robot.outline = robot.footprint = {0.7, 0.7, 0.4};
+  robot.height = 1.2;
+  robot.gauge = 0.6;
+  robot.drive.full_speed = robot.drive.max_command = 1.0;
+  robot.max_speed = 20.0;
+  discover(site, person, findings);
+  CAPTURE(port, person.heard());
+  CHECK(findings.range_finder.kind == "hokuyo");
+  CHECK(findings.range_finder.address.rfind(port, 0) == 0);
+  CHECK(findings.range == Approx(20.0).margin(0.1));
 }
 
 TEST_CASE("a Sabertooth that never answers, an INS turned by a quarter: to the first goal") {
