@@ -119,7 +119,7 @@ InsConfig readUbloxConfig(ConfigReader& reader, const RobotDescription& robot) {
   return ins;
 }
 
-InsConfig readVectornavConfig(ConfigReader& reader, const RobotDescription& robot) {
+InsConfig readSingleMessageConfig(ConfigReader& reader, const RobotDescription& robot) {
   InsConfig ins = readInsConfig(reader, robot);
   readOriginStd(reader, ins);
   readGpsConventions(reader, ins);

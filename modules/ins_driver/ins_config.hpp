@@ -12,7 +12,7 @@ namespace tread::ins {
 InsConfig readNmeaConfig(ConfigReader& reader, const RobotDescription& robot);
 InsConfig readNovatelConfig(ConfigReader& reader, const RobotDescription& robot);
 InsConfig readUbloxConfig(ConfigReader& reader, const RobotDescription& robot);
-/// Also of an Xsens: both send everything in one message.
-InsConfig readVectornavConfig(ConfigReader& reader, const RobotDescription& robot);
+/// Of a VectorNav or an Xsens, each of which sends all of an epoch in one message.
+InsConfig readSingleMessageConfig(ConfigReader& reader, const RobotDescription& robot);
 
 }  // namespace tread::ins

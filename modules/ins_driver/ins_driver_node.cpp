@@ -29,8 +29,8 @@ const std::map<std::string, MakeInsSource (*)(ConfigReader&, const RobotDescript
     {"nmea", device<NmeaIns, readNmeaConfig>},
     {"novatel", device<NovatelIns, readNovatelConfig>},
     {"ublox", device<UbloxIns, readUbloxConfig>},
-    {"vectornav", device<VectornavIns, readVectornavConfig>},
-    {"xsens", device<XsensIns, readVectornavConfig>}};
+    {"vectornav", device<VectornavIns, readSingleMessageConfig>},
+    {"xsens", device<XsensIns, readSingleMessageConfig>}};
 
 constexpr double kDegPerRad = 180.0 / kPi;
 

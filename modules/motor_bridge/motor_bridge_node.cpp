@@ -29,7 +29,6 @@ MotionLimits readMotion(ConfigReader section, const RobotDescription& robot) {
   const bool power = robot.drive.kind == CommandKind::kPower;
   motion.gauge = robot.gauge;
   motion.wheelbase = robot.drive.wheelbase;
-  motion.max_steering = robot.drive.max_steering;
   motion.full_speed = robot.drive.full_speed;
   motion.speed_per_command = power ? robot.drive.full_speed : 1.0;
   motion.dead_band = power ? 0.15 : 0.05;
@@ -48,6 +47,7 @@ ManualLimits readManual(ConfigReader section, const DriveDescription& drive) {
   ManualLimits manual;
   manual.max_command = 0.5 * drive.max_command;
   manual.slew = drive.max_command;
+  manual.max_steering = drive.max_steering;
   section.seconds("lease", manual.lease_us, {0.05, 0.2});
   section.number("max_command", manual.max_command, {0.0, drive.max_command}, "of the drive");
   section.number("slew", manual.slew, {0.05 * drive.max_command, 5.0 * drive.max_command}, "per s");

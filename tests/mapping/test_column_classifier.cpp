@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "modules/mapping/core/occupancy_map.hpp"
+#include "modules/mapping/core/column_classifier.hpp"
 
 using namespace tread;
 using namespace tread::mapping;

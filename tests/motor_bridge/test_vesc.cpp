@@ -129,6 +129,8 @@ TEST_CASE("VESC: a car's throttle is its duty, the steering the servo output, Na
   drive.invert_right = true;
   CHECK(servoCommand({0.0, 0.5}, configOf("{servo_left: 0.8, servo_right: 0.3}", drive)).value ==
         300);
+  CHECK(refusal("{servo_left: 0.4, servo_right: 0.4}", drive).find("nothing would be steered") !=
+        std::string::npos);
   CHECK(refusal("{throttle: [1], steering: 2}", drive).find("steering") != std::string::npos);
   CHECK(refusal("{left: [1]}", drive).find("left") != std::string::npos);
 }

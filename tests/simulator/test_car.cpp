@@ -27,13 +27,6 @@ Pose2 driveCar(Car& car, const MotorPower& power, const Ground& ground, double s
   return T_start_body;
 }
 
-/// [1/m] of the circle that the rear axle drives.
-double curvatureOn(const SurfaceParameters& surface, double throttle) {
-  Car car{carOfTests()};
-  driveCar(car, {throttle, 1.0}, levelGround(surface), 4.0);
-  return car.velocity().omega / car.velocity().v_x;
-}
-
 }  // namespace
 
 TEST_CASE("a car without power stays, on level ground and on a slope, however it is steered") {
@@ -51,19 +44,39 @@ TEST_CASE("a car without power stays, on level ground and on a slope, however it
 
 TEST_CASE("a car turns about its rear axle nearly as Ackermann says, and never on the spot") {
   const double geometric = std::tan(0.5) / 0.9;
-  const double slow = curvatureOn(surfaceOf("tarmac"), 0.3);
-  CAPTURE(slow, geometric);
-  CHECK(slow > 0.85 * geometric);
-  CHECK(slow < 1.05 * geometric);
+  const SurfaceParameters tarmac = surfaceOf("tarmac");
+  Car circling{carOfTests()};
+  driveCar(circling, {0.3, 1.0}, levelGround(tarmac), 4.0);
+  const Twist2 v = circling.velocity();
+  CAPTURE(v.v_x, v.omega, geometric);
+  CHECK(v.v_x > 0.2);
+  CHECK(v.omega / v.v_x > 0.85 * geometric);
+  CHECK(v.omega / v.v_x < 1.05 * geometric);
   Car car{carOfTests()};
-  const Pose2 moved = driveCar(car, {0.0, -1.0}, levelGround(surfaceOf("tarmac")), 3.0);
+  const Pose2 moved = driveCar(car, {0.0, -1.0}, levelGround(tarmac), 3.0);
   CHECK(std::abs(moved.yaw) < 0.02);
 }
 
-TEST_CASE("the less friction, the wider a fast car goes") {
-  SurfaceParameters ice = surfaceOf("tarmac");
-  ice.friction = 0.03;
-  CHECK(curvatureOn(ice, 1.0) < 0.8 * curvatureOn(surfaceOf("tarmac"), 1.0));
+TEST_CASE("in a bend friction holds a fast car, and on ice it goes wide") {
+  const SurfaceParameters tarmac = surfaceOf("tarmac");
+  SurfaceParameters ice = tarmac;
+  ice.friction = 0.05;
+  ice.scrub_resistance = 0.0;
+  double turned[2];
+  for (const bool on_ice : {false, true}) {
+    Car car{carOfTests()};
+    driveCar(car, {1.0, 0.0}, levelGround(tarmac), 3.0);
+    REQUIRE(car.velocity().v_x > 1.1);
+    turned[on_ice] = driveCar(car, {1.0, 1.0}, levelGround(on_ice ? ice : tarmac), 1.2).yaw;
+    const Twist2 v = car.velocity();
+    CAPTURE(on_ice, v.v_x, v.v_y, v.omega, turned[on_ice]);
+    CHECK(v.v_x > 0.8);  // it slides on, it does not stand
+    const double across = std::hypot(v.v_x, v.v_y) * v.omega;
+    if (on_ice) CHECK(across < 1.1 * ice.friction * 9.81);
+    if (!on_ice) CHECK(across > 1.1 * ice.friction * 9.81);
+  }
+  CHECK(turned[1] > 0.0);
+  CHECK(turned[1] < 0.7 * turned[0]);
 }
 
 TEST_CASE("the servo takes its time") {

@@ -115,7 +115,7 @@ RawlogRecord recordOf(const Header& header, const std::vector<uint8_t>& bytes) {
   }
   std::array<double, 3> numbers{};
   if (header.kind != Kind::kPose || bytes.size() != sizeof numbers)
-    return RawlogProblem{"the reader lost its way"};
+    return RawlogProblem{"its reader sent what is no record"};
   std::memcpy(numbers.data(), bytes.data(), sizeof numbers);
   return OdometryPose{header.time, {numbers[0], numbers[1], numbers[2]}};
 }
@@ -153,7 +153,7 @@ void readRawlogRecords(const std::string& path, const std::function<void(RawlogR
   if (!ended) ::kill(reader, SIGKILL);
   while (::waitpid(reader, nullptr, 0) < 0 && errno == EINTR) {
   }
-  if (!ended) take(RawlogProblem{silent ? "its reader did not come back" : "its reader crashed"});
+  if (!ended) take(RawlogProblem{silent ? "its reader hung for 30 s" : "its reader crashed"});
 }
 
 }  // namespace tread::import

@@ -38,8 +38,8 @@ struct RawlogProblem {
 using RawlogRecord = std::variant<OdometryPose, RawlogScan, LeftOut, RawlogProblem>;
 
 /// Reads the objects of an MRPT rawlog in a process of its own and hands over what they hold.
-/** MRPT's reader checks neither lengths nor counts: on a damaged file it writes where it must not,
- * asks for all memory or does not come back. That process may die; then the last record says so.
+/** MRPT's reader checks neither lengths nor counts: on a damaged file it writes out of bounds, asks
+ * for all memory or hangs. That process may die; then the last record says so.
  * Throws RecordingError if the file cannot be opened or no process be started. */
 void readRawlogRecords(const std::string& path, const std::function<void(RawlogRecord)>& take);
 

@@ -12,33 +12,6 @@
 namespace tread::mapping {
 namespace {
 
-/// A patch forgets beyond this many stands of full weight, so that a drifting height is followed.
-constexpr double kMemory = 10.0;
-/// Changes of height and doubt below this are not worth judging the columns again [m].
-constexpr double kNoticeable = 0.02;
-
-CellIndex patchOf(CellIndex cell) {
-  return {floorDivide(cell.x, GroundMap::kPatchCells), floorDivide(cell.y, GroundMap::kPatchCells)};
-}
-
-/// Bits 0 to count - 1.
-uint64_t lowBits(double count) {
-  if (!(count > 0.0)) return 0;
-  if (count >= kColumnHeight) return ~uint64_t{0};
-  return (uint64_t{1} << static_cast<int>(count)) - 1;
-}
-
-/// All bits above the highest one that is set.
-uint64_t above(uint64_t bits) {
-  for (int shift = 1; shift < kColumnHeight; shift *= 2) bits |= bits >> shift;
-  return ~bits;
-}
-
-/// Index of the highest bit that is set, or -1.
-int highestBit(uint64_t bits) {
-  return bits == 0 ? -1 : kColumnHeight - 1 - __builtin_clzll(bits);
-}
-
 /// OctoMap numbers 2^15 voxels to each side of the origin.
 constexpr double kMostCells = 32000.0;
 /// A new stand counts after so much way or height: rocking on the spot tells nothing new.
@@ -59,91 +32,6 @@ bool comesAfter(CellIndex a, CellIndex b) {
 }
 
 }  // namespace
-
-std::optional<GroundPlane> planeUnder(const Eigen::Isometry3d& T_map_body) {
-  const Eigen::Vector3d up = T_map_body.linear().col(2);
-  if (!(up.z() > 0.5)) return std::nullopt;
-  return GroundPlane{T_map_body.translation(), -up.head<2>() / up.z()};
-}
-
-GroundMap::GroundMap(const GroundConfig& config, double cell_size, int side_cells)
-    : config_(config), cell_size_(cell_size), patches_(side_cells / kPatchCells) {}
-
-void GroundMap::moveTo(CellIndex lower) {
-  patches_.moveTo(patchOf(lower));
-}
-
-Eigen::Vector2d GroundMap::centreOf(CellIndex patch) const {
-  const double side = kPatchCells * cell_size_;
-  return {(patch.x + 0.5) * side, (patch.y + 0.5) * side};
-}
-
-std::vector<CellIndex> GroundMap::learn(const GroundPlane& plane) {
-  std::vector<CellIndex> moved;
-  for (size_t i = 0; i < patches_.size(); ++i) {
-    const CellIndex index = patches_.indexOf(i);
-    if (refine(patches_[i], centreOf(index), plane))
-      moved.push_back({index.x * kPatchCells, index.y * kPatchCells});
-  }
-  return moved;
-}
-
-bool GroundMap::refine(Patch& patch, const Eigen::Vector2d& centre,
-                       const GroundPlane& plane) const {
-  const Eigen::Vector2d offset = centre - plane.p_map.head<2>();
-  const double d = offset.norm();
-  const double from_slope = config_.slope_noise * d;
-  const double from_curvature = 0.5 * config_.curvature * d * d;
-  const double noise = config_.height_noise;
-  const double weight =
-      1.0 / (noise * noise + from_slope * from_slope + from_curvature * from_curvature);
-  patch.weight = std::min(patch.weight, kMemory / (noise * noise)) + weight;
-  const double gain = weight / patch.weight;
-  patch.z += gain * (plane.p_map.z() + plane.slope.dot(offset) - patch.z);
-  patch.slope += gain * (plane.slope - patch.slope);
-  patch.nearest = std::min(patch.nearest, d);
-  const bool moved = std::abs(patch.z - patch.told_z) > kNoticeable ||
-                     config_.slope_doubt * (patch.told_nearest - patch.nearest) > kNoticeable;
-  if (moved) {
-    patch.told_z = patch.z;
-    patch.told_nearest = patch.nearest;
-  }
-  return moved;
-}
-
-GroundHeight GroundMap::at(CellIndex cell) const {
-  const CellIndex index = patchOf(cell);
-  const Patch& patch = patches_.at(index);
-  const Eigen::Vector2d centre((cell.x + 0.5) * cell_size_, (cell.y + 0.5) * cell_size_);
-  return {patch.z + patch.slope.dot(centre - centreOf(index)), config_.slope_doubt * patch.nearest};
-}
-
-/// Voxels whose centre lies above `from` and below `to` [m].
-uint64_t ColumnClassifier::band(double from, double to, int lower_z) const {
-  const double first = std::floor(from / cell_size_ - lower_z - 0.5) + 1.0;
-  const double end = std::ceil(to / cell_size_ - lower_z - 0.5);
-  return lowBits(end) & ~lowBits(first);
-}
-
-Cell ColumnClassifier::classify(const Column& column, int lower_z,
-                                const GroundHeight& ground) const {
-  if (column.known == 0) return kUnknown;
-  const double lowest_seen = (lower_z + lowestBit(column.known) + 1) * cell_size_;
-  const double z = std::max(std::min(ground.z, lowest_seen), ground.z - ground.doubt - cell_size_);
-  const double top = z + config_.robot_height;
-  const double step = z + config_.step;
-  const uint64_t in_band = band(step, top, lower_z);
-  const uint64_t occupied = column.occupied & in_band;
-  if ((occupied & band(step + ground.doubt, top, lower_z)) != 0) return kObstacle;
-  if (occupied != 0) return (column.free() & in_band & above(occupied)) != 0 ? kFree : kUnknown;
-  const uint64_t seen = band(step - ground.doubt, top + ground.doubt, lower_z);
-  return (column.free() & seen) != 0 ? kFree : kUnknown;
-}
-
-int ColumnClassifier::surface(const Column& column, int lower_z, const GroundHeight& ground) const {
-  const double step = ground.z + config_.step + ground.doubt;
-  return highestBit(column.occupied & lowBits(std::ceil(step / cell_size_ - lower_z - 0.5)));
-}
 
 OccupancyMap::OccupancyMap(const OccupancyMapConfig& config)
     : config_(config),

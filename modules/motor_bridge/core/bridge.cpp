@@ -277,7 +277,7 @@ void Bridge::command(int64_t now, BridgeOutput& out) {
   if (!out.failsafe.may_drive) {
     player_.abort(now, out.failsafe.reason);
     if (out.failsafe.state != State::kManual) return;
-    out.command = config_.motion.fromHand(manual_.command(now), config_.manual.max_command);
+    out.command = commandOf(manual_.command(now), config_.manual);
     out.kinds = kindsOf(config_.gate.slot.channels);
     return;
   }

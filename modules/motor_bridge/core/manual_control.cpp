@@ -63,6 +63,12 @@ std::string ManualControl::words() const {
   return "driven by hand by " + last_.name;
 }
 
+Command commandOf(const TrackCommand& stick, const ManualLimits& limits) {
+  if (limits.max_steering <= 0.0 || limits.max_command <= 0.0) return stick;
+  const double turn = 0.5 * (stick.right - stick.left) / limits.max_command;
+  return {0.5 * (stick.left + stick.right), limits.max_steering * turn};
+}
+
 TrackCommand ManualControl::command(int64_t now) {
   if (!live_ || must_rest_) return command_ = TrackCommand{};
   const TrackCommand wanted{last_.left * limits_.max_command, last_.right * limits_.max_command};

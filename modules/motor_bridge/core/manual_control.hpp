@@ -16,7 +16,13 @@ struct ManualLimits {
   int64_t lease_us = 200'000;  ///< [us] for which it counts what the person's program has seen
   double max_command = 0.5;    ///< largest magnitude, in the units of the drive
   double slew = 1.0;           ///< largest growth of a command [units of the drive per s]
+  double max_steering = 0.0;   ///< [rad] of a car; 0 = two tracks
 };
+
+/// The robot's command for a stick that is told as tracks, in the units of the drive.
+/** A car drives by their mean and steers by their difference: max_steering where one track has
+ * max_command and the other one has it backward. */
+Command commandOf(const TrackCommand& stick, const ManualLimits& limits);
 
 /// One MANUAL message of the operator who holds the robot.
 struct ManualNotice {

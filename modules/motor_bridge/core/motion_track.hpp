@@ -36,7 +36,6 @@ struct InsMotion {
 struct MotionLimits {
   double gauge = 0.6;              ///< [m] between the middles of the tracks
   double wheelbase = 0.0;          ///< [m] of a car, which counts as its rear wheels; 0 = tracks
-  double max_steering = 0.0;       ///< [rad] of a car
   double full_speed = 1.1;         ///< [m/s] of a track: no command makes it faster
   double speed_per_command = 1.1;  ///< [m/s] of a track at command 1
   double dead_band = 0.15;         ///< [1] share of full_speed that need not move anything
@@ -52,13 +51,6 @@ struct MotionLimits {
   TrackCommand tracks(const Command& command) const {
     if (wheelbase <= 0.0) return command.tracks();
     return rearWheels(command[0], command[1], wheelbase, gauge);
-  }
-  /// The command by which tracks would do this; a car's drive and steering by their mean and by
-  /// their difference as a share of `most`, the largest command.
-  Command fromHand(const TrackCommand& tracks, double most) const {
-    if (wheelbase <= 0.0 || most <= 0.0) return tracks;
-    const double turn = 0.5 * (tracks.right - tracks.left) / most;
-    return {0.5 * (tracks.left + tracks.right), max_steering * turn};
   }
 };
 

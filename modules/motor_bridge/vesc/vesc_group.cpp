@@ -44,16 +44,6 @@ double readErpmPerSpeed(ConfigReader& reader, bool required) {
   return 60.0 * pole_pairs * gear_ratio / (2.0 * kPi * wheel_radius);
 }
 
-}  // namespace
-
-std::vector<int> VescConfig::ids() const {
-  std::vector<int> all = left;
-  all.insert(all.end(), right.begin(), right.end());
-  return all;
-}
-
-namespace {
-
 void readCarIds(ConfigReader& reader, const DriveDescription& drive, VescConfig& config) {
   config.left = readIds(reader, "throttle", 1);
   config.right.clear();
@@ -63,6 +53,8 @@ void readCarIds(ConfigReader& reader, const DriveDescription& drive, VescConfig&
   servo.id = static_cast<int>(id);
   reader.number("servo_left", servo.at_left, {0.0, 1.0}, "");
   reader.number("servo_right", servo.at_right, {0.0, 1.0}, "");
+  if (servo.at_left == servo.at_right)
+    throw reader.error("servo_left", "is servo_right: nothing would be steered");
   servo.max_steering = drive.max_steering;
   if (!contains(config.left, servo.id))
     throw reader.error("steering", "must be one of the ids in throttle: its timeout is watched");
@@ -76,6 +68,12 @@ void readTrackIds(ConfigReader& reader, const DriveDescription& drive, VescConfi
 }
 
 }  // namespace
+
+std::vector<int> VescConfig::ids() const {
+  std::vector<int> all = left;
+  all.insert(all.end(), right.begin(), right.end());
+  return all;
+}
 
 VescConfig readVescConfig(ConfigReader& reader, const DriveDescription& drive) {
   VescConfig config;

@@ -17,10 +17,15 @@ Twist2 turned(const Twist2& v_body, double angle) {
   return {c * v_body.v_x + s * v_body.v_y, c * v_body.v_y - s * v_body.v_x, v_body.omega};
 }
 
-/// All of a patch on what the vehicle's track has at one of its ends.
-TrackContact::Surfaces surfacesAt(const SurfaceParameters* surface) {
+/// What a surface is to a tyre: as stiff across as along, pressed evenly, and without what a track
+/// loses in its belt and by pushing ground aside.
+TrackContact::Surfaces tyreOn(const SurfaceParameters& surface, SurfaceParameters& tyre) {
+  tyre.friction = surface.friction;
+  tyre.shear_displacement = tyre.lateral_displacement = surface.shear_displacement;
+  tyre.resistance_constant = surface.resistance_constant;
+  tyre.resistance_viscous = tyre.scrub_resistance = tyre.pressure_offset = 0.0;
   TrackContact::Surfaces surfaces{};
-  surfaces.fill(surface);
+  surfaces.fill(&tyre);
   return surfaces;
 }
 
@@ -52,18 +57,23 @@ void Car::step(const MotorPower& power, const Ground& ground, double dt) {
   const Twist2 v_rear{v.v_x, v.v_y - mass_at_ * v.omega, v.omega};
   const TrackGeometry patch{kTyrePatch, 0.0};
   // The front wheels roll freely: their rims go as fast as the ground passes.
-  const TrackForce front = front_contact_.step(patch, surfacesAt(ground.left.front()), v_front,
-                                               v_front.v_x, {weight * on_front, 0.0}, dt);
-  const TrackForce rear = rear_contact_.step(patch, surfacesAt(ground.left.back()), v_rear,
-                                             drive_.speed, {weight * (1.0 - on_front), 0.0}, dt);
+  const TrackForce front = front_contact_.step(patch, tyreOn(*ground.left.front(), front_ground_),
+                                               v_front, v_front.v_x, {weight * on_front, 0.0}, dt);
+  const TrackForce rear =
+      rear_contact_.step(patch, tyreOn(*ground.left.back(), rear_ground_), v_rear, drive_.speed,
+                         {weight * (1.0 - on_front), 0.0}, dt);
 
   const double c = std::cos(steering_), s = std::sin(steering_);
-  // What slows the front wheels holds them only while they roll.
+  // What slows the front wheels holds them only while they roll, and with the grip that cornering
+  // leaves.
   const double rolling = std::clamp(v_front.v_x / 0.05, -1.0, 1.0);
-  const double front_along = front.along + front.resistance - rolling * front.dry_friction;
+  const double grip = ground.left.front()->friction * weight * on_front;
+  const double left_over = std::sqrt(std::max(0.0, grip * grip - front.across * front.across));
+  const double front_along =
+      std::clamp(front.along - rolling * front.dry_friction, -left_over, left_over);
   const double front_y = s * front_along + c * front.across;
-  const double force_x = c * front_along - s * front.across + rear.along + rear.resistance -
-                         weight * ground.slope_along;
+  const double force_x =
+      c * front_along - s * front.across + rear.along - weight * ground.slope_along;
   const double force_y = front_y + rear.across - weight * ground.slope_across;
   const double moment = ahead * front_y - mass_at_ * rear.across + front.moment + rear.moment;
   const double v_x = v.v_x, omega = v.omega;

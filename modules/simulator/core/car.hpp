@@ -12,8 +12,8 @@ namespace tread::sim {
 /** Body origin on the ground in the middle of the rear axle. To it, the power of the left is the
  * throttle, that of the right the steering angle over max_steering, -1..1, to the left positive.
  * The two wheels of an axle are one contact patch in its middle, on the surface that the axle
- * stands on; the tyres slip on it as tracks do (TrackContact), so that the car goes wide on
- * slippery ground. Weight on the axles is that of a car that does not accelerate. Its right drive,
+ * stands on; the tyres slip on it (TrackContact), so that the car goes wide on slippery
+ * ground. Weight on the axles is that of a car that does not accelerate. Its right drive,
  * the servo, draws no current. */
 class Car final : public Plant {
  public:
@@ -36,6 +36,8 @@ class Car final : public Plant {
   double mass_at_;  ///< [m] of the centre of mass ahead of the rear axle
   TrackContact front_contact_;
   TrackContact rear_contact_;
+  SurfaceParameters front_ground_;  ///< as the tyres feel it
+  SurfaceParameters rear_ground_;
   TrackDrive drive_;
   TrackDrive servo_;
   Battery battery_;
