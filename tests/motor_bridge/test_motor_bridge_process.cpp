@@ -118,9 +118,9 @@ class Rig {
   void run(int64_t us) {
     for (const int64_t end = bus_->now() + us; bus_->now() < end;) turn();
   }
-  /// Arms until the motors turn, for at most 20 s.
+  /// Arms until the motors turn, for at most a minute: a stall within the second before disarms.
   bool drive() {
-    for (int i = 0; i < 80 && !turning(); ++i) {
+    for (int i = 0; i < 240 && !turning(); ++i) {
       say(true);
       run(250'000);
     }
@@ -249,6 +249,7 @@ TEST_CASE("SIGSTOP and SIGCONT: stopped by the watchdog, and nothing moves until
     REQUIRE_FALSE(rig->turning());
   }
   CHECK(rig->device.resumed == 0);
+  INFO(rig->motor().state_reason);
   CHECK(rig->motor().bridge_state == motor_t::STATE_FAULT);
   CHECK(rig->drive());
 }
