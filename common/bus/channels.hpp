@@ -44,6 +44,8 @@ template <class Message>
 struct Channel : ChannelSpec {};
 
 inline constexpr Channel<ins_t> kIns{{"INS", "ins_t", "ins_driver", 50, 100, 400}};
+inline constexpr Channel<ins_t> kScanMatching{
+    {"SCAN_MATCHING", "ins_t", "scan_matching", 10, 300, 400}};
 inline constexpr Channel<scan_t> kScan{{"SCAN", "scan_t", "lidar_driver", 10, 250, 60000}};
 // A tile of what is out of sight is old and still true: no limit.
 inline constexpr Channel<map_tile_t> kMap{{"MAP", "map_tile_t", "mapping", 5, 0, 20000}};
@@ -98,9 +100,9 @@ inline void forgetSender(fence_t& message) {
 }
 
 /// The whole table, for README, health checks and tests.
-inline constexpr std::array<ChannelSpec, 22> kChannels{
-    kIns,       kScan,       kMap,          kGoal,     kPlan,  kPlanTree, kProgram, kMotor,
-    kExecution, kPatternSet, kLearnerState, kLearning, kShock, kHealth,   kArm,     kOperator,
-    kManual,    kEstop,      kStoppingTime, kFence,    kMark,  kConfig};
+inline constexpr std::array<ChannelSpec, 23> kChannels{
+    kIns,      kScanMatching, kScan,       kMap,          kGoal,     kPlan,  kPlanTree, kProgram,
+    kMotor,    kExecution,    kPatternSet, kLearnerState, kLearning, kShock, kHealth,   kArm,
+    kOperator, kManual,       kEstop,      kStoppingTime, kFence,    kMark,  kConfig};
 
 }  // namespace tread

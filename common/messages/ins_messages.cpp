@@ -93,6 +93,10 @@ void InsQueue::settle(int64_t horizon) {
 void InsQueue::append(const ins_t& ins) {
   // A jump counts even if its own message has no pose: what follows is a new track.
   jumped_ = jumped_ || (ins.ins_status & ins_t::STATUS_JUMP) != 0;
+  // Where the device and scan matching take turns the pose makes a step, which nobody drove.
+  const bool filled_in = (ins.ins_status & ins_t::STATUS_FILLED_IN) != 0;
+  jumped_ = jumped_ || filled_in != filled_in_;
+  filled_in_ = filled_in;
   const auto T_map_body = planarPose(ins);
   if (!T_map_body) {
     ++without_pose_;

@@ -58,6 +58,7 @@ class InsQueue {
   int64_t settled_ = INT64_MIN;
   int64_t begin_ = INT64_MIN;
   bool jumped_ = false;
+  bool filled_in_ = false;
   int64_t invalid_ = 0;
   int64_t too_late_ = 0;
   int64_t without_pose_ = 0;

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "common/messages/blank.hpp"
+#include "common/messages/ins_messages.hpp"
 #include "modules/ins_driver/ins_config.hpp"
 #include "modules/ins_driver/nmea/nmea_ins.hpp"
 #include "modules/ins_driver/novatel/novatel_ins.hpp"
@@ -56,10 +57,23 @@ static_assert(same(kGap, ins_t::STATUS_GAP));
 static_assert(same(kJump, ins_t::STATUS_JUMP));
 static_assert(same(kNoAttitude, ins_t::STATUS_NO_ATTITUDE));
 static_assert(same(kNoVelocity, ins_t::STATUS_NO_VELOCITY));
+static_assert(same(kFilledIn, ins_t::STATUS_FILLED_IN));
+
+FillInConfig readFillIn(ConfigReader reader) {
+  FillInConfig config;
+  reader.seconds("after", config.after_us, {0.02, 5.0});
+  reader.number("max_drift", config.max_drift, {0.01, 10.0}, "m");
+  reader.number("max_yaw_drift", config.max_yaw_drift, {0.001, 1.0}, "rad");
+  reader.number("jump", config.jump, {0.01, 10.0}, "m");
+  reader.number("yaw_jump", config.yaw_jump, {0.001, 1.0}, "rad");
+  return config;
+}
 
 /// A device that floods us is cut off here until the next step.
 constexpr size_t kMaxBytesPerStep = 65536;
 constexpr int64_t kCounterPeriodUs = 200'000;
+/// A message stamped further in the future than this comes from another clock [us].
+constexpr int64_t kFarthestAhead = 200'000;
 
 /// The configured origin, else the stored one.
 std::optional<GeoOrigin> knownOrigin(const std::optional<GeoOrigin>& configured, const Store& store,
@@ -125,6 +139,7 @@ InsDriverConfig readInsDriverConfig(ConfigReader& reader) {
     ConfigReader origin = reader.section("origin");
     config.origin = readOrigin(origin);
   }
+  if (reader.has("fill_in")) config.fill_in = readFillIn(reader.section("fill_in"));
   reader.number("silence", config.silence, {0.1, 60.0}, "s");
   reader.seconds("period", config.period_us, {0.001, 0.1});
   reader.finish();
@@ -162,6 +177,24 @@ InsDriverNode::InsDriverNode(const InsDriverConfig& config, Bus& bus, Link& link
       last_heading_(bus.now()),
       last_height_(bus.now()) {
   health_.watchNamesakes();
+  if (!config.fill_in) return;
+  fill_in_.emplace(*config.fill_in);
+  bus.subscribe<ins_t>(kScanMatching, [this](const ins_t& message) { hear(message); });
+}
+
+void InsDriverNode::hear(const ins_t& message) {
+  const auto pose = planarPose(message);
+  const auto twist = planarTwist(message);
+  if (!pose || !twist || message.utime > bus_.now() + kFarthestAhead)
+    return health_.addToCounter("scan matching: no pose");
+  ScanPose scan;
+  scan.utime = message.utime;
+  scan.T_scan_body = *pose;
+  scan.v_body = *twist;
+  scan.std = {message.position_std[0], message.position_std[1], message.attitude_std[2]};
+  scan.new_track = (message.ins_status & ins_t::STATUS_JUMP) != 0;
+  if (!scan.std.allFinite()) return health_.addToCounter("scan matching: no deviation");
+  fill_in_->observe(scan);
 }
 
 void InsDriverNode::step(int64_t utime) {
@@ -201,16 +234,23 @@ void InsDriverNode::loseLink() {
 }
 
 void InsDriverNode::publishFinished(int64_t utime) {
-  while (const std::optional<InsEstimate> estimate = source_->next(utime)) {
+  while (std::optional<InsEstimate> estimate = source_->next(utime)) {
     if (!(estimate->status & kNoPosition)) {
       last_position_ = utime;
       too_far_before_ = source_->tooFar().first;
     }
     if (std::isfinite(estimate->p_map_body.z())) last_height_ = utime;
     if (!(estimate->status & kNoHeading)) last_heading_ = utime;
-    bus_.publish(kIns, messageOf(*estimate, seq_++));
+    if (!fill_in_ || fill_in_->complete(*estimate, utime)) publish(*estimate);
+  }
+  if (fill_in_) {
+    if (const auto estimate = fill_in_->next(utime)) publish(*estimate);
   }
   keepOrigin();
+}
+
+void InsDriverNode::publish(const InsEstimate& estimate) {
+  bus_.publish(kIns, messageOf(estimate, seq_++));
 }
 
 void InsDriverNode::keepOrigin() {
@@ -265,17 +305,30 @@ std::string InsDriverNode::measurementProblem(int64_t utime) const {
   return origin_problem_;
 }
 
+std::string InsDriverNode::fillInProblem(int64_t utime) const {
+  if (!fill_in_) return {};
+  if (fill_in_->since())
+    return "poses are filled in by scan matching since " + inSeconds(utime - *fill_in_->since());
+  const int64_t without = utime - fill_in_->newestScan().value_or(start_);
+  if (without <= silence_us_) return {};
+  return "nothing to fill in with: no pose of scan matching for " + inSeconds(without) +
+         "; is scan_matching running, with channel: SCAN_MATCHING?";
+}
+
 void InsDriverNode::reportHealth(int64_t utime) {
+  const std::string filled = fillInProblem(utime);
+  const std::string also = filled.empty() ? "" : "; " + filled;
   const std::string line = lineProblem(utime);
   if (!line.empty()) {
-    health_.setState(health_t::HEALTH_FAILED, line);
+    const bool stands_in = fill_in_ && fill_in_->since();
+    health_.setState(stands_in ? health_t::HEALTH_DEGRADED : health_t::HEALTH_FAILED, line + also);
     return;
   }
   const std::string measurement = measurementProblem(utime);
-  if (measurement.empty()) {
-    health_.setState(health_t::HEALTH_OK, "");
+  if (!measurement.empty()) {
+    health_.setState(health_t::HEALTH_DEGRADED, link_.address() + ": " + measurement + also);
   } else {
-    health_.setState(health_t::HEALTH_DEGRADED, link_.address() + ": " + measurement);
+    health_.setState(filled.empty() ? health_t::HEALTH_OK : health_t::HEALTH_DEGRADED, filled);
   }
 }
 
@@ -284,6 +337,7 @@ void InsDriverNode::reportCounters(int64_t utime) {
   next_counters_ = utime + kCounterPeriodUs;
   for (const auto& [name, count] : source_->counters()) health_.setCounter(name, count);
   health_.setCounter("link losses", link_losses_);
+  if (fill_in_) health_.setCounter("poses filled in by scan matching", fill_in_->filled());
 }
 
 }  // namespace tread::ins

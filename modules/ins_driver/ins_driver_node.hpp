@@ -10,6 +10,7 @@
 #include "common/link/link.hpp"
 #include "common/store/store.hpp"
 #include "common/vehicle/robot_description.hpp"
+#include "modules/ins_driver/core/fill_in.hpp"
 #include "modules/ins_driver/core/ins_source.hpp"
 
 namespace tread::ins {
@@ -20,10 +21,11 @@ struct InsDriverConfig {
   std::string store = "state/ins_driver";                ///< folder that keeps the map's origin
   std::string source = "nmea";                           ///< the kind that the configuration names
   MakeInsSource make_source;                             ///< of that kind
-  std::optional<GeoOrigin> origin;  ///< of the map; absent: stored, or the first good fix
-  double silence = 1.0;             ///< [s] without what is expected after which health says so
-  int64_t period_us = 5'000;        ///< [us] between looks at the link
-  std::string effective;            ///< the whole as YAML, for CONFIG
+  std::optional<GeoOrigin> origin;      ///< of the map; absent: stored, or the first good fix
+  std::optional<FillInConfig> fill_in;  ///< by scan matching; absent: nothing is filled in
+  double silence = 1.0;                 ///< [s] without what is expected after which health says so
+  int64_t period_us = 5'000;            ///< [us] between looks at the link
+  std::string effective;                ///< the whole as YAML, for CONFIG
 };
 
 /// Reads the configuration; throws ConfigError with file:line.
@@ -53,9 +55,12 @@ class InsDriverNode : public Node {
   /// Returns the time at which it had read.
   int64_t readLink(int64_t utime);
   void loseLink();
+  void hear(const ins_t& message);
   void publishFinished(int64_t utime);
+  void publish(const InsEstimate& estimate);
   void keepOrigin();
   void reportHealth(int64_t utime);
+  std::string fillInProblem(int64_t utime) const;
   std::string lineProblem(int64_t utime) const;
   std::string measurementProblem(int64_t utime) const;
   void reportCounters(int64_t utime);
@@ -66,6 +71,7 @@ class InsDriverNode : public Node {
   Store& store_;
   std::string origin_problem_;  ///< before source_: filled while that is made
   std::unique_ptr<InsSource> source_;
+  std::optional<FillIn> fill_in_;
   HealthReporter health_;
   bool origin_kept_;
   bool was_open_ = false;

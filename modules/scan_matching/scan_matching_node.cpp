@@ -128,7 +128,12 @@ ScanMatchingConfig readScanMatchingConfig(ConfigReader& reader) {
   readMatching(reader, config.matcher);
   readMotion(reader.section("motion"), config.matcher.motion);
   readKeyScans(reader.section("key_scans"), config.matcher);
+  std::string channel = kIns.name;
+  reader.choice("channel", channel, {kIns.name, kScanMatching.name});
+  config.fills_in = channel == kScanMatching.name;
   reader.number("lowest", config.lowest, {-1.0, 5.0}, "m");
+  reader.number("ground_tilt", config.ground_tilt, {0.0, 0.5}, "rad");
+  reader.number("ground_noise", config.matcher.registration.ground_noise, {0.0, 10.0}, "m");
   reader.number("max_tilt", config.max_tilt, {0.0, 1.0}, "rad");
   reader.number("standing_after", config.standing_after, {0.1, 60.0}, "s");
   reader.number("silence", config.silence, {0.1, 60.0}, "s");
@@ -148,6 +153,8 @@ std::optional<Sweep> sweepOf(const ReceivedScan& scan, const ScanMatchingConfig&
   sweep.first = scan.first;
   sweep.last = scan.last;
   sweep.p_body_sensor = T_body_sensor.translation().head<2>();
+  if (config.ground_tilt > 0.0)
+    sweep.trusted_range = T_body_sensor.translation().z() / config.ground_tilt;
   for (const Beam& beam : scan.beams) {
     if (!beam.hit) continue;
     const Eigen::Vector3d p_body = T_body_sensor * beam.end;
@@ -182,6 +189,7 @@ ScanMatchingNode::ScanMatchingNode(const ScanMatchingConfig& config, Bus& bus)
   health_.watchNamesakes();
   bus.subscribe<scan_t>(kScan, [this](const scan_t& message) { hear(message); });
   bus.subscribe<motor_t>(kMotor, [this](const motor_t& message) { hear(message); });
+  if (config.fills_in) return;
   // Its own messages come back here, too: no input.
   bus.overhear<ins_t>(kIns, [this](const ins_t& message) { hear(message); });
 }
@@ -250,7 +258,7 @@ void ScanMatchingNode::match(const Sweep& sweep) {
   own_.push_back(message.utime);
   if (own_.size() > kMostOwn) own_.pop_front();
   if (pose.position_known && pose.heading_known) last_pose_ = bus_.now();
-  bus_.publish(kIns, message);
+  bus_.publish(config_.fills_in ? kScanMatching : kIns, message);
 }
 
 void ScanMatchingNode::count(const MatchedPose& pose) {

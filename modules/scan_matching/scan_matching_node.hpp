@@ -21,8 +21,10 @@ namespace tread::scan_matching {
 /// Configuration of scan_matching, with its defaults.
 struct ScanMatchingConfig {
   ScanMatcherConfig matcher;
-  double lowest = 0.1;    ///< [m] z_body: lower returns are the ground
-  double max_tilt = 0.2;  ///< [rad] of a range finder's plane in body: others look at the ground
+  bool fills_in = false;     ///< publishes SCAN_MATCHING, for ins_driver, not INS
+  double lowest = 0.1;       ///< [m] z_body: lower returns are the ground
+  double ground_tilt = 0.0;  ///< [rad] of the ground in sight against the robot; 0 = a flat floor
+  double max_tilt = 0.2;     ///< [rad] of a range finder's plane in body: others look at the ground
   double standing_after = 1.0;  ///< [s] of zero commands after which the robot stands
   double silence = 1.0;         ///< [s] without what is expected after which health says so
   std::string effective;        ///< the whole as YAML, for CONFIG
@@ -39,7 +41,7 @@ std::optional<Sweep> sweepOf(const ReceivedScan& scan, const ScanMatchingConfig&
 /** Height, roll and pitch are not measured: the ground counts as level, with z = 0. */
 ins_t messageOf(const MatchedPose& pose, int64_t seq);
 
-/// Publishes INS from SCAN, and says in HEALTH what it cannot tell and why.
+/// Publishes INS, or SCAN_MATCHING, from SCAN, and says in HEALTH what it cannot tell and why.
 class ScanMatchingNode : public Node {
  public:
   ScanMatchingNode(const ScanMatchingConfig& config, Bus& bus);

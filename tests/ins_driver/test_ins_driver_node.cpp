@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/bus/virtual_bus.hpp"
+#include "common/messages/blank.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "modules/ins_driver/ins_driver_node.hpp"
 #include "tests/helpers.hpp"
@@ -421,4 +422,64 @@ TEST_CASE("the map's origin survives being written and read to a tenth of a mill
   CHECK(std::abs(again.point.longitude - origin.point.longitude) * 6.4e6 < 1e-4);
   CHECK(again.altitude == origin.altitude);
   CHECK(again.yaw == origin.yaw);
+}
+
+TEST_CASE("while the device is silent INS goes on from scan matching, and HEALTH says so") {
+  Rig rig(configured("fill_in: {}"));
+  int64_t seq = 0;
+  // A frame of its own, in which the robot drives along x.
+  const auto scanned = [&](double seconds, bool device) {
+    for (const int64_t end = rig.bus.now() + std::llround(seconds * 1e6); rig.bus.now() < end;) {
+      auto message = blank<ins_t>();
+      message.utime = rig.bus.now();
+      message.seq = seq++;
+      message.position[0] = 1e-6 * static_cast<double>(rig.bus.now());
+      message.position[1] = message.position[2] = 0.0;
+      message.orientation[0] = 1.0;
+      message.orientation[1] = message.orientation[2] = message.orientation[3] = 0.0;
+      message.velocity[0] = 1.0;
+      message.velocity[1] = message.rate[2] = 0.0;
+      message.position_std[0] = message.position_std[1] = 0.01;
+      message.attitude_std[2] = 0.001;
+      message.ins_status = ins_t::STATUS_NO_ATTITUDE | (seq == 1 ? ins_t::STATUS_JUMP : 0);
+      rig.bus.outside().publish(kScanMatching, message);
+      if (device) {
+        rig.drive(0.1);
+      } else {
+        rig.wait(0.1);
+      }
+    }
+  };
+  scanned(2.0, true);
+  CHECK(rig.health.health_state == health_t::HEALTH_OK);
+  const size_t before = rig.track.size();
+  const double from = rig.track.back().position[0];
+  scanned(3.0, false);
+  CHECK(rig.track.size() - before >= 27);
+  for (size_t i = before + 2; i < rig.track.size(); ++i) {
+    CHECK(rig.track[i].ins_status == (ins_t::STATUS_FILLED_IN | ins_t::STATUS_NO_ATTITUDE));
+    CHECK(rig.track[i].seq == rig.track[i - 1].seq + 1);
+  }
+  CHECK(rig.track.back().position[0] - from == Approx(3.0).margin(0.15));
+  CHECK(rig.health.health_state == health_t::HEALTH_DEGRADED);
+  CHECK(rig.healthSays("no more bytes for"));
+  CHECK(rig.healthSays("poses are filled in by scan matching since"));
+  CHECK(rig.counter("poses filled in by scan matching") >= 25);
+
+  scanned(1.0, true);
+  CHECK(rig.track.back().ins_status == ins_t::STATUS_GOOD);
+  rig.drive(2.5);
+  CHECK(rig.healthSays("nothing to fill in with: no pose of scan matching for"));
+}
+
+TEST_CASE("without a fill_in section scan matching is not listened to") {
+  Rig rig;
+  rig.drive(1.0);
+  auto message = blank<ins_t>();
+  message.utime = rig.bus.now();
+  rig.bus.outside().publish(kScanMatching, message);
+  const size_t before = rig.track.size();
+  rig.wait(2.0);
+  CHECK(rig.track.size() <= before + 2);
+  CHECK(rig.health.health_state == health_t::HEALTH_FAILED);
 }

@@ -439,6 +439,7 @@ template <class Visitor>
 void forEachChannel(Visitor&& visit) {
   const auto visitOne = [&](const auto& channel, const auto& sample) { visit(channel, sample); };
   visitOne(kIns, sampleOf<ins_t>());
+  visitOne(kScanMatching, sampleOf<ins_t>());
   visitOne(kScan, sampleOf<scan_t>());
   visitOne(kMap, sampleOf<map_tile_t>());
   visitOne(kGoal, sampleOf<goal_t>());

@@ -100,6 +100,36 @@ TEST_CASE("SCAN becomes INS as a robot's processes take it") {
   CHECK(run.counters.at("scans matched") >= 37);
 }
 
+TEST_CASE("for an INS driver it publishes SCAN_MATCHING, and bears an INS beside it") {
+  ConfigReader reader = ConfigReader::fromText("channel: SCAN_MATCHING", "test");
+  NodeRun run(yard(), readScanMatchingConfig(reader));
+  int poses = 0;
+  run.bus.outside().subscribe<ins_t>(
+      kScanMatching, [&](const ins_t& message) { poses += planarPose(message) ? 1 : 0; });
+  auto other = blank<ins_t>();
+  other.satellites = 12;
+  for (int i = 0; i < 20; ++i) {
+    run.runFor(0.1, {0.8, 0.7});
+    other.utime = run.bus.now();
+    run.bus.outside().publish(kIns, other);
+  }
+  CHECK(poses >= 17);
+  CHECK(run.heard.empty());
+  CHECK(run.health.health_state == health_t::HEALTH_OK);
+}
+
+TEST_CASE("on hills what is seen only from afar is doubted") {
+  const auto sweep = [](const std::string& yaml) {
+    ConfigReader reader = ConfigReader::fromText(yaml, "test");
+    ReceivedScan scan;
+    scan.T_body_sensor = Eigen::Translation3d(0.2, 0.0, 0.5);
+    std::string refusal;
+    return sweepOf(scan, readScanMatchingConfig(reader), refusal)->trusted_range;
+  };
+  CHECK(std::isinf(sweep("{}")));
+  CHECK(sweep("ground_tilt: 0.1") == Approx(5.0));
+}
+
 TEST_CASE("without a SCAN, or in an open field, HEALTH says why there is no pose") {
   NodeRun field({});
   field.runFor(2.5, {0.5, 0.5});

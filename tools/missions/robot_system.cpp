@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <tuple>
 #include <utility>
 
@@ -22,8 +23,16 @@ namespace {
 /// How long each node takes on the robot's two cores [us], as delays in virtual time. Rounded up
 /// from what benchmarks and HEALTH show on a machine of that class.
 std::map<std::string, NodeTiming> usualTiming() {
-  return {{"ins_driver", {100, 0}},     {"lidar_driver", {200, 300}}, {"mapping", {8'000, 1'700}},
-          {"planner", {15'000, 3'100}}, {"learner", {1'000, 5'300}},  {"motor_bridge", {100, 700}}};
+  return {{"ins_driver", {100, 0}},    {"scan_matching", {2'000, 0}}, {"lidar_driver", {200, 300}},
+          {"mapping", {8'000, 1'700}}, {"planner", {15'000, 3'100}},  {"learner", {1'000, 5'300}},
+          {"motor_bridge", {100, 700}}};
+}
+
+/// Of every robot, and what only some have.
+std::vector<std::string> possibleNodes() {
+  std::vector<std::string> names = robotNodes();
+  names.push_back("scan_matching");
+  return names;
 }
 
 /// The faults with "every receiver" spelled out.
@@ -33,7 +42,7 @@ FaultPlan onTheRobot(const FaultPlan& faults) {
   for (MessageFault fault : faults.messages) {
     const bool all = fault.receiver == "*";
     if (!all) spelled.messages.push_back(fault);
-    for (const std::string& node : all ? robotNodes() : std::vector<std::string>{}) {
+    for (const std::string& node : all ? possibleNodes() : std::vector<std::string>{}) {
       fault.receiver = node;
       spelled.messages.push_back(fault);
     }
@@ -49,7 +58,7 @@ class RobotFiles {
     for (const std::string& words : overrides) {
       const size_t dot = words.find('.');
       const std::string process = words.substr(0, dot);
-      const auto& nodes = robotNodes();
+      const std::vector<std::string> nodes = possibleNodes();
       if (dot == std::string::npos || std::find(nodes.begin(), nodes.end(), process) == nodes.end())
         throw ConfigError("--set " + words + ": write PROCESS.KEY=VALUE, PROCESS one of " +
                           joinWords(nodes));
@@ -78,7 +87,7 @@ MessageFault readMessageFault(ConfigReader& reader) {
   std::vector<std::string> channels{"*"};
   for (const ChannelSpec& channel : kChannels) channels.push_back(channel.name);
   reader.choice("channel", fault.channel, channels);
-  std::vector<std::string> receivers = robotNodes();
+  std::vector<std::string> receivers = possibleNodes();
   receivers.push_back("*");
   reader.choice("receiver", fault.receiver, receivers);
   reader.number("drop", fault.drop, kShare, "1");
@@ -150,7 +159,9 @@ const std::vector<std::string>& robotNodes() {
 RobotConfig readRobot(const std::string& folder, const std::vector<std::string>& overrides) {
   RobotFiles files(folder, overrides);
   RobotConfig config(files.read("learner", learner::readLearnerConfig));
-  config.ins_driver = files.read("ins_driver", ins::readInsDriverConfig);
+  if (std::filesystem::exists(folder + "/scan_matching.yaml"))
+    config.scan_matching = files.read("scan_matching", scan_matching::readScanMatchingConfig);
+  if (config.hasIns()) config.ins_driver = files.read("ins_driver", ins::readInsDriverConfig);
   config.lidar_driver = files.read("lidar_driver", lidar::readLidarDriverConfig);
   config.mapping = files.read("mapping", mapping::readMappingConfig);
   config.planner = files.read("planner", planner::readPlannerConfig);
@@ -184,6 +195,9 @@ RobotSystem::RobotSystem(const RobotConfig& config, const sim::WorldDescription&
   settings.robot.start = T_map_start;
   settings.robot.start_utime = bus_->now();
   settings.robot.seed = seed;
+  // Goals are in the map, which begins where the robot is told that it stands.
+  if (config_.scan_matching && !config_.hasIns())
+    config_.scan_matching->matcher.start = T_map_start;
   devices_ = std::make_unique<sim::SimulatedDevices>(std::make_shared<const sim::World>(world),
                                                      settings, std::move(parts));
   scans_ = std::make_unique<SimulatedScans>(*devices_, disturb_scan_);
@@ -201,12 +215,17 @@ void RobotSystem::connect(const std::string& device, bool connected) {
 }
 
 void RobotSystem::addRobotNodes() {
-  add("ins_driver", [this](Bus& bus) {
-    return std::make_unique<ins::InsDriverNode>(config_.ins_driver, bus, *ins_line_, ins_store_);
-  });
+  if (config_.hasIns())
+    add("ins_driver", [this](Bus& bus) {
+      return std::make_unique<ins::InsDriverNode>(config_.ins_driver, bus, *ins_line_, ins_store_);
+    });
   add("lidar_driver", [this](Bus& bus) {
     return std::make_unique<lidar::LidarDriverNode>(config_.lidar_driver, bus, *scans_);
   });
+  if (config_.scan_matching)
+    add("scan_matching", [this](Bus& bus) {
+      return std::make_unique<scan_matching::ScanMatchingNode>(*config_.scan_matching, bus);
+    });
   add("mapping",
       [this](Bus& bus) { return std::make_unique<mapping::MappingNode>(config_.mapping, bus); });
   add("planner",

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@
 #include "modules/mapping/mapping_node.hpp"
 #include "modules/motor_bridge/motor_bridge_node.hpp"
 #include "modules/planner/planner_node.hpp"
+#include "modules/scan_matching/scan_matching_node.hpp"
 #include "modules/simulator/core/robot.hpp"
 #include "modules/simulator/emulators/simulated_devices.hpp"
 #include "tools/missions/world_kind.hpp"
@@ -71,8 +73,9 @@ struct RobotConfig {
   explicit RobotConfig(learner::LearnerNodeConfig learner_config)
       : learner(std::move(learner_config)) {}
 
-  learner::LearnerNodeConfig learner;  ///< with the shipped pattern set
-  ins::InsDriverConfig ins_driver;
+  learner::LearnerNodeConfig learner;                              ///< with the shipped pattern set
+  ins::InsDriverConfig ins_driver;                                 ///< where the robot has an INS
+  std::optional<scan_matching::ScanMatchingConfig> scan_matching;  ///< where the robot has it
   lidar::LidarDriverConfig lidar_driver;
   mapping::MappingConfig mapping;
   planner::PlannerConfig planner;
@@ -80,9 +83,12 @@ struct RobotConfig {
   sim::RobotSettings simulated;              ///< what the simulator drives in its place
   std::map<std::string, NodeTiming> timing;  ///< how long each node computes, as a model
   WorldKind world;                           ///< that its missions take place in
+
+  /// Else scan matching is in the INS's place.
+  bool hasIns() const { return !scan_matching || scan_matching->fills_in; }
 };
 
-/// Names of the robot's processes on the bus.
+/// Names of the processes that every robot has on the bus.
 const std::vector<std::string>& robotNodes();
 
 /// Reads a robot's folder (config/robots/teodor: one file a process); throws ConfigError with one

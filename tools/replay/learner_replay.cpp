@@ -182,6 +182,7 @@ LearnerRun runLearner(const DriveLog& log, const learner::LearnerNodeConfig& con
   for (const LogEvent& event : log.events) player.play(event);
   // Executions without INS at their end are given up after a while; HEALTH follows within a second.
   bus.runUntil(bus.now() + config.settle_us + config.give_up_us + 2 * kSecond);
+  run.set = static_cast<const learner::LearnerNode*>(bus.node(kNode))->set();
   return run;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,7 @@ struct LearnerRun {
   std::vector<learning_t> learned;          ///< one per execution, in order of their end
   std::map<std::string, int64_t> counters;  ///< the last of HEALTH
   std::string health;                       ///< last line of HEALTH; empty if all is well
+  std::optional<PatternSet> set;            ///< the last one
 };
 
 /// Feeds a log to the real learner node on the virtual bus, from an empty store. Deterministic.

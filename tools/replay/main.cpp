@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <cstdio>
+#include <filesystem>
 #include <limits>
 
 #include <CLI/CLI.hpp>
@@ -12,6 +13,7 @@
 #include "common/vehicle/model_document.hpp"
 #include "tools/replay/learner_replay.hpp"
 #include "tools/replay/matching_replay.hpp"
+#include "tools/replay/pose_comparison.hpp"
 #include "tools/replay/robot_replay.hpp"
 #include "tools/replay/sensor_replay.hpp"
 
@@ -122,6 +124,7 @@ struct LearnerArguments : Arguments {
   std::string patterns;
   std::vector<std::string> rules{"multi_model"};
   std::string write_patterns;
+  std::string poses = kIns.name;
 };
 
 /// A robot's log: its own sets and reports are compared.
@@ -135,6 +138,24 @@ void compareLearner(LearnerArguments& arguments) {
   const replay::LearnerCheck check = replay::checkLearner(log, config());
   say(reportOf(check), arguments.output);
   arguments.different = !check.equal();
+}
+
+/// A robot's log: what its learner would have made of the poses of another channel.
+void compareLearnedPoses(const LearnerArguments& arguments) {
+  std::string problem;
+  const std::vector<LogEvent> events = readEvents({arguments.log}, problem);
+  const auto config = [&] {
+    if (arguments.config.empty())
+      return replay::learnerConfigOf(replay::readRobotLog(arguments.log),
+                                     TREAD_CONFIG_DIR "/patterns");
+    ConfigReader reader = ConfigReader::fromFile(arguments.config);
+    return learner::readLearnerConfig(reader);
+  };
+  const std::string name = std::filesystem::path(arguments.log).stem().string();
+  const std::string damage = problem.empty() ? "" : "  " + problem + "\n";
+  say(name + ": " + reportOf(replay::comparePoses(name, events, arguments.poses, config())) +
+          damage,
+      arguments.output);
 }
 
 /// A log without a learner: how well the rules would have predicted its executions.
@@ -187,10 +208,18 @@ void addLearner(CLI::App& app, LearnerArguments& arguments) {
       ->delimiter(',')
       ->check(CLI::IsMember(learner::ruleNames()))
       ->capture_default_str();
+  command
+      .add_option("--poses", arguments.poses,
+                  "SCAN_MATCHING: what the log's learner would have made of these poses, beside "
+                  "those of INS")
+      ->check(CLI::IsMember({kIns.name, kScanMatching.name}))
+      ->excludes(source->get_option("--model"))
+      ->excludes(source->get_option("--patterns"));
   command.add_option("--write-patterns", arguments.write_patterns,
                      "write the set that learning begins with into a pattern file");
   addOutput(command, arguments.output);
   command.callback([&arguments] {
+    if (arguments.poses != kIns.name) return compareLearnedPoses(arguments);
     if (arguments.model.empty() && arguments.patterns.empty()) return compareLearner(arguments);
     replayLearner(arguments);
   });

@@ -257,6 +257,7 @@ void InsAssembler::remember(const DeviceEpoch& epoch, const PointInMap& point, i
 void InsAssembler::place(const PointInMap& point, InsEstimate& estimate) const {
   const bool has_heading = !(estimate.status & kNoHeading);
   estimate.p_map_body = point.p_map;
+  estimate.p_body_point = point.p_body;
   if (has_heading) estimate.p_map_body -= estimate.R_map_body * point.p_body;
   estimate.satellites = point.satellites;
   const double arm = point.p_body.head<2>().norm();

@@ -73,7 +73,8 @@ enum InsStatus : int32_t {
   kGap = 4,
   kJump = 8,
   kNoAttitude = 16,
-  kNoVelocity = 32
+  kNoVelocity = 32,
+  kFilledIn = 64
 };
 
 /// What the device measured at one instant, of the body in the map. NaN where it did not measure.
@@ -88,7 +89,9 @@ struct InsEstimate {
   Eigen::Vector3d position_std = Eigen::Vector3d::Constant(kUnmeasured);  ///< along map axes [m]
   Eigen::Vector3d attitude_std =
       Eigen::Vector3d::Constant(kUnmeasured);  ///< roll, pitch, yaw [rad]
-  int32_t status = kGood;                      ///< bits of InsStatus
+  /// While the heading is unknown p_map_body is the place of this point of the body [m].
+  Eigen::Vector3d p_body_point = Eigen::Vector3d::Zero();
+  int32_t status = kGood;  ///< bits of InsStatus
   int satellites = -1;                         ///< -1 unknown
 };
 

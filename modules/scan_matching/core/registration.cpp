@@ -43,7 +43,8 @@ struct Pair {
   Vector2d lever;   ///< from the body to the point, map axes [m]
   Vector2d offset;  ///< from the partner to the point [m]
   const ScanPoint* partner = nullptr;
-  double weight = 0.0;  ///< [1/m2] of its residual
+  double weight = 0.0;    ///< [1/m2] of its residual
+  bool doubtful = false;  ///< nobody saw it from near: may be the ground
 
   bool isLine() const { return partner->shape == Shape::kLine; }
   double residual() const { return isLine() ? partner->normal.dot(offset) : offset.norm(); }
@@ -62,7 +63,8 @@ std::vector<Pair> pairsAt(const std::vector<ScanPoint>& points, const LocalMap& 
     const Vector2d p_map = T_map_body * point.p;
     const ScanPoint* partner = map.nearest(p_map, radius, p_map_sensor);
     if (partner == nullptr) continue;
-    pairs.push_back({p_map - T_map_body.position(), p_map - partner->p, partner, 0.0});
+    pairs.push_back({p_map - T_map_body.position(), p_map - partner->p, partner, 0.0,
+                     point.doubtful && partner->doubtful});
   }
   return pairs;
 }
@@ -84,7 +86,9 @@ size_t pieceFrom(const std::vector<Pair>& pairs, size_t begin) {
   double length = 0.0;
   for (; end < pairs.size() && length <= kPiece; ++end) {
     const double step = (pairs[end].lever - pairs[end - 1].lever).norm();
-    if (step > kApart || pairs[end].isLine() != pairs[begin].isLine()) break;
+    if (step > kApart || pairs[end].isLine() != pairs[begin].isLine() ||
+        pairs[end].doubtful != pairs[begin].doubtful)
+      break;
     length += step;
   }
   return end;
@@ -144,15 +148,25 @@ void limitWeights(std::vector<Pair>& pairs, double surface_noise) {
   }
 }
 
+/// Pieces of what may be the ground tell no more than this error allows [m].
+void doubt(std::vector<Pair>& pairs, double ground_noise) {
+  for (const Piece& piece : piecesOf(pairs)) {
+    if (!pairs[piece.begin].doubtful) continue;
+    const double share = 1.0 / (1.0 + piece.weight * ground_noise * ground_noise);
+    for (size_t i = piece.begin; i < piece.end; ++i) pairs[i].weight *= share;
+  }
+}
+
 /// Sets the weights; returns the scale of the lines [m].
-double weigh(std::vector<Pair>& pairs, double range_noise) {
-  const double line = scaleOf(pairs, true, range_noise);
+double weigh(std::vector<Pair>& pairs, const RegistrationConfig& config) {
+  const double line = scaleOf(pairs, true, config.range_noise);
   const double scatter = scaleOf(pairs, false, kScatterNoise);
   for (Pair& pair : pairs) {
     const double scale = pair.isLine() ? line : scatter;
     const double far = pair.residual() / (kCauchy * scale);
     pair.weight = 1.0 / ((1.0 + far * far) * scale * scale);
   }
+  doubt(pairs, config.ground_noise);
   return line;
 }
 
@@ -245,7 +259,7 @@ Registration registerScan(const std::vector<ScanPoint>& points, const LocalMap& 
   double radius = kWideRadius;
   for (int i = 0; i < kMostIterations; ++i) {
     std::vector<Pair> pairs = pairsAt(points, map, result.T_map_body, p_body_sensor, radius);
-    result.noise = weigh(pairs, config.range_noise);
+    result.noise = weigh(pairs, config);
     result.matched = static_cast<int>(pairs.size());
     const Determined scan = determinedOf(normalOf(pairs));
     result.misfit = misfitOf(pairs, points.size());

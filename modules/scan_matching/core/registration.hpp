@@ -33,6 +33,7 @@ struct Registration {
 struct RegistrationConfig {
   double range_noise = 0.01;    ///< [m] standard deviation of a single range
   double surface_noise = 0.01;  ///< [m] least error that the points of one thing share
+  double ground_noise = 0.3;    ///< [m] the same of what may be the ground
 };
 
 /// Lays a scan onto the map, beginning at a pose: iterative closest point with distances to lines.
@@ -46,7 +47,9 @@ struct RegistrationConfig {
  *     m are undetermined: there the prior alone counts. From the others F is taken off.
  *  4. What stands in the map is not the same from everywhere (leaves, a slope, the map's own
  * error): the points of 2 m of one thing share an error that their number does not make smaller. It
- *     is told by how far such pieces as a whole lie off. */
+ *     is told by how far such pieces as a whole lie off.
+ *  5. What both the scan and the map saw only from afar may be the ground, which a level beam meets
+ *     where that rises: such pieces tell no more than `ground_noise` allows. */
 Registration registerScan(const std::vector<ScanPoint>& points, const LocalMap& map,
                           const Pose2& start, const PosePrior& prior,
                           const Eigen::Vector2d& p_body_sensor, const RegistrationConfig& config);

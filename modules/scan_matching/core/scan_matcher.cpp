@@ -104,6 +104,8 @@ ScanMatcher::Match ScanMatcher::match(const Sweep& sweep, const Twist2& twist) c
   Match result;
   result.points = scanPoints(sweep.returns, sweep.p_body_sensor, twist,
                              secondsOf(sweep.last - sweep.first), config_.points);
+  for (ScanPoint& point : result.points)
+    point.doubtful = (point.p - sweep.p_body_sensor).norm() > sweep.trusted_range;
   if (static_cast<int>(result.points.size()) < config_.min_points || map_.empty()) return result;
   const PosePrior prior{filter_.pose(), filter_.poseCovariance()};
   const auto lay = [&](const Pose2& start) {

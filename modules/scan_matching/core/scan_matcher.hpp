@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -39,6 +40,7 @@ struct Sweep {
   int64_t last = 0;   ///< [us] of the last
   Eigen::Vector2d p_body_sensor = Eigen::Vector2d::Zero();
   std::vector<PlanarReturn> returns;
+  double trusted_range = std::numeric_limits<double>::infinity();  ///< [m] beyond may be the ground
   bool standing = false;  ///< the motors have been off for long: the body stands
 };
 

@@ -30,6 +30,7 @@ struct ScanPoint {
   double spread = 0.0;                               ///< [m] to the nearest other point of its scan
   double normal_variance = 0.0;                      ///< of its direction [rad2]
   Shape shape = Shape::kScatter;
+  bool doubtful = false;  ///< may be the ground: it moves as the robot tilts
 };
 
 /// How returns become points.

@@ -6,12 +6,14 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <limits>
 
 #include "common/recordings/csv_table.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "tests/tools/replay/synthetic_drive.hpp"
 #include "tools/replay/learner_replay.hpp"
+#include "tools/replay/pose_comparison.hpp"
 
 using namespace tread;
 using namespace tread::replay;
@@ -197,4 +199,57 @@ TEST_CASE("real grass goes through the learner") {
   REQUIRE(summarise(off.learned).count >= 35);
   REQUIRE(summarise(collective.learned).count == summarise(off.learned).count);
   REQUIRE(summarise(collective.learned).yaw_mean < summarise(off.learned).yaw_mean);
+}
+
+namespace {
+
+/// The events of a drive, with its poses on SCAN_MATCHING, too, but for what `change` does to them.
+std::vector<LogEvent> withScanMatching(const DriveLog& log,
+                                       const std::function<void(ins_t&)>& change) {
+  std::vector<LogEvent> events = log.events;
+  for (const LogEvent& event : log.events) {
+    ins_t message;
+    if (!decode(event, kIns, message)) continue;
+    change(message);
+    LogEvent other{event.utime, kScanMatching.name, {}};
+    other.bytes.resize(static_cast<size_t>(message.getEncodedSize()));
+    message.encode(other.bytes.data(), 0, static_cast<int>(other.bytes.size()));
+    events.push_back(std::move(other));
+  }
+  std::stable_sort(events.begin(), events.end(),
+                   [](const LogEvent& a, const LogEvent& b) { return a.utime < b.utime; });
+  return events;
+}
+
+}  // namespace
+
+TEST_CASE("the learner is compared with itself, fed by the poses of scan matching") {
+  const DriveLog log = syntheticLog(syntheticRecording(kTruth, 12));
+  const learner::LearnerNodeConfig config = configFor(predictedSet(log, kModel), "collective");
+  const auto compared = [&](const std::function<void(ins_t&)>& change) {
+    return comparePoses("drive", withScanMatching(log, change), kScanMatching.name, config);
+  };
+
+  const PoseComparison same = compared([](ins_t&) {});
+  INFO(reportOf(same));
+  CHECK(same.learned_with_ins >= 10);
+  CHECK(same.learned_with_other == same.learned_with_ins);
+  CHECK(same.corrected.position > 0.1);
+  CHECK(same.apart.position < 1e-9);
+  CHECK(same.measured_apart < 1e-9);
+  CHECK(same.errors_with_other.position_mean ==
+        Approx(same.errors_with_ins.position_mean).margin(1e-9));
+
+  // Scans that make each way a tenth too short.
+  const PoseComparison shorter = compared([](ins_t& message) {
+    message.position[0] *= 0.9;
+    message.position[1] *= 0.9;
+  });
+  INFO(reportOf(shorter));
+  CHECK(shorter.apart.position > 0.01);
+  CHECK(shorter.measured_apart > 0.1);
+  CHECK(shorter.apart.yaw < 0.2 * shorter.corrected.yaw);
+
+  CHECK_THROWS_WITH(comparePoses("drive", log.events, kScanMatching.name, config),
+                    Catch::Contains("drive: no SCAN_MATCHING"));
 }
