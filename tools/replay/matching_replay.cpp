@@ -233,6 +233,7 @@ MatchingReplay replayMatching(const MappingRecording& recording,
   if (!replay.truth.empty()) config.matcher.start = replay.truth.front().T_map_body;
   scan_matching::ScanMatcher matcher(config.matcher);
   double cpu = 0.0;
+  std::vector<MatchedSweep> sweeps;
   for (size_t i = 0; i < recording.scans.size(); ++i) {
     std::string refusal;
     const auto scan = readScan(recording.scans[i], refusal);
@@ -248,7 +249,8 @@ MatchingReplay replayMatching(const MappingRecording& recording,
       sweep->last += ahead;
     }
     const double begin = cpuNow();
-    replay.poses.push_back(matcher.take(*sweep));
+    sweeps.push_back({*sweep, matcher.take(*sweep)});
+    replay.poses.push_back(sweeps.back().pose);
     replay.poses.back().utime = scan->last;
     const double took = cpuNow() - begin;
     cpu += took;
@@ -256,6 +258,7 @@ MatchingReplay replayMatching(const MappingRecording& recording,
     ++replay.outcomes[nameOf(replay.poses.back().outcome)];
   }
   replay.cpu_mean_ms = cpu / std::max(1.0, static_cast<double>(replay.poses.size()));
+  replay.closure = closureOf(sweeps, config.matcher);
   const std::vector<int64_t> delayed = delaysOf(recording);
   replay.comparison = compareTracks(replay.poses, [&](int64_t utime) -> std::optional<Pose2> {
     for (const int64_t late : delayed)
@@ -272,7 +275,14 @@ std::string reportOf(const MatchingReplay& replay) {
   out << std::fixed << std::setprecision(2) << "; " << replay.cpu_mean_ms
       << " ms of CPU a scan, at most " << replay.cpu_max_ms << '\n';
   if (!replay.problem.empty()) out << "  " << replay.problem << '\n';
-  out << reportOf(replay.comparison);
+  out << reportOf(replay.comparison) << std::setprecision(4)
+      << "  three scans in a row, each on one other alone: " << replay.closure.yaw.size()
+      << " triangles, open by a median of " << quantile(replay.closure.position, 0.5) << " m "
+      << quantile(replay.closure.yaw, 0.5) << " rad, 95 % "
+      << quantile(replay.closure.position, 0.95) << " m " << quantile(replay.closure.yaw, 0.95)
+      << " rad; over told deviation " << std::setprecision(2) << replay.closure.normalized_position
+      << " " << replay.closure.normalized_yaw << ", within two "
+      << 100.0 * replay.closure.within_two << " %\n";
   return out.str();
 }
 

@@ -10,6 +10,7 @@
 
 #include "common/geometry/track.hpp"
 #include "modules/scan_matching/scan_matching_node.hpp"
+#include "tools/replay/scan_closure.hpp"
 #include "tools/replay/sensor_replay.hpp"
 
 namespace tread {
@@ -53,6 +54,7 @@ struct MatchingReplay {
   std::vector<TimedPose> truth;             ///< of the recording
   std::map<std::string, int64_t> outcomes;  ///< scans, by what became of them
   TrackComparison comparison;
+  ScanClosure closure;
   double cpu_mean_ms = 0.0;  ///< of this process, per scan
   double cpu_max_ms = 0.0;
   std::string problem;  ///< one clear line if the recording is damaged

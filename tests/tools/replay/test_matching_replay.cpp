@@ -149,6 +149,11 @@ TEST_CASE("on the Freiburg campus 300 scans a metre apart are matched to 3 cm an
   CHECK(median(replay.comparison.per_metre.position) < 0.03);
   CHECK(median(replay.comparison.per_metre.yaw) < 0.003);
   CHECK(replay.comparison.per_metre.within_two > 0.4);
+  // What the reference's own errors have no part in.
+  CHECK(replay.closure.yaw.size() >= 200);
+  CHECK(replay.closure.normalized_position < 1.5);
+  CHECK(replay.closure.normalized_yaw < 1.5);
+  CHECK(replay.closure.within_two > 0.9);
 }
 
 // Not part of the tests: the figures of RESULTS.md.
