@@ -36,6 +36,7 @@ void readLine(Link& link, const Take& take) {
 DirectRobot::DirectRobot(Site& site, const Drivers& drivers)
     : site_(site),
       full_command_(drivers.full_command),
+      full_second_(drivers.isCar() ? drivers.full_steering : drivers.full_command),
       motor_link_(openLine(site, drivers.motor_address)),
       ins_link_(openLine(site, drivers.ins_address)),
       controller_(drivers.make_motor()),
@@ -96,7 +97,7 @@ std::string DirectRobot::run(double seconds, const Choose& choose,
       silent_ = !shares;
       if (shares) {
         commands_.push_back({now, *shares});
-        controller_->command({full_command_ * shares->left, full_command_ * shares->right}, now);
+        controller_->command({full_command_ * shares->left, full_second_ * shares->right}, now);
       }
     }
     exchange();

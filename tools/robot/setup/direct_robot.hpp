@@ -45,7 +45,7 @@ class DirectRobot {
   std::string fault() const;
 
   Site& site_;
-  double full_command_;
+  double full_command_, full_second_;  ///< of left and right, or of throttle and steering
   std::unique_ptr<Link> motor_link_, ins_link_;
   std::unique_ptr<motor::MotorController> controller_;
   std::unique_ptr<ins::InsSource> ins_;

@@ -162,6 +162,13 @@ class Search {
   };
 
   std::vector<Candidate> controllers(const std::string& address) {
+    if (findings_.robot.drive.isCar()) {
+      std::vector<Candidate> all;
+      if (parseLinkAddress(address).kind != Kind::kCan)
+        all.push_back({"vesc", carSection(findings_), "", DriveLayout::kThrottleSteering});
+      addDescribed(all);
+      return all;
+    }
     // Four controllers hold two, so that they are asked for first.
     const DriveLayout four = DriveLayout::kSkidSteer4;
     const std::string can = "vesc_can:\n  watchdog: 0.2\n";
@@ -173,13 +180,18 @@ class Search {
     std::vector<Candidate> all{{"roboteq", "roboteq:\n  watchdog: 0.2           # s\n", ""},
                                {"vesc", vesc, "", four},
                                {"vesc", vesc, ""}};
+    addDescribed(all);
+    return all;
+  }
+
+  void addDescribed(std::vector<Candidate>& all) {
     std::istringstream files(person_.ask("line_protocols"));
     for (std::string file; std::getline(files, file, ',');) {
       if (file == "none") continue;
       const std::string text = readText(file);
-      all.push_back({"line_protocol", "line_protocol:\n" + indented(text, 2), text});
+      all.push_back({"line_protocol", "line_protocol:\n" + indented(text, 2), text,
+                     findings_.robot.drive.layout});
     }
-    return all;
   }
 
   bool askControllers(const std::string& address) {

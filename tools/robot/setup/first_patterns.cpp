@@ -151,7 +151,7 @@ Pose2 presentPose(RunningRobot& robot, Latest<ins_t>& ins) {
 }  // namespace
 
 std::string recipeFor(const RobotFindings& findings) {
-  return Recipe(findings).text();
+  return findings.robot.drive.isCar() ? carRecipeFor(findings) : Recipe(findings).text();
 }
 
 RecordedPatterns recordPatterns(Site& site, Interview& person, const std::string& folder,

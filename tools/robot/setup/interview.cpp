@@ -27,6 +27,10 @@ const std::vector<Question>& questions() {
       {"rear", "How far backward [m]?", {}},
       {"half_width", "How wide is it, by half [m]?", {}},
       {"height", "How high is it [m]?", {}},
+      {"wheelbase",
+       "If it steers like a car: how far are its axles apart [m]? The middle is that of the rear "
+       "one. 0 if it has two sides",
+       "0"},
       {"range_finder_x", "How far forward of the middle is the range finder [m]?", {}},
       {"range_finder_y", "How far to the left [m]?", "0"},
       {"range_finder_z", "How high above the ground [m]?", {}},
@@ -46,6 +50,7 @@ const std::vector<Question>& questions() {
        {}},
       {"first_track", "Which track turned first: left or right?", {}},
       {"first_direction", "Which way did it turn: forward or backward?", {}},
+      {"first_steering", "Where did the front wheels turn first: left or right?", "left"},
       {"watchdog_stopped",
        "Both tracks ran, then nothing was sent for a second. Did they stop by themselves: yes or "
        "no?",

@@ -78,6 +78,12 @@ std::string indented(const std::string& text, size_t blanks) {
   return result;
 }
 
+std::string carSection(const RobotFindings& findings) {
+  return "vesc:\n  throttle: [1]\n  steering: 1             # its servo output\n  servo_left: " +
+         rounded(findings.servo_left) + "\n  servo_right: " + rounded(findings.servo_right) +
+         "\n  watchdog: 0.2           # s\n";
+}
+
 std::string robotText(const RobotDescription& robot) {
   const auto& ins = robot.ins;
   const auto& finder = robot.range_finder;
@@ -90,11 +96,15 @@ std::string robotText(const RobotDescription& robot) {
       "                # m, as it turns on the ground\ndrive:\n" +
       (robot.drive.layout == DriveLayout::kSkidSteer4 ? "  layout: skid_steer_4\n" : "") +
       "  kind: " + nameOf(robot.drive.kind) + "\n  full_speed: " + rounded(robot.drive.full_speed) +
-      "         # m/s of a track at full command\n  max_command: " +
-      rounded(robot.drive.max_command) +
-      "\n  left_channel: " + std::to_string(robot.drive.left_channel) +
-      "\n  invert_left: " + flag(robot.drive.invert_left) +
-      "\n  invert_right: " + flag(robot.drive.invert_right) +
+      "         # m/s at full command\n  max_command: " + rounded(robot.drive.max_command) +
+      (robot.drive.isCar()
+           ? "\n  layout: throttle_steering\n  wheelbase: " + rounded(robot.drive.wheelbase) +
+                 "          # m\n  max_steering: " + rounded(robot.drive.max_steering) +
+                 "       # rad"
+           : "\n  left_channel: " + std::to_string(robot.drive.left_channel)) +
+      "\n  invert_" + (robot.drive.isCar() ? "throttle" : "left") + ": " +
+      flag(robot.drive.invert_left) + "\n  invert_" + (robot.drive.isCar() ? "steering" : "right") +
+      ": " + flag(robot.drive.invert_right) +
       "\nins:\n  antenna: " + numbersOf(ins.p_body.x(), ins.p_body.y(), ins.p_body.z()) +
       "  # m in body\n  mounting: " + numbersOf(ins.angles.yaw, ins.angles.pitch, ins.angles.roll) +
       "  # rad: yaw, pitch and roll\nrange_finder:\n  position: " +
@@ -113,6 +123,17 @@ std::string robotText(const RobotDescription& robot) {
   return text + "operator:\n  lease: 1                  # s\n  lost: stop\n";
 }
 
+namespace {
+
+void takeDrive(const DriveDescription& drive, Drivers& drivers) {
+  drivers.full_command = drive.fullCommand();
+  if (!drive.isCar()) return;
+  drivers.full_steering = drive.max_steering;
+  drivers.wheelbase = drive.wheelbase;
+}
+
+}  // namespace
+
 Drivers driversOf(const RobotFindings& findings) {
   const std::string robot = "robot:\n" + indented(robotText(findings.robot), 2);
   Drivers drivers;
@@ -121,7 +142,7 @@ Drivers driversOf(const RobotFindings& findings) {
     drivers.make_ins = ins::readInsDriverConfig(ins).make_source;
     drivers.ins_address = findings.ins.address;
   }
-  drivers.full_command = findings.robot.drive.fullCommand();
+  takeDrive(findings.robot.drive, drivers);
   if (findings.controller.kind.empty()) return drivers;
   ConfigReader motor = ConfigReader::fromText(
       "controller: " + findings.controller.kind + "\n" + findings.controller.section + robot,
@@ -137,15 +158,24 @@ Drivers driversOf(const std::string& folder) {
   ConfigReader beside = ConfigReader::fromText("{}", folder + "/setup");
   const ins::InsDriverConfig ins_config = ins::readInsDriverConfig(ins);
   const motor::MotorBridgeConfig motor_config = motor::readMotorBridgeConfig(motor);
-  return {ins_config.address, ins_config.make_source, motor_config.address,
-          motor_config.make_controller, readRobot(beside).drive.fullCommand()};
+  Drivers drivers;
+  drivers.ins_address = ins_config.address;
+  drivers.make_ins = ins_config.make_source;
+  drivers.motor_address = motor_config.address;
+  drivers.make_motor = motor_config.make_controller;
+  takeDrive(readRobot(beside).drive, drivers);
+  return drivers;
 }
 
 void proposeLimits(RobotFindings& findings) {
   const WiringReport& wiring = findings.wiring;
   RobotDescription& robot = findings.robot;
   robot.drive.full_speed = wiring.fullSpeed();
-  robot.gauge = wiring.gauge.value;
+  if (robot.drive.isCar()) {
+    robot.drive.max_steering = std::min(wiring.steering_left.value, -wiring.steering_right.value);
+  } else {
+    robot.gauge = wiring.gauge.value;
+  }
   robot.max_speed = std::max(4.0, 3.0 * robot.drive.full_speed);
   robot.stopping_time = std::clamp(1.5 * (wiring.delay.high + wiring.lag.high), 0.3, 3.0);
   if (!findings.has_attitude) return;
@@ -162,7 +192,11 @@ ModelDocument modelOf(const RobotFindings& findings) {
   model.name = findings.robot.name;
   model.kind = CommandKind::kPower;
   model.full_speed = 0.5 * (left + right) / (1.0 - wiring.dead_power.value);
-  model.gauge = wiring.gauge.value;
+  model.gauge = findings.robot.gauge;
+  if (findings.robot.drive.isCar()) {
+    model.wheelbase = findings.robot.drive.wheelbase;
+    model.steering_lag = wiring.steering_lag.value;
+  }
   model.lag = wiring.lag.value;
   model.delay = wiring.delay.value;
   model.effects.motor_deadband = wiring.dead_power.value * model.full_speed;

@@ -28,8 +28,9 @@ struct Device {
 struct RobotFindings {
   RobotDescription robot;
   Device ins, controller, range_finder;
-  bool has_attitude = false;     ///< the INS measures roll and pitch
-  double watchdog = 0.2;         ///< [s] of the controller
+  bool has_attitude = false;                     ///< the INS measures roll and pitch
+  double watchdog = 0.2;                         ///< [s] of the controller
+  double servo_left = 0.85, servo_right = 0.15;  ///< of a car with VESCs: its servo's ends
   std::string line_description;  ///< text of the controller's line protocol; empty = none
   WiringReport wiring;
   double range = 0.0;            ///< [m] of the range finder
@@ -37,6 +38,8 @@ struct RobotFindings {
   double marking_range = 10.0;   ///< [m]
 };
 
+/// Lines of YAML of a car's VESC.
+std::string carSection(const RobotFindings& findings);
 /// robot.yaml.
 std::string robotText(const RobotDescription& robot);
 /// Text with each line indented by so many blanks.
@@ -49,6 +52,10 @@ struct Drivers {
   std::string motor_address;
   std::function<std::unique_ptr<motor::MotorController>()> make_motor;
   double full_command = 1.0;
+  double full_steering = 0.0;  ///< [rad] of a car
+  double wheelbase = 0.0;      ///< [m] of a car; 0 = two sides
+
+  bool isCar() const { return wheelbase > 0.0; }
 };
 
 /// Exactly as its folder will say.

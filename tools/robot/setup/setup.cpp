@@ -17,10 +17,11 @@
 namespace tread::setup {
 namespace {
 
-constexpr double kSwing = 0.08;    // [m] of footprint beyond the outline
-constexpr double kAskew = 0.26;    // [rad]: the ground is not that steep, the INS leans
-constexpr double kAhead = 10.0;    // [m] of the first goal
-constexpr double kMarking = 10.0;  // [m]
+constexpr double kSwing = 0.08;         // [m] of footprint beyond the outline
+constexpr double kAskew = 0.26;         // [rad]: the ground is not that steep, the INS leans
+constexpr double kAhead = 10.0;         // [m] of the first goal
+constexpr double kMarking = 10.0;       // [m]
+constexpr double kUsualSteering = 0.5;  // [rad] until it is measured
 
 bool isName(const std::string& name) {
   return !name.empty() &&
@@ -36,7 +37,8 @@ class Setup {
     try {
       describe();
       discover(site_, person_, found());
-      person_.say("wheels up: each track alone");
+      person_.say(found().robot.drive.isCar() ? "wheels up: throttle, then steering"
+                                              : "wheels up: each track alone");
       result_.lift = tryWheelsUp(site_, person_, driversOf(found()));
       for (const std::string& problem : result_.lift.problems) person_.say(problem);
       levelIns();
@@ -79,6 +81,7 @@ class Setup {
                      person_.number("half_width", {0.05, 5.0})};
     robot.footprint = robot.outline.widened(kSwing);
     robot.height = person_.number("height", {0.1, 5.0});
+    const double wheelbase = person_.number("wheelbase", {0.0, 10.0});
     robot.range_finder.p_body = {person_.number("range_finder_x", kPlace),
                                  person_.number("range_finder_y", kPlace),
                                  person_.number("range_finder_z", kPlace)};
@@ -89,6 +92,11 @@ class Setup {
     robot.gauge = 1.5 * robot.outline.half_width;
     robot.drive.full_speed = robot.drive.max_command = 1.0;
     robot.max_speed = 20.0;
+    if (wheelbase > 0.0) {
+      robot.drive.layout = DriveLayout::kThrottleSteering;
+      robot.drive.wheelbase = wheelbase;
+      robot.drive.max_steering = kUsualSteering;
+    }
     result_.folder = folder;
     std::filesystem::create_directories(folder);
   }
@@ -115,23 +123,37 @@ class Setup {
 
   void driveOut() {
     person_.say("wheels down: a minute in the free circle");
-    const WiringExpectation expected{0.0, result_.lift.seen};
+    WiringExpectation expected;
+    expected.seen = result_.lift.seen;
     result_.ground = tryWheelsDown(site_, driversOf(found()), {}, expected, true);
     const WiringReport& wiring = found().wiring = result_.ground.wiring;
     for (const WiringFault& fault : wiring.faults) person_.say("found: " + fault.words);
     if (!result_.ground.problem.empty()) throw std::runtime_error(result_.ground.problem);
     if (!wiring.unsure.empty()) throw std::runtime_error(wiring.unsure);
-    for (const FaultKind kind : {FaultKind::kNoMotion, FaultKind::kDead, FaultKind::kInsMirrored})
+    for (const FaultKind kind : {FaultKind::kNoMotion, FaultKind::kDead, FaultKind::kInsMirrored,
+                                 FaultKind::kSteeringDead})
       for (const WiringFault& fault : wiring.faults)
         if (fault.kind == kind) throw std::runtime_error(fault.words);
     applyWiring(wiring, found());
     proposeLimits(found());
     if (wiring.has(FaultKind::kInsElsewhere)) moveIns(wiring);
     verify();
+    sayMeasured(wiring);
+  }
+
+  void sayMeasured(const WiringReport& wiring) {
+    const std::string late =
+        "; delay " + fixed(wiring.delay.value, 2) + " s, lag " + fixed(wiring.lag.value, 2) + " s";
+    if (found().robot.drive.isCar())
+      return person_.say(
+          "measured: " + saidInterval(wiring.full_left.low, wiring.full_left.high, "m/s") +
+          " at full throttle, wheels turn by " + fixed(toDegrees(wiring.steering_left.value), 0) +
+          " deg to the left and " + fixed(-toDegrees(wiring.steering_right.value), 0) +
+          " deg to the right" + late + ", of the steering " + fixed(wiring.steering_lag.value, 2) +
+          " s");
     person_.say("measured: " + saidInterval(wiring.full_left.low, wiring.full_left.high, "m/s") +
                 " left, " + saidInterval(wiring.full_right.low, wiring.full_right.high, "m/s") +
-                " right at full command; delay " + fixed(wiring.delay.value, 2) + " s, lag " +
-                fixed(wiring.lag.value, 2) + " s, as if " + fixed(wiring.gauge.value, 2) +
+                " right at full command" + late + ", as if " + fixed(wiring.gauge.value, 2) +
                 " m wide");
   }
 
@@ -145,8 +167,10 @@ class Setup {
 
   /// With the corrections nothing may be wrong any more but what they cannot mend.
   void verify() {
-    const GroundReport again =
-        tryWheelsDown(site_, driversOf(found()), preDrive(), {0.0, {}, true}, false);
+    WiringExpectation brief;
+    brief.brief = true;
+    const GroundReport again = tryWheelsDown(site_, driversOf(found()),
+                                             preDrive(found().robot.drive.isCar()), brief, false);
     if (!again.problem.empty()) throw std::runtime_error(again.problem);
     for (const WiringFault& fault : again.wiring.faults)
       if (fault.kind != FaultKind::kWeak && fault.kind != FaultKind::kInsElsewhere &&
@@ -186,8 +210,12 @@ SetupResult setUp(Site& site, Interview& person, const std::string& robots) {
 
 PreDrive preDriveOf(Site& site, const std::string& folder) {
   ConfigReader beside = ConfigReader::fromText("{}", folder + "/setup");
-  const WiringExpectation expected{readRobot(beside).gauge, {}, true};
-  const GroundReport ground = tryWheelsDown(site, driversOf(folder), preDrive(), expected, false);
+  WiringExpectation expected;
+  expected.gauge = readRobot(beside).gauge;
+  expected.brief = true;
+  const Drivers drivers = driversOf(folder);
+  const GroundReport ground =
+      tryWheelsDown(site, drivers, preDrive(drivers.isCar()), expected, false);
   PreDrive drive;
   drive.problem = !ground.problem.empty() ? ground.problem : ground.wiring.unsure;
   drive.faults = ground.wiring.faults;

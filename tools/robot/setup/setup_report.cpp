@@ -33,7 +33,7 @@ std::string pathChart(const std::string& title, const std::vector<Pose2>& track,
 }
 
 /// Speed of the INS over time with the commands' mean as it would be at full speed.
-std::string speedChart(const GroundReport& ground) {
+std::string speedChart(const GroundReport& ground, bool is_car) {
   std::vector<ChartPoint> measured, commanded;
   ChartRange range = ChartRange::empty();
   if (ground.fixes.size() < 10 || ground.commands.empty()) return "";
@@ -50,7 +50,9 @@ std::string speedChart(const GroundReport& ground) {
     range.include(measured.back());
   }
   for (const GivenCommand& given : ground.commands) {
-    const double share = 0.5 * (given.command.left + given.command.right);
+    // A car's second one is its steering.
+    const double share =
+        is_car ? given.command.left : 0.5 * (given.command.left + given.command.right);
     commanded.push_back({seconds(given.utime), share * ground.wiring.fullSpeed()});
     range.include(commanded.back());
   }
@@ -82,19 +84,27 @@ std::vector<std::string> row(const std::string& what, const Interval& value,
           fixed(scale * value.low, decimals) + " to " + fixed(scale * value.high, decimals)};
 }
 
-report::Table measuredTable(const WiringReport& wiring) {
+report::Table measuredTable(const WiringReport& wiring, bool is_car) {
   const double degrees = toDegrees(1.0);
-  return {{"measured", "value", "95 %"},
-          {row("left track at full command", wiring.full_left, "m/s", 2),
-           row("right track at full command", wiring.full_right, "m/s", 2),
-           row("width, as it turns", wiring.gauge, "m", 2),
-           row("delay of a command", wiring.delay, "s", 2),
-           row("lag of the tracks", wiring.lag, "s", 2),
-           row("commands that move nothing", wiring.dead_power, "%", 0, 100.0),
-           row("INS turned against what was told", wiring.mounting_yaw, "deg", 1, degrees),
-           row("INS ahead of what was told", wiring.antenna_x, "m", 2),
-           row("INS left of what was told", wiring.antenna_y, "m", 2)},
-          1};
+  using Rows = std::vector<std::vector<std::string>>;
+  Rows rows =
+      is_car ? Rows{row("speed at full throttle", wiring.full_left, "m/s", 2),
+                    row("wheels at full steering to the left", wiring.steering_left, "deg", 1,
+                        degrees),
+                    row("the same to the right", wiring.steering_right, "deg", 1, degrees),
+                    row("wheels without steering", wiring.steering_straight, "deg", 1, degrees),
+                    row("lag of the steering", wiring.steering_lag, "s", 2)}
+             : Rows{row("left track at full command", wiring.full_left, "m/s", 2),
+                    row("right track at full command", wiring.full_right, "m/s", 2),
+                    row("width, as it turns", wiring.gauge, "m", 2)};
+  const Rows both{row("delay of a command", wiring.delay, "s", 2),
+                  row("lag of the motors", wiring.lag, "s", 2),
+                  row("commands that move nothing", wiring.dead_power, "%", 0, 100.0),
+                  row("INS turned against what was told", wiring.mounting_yaw, "deg", 1, degrees),
+                  row("INS ahead of what was told", wiring.antenna_x, "m", 2),
+                  row("INS left of what was told", wiring.antenna_y, "m", 2)};
+  rows.insert(rows.end(), both.begin(), both.end());
+  return {{"measured", "value", "95 %"}, rows, 1};
 }
 
 report::Table deviceTable(const RobotFindings& found) {
@@ -121,7 +131,7 @@ std::string reportOf(const SetupResult& result) {
   for (const InsFix& fix : result.ground.fixes) circle.push_back(fix.T_map_body);
   report::Pictures pictures;
   if (!circle.empty()) pictures.svg.push_back(pathChart("The minute in the circle", circle, {}));
-  const std::string speeds = speedChart(result.ground);
+  const std::string speeds = speedChart(result.ground, found.robot.drive.isCar());
   if (!speeds.empty()) pictures.svg.push_back(speeds);
   if (result.recorded) pictures.svg.push_back(patternChart(result.recorded->patterns));
   if (!result.goal.track.empty())
@@ -129,7 +139,7 @@ std::string reportOf(const SetupResult& result) {
   if (!pictures.svg.empty()) page.first.emplace_back(pictures);
   if (!result.ground.fixes.empty()) {
     report::Section section{"What was measured", {}};
-    section.blocks.emplace_back(measuredTable(result.ground.wiring));
+    section.blocks.emplace_back(measuredTable(result.ground.wiring, found.robot.drive.isCar()));
     report::Points faults;
     for (const WiringFault& fault : result.ground.wiring.faults)
       faults.items.push_back(fault.words);

@@ -28,17 +28,25 @@ TrackCommand ofSide(int side, double share) {
   return side == 0 ? TrackCommand{share, 0.0} : TrackCommand{0.0, share};
 }
 
+TrackCommand straight(const Drivers& drivers, double share) {
+  return {share, drivers.isCar() ? 0.0 : share};
+}
+
 class Lift {
  public:
   Lift(Site& site, Interview& person, const Drivers& drivers)
-      : person_(person), robot_(site, drivers) {}
+      : person_(person), drivers_(drivers), robot_(site, drivers) {}
 
   LiftReport run() {
     require(robot_.begin());
     person_.confirm("wheels_up");
-    for (const int side : {0, 1}) {
-      trySide(side);
-      if (side == 0) ask();
+    if (drivers_.isCar()) {
+      tryCar();
+    } else {
+      for (const int side : {0, 1}) {
+        trySide(side);
+        if (side == 0) ask();
+      }
     }
     tryWatchdog();
     return report_;
@@ -72,10 +80,21 @@ class Lift {
     const motor::MotorTelemetry running = robot_.telemetry();
     lifted.current = running.current[static_cast<size_t>(side)];
     if (told && toldMotion(running, side) < idle + 0.3)
-      report_.problems.push_back(std::string("the configured ") + (side == 0 ? "left" : "right") +
-                                 " side draws no current and does not turn at 40 %: look at its "
+      report_.problems.push_back((drivers_.isCar() ? std::string("the throttle")
+                                                   : std::string("the configured ") +
+                                                         (side == 0 ? "left" : "right") + " side") +
+                                 " draws no current and does not turn at 40 %: look at its "
                                  "motor, its fuse and its channel");
     hold(0.6, TrackCommand{});
+  }
+
+  /// The servo tells nothing: what it does a person sees.
+  void tryCar() {
+    trySide(0);
+    report_.seen.forward = person_.choice("first_direction", {"forward", "backward"}) == "forward";
+    for (const double share : {1.0, -1.0, 0.0}) hold(1.0, TrackCommand{0.0, share});
+    report_.seen.side =
+        person_.choice("first_steering", {"left", "right"}) == "left" ? Side::kLeft : Side::kRight;
   }
 
   void ask() {
@@ -87,7 +106,7 @@ class Lift {
   /// The line falls silent: the controller must stop by itself. What drives it would give zero,
   /// too, once it may speak again, so that only a person can tell.
   void tryWatchdog() {
-    hold(1.0, TrackCommand{kLiftedLevel, kLiftedLevel});
+    hold(1.0, straight(drivers_, kLiftedLevel));
     hold(kSilence, std::nullopt);
     require(robot_.begin());
     hold(0.5, TrackCommand{});
@@ -98,13 +117,14 @@ class Lift {
   }
 
   Interview& person_;
+  Drivers drivers_;
   DirectRobot robot_;
   LiftReport report_;
 };
 
 /// [s] until the INS sees it stand after commands cease.
-double coastAfterSilence(DirectRobot& robot, double level) {
-  robot.run(1.0, [&](int64_t) { return TrackCommand{level, level}; });
+double coastAfterSilence(DirectRobot& robot, const TrackCommand& command) {
+  robot.run(1.0, [&](int64_t) { return command; });
   const int64_t last = robot.commands().back().utime;
   std::optional<double> stopped;
   const auto standing = [&] {
@@ -138,7 +158,9 @@ GroundReport tryWheelsDown(Site& site, const Drivers& drivers, const WiringDrive
   report.problem = robot.begin();
   if (!report.problem.empty()) return report;
   robot.run(0.5, [](int64_t) { return TrackCommand{}; });
-  WiringDrive drive(how);
+  WiringDriveConfig config = how;
+  config.car = drivers.isCar();
+  WiringDrive drive(config);
   std::string fault;
   // A line that was disturbed for a moment does not end it.
   for (int i = 0; i < kDisturbances && (i == 0 || robot.begin().empty()); ++i) {
@@ -151,14 +173,41 @@ GroundReport tryWheelsDown(Site& site, const Drivers& drivers, const WiringDrive
   report.problem = fault.empty() ? drive.problem() : fault;
   report.commands = robot.commands();
   report.fixes = robot.fixes();
-  report.wiring = checkWiring(report.commands, report.fixes, expected);
+  WiringExpectation told = expected;
+  told.wheelbase = drivers.wheelbase;
+  report.wiring = checkWiring(report.commands, report.fixes, told);
   if (watchdog && report.problem.empty() && !report.wiring.has(FaultKind::kNoMotion))
-    report.watchdog = coastAfterSilence(robot, 0.5);
+    report.watchdog = coastAfterSilence(robot, straight(drivers, 0.5));
   return report;
 }
 
-void applyWiring(const WiringReport& wiring, RobotFindings& findings) {
+namespace {
+
+/// Moves the servo's ends so that no steering is straight ahead, and both sides as far.
+void centreServo(const WiringReport& wiring, RobotFindings& findings) {
+  if (findings.controller.kind != "vesc") return;
+  const double reach = 0.5 * (wiring.steering_left.value - wiring.steering_right.value);
+  const double askew = wiring.steering_straight.value;
+  const double even = reach - std::abs(askew);
+  const double middle = 0.5 * (findings.servo_left + findings.servo_right);
+  const double half = 0.5 * (findings.servo_left - findings.servo_right);
+  const double turned = findings.robot.drive.invert_right ? -1.0 : 1.0;
+  const auto position = [&](double angle) {
+    return std::clamp(middle + turned * half * (angle - askew) / reach, 0.0, 1.0);
+  };
+  findings.servo_left = position(turned * even);
+  findings.servo_right = position(-turned * even);
+  findings.controller.section = carSection(findings);
+}
+
+void applyToCar(const WiringReport& wiring, RobotFindings& findings) {
   DriveDescription& drive = findings.robot.drive;
+  if (!wiring.moves[0].forward) drive.invert_left = !drive.invert_left;
+  if (!wiring.moves[1].forward) drive.invert_right = !drive.invert_right;
+  if (wiring.has(FaultKind::kSteeringAskew)) centreServo(wiring, findings);
+}
+
+void applyToSides(const WiringReport& wiring, DriveDescription& drive) {
   const DriveDescription before = drive;
   for (const int i : {0, 1}) {
     const SideMotion& moves = wiring.moves[static_cast<size_t>(i)];
@@ -166,6 +215,16 @@ void applyWiring(const WiringReport& wiring, RobotFindings& findings) {
     (moves.side == Side::kLeft ? drive.invert_left : drive.invert_right) = inverted;
   }
   if (wiring.moves[0].side == Side::kRight) drive.left_channel = 3 - before.left_channel;
+}
+
+}  // namespace
+
+void applyWiring(const WiringReport& wiring, RobotFindings& findings) {
+  if (findings.robot.drive.isCar()) {
+    applyToCar(wiring, findings);
+  } else {
+    applyToSides(wiring, findings.robot.drive);
+  }
   double& yaw = findings.robot.ins.angles.yaw;
   if (wiring.has(FaultKind::kInsTurned)) yaw = wrapAngle(yaw + wiring.mounting_yaw.value);
 }

@@ -161,6 +161,52 @@ TEST_CASE("front and rear exchanged for the INS, both motors reversed: to the fi
   CHECK(result.findings.wiring.has(FaultKind::kInsTurned));
 }
 
+TEST_CASE("a car whose throttle and steering are reversed: to the first goal") {
+  OwnFolder folder;
+  HiddenMachine hidden = machine("vesc", "tarmac", 13);
+  const sim::LaserParameters laser = hidden.settings.robot.laser;
+  hidden.settings.robot =
+      sim::readSimulatedRobot(std::string(TREAD_SOURCE_DIR) + "/tests/data/robots/car");
+  hidden.settings.robot.seed = 13;
+  hidden.settings.robot.laser.range_max = laser.range_max;
+  hidden.settings.robot.wiring.invert_left = hidden.settings.robot.wiring.invert_right = true;
+  hidden.settings.robot.ins.mounting.angles.yaw = 0.3;
+  // Where it looks in the end is free for 10 m, as the person is asked.
+  hidden.world.obstacles.resize(4);
+  VirtualSite site(hidden);
+  VirtualPerson person(site, R"(name: beetle
+front: 1.15
+rear: 0.25
+half_width: 0.4
+height: 0.9
+wheelbase: 0.9
+range_finder_x: 1.05
+range_finder_z: 0.45
+wheels_up: yes
+first_direction: backward
+first_steering: right
+watchdog_stopped: yes
+wheels_down: yes
+record: yes
+go: yes
+)");
+  const SetupResult result = setUp(site, person, folder.path("robots"));
+  UNSCOPED_INFO(person.heard());
+  CHECK(result.problem == "");
+  CHECK(result.goal.arrived);
+  CHECK(result.minutes < 30.0);
+  const DriveDescription& drive = result.findings.robot.drive;
+  CHECK(drive.isCar());
+  CHECK(drive.invert_left);
+  CHECK(drive.invert_right);
+  CHECK(result.findings.wiring.has(FaultKind::kReversed));
+  CHECK(result.findings.wiring.has(FaultKind::kSteeringReversed));
+  CHECK(result.findings.wiring.has(FaultKind::kInsTurned));
+  CHECK(std::abs(result.findings.robot.ins.angles.yaw - 0.3) < 0.05);
+  // The servo's ends that were told turn the wheels less far than it can.
+  CHECK(std::abs(drive.max_steering - 0.5 * 0.35 / 0.4) < 0.05);
+}
+
 TEST_CASE("a Hokuyo is found by what it says of itself") {
   const char* const port = "tcp:192.168.0.10:10940";
   HiddenMachine hidden = machine("roboteq", "grass", 3);

@@ -12,33 +12,41 @@
 #include "modules/mapping/mapping_node.hpp"
 #include "modules/motor_bridge/motor_bridge_node.hpp"
 #include "modules/planner/planner_node.hpp"
+#include "modules/simulator/core/car.hpp"
 
 namespace tread::setup {
 namespace {
 
-/// A tracked vehicle that may be lifted: its tracks then run free, and it stands.
+/// A vehicle that may be lifted: its tracks then run free, and it stands.
 class LiftableVehicle : public sim::Plant {
  public:
   LiftableVehicle(const sim::VehicleParameters& parameters, std::shared_ptr<bool> lifted)
-      : parameters_(parameters), vehicle_(parameters), lifted_(std::move(lifted)) {}
+      : parameters_(parameters), lifted_(std::move(lifted)) {
+    if (parameters.wheelbase > 0.0) {
+      vehicle_ = std::make_unique<sim::Car>(parameters);
+    } else {
+      vehicle_ = std::make_unique<sim::TrackedVehicle>(parameters);
+    }
+  }
 
   void step(const sim::MotorPower& power, const sim::Ground& ground, double dt) override {
-    if (!*lifted_) return vehicle_.step(power, ground, dt);
-    const double voltage = vehicle_.battery().voltage;
+    if (!*lifted_) return vehicle_->step(power, ground, dt);
+    const double voltage = vehicle_->battery().voltage;
     const double left = std::clamp(power.left, -1.0, 1.0) * parameters_.left_power;
     const double right = std::clamp(power.right, -1.0, 1.0) * parameters_.right_power;
     sim::stepTrack(parameters_.drive, left, voltage, {}, dt, left_);
+    if (parameters_.wheelbase > 0.0) return;  // the servo draws nothing from this supply
     sim::stepTrack(parameters_.drive, right, voltage, {}, dt, right_);
   }
-  Twist2 velocity() const override { return *lifted_ ? Twist2{} : vehicle_.velocity(); }
-  const sim::TrackDrive& left() const override { return *lifted_ ? left_ : vehicle_.left(); }
-  const sim::TrackDrive& right() const override { return *lifted_ ? right_ : vehicle_.right(); }
-  const sim::Battery& battery() const override { return vehicle_.battery(); }
-  void stopBody() override { vehicle_.stopBody(); }
+  Twist2 velocity() const override { return *lifted_ ? Twist2{} : vehicle_->velocity(); }
+  const sim::TrackDrive& left() const override { return *lifted_ ? left_ : vehicle_->left(); }
+  const sim::TrackDrive& right() const override { return *lifted_ ? right_ : vehicle_->right(); }
+  const sim::Battery& battery() const override { return vehicle_->battery(); }
+  void stopBody() override { vehicle_->stopBody(); }
 
  private:
   sim::VehicleParameters parameters_;
-  sim::TrackedVehicle vehicle_;
+  std::unique_ptr<sim::Plant> vehicle_;
   std::shared_ptr<bool> lifted_;
   sim::TrackDrive left_, right_;
 };

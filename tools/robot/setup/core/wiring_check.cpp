@@ -4,49 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
 
-#include "common/geometry/degrees.hpp"
+#include "tools/robot/setup/core/car_check.hpp"
+#include "tools/robot/setup/core/ins_faults.hpp"
 #include "tools/robot/setup/core/wiring_geometry.hpp"
 
 namespace tread::setup {
 namespace {
 
-constexpr size_t kFewRows = 25;
-constexpr size_t kParts = 12;          // of the drive, each left out once
-constexpr double kStudent = 2.2;       // 95 % with that many parts
-constexpr double kStandsStill = 0.05;  // [m/s], [rad/s]: no motion at full command
-constexpr double kDeadShare = 0.15;    // of the other side's motion
-struct Tolerance {
-  double turn;       // [rad] of the INS
-  double elsewhere;  // [m] of the INS
-  double gauge;      // share off the told one
-  double weak;       // share of the other side
-};
-constexpr Tolerance kMinute{0.05, 0.15, 0.2, 0.9}, kSeconds{0.2, 0.3, 0.6, 0.7};
+constexpr double kDeadShare = 0.15;        // of the other side's motion
 constexpr double kTurnedBesideDead = 0.8;  // [rad]
-constexpr double kTurnedForSure = 0.5;     // [rad]
 constexpr double kSteadyShare = 0.04;      // that a pulse ends before it is quite steady
-constexpr double kMirrorGain = 0.6;        // residual of the mirrored yaw over that of the told one
 
 double motionOf(const WiringFit& fit, int side) {
   return fit.atFull() *
          std::max(fit.response.block<2, 1>(0, side).norm(), 0.3 * std::abs(fit.response(2, side)));
-}
-
-std::string fixedText(double value, int decimals) {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(decimals) << value;
-  return text.str();
-}
-
-std::string inMetres(double value) {
-  return fixedText(value, 2) + " m";
-}
-
-std::string inDegrees(double angle) {
-  return fixedText(toDegrees(angle), 0) + " deg";
 }
 
 class Check {
@@ -85,9 +57,7 @@ class Check {
     report_.dead = {left < std::max(kStandsStill, kDeadShare * right),
                     right < std::max(kStandsStill, kDeadShare * left)};
     if (!report_.dead[0] || !report_.dead[1]) return true;
-    add(FaultKind::kNoMotion, {}, 0.0,
-        "nothing moves on either side, or the INS is frozen: release the emergency stop, look at "
-        "fuses and the power stage, and whether the INS's position changes when it is carried");
+    report_.faults.push_back(nothingMoves());
     return false;
   }
 
@@ -155,17 +125,11 @@ class Check {
     return {mean, mean - reach, mean + reach};
   }
 
-  /// Leave-one-out variance of a quantity.
   static Interval intervalOf(size_t q, const Quantities& best,
                              const std::vector<Quantities>& parts) {
-    const auto off = [&](const Quantities& part) {
-      return q == kYaw ? wrapAngle(part[q] - best[q]) : part[q] - best[q];
-    };
-    double mean = 0.0, squares = 0.0;
-    for (const Quantities& part : parts) mean += off(part) / kParts;
-    for (const Quantities& part : parts) squares += std::pow(off(part) - mean, 2);
-    const double reach = kStudent * std::sqrt(squares * (kParts - 1) / kParts);
-    return {best[q], best[q] - reach, best[q] + reach};
+    std::vector<double> values;
+    for (const Quantities& part : parts) values.push_back(part[q]);
+    return leavingOneOut(best[q], values, q == kYaw);
   }
 
   void describe(const WiringGeometry& best) {
@@ -186,30 +150,19 @@ class Check {
   }
 
   void judgeIns() {
-    if (mirrored_ || contradicts_)
-      add(FaultKind::kInsMirrored, {}, 0.0,
-          mirrored_ ? "the INS is mirrored: its heading turns the other way round than its path; "
-                      "set the sense of its heading at the device (clockwise from north)"
-                    : "the INS is mirrored, or what was seen is not so: a turn to the left is one "
-                      "to the right for it; look at its mounting and its axes, and try again");
+    if (mirrored_ || contradicts_) report_.faults.push_back(insMirrored(mirrored_));
     const Interval& yaw = report_.mounting_yaw;
     // One track alone may turn it about another point than the dead one's middle.
     const double least = oneIsDead() ? kTurnedBesideDead : tolerance_.turn;
     if (yaw.low > least || yaw.high < -least)
-      add(FaultKind::kInsTurned, {}, yaw.value,
-          "the INS is turned by " + inDegrees(yaw.value) + " (" + inDegrees(yaw.low) + " to " +
-              inDegrees(yaw.high) +
-              ") against what is configured; set ins: mounting of robot.yaml" +
-              (std::abs(yaw.value) > 0.9 * kPi && !expected_.seen
+      report_.faults.push_back(insTurned(
+          yaw, std::abs(yaw.value) > 0.9 * kPi && !expected_.seen
                    ? "; or both motors run backwards and are swapped: look which way it goes"
                    : ""));
     const double off = std::hypot(report_.antenna_x.value, report_.antenna_y.value);
     const bool sure = !report_.antenna_x.holds(0.0) || !report_.antenna_y.holds(0.0);
     if (!oneIsDead() && off > tolerance_.elsewhere && sure)
-      add(FaultKind::kInsElsewhere, {}, off,
-          "the INS measures " + inMetres(report_.antenna_x.value) + " ahead and " +
-              inMetres(report_.antenna_y.value) +
-              " left of where it is configured; set ins: antenna of robot.yaml");
+      report_.faults.push_back(insElsewhere(report_.antenna_x, report_.antenna_y));
   }
 
   void judgeSides() {
@@ -283,6 +236,7 @@ double WiringReport::fullSpeed() const {
 
 WiringReport checkWiring(const std::vector<GivenCommand>& commands,
                          const std::vector<InsFix>& fixes, const WiringExpectation& expected) {
+  if (expected.wheelbase > 0.0) return checkCar(commands, fixes, expected);
   return Check(commands, fixes, expected).run();
 }
 

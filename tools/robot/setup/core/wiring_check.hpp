@@ -42,6 +42,10 @@ struct WiringExpectation {
   /// cannot tell a vehicle from the same one with front and rear exchanged.
   std::optional<SideMotion> seen;
   bool brief = false;  ///< a few seconds: only large deviations count
+  /// [m] between the axles of a car, whose commands are throttle and steering instead of left and
+  /// right: then `seen.forward` is where throttle drives, `seen.side` where steering turns. 0 = two
+  /// sides.
+  double wheelbase = 0.0;
 };
 
 enum class FaultKind {
@@ -53,7 +57,10 @@ enum class FaultKind {
   kInsTurned,
   kInsMirrored,
   kInsElsewhere,
-  kGauge
+  kGauge,
+  kSteeringReversed,
+  kSteeringDead,
+  kSteeringAskew
 };
 
 /// Something that is not as it is configured.
@@ -70,15 +77,19 @@ struct WiringReport {
   /// What the configured left and right side really move.
   std::array<SideMotion, 2> moves{SideMotion{Side::kLeft, true}, SideMotion{Side::kRight, true}};
   std::array<bool, 2> dead{false, false};  ///< configured left and right side
-  Interval full_left;     ///< [m/s] of the real left track at full command, on this ground
-  Interval full_right;    ///< [m/s]
-  Interval gauge;         ///< [m] effective: track speed difference over yaw rate
-  Interval mounting_yaw;  ///< [rad] to be added to the configured one
-  Interval antenna_x;     ///< [m] in body, of the INS's point beside the configured one
-  Interval antenna_y;     ///< [m]
-  Interval delay;         ///< [s] from a command to its effect in the INS
-  Interval lag;           ///< [s]
-  Interval dead_power;    ///< [1]
+  Interval full_left;          ///< [m/s] of the real left track at full command, on this ground
+  Interval full_right;         ///< [m/s]
+  Interval gauge;              ///< [m] effective: track speed difference over yaw rate
+  Interval mounting_yaw;       ///< [rad] to be added to the configured one
+  Interval antenna_x;          ///< [m] in body, of the INS's point beside the configured one
+  Interval antenna_y;          ///< [m]
+  Interval delay;              ///< [s] from a command to its effect in the INS
+  Interval lag;                ///< [s]
+  Interval dead_power;         ///< [1]
+  Interval steering_left;      ///< [rad] of a car at full steering to the left
+  Interval steering_right;     ///< [rad] the same to the right, negative
+  Interval steering_straight;  ///< [rad] at none
+  Interval steering_lag;       ///< [s]
   WiringFit fit;
   std::vector<WiringFault> faults;
 

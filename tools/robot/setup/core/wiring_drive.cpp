@@ -10,20 +10,14 @@
 namespace tread::setup {
 namespace {
 
-constexpr double kLongestPulse = 2.0;  // [s]
-constexpr double kMovedAway = 0.04;    // [m] that count as motion
-constexpr double kMovedRound = 0.06;   // [rad]
-constexpr double kLevelStep = 0.15;
+constexpr double kLongestPulse = 2.0;    // [s]
+constexpr double kMovedAway = 0.04;      // [m] that count as motion
+constexpr double kMovedRound = 0.06;     // [rad]
 constexpr int64_t kSpeedSpan = 300'000;  // [us]
 constexpr int64_t kBlind = 500'000;      // [us] without a pose
 constexpr double kTurnAsTravel = 0.35;   // [m] per rad, so that turns are short, too
 
-/// A pulse: shares of the level for both sides, slow or full, and how much of the travel.
-struct Pulse {
-  double left, right;
-  bool full;
-  double share;
-};
+using Pulse = WiringDrive::Pulse;
 
 /// To and fro by turns, so that it stays where it is; the ways back of turns are shorter, so that
 /// it looks to all sides in the end.
@@ -36,9 +30,19 @@ constexpr Pulse kRound[] = {
     {1, 0.5, true, 0.8}, {-1, -0.5, true, 0.8}, {0.5, 1, true, 0.8}, {-0.5, -1, true, 0.8}};
 constexpr size_t kPulses = sizeof kRound / sizeof kRound[0];
 
+/// The same for throttle and steering: back with the same steering it comes where it was.
+constexpr Pulse kCarRound[] = {{1, 1, false, 1},   {-1, 1, false, 1},  {1, -1, false, 1},
+                               {-1, -1, false, 1}, {1, 0, false, 1},   {-1, 0, false, 1},
+                               {1, 0, true, 1},    {-1, 0, true, 1},   {1, 1, true, 1},
+                               {-1, 1, true, 1},   {1, -1, true, 1},   {-1, -1, true, 1},
+                               {1, 0, true, 1},    {-1, 0, true, 1},   {1, 0.5, true, 1},
+                               {-1, 0.5, true, 1}, {1, -0.5, true, 1}, {-1, -0.5, true, 1}};
+constexpr size_t kCarPulses = sizeof kCarRound / sizeof kCarRound[0];
+constexpr double kHomeward = 0.3;  // of the room: from here on a car drives back
+
 }  // namespace
 
-WiringDriveConfig preDrive() {
+WiringDriveConfig preDrive(bool car) {
   WiringDriveConfig config;
   config.room = 1.0;
   config.seconds = 8.0;
@@ -47,6 +51,12 @@ WiringDriveConfig preDrive() {
   config.pause = 0.35;
   config.first_level = 0.3;
   config.most_path = 0.75;
+  if (!car) return config;
+  config.car = true;
+  config.seconds = 12.0;
+  config.shortest = 0.25;
+  config.first_level = 0.12;
+  config.level_step = 0.06;
   return config;
 }
 
@@ -82,7 +92,9 @@ TrackCommand WiringDrive::step(int64_t utime, const std::optional<Pose2>& T_map_
   } else if (path_ > config_.most_path) {
     end("");
   } else if (home_) {
-    if (utime >= pulse_end_ && (command_.left != 0.0 || command_.right != 0.0)) feel();
+    if (config_.car && utime >= pulse_begin_ && utime < pulse_end_) command_.left = throttle_;
+    const bool moves = command_.left != 0.0 || (!config_.car && command_.right != 0.0);
+    if (utime >= pulse_end_ && moves) feel();
     if (utime >= pause_end_ && !done_) begin(utime);
   }
   return command_;
@@ -90,8 +102,9 @@ TrackCommand WiringDrive::step(int64_t utime, const std::optional<Pose2>& T_map_
 
 /// A pulse has ended: what did it do?
 void WiringDrive::feel() {
-  const double share = std::max(std::abs(command_.left), std::abs(command_.right));
-  command_ = {};
+  const double share = config_.car ? std::abs(command_.left)
+                                   : std::max(std::abs(command_.left), std::abs(command_.right));
+  command_ = {0.0, config_.car ? command_.right : 0.0};
   const Pose2& now = recent_.back().second;
   const Pose2& then = recent_.front().second;
   const double time =
@@ -99,6 +112,8 @@ void WiringDrive::feel() {
   const double went =
       distanceBetween(then, now) + kTurnAsTravel * std::abs(wrapAngle(now.yaw - then.yaw));
   fastest_ = std::max(fastest_, went / time / share);
+  if (config_.car && distanceBetween(pulse_start_, now) > kMovedAway)
+    way_ = std::copysign(1.0, throttle_) * (now.position() - pulse_start_.position());
   tried_ = true;
 }
 
@@ -108,31 +123,51 @@ void WiringDrive::judge() {
   felt_ = distanceBetween(pulse_start_, now) > kMovedAway ||
           std::abs(wrapAngle(now.yaw - pulse_start_.yaw)) > kMovedRound;
   if (!felt_ && level_ >= 1.0) end("");  // both sides at full command: nothing moves
-  if (!felt_) level_ = std::min(1.0, level_ + kLevelStep);
+  if (!felt_) level_ = std::min(1.0, level_ + config_.level_step);
+}
+
+WiringDrive::Pulse WiringDrive::nextPulse() {
+  // One side alone: the other one may be dead, or turn the other way round.
+  if (!felt_) return {1, config_.car ? 1.0 : 0.5, false, 1};
+  const size_t at = pulse_++;
+  if (!config_.car) return kRound[at % kPulses];
+  Pulse pulse = kCarRound[at % kCarPulses];
+  const Eigen::Vector2d home = home_->position() - last_->position();
+  if (way_ && home.norm() > kHomeward * config_.room)
+    pulse.left = std::copysign(pulse.left, home.dot(*way_));
+  return pulse;
+}
+
+double WiringDrive::levelOf(const Pulse& pulse) const {
+  if (!felt_) return level_;
+  const bool brief = config_.travel < 0.5;
+  if (pulse.full && !brief) return 1.0;
+  if (config_.car && brief) return std::min(1.0, level_ + config_.level_step);
+  return std::min(1.0, std::max(0.5, level_ + config_.level_step));
 }
 
 void WiringDrive::begin(int64_t utime) {
   if (tried_ && !felt_) judge();
   if (done_) return;
   if (utime - *start_ > toMicroseconds(config_.seconds) && pulse_ % 2 == 0) return end("");
-  const double slow = std::min(1.0, std::max(0.5, level_ + kLevelStep));
-  Pulse pulse = kRound[pulse_ % kPulses];
-  double level = pulse.full && config_.travel > 0.5 ? 1.0 : slow;
-  // One side alone: the other one may be dead, or turn the other way round.
-  if (!felt_) {
-    pulse = {1, 0.5, false, 1};
-    level = level_;
-  } else {
-    ++pulse_;
-  }
+  const Pulse pulse = nextPulse();
+  const double level = levelOf(pulse);
   const double far = distanceBetween(*home_, *last_) > 0.5 * config_.room ? 0.5 : 1.0;
   const double speed = std::max(0.05, fastest_ * level);
   const double time = felt_ ? std::clamp(far * pulse.share * config_.travel / speed,
                                          pulse.share * config_.shortest, kLongestPulse)
                             : config_.shortest;
   pulse_start_ = *last_;
-  command_ = {level * pulse.left, level * pulse.right};
-  pulse_end_ = utime + toMicroseconds(time);
+  pulse_begin_ = utime;
+  if (config_.car) {
+    // The wheels first: a servo is slow.
+    if (command_.right != pulse.right) pulse_begin_ += toMicroseconds(config_.pause);
+    throttle_ = level * pulse.left;
+    command_ = {0.0, pulse.right};
+  } else {
+    command_ = {level * pulse.left, level * pulse.right};
+  }
+  pulse_end_ = pulse_begin_ + toMicroseconds(time);
   pause_end_ = pulse_end_ + toMicroseconds(config_.pause);
 }
 

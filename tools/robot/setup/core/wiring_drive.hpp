@@ -22,17 +22,28 @@ struct WiringDriveConfig {
   double shortest = 0.9;     ///< [s] of a pulse
   double pause = 0.6;        ///< [s] between two
   double first_level = 0.2;  ///< [1] of the command that it begins with; it rises until it moves
+  bool car = false;          ///< commands are throttle and steering
+  double level_step = 0.15;  ///< [1] by which it rises
   double most_path = 1e3;    ///< [m] it ends before it has driven farther
 };
 
-/// The 10 s before a drive: less than a metre of path.
-WiringDriveConfig preDrive();
+/// The 10 s before a drive: less than a metre of path. A car begins more gently: it needs a path to
+/// turn on.
+WiringDriveConfig preDrive(bool car);
 
 /// Chooses commands that tell what hangs where: pulses to and fro, straight, turning, each side
 /// alone, slow and full; shorter where the vehicle is fast or far from the middle.
 /** Knows nothing of the wiring, only keeps to the circle. Commands are shares of the full one. */
 class WiringDrive {
  public:
+  /// Shares of the level for both sides, or for throttle and steering; slow or full; and how much
+  /// of the travel.
+  struct Pulse {
+    double left, right;
+    bool full;
+    double share;
+  };
+
   explicit WiringDrive(const WiringDriveConfig& config);
 
   /// The command from now on [us]; `T_map_body` if the INS told a pose that is fresh.
@@ -49,6 +60,8 @@ class WiringDrive {
   void begin(int64_t utime);
   void feel();
   void judge();
+  Pulse nextPulse();
+  double levelOf(const Pulse& pulse) const;
   void end(const std::string& problem);
 
   WiringDriveConfig config_;
@@ -64,6 +77,9 @@ class WiringDrive {
   Pose2 pulse_start_;
   size_t pulse_ = 0;  ///< of the round
   TrackCommand command_;
+  std::optional<Eigen::Vector2d> way_;  ///< [m] of a car's last pulse, as if the throttle was +
+  double throttle_ = 0.0;               ///< of a car, once its wheels stand as they shall
+  int64_t pulse_begin_ = 0;
   int64_t pulse_end_ = 0;
   int64_t pause_end_ = 0;
   bool done_ = false;

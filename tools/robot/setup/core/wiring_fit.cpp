@@ -9,28 +9,57 @@
 namespace tread::setup {
 namespace {
 
-constexpr double kFitStep = 0.01;  // [s] of integration
 constexpr double kWindow = 0.1;    // [s] of a row
 constexpr double kMostGap = 0.15;  // [s] between fixes that belong together
 constexpr double kFinest = 0.001;  // of the search, [s] and [1]
 const Eigen::Vector3d kLeastShape(0.0, 0.005, 0.0), kMostShape(0.8, 1.5, 0.6);
 
+}  // namespace
+
 double beyondDead(double command, double dead) {
   return std::copysign(std::max(0.0, std::abs(command) - dead), command);
 }
 
-}  // namespace
+double delayedAt(const std::vector<double>& held, size_t step, double delay) {
+  const double back = static_cast<double>(step) - delay / kFitStep;
+  const double floor = std::floor(back);
+  double value = 0.0;
+  for (const int k : {0, 1}) {
+    const double index = floor + k;
+    if (index < 0.0) continue;
+    const double share = k == 0 ? 1.0 - (back - floor) : back - floor;
+    value += share * held[std::min(held.size() - 1, static_cast<size_t>(index))];
+  }
+  return value;
+}
 
-WiringRows::WiringRows(const std::vector<GivenCommand>& commands,
-                       const std::vector<InsFix>& fixes) {
-  if (commands.empty() || fixes.empty()) return;
+Eigen::Vector3d MotionRow::seen(bool mirrored) const {
+  const double at = mirrored ? -yaw : yaw;
+  const double c = std::cos(at), s = std::sin(at);
+  return {c * moved_map.x() + s * moved_map.y(), c * moved_map.y() - s * moved_map.x(),
+          mirrored ? -turned : turned};
+}
+
+std::vector<TrackCommand> heldCommands(const std::vector<GivenCommand>& commands,
+                                       const std::vector<InsFix>& fixes) {
+  std::vector<TrackCommand> held;
+  if (commands.empty() || fixes.empty()) return held;
   const int64_t start = commands.front().utime;
   const auto seconds = [start](int64_t utime) { return 1e-6 * static_cast<double>(utime - start); };
   size_t at = 0;
   for (double t = 0.0; t < seconds(fixes.back().utime) + kFitStep; t += kFitStep) {
     while (at + 1 < commands.size() && seconds(commands[at + 1].utime) <= t) ++at;
-    held_.push_back(commands[at].command);
+    held.push_back(commands[at].command);
   }
+  return held;
+}
+
+std::vector<MotionRow> motionRows(const std::vector<GivenCommand>& commands,
+                                  const std::vector<InsFix>& fixes) {
+  std::vector<MotionRow> rows;
+  if (commands.empty() || fixes.empty()) return rows;
+  const int64_t start = commands.front().utime;
+  const auto seconds = [start](int64_t utime) { return 1e-6 * static_cast<double>(utime - start); };
   size_t first = 0;
   double turned = 0.0;
   for (size_t i = 1; i < fixes.size(); ++i) {
@@ -44,13 +73,17 @@ WiringRows::WiringRows(const std::vector<GivenCommand>& commands,
     const Pose2& from = fixes[first].T_map_body;
     const double time = seconds(fixes[i].utime) - seconds(fixes[first].utime);
     if (time < kWindow - 1e-6) continue;
-    rows_.push_back({seconds(fixes[first].utime), seconds(fixes[i].utime),
-                     (fixes[i].T_map_body.position() - from.position()) / time,
-                     from.yaw + 0.5 * turned, turned / time});
+    rows.push_back({seconds(fixes[first].utime), seconds(fixes[i].utime),
+                    (fixes[i].T_map_body.position() - from.position()) / time,
+                    from.yaw + 0.5 * turned, turned / time});
     first = i;
     turned = 0.0;
   }
+  return rows;
 }
+
+WiringRows::WiringRows(const std::vector<GivenCommand>& commands, const std::vector<InsFix>& fixes)
+    : held_(heldCommands(commands, fixes)), rows_(motionRows(commands, fixes)) {}
 
 /// What has passed of s by each step [s].
 std::vector<Eigen::Vector2d> WiringRows::integralOf(const Eigen::Vector3d& shape) const {
@@ -90,13 +123,9 @@ WiringFit WiringRows::solve(const Eigen::Vector3d& shape, bool mirrored, const U
   double count = 0.0;
   for (size_t i = 0; i < rows_.size(); ++i) {
     if (!use(i)) continue;
-    const Row& row = rows_[i];
+    const MotionRow& row = rows_[i];
     const Eigen::Vector2d s = (passed(row.to) - passed(row.from)) / (row.to - row.from);
-    const double yaw = mirrored ? -row.yaw : row.yaw;
-    const double c = std::cos(yaw), sn = std::sin(yaw);
-    const Eigen::Vector3d seen(c * row.moved_map.x() + sn * row.moved_map.y(),
-                               c * row.moved_map.y() - sn * row.moved_map.x(),
-                               mirrored ? -row.turned : row.turned);
+    const Eigen::Vector3d seen = row.seen(mirrored);
     normal += s * s.transpose();
     product += seen * s.transpose();
     squares += seen.cwiseProduct(seen);
@@ -122,24 +151,20 @@ double WiringRows::costOf(const WiringFit& fit) const {
   return 2.0 * std::log(fit.velocity_rms + 1e-6) + std::log(fit.turn_rms + 1e-6);
 }
 
-/// A compass search: delay and lag stand in for each other, so that it also moves along both.
-WiringFit WiringRows::search(WiringFit best, double step, bool mirrored, const Use& use) const {
-  static const std::array<Eigen::Vector3d, 5> kDirections{
-      Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, 0, 1),
-      Eigen::Vector3d(1, -1, 0), Eigen::Vector3d(0, 1, 1)};
-  double cost = costOf(best);
+Shape searchShape(Shape best, double step, const std::function<double(const Shape&)>& cost) {
+  static const std::array<Shape, 5> kDirections{Shape(1, 0, 0), Shape(0, 1, 0), Shape(0, 0, 1),
+                                                Shape(1, -1, 0), Shape(0, 1, 1)};
+  double least = cost(best);
   while (step >= kFinest) {
     bool better = false;
-    for (const Eigen::Vector3d& direction : kDirections)
+    for (const Shape& direction : kDirections)
       for (const double sign : {1.0, -1.0}) {
-        const Eigen::Vector3d shape =
-            (Eigen::Vector3d(best.delay, best.lag, best.dead) + sign * step * direction)
-                .cwiseMax(kLeastShape)
-                .cwiseMin(kMostShape);
-        const WiringFit tried = solve(shape, mirrored, use);
-        if (costOf(tried) >= cost - 1e-9) continue;
+        const Shape tried =
+            (best + sign * step * direction).cwiseMax(kLeastShape).cwiseMin(kMostShape);
+        const double costs = cost(tried);
+        if (costs >= least - 1e-9) continue;
         best = tried;
-        cost = costOf(tried);
+        least = costs;
         better = true;
       }
     if (!better) step /= 2.0;
@@ -147,21 +172,31 @@ WiringFit WiringRows::search(WiringFit best, double step, bool mirrored, const U
   return best;
 }
 
-WiringFit WiringRows::fit(bool mirrored, const Use& use) const {
-  if (rows_.empty()) return {};
-  std::optional<WiringFit> best;
+Shape searchShape(const std::function<double(const Shape&)>& cost) {
+  std::optional<Shape> best;
+  double least = 0.0;
   for (const double delay : {0.02, 0.1, 0.25})
     for (const double lag : {0.05, 0.15, 0.4})
       for (const double dead : {0.0, 0.15}) {
-        const WiringFit tried = solve({delay, lag, dead}, mirrored, use);
-        if (!best || costOf(tried) < costOf(*best)) best = tried;
+        const Shape tried(delay, lag, dead);
+        const double costs = cost(tried);
+        if (best && costs >= least) continue;
+        best = tried;
+        least = costs;
       }
-  return search(*best, 0.04, mirrored, use);
+  return searchShape(*best, 0.04, cost);
+}
+
+WiringFit WiringRows::fit(bool mirrored, const Use& use) const {
+  if (rows_.empty()) return {};
+  const auto cost = [&](const Shape& shape) { return costOf(solve(shape, mirrored, use)); };
+  return solve(searchShape(cost), mirrored, use);
 }
 
 WiringFit WiringRows::refine(const WiringFit& near, bool mirrored, const Use& use) const {
   if (rows_.empty()) return {};
-  return search(solve({near.delay, near.lag, near.dead}, mirrored, use), 0.008, mirrored, use);
+  const auto cost = [&](const Shape& shape) { return costOf(solve(shape, mirrored, use)); };
+  return solve(searchShape({near.delay, near.lag, near.dead}, 0.008, cost), mirrored, use);
 }
 
 }  // namespace tread::setup

@@ -42,6 +42,39 @@ struct WiringFit {
   double atFull() const { return 1.0 - dead; }
 };
 
+inline constexpr double kFitStep = 0.01;  ///< [s] of integration
+
+/// The motion between two fixes a tenth of a second apart.
+struct MotionRow {
+  double from = 0.0, to = 0.0;  ///< [s] since the first command
+  Eigen::Vector2d moved_map;    ///< [m/s]
+  double yaw = 0.0;             ///< [rad] in the middle
+  double turned = 0.0;          ///< [rad/s]
+
+  /// Along and across the INS's axes [m/s] and turning [rad/s]; `mirrored`: its yaw turns the wrong
+  /// way round.
+  Eigen::Vector3d seen(bool mirrored) const;
+};
+
+/// Both in the order of time. Gaps of the INS are left out.
+std::vector<MotionRow> motionRows(const std::vector<GivenCommand>& commands,
+                                  const std::vector<InsFix>& fixes);
+/// The command that holds at each kFitStep, from the first command to the last fix.
+std::vector<TrackCommand> heldCommands(const std::vector<GivenCommand>& commands,
+                                       const std::vector<InsFix>& fixes);
+/// A series of commands delayed [s]: a delay between two steps takes a share of each.
+double delayedAt(const std::vector<double>& held, size_t step, double delay);
+/// 0 up to the dead power, the rest beyond it.
+double beyondDead(double command, double dead);
+
+/// What a search is over: delay [s], lag [s], dead power [1].
+using Shape = Eigen::Vector3d;
+/// The shape of the least cost near another one, by steps from `step` down.
+/** A compass search: delay and lag stand in for each other, so that it also moves along both. */
+Shape searchShape(Shape near, double step, const std::function<double(const Shape&)>& cost);
+/// The same over all shapes that a vehicle may have.
+Shape searchShape(const std::function<double(const Shape&)>& cost);
+
 /// The motions between fixes a tenth of a second apart, and the commands before them.
 class WiringRows {
  public:
@@ -57,21 +90,14 @@ class WiringRows {
                    const std::function<bool(size_t row)>& use) const;
 
  private:
-  struct Row {
-    double from = 0.0, to = 0.0;  ///< [s] since the first command
-    Eigen::Vector2d moved_map;    ///< [m/s]
-    double yaw = 0.0;             ///< [rad] in the middle
-    double turned = 0.0;          ///< [rad/s]
-  };
   using Use = std::function<bool(size_t row)>;
 
   WiringFit solve(const Eigen::Vector3d& shape, bool mirrored, const Use& use) const;
-  WiringFit search(WiringFit best, double step, bool mirrored, const Use& use) const;
   double costOf(const WiringFit& fit) const;
   std::vector<Eigen::Vector2d> integralOf(const Eigen::Vector3d& shape) const;
 
   std::vector<TrackCommand> held_;  ///< command in each hundredth of a second
-  std::vector<Row> rows_;
+  std::vector<MotionRow> rows_;
 };
 
 }  // namespace tread::setup

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/robot/setup/core/wiring_check.hpp"
+
+namespace tread::setup {
+
+/// What may deviate before it is a fault.
+struct Tolerance {
+  double turn;       ///< [rad] of the INS
+  double elsewhere;  ///< [m] of the INS
+  double gauge;      ///< share off the told one
+  double weak;       ///< share of the other side
+};
+inline constexpr Tolerance kMinute{0.05, 0.15, 0.2, 0.9}, kSeconds{0.2, 0.3, 0.6, 0.7};
+
+inline constexpr size_t kFewRows = 25;
+inline constexpr size_t kParts = 12;           ///< of the drive, each left out once
+inline constexpr double kStandsStill = 0.05;   ///< [m/s], [rad/s]: no motion at full command
+inline constexpr double kTurnedForSure = 0.5;  ///< [rad]
+inline constexpr double kMirrorGain = 0.6;     ///< residual of the mirrored yaw over the told one's
+
+std::string fixedText(double value, int decimals);
+std::string inMetres(double value);
+std::string inDegrees(double angle);
+
+/// A quantity and its 95 % interval, by what it was with each part left out.
+Interval leavingOneOut(double best, const std::vector<double>& parts, bool is_angle);
+
+/// `by_path`: its heading turns the other way round than its path; else what was seen is at odds.
+WiringFault insMirrored(bool by_path);
+WiringFault insTurned(const Interval& yaw, const std::string& or_else);
+WiringFault insElsewhere(const Interval& x, const Interval& y);
+WiringFault nothingMoves();
+
+}  // namespace tread::setup
