@@ -51,8 +51,9 @@ void send(Link& link, const std::string& bytes) {
 
 /// Share of a scan's beams that hit something or know that nothing is there.
 double shareThatTells(const lidar::RangeScan& scan) {
-  const auto ranges =
-      std::count_if(scan.ranges.begin(), scan.ranges.end(), [](float r) { return !std::isnan(r); });
+  const auto ranges = std::count_if(scan.ranges.begin(), scan.ranges.end(), [&](float r) {
+    return static_cast<double>(r) >= scan.range_min;  // nor is NaN
+  });
   const auto points = std::count_if(scan.points.begin(), scan.points.end(),
                                     [](const auto& point) { return !std::isnan(point[0]); });
   const size_t all = scan.ranges.size() + scan.points.size();
@@ -301,6 +302,10 @@ class Search {
     findings_.range = std::clamp(range, 0.5, 300.0);
     findings_.beams_that_tell = told;
     person_.say("range finder: " + kind + " on " + address + ", sees to " + fixed(range, 0) + " m");
+    if (told < kLeastTelling)
+      person_.say("only " + fixed(100.0 * told, 0) +
+                  " % of its beams tell anything here, and the planner drives only where it knows "
+                  "the ground to be free: the first goal needs a place with more in sight");
     return true;
   }
 

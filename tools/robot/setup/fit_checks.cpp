@@ -11,7 +11,6 @@ namespace tread::setup {
 namespace {
 
 constexpr double kLeastRate = 10.0;      // [Hz] of the INS
-constexpr double kLeastTelling = 0.3;    // [1] of the beams
 constexpr double kMostDead = 0.35;       // [1]
 constexpr double kMostDelay = 0.5;       // [s]
 constexpr double kWatchdogSlack = 0.35;  // [s] for the INS to notice

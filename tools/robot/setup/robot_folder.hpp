@@ -24,6 +24,9 @@ struct Device {
   double rate = 0.0;    ///< [Hz] of its measurements
 };
 
+/// Share of the beams that must tell something: elsewhere the planner knows too little to drive.
+inline constexpr double kLeastTelling = 0.3;
+
 /// All that is known of a robot so far.
 struct RobotFindings {
   RobotDescription robot;

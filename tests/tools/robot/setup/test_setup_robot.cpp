@@ -207,13 +207,9 @@ go: yes
   CHECK(std::abs(drive.max_steering - 0.5 * 0.35 / 0.4) < 0.05);
 }
 
-TEST_CASE("a Hokuyo is found by what it says of itself") {
-  const char* const port = "tcp:192.168.0.10:10940";
-  HiddenMachine hidden = machine("roboteq", "grass", 3);
-  hidden.settings.device = "hokuyo";
-  hidden.laser_port = port;
-  VirtualSite site(hidden);
-  VirtualPerson person(site, kAnswers);
+namespace {
+
+RobotFindings described() {
   RobotFindings findings;
   RobotDescription& robot = findings.robot;
   robot.name = "found";
@@ -222,6 +218,33 @@ TEST_CASE("a Hokuyo is found by what it says of itself") {
   robot.gauge = 0.6;
   robot.drive.full_speed = robot.drive.max_command = 1.0;
   robot.max_speed = 20.0;
+  return findings;
+}
+
+}  // namespace
+
+TEST_CASE("a range finder that sees nothing around it is told at once, not at the first goal") {
+  for (const bool open : {true, false}) {
+    HiddenMachine hidden = machine("roboteq", "grass", 3);
+    if (open) hidden.world.obstacles.clear();
+    VirtualSite site(hidden);
+    VirtualPerson person(site, kAnswers);
+    RobotFindings findings = described();
+    discover(site, person, findings);
+    CAPTURE(person.heard());
+    CHECK((findings.beams_that_tell < kLeastTelling) == open);
+    CHECK((person.heard().find("only 0 % of its beams tell") != std::string::npos) == open);
+  }
+}
+
+TEST_CASE("a Hokuyo is found by what it says of itself") {
+  const char* const port = "tcp:192.168.0.10:10940";
+  HiddenMachine hidden = machine("roboteq", "grass", 3);
+  hidden.settings.device = "hokuyo";
+  hidden.laser_port = port;
+  VirtualSite site(hidden);
+  VirtualPerson person(site, kAnswers);
+  RobotFindings findings = described();
   discover(site, person, findings);
   CAPTURE(port, person.heard());
   CHECK(findings.range_finder.kind == "hokuyo");
