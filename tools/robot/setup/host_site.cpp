@@ -122,8 +122,10 @@ class LaunchedRobot : public RunningRobot {
   void openBus(const launch::LaunchFile& launched) {
     for (const int64_t patient = hostNow() + kLaunchPatience; bus_ == nullptr;) {
       try {
+        // The robot's clock is this host's. One that follows jumps when it hears the first
+        // messages, and a request that is under way then has waited long enough.
         bus_ = std::make_unique<LcmBus>(BusAccess{launched.lcm_url, hostSealer(launched.key)},
-                                        TimeSource::kFollow);
+                                        TimeSource::kHost);
       } catch (const std::runtime_error&) {
         if (hostNow() > patient || interrupted_) {
           end();
