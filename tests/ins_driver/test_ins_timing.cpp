@@ -82,7 +82,7 @@ TEST_CASE("more than three periods of silence are a gap, once") {
   CHECK(bench.ins.assembler().counts().gaps == 1);
 }
 
-TEST_CASE("a position that the vehicle cannot have reached is a jump, once") {
+TEST_CASE("a position that the vehicle cannot have reached is a jump, once the next one is there") {
   InsConfig config = withOrigin();
   config.max_speed = 5.0;
   config.jump_slack = 0.3;
@@ -92,8 +92,27 @@ TEST_CASE("a position that the vehicle cannot have reached is a jump, once") {
     if (i == 10) east += 2.0;
     const double t = kNoon + i * 0.1;
     bench.at(i * 100'000, gga(t, east) + pashr(t, 90.0));
-    CHECK(((bench.last().status & kJump) != 0) == (i == 10));
+    CHECK(bench.out.size() == static_cast<size_t>(i < 10 ? i + 1 : i));
+    CHECK(((bench.last().status & kJump) != 0) == (i == 11));
     east += 0.4;
+  }
+  CHECK(bench.ins.assembler().counts().doubted == 1);
+}
+
+TEST_CASE("a position far off and alone, as a weak checksum lets through, is left out") {
+  InsConfig config = withOrigin();
+  config.max_speed = 5.0;
+  Bench bench(config);
+  for (int i = 0; i < 20; ++i) {
+    const double t = kNoon + i * 0.1;
+    const double lie = i == 7 ? 400.0 : i == 12 ? -30.0 : 0.0;
+    bench.at(i * 100'000, gga(t, 0.04 * i + lie) + pashr(t, 90.0));
+  }
+  CHECK(bench.out.size() == 18);
+  CHECK(bench.ins.assembler().counts().doubted == 2);
+  for (const InsEstimate& ins : bench.out) {
+    CHECK(ins.p_map_body.head<2>().norm() < 2.0);
+    CHECK_FALSE(ins.status & (kJump | kGap));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include "common/geometry/se2.hpp"
 
@@ -83,6 +84,7 @@ bool InsAssembler::isPublished(const DeviceEpoch& epoch, int64_t utime) {
 void InsAssembler::forget() {
   ++counts_.clock_steps;
   new_track_ = true;
+  monitor_.restart();
   attitudes_.clear();
   positions_.clear();
   headings_.clear();
@@ -114,8 +116,12 @@ std::optional<InsEstimate> InsAssembler::solve(const DeviceEpoch& epoch) {
     velocity_utime_ = estimate.utime;
   }
   setVelocity(epoch.position ? epoch.velocity : velocityAt(estimate), armOf(epoch), estimate);
-  setPosition(epoch, estimate);
+  const bool believed = setPosition(epoch, estimate);
   watchTrack(estimate);
+  if (!believed) {
+    ++counts_.doubted;
+    return std::nullopt;
+  }
   ++counts_.published;
   return estimate;
 }
@@ -224,26 +230,27 @@ std::optional<PointInMap> InsAssembler::pointOf(const DeviceEpoch& epoch) {
   return point;
 }
 
-void InsAssembler::setPosition(const DeviceEpoch& epoch, InsEstimate& estimate) {
+bool InsAssembler::setPosition(const DeviceEpoch& epoch, InsEstimate& estimate) {
   estimate.satellites = epoch.satellites;
   std::optional<PointInMap> point;
   if (epoch.position) {
     adoptOrigin(*epoch.position, estimate.utime);
     point = pointOf(epoch);
-    if (point) {
-      remember(epoch, *point, estimate.utime);
-    } else {
-      positions_.clear();
-    }
+    if (!point) positions_.clear();
   } else {
     point = positions_.at(estimate.utime);
     if (point) ++counts_.positions_carried;
   }
-  if (point) {
-    place(*point, estimate);
-  } else {
+  if (!point) {
     estimate.status |= kNoPosition;
+    return true;
   }
+  place(*point, estimate);
+  const TrackStep step = monitor_.judge(estimate.utime, estimate.p_map_body);
+  if (step == TrackStep::kDoubted) return false;
+  if (epoch.position) remember(epoch, *point, estimate.utime);
+  if (step == TrackStep::kJump) new_track_ = true;
+  return true;
 }
 
 void InsAssembler::remember(const DeviceEpoch& epoch, const PointInMap& point, int64_t utime) {
@@ -275,11 +282,7 @@ void InsAssembler::watchTrack(InsEstimate& estimate) {
     estimate.status |= kGap;
     ++counts_.gaps;
   }
-  bool jump = new_track_;
-  new_track_ = false;
-  if (!(estimate.status & kNoPosition))
-    jump = monitor_.isJump(estimate.utime, estimate.p_map_body) || jump;
-  if (jump) {
+  if (std::exchange(new_track_, false)) {
     estimate.status |= kJump;
     ++counts_.jumps;
   }

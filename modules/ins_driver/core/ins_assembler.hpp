@@ -27,6 +27,7 @@ struct AssemblerCounts {
   int64_t too_far = 0;            ///< positions refused because they are too far from the origin
   int64_t gaps = 0;
   int64_t jumps = 0;
+  int64_t doubted = 0;      ///< not published: far from the position before
   int64_t clock_steps = 0;  ///< the device's clock was set
 };
 
@@ -69,7 +70,8 @@ class InsAssembler {
                    InsEstimate& estimate) const;
   /// Of the reported point along map x and y.
   std::optional<Eigen::Vector2d> velocityInMap(const GroundVelocity& ground) const;
-  void setPosition(const DeviceEpoch& epoch, InsEstimate& estimate);
+  /// False if the position is doubted: then nothing of the epoch is given.
+  bool setPosition(const DeviceEpoch& epoch, InsEstimate& estimate);
   void remember(const DeviceEpoch& epoch, const PointInMap& point, int64_t utime);
   Eigen::Vector3d armOf(const DeviceEpoch& epoch) const;
   void place(const PointInMap& point, InsEstimate& estimate) const;

@@ -40,6 +40,7 @@ void InsPipeline::addCounters(NamedCounts& counters) const {
                                    {"positions carried", epochs.positions_carried},
                                    {"gaps", epochs.gaps},
                                    {"jumps", epochs.jumps},
+                                   {"refused: far from the one before", epochs.doubted},
                                    {"device clock set", epochs.clock_steps},
                                    {"refused: time not after the last", epochs.not_newer},
                                    {"refused: far from the origin", epochs.too_far}});

@@ -92,7 +92,7 @@ struct InsEstimate {
   /// While the heading is unknown p_map_body is the place of this point of the body [m].
   Eigen::Vector3d p_body_point = Eigen::Vector3d::Zero();
   int32_t status = kGood;  ///< bits of InsStatus
-  int satellites = -1;                         ///< -1 unknown
+  int satellites = -1;     ///< -1 unknown
 };
 
 /// What a heading was measured by.

@@ -35,16 +35,21 @@ bool TrackMonitor::isGap(int64_t utime) {
   return period > 0 && interval > 3 * period;
 }
 
-bool TrackMonitor::isJump(int64_t utime, const Eigen::Vector3d& p_map_body) {
-  const Eigen::Vector2d position = p_map_body.head<2>();
-  bool jump = false;
-  if (position_utime_) {
-    const double dt = static_cast<double>(utime - *position_utime_) * 1e-6;
-    jump = (position - position_).norm() > max_speed_ * dt + slack_;
+bool TrackMonitor::canCome(const Place& from, const Place& to) const {
+  const double dt = static_cast<double>(to.utime - from.utime) * 1e-6;
+  return (to.p_map - from.p_map).norm() <= max_speed_ * dt + slack_;
+}
+
+TrackStep TrackMonitor::judge(int64_t utime, const Eigen::Vector3d& p_map_body) {
+  const Place place{utime, p_map_body.head<2>()};
+  const bool goes_on = !last_ || canCome(*last_, place);
+  if (!goes_on && !(doubted_ && canCome(*doubted_, place))) {
+    doubted_ = place;
+    return TrackStep::kDoubted;
   }
-  position_utime_ = utime;
-  position_ = position;
-  return jump;
+  last_ = place;
+  doubted_.reset();
+  return goes_on ? TrackStep::kNear : TrackStep::kJump;
 }
 
 }  // namespace tread::ins

@@ -12,6 +12,13 @@
 
 namespace tread::ins {
 
+/// What a position says of the track before it.
+enum class TrackStep : uint8_t {
+  kNear,     ///< it goes on
+  kDoubted,  ///< the vehicle cannot have come here: perhaps a lie, the next position tells
+  kJump      ///< nor to the doubted one before, and that is near: so it was
+};
+
 /// Tells gaps and jumps in a track: what the vehicle cannot have done, the measurement did.
 class TrackMonitor {
  public:
@@ -22,20 +29,27 @@ class TrackMonitor {
   /** The period is the configured one, or the median of the last nine intervals once there are
    * three. */
   bool isGap(int64_t utime);
-  /// True if the body cannot have come here from the position before. The new position is the next
-  /// one's reference.
-  bool isJump(int64_t utime, const Eigen::Vector3d& p_map_body);
+  /** A single position far off is what a weak checksum let through: 8 bits pass one damaged message
+   * in 256. */
+  TrackStep judge(int64_t utime, const Eigen::Vector3d& p_map_body);
+  /// The next position is not compared with those before.
+  void restart() { last_.reset(); }
 
  private:
+  struct Place {
+    int64_t utime;
+    Eigen::Vector2d p_map;
+  };
+
   int64_t typicalPeriod() const;
+  bool canCome(const Place& from, const Place& to) const;
 
   int64_t period_us_;
   double max_speed_;
   double slack_;
   std::deque<int64_t> intervals_;
   std::optional<int64_t> last_utime_;
-  std::optional<int64_t> position_utime_;
-  Eigen::Vector2d position_ = Eigen::Vector2d::Zero();
+  std::optional<Place> last_, doubted_;
 };
 
 /// Maps device time to host time so that the jitter of line, scheduler and polling stays out of the

@@ -50,7 +50,7 @@ const std::vector<Question>& questions() {
        {}},
       {"first_track", "Which track turned first: left or right?", {}},
       {"first_direction", "Which way did it turn: forward or backward?", {}},
-      {"first_steering", "Where did the front wheels turn first: left or right?", "left"},
+      {"first_steering", "Where did the front wheels turn first: left or right?", {}},
       {"watchdog_stopped",
        "Both tracks ran, then nothing was sent for a second. Did they stop by themselves: yes or "
        "no?",

@@ -12,6 +12,7 @@
 #include "tests/tools/robot/setup/virtual_site.hpp"
 #include "tools/robot/setup/discovery.hpp"
 #include "tools/robot/setup/setup.hpp"
+#include "tools/robot/setup/trials.hpp"
 
 using namespace tread;
 using namespace tread::setup;
@@ -222,6 +223,33 @@ RobotFindings described() {
 }
 
 }  // namespace
+
+TEST_CASE("a servo that stands askew gets ends that are even to both sides") {
+  for (const bool inverted : {false, true}) {
+    RobotFindings findings = described();
+    findings.robot.drive.layout = DriveLayout::kThrottleSteering;
+    findings.robot.drive.wheelbase = 0.9;
+    findings.robot.drive.invert_right = inverted;
+    findings.controller.kind = "vesc";
+    WiringReport wiring;
+    // From .15 to .85 the wheels go from .3 rad to the right to .5 to the left, or the other way.
+    wiring.steering_left.value = 0.5;
+    wiring.steering_right.value = -0.3;
+    wiring.steering_straight.value = 0.1;
+    wiring.faults.push_back({FaultKind::kSteeringAskew, {}, 0.1, ""});
+    applyWiring(wiring, findings);
+    findings.wiring = wiring;
+    proposeLimits(findings);
+    CHECK(findings.robot.drive.max_steering == Approx(0.3));
+    // Per radian .7 / .8 of its range: straight at .4125, or its mirror image.
+    const double to_left = inverted ? findings.servo_right : findings.servo_left;
+    const double to_right = inverted ? findings.servo_left : findings.servo_right;
+    CHECK(to_left == Approx(inverted ? 0.325 : 0.675));
+    CHECK(to_right == Approx(inverted ? 0.85 : 0.15));
+    const char* const told = inverted ? "servo_left: 0.85\n" : "servo_left: 0.675\n";
+    CHECK(findings.controller.section.find(told) != std::string::npos);
+  }
+}
 
 TEST_CASE("a range finder that sees nothing around it is told at once, not at the first goal") {
   for (const bool open : {true, false}) {
