@@ -167,7 +167,10 @@ TEST_CASE("nothing is filled in without a common start, beyond the drift, or ove
 
   Watched far;
   far.drive(3.0);
-  far.silent(60.0);
+  far.silent(10.0);
+  CHECK(far.fill_in.since());
+  far.silent(50.0);
+  CHECK_FALSE(far.fill_in.since());
   // .5 m at the told 2 cm a metre.
   const double end = 1e-6 * static_cast<double>(far.track.back().utime);
   CHECK(std::sqrt(0.02 * end * 0.02 * end - 0.06 * 0.06) == Approx(0.5).margin(0.01));
@@ -181,6 +184,18 @@ TEST_CASE("nothing is filled in without a common start, beyond the drift, or ove
   anew.fill_in.observe(other);
   anew.silent(2.0);
   CHECK(anew.track.size() == before);
+}
+
+TEST_CASE("where scan matching falls silent, too, nothing is said to be filled in") {
+  Watched body;
+  body.drive(3.0);
+  body.silent(1.0);
+  CHECK(body.fill_in.since());
+  // Nobody observes any more.
+  CHECK_FALSE(body.fill_in.next(4 * kSecond + 900'000));
+  CHECK(body.fill_in.since());
+  CHECK_FALSE(body.fill_in.next(5 * kSecond + 100'000));
+  CHECK_FALSE(body.fill_in.since());
 }
 
 TEST_CASE("what a device gives for a time that is filled in already is left out") {

@@ -99,6 +99,18 @@ TEST_CASE("a position that the vehicle cannot have reached is a jump, once the n
   CHECK(bench.ins.assembler().counts().doubted == 1);
 }
 
+TEST_CASE("a gap before a position that is left out is still told") {
+  InsConfig config = withOrigin();
+  config.max_speed = 5.0;
+  Bench bench(config);
+  for (int i = 0; i < 20; ++i) {
+    if (i > 9 && i < 15) continue;
+    const double t = kNoon + i * 0.1;
+    bench.at(i * 100'000, gga(t, i == 15 ? 400.0 : 0.0) + pashr(t, 90.0));
+    CHECK(((bench.last().status & kGap) != 0) == (i == 16));
+  }
+}
+
 TEST_CASE("a position far off and alone, as a weak checksum lets through, is left out") {
   InsConfig config = withOrigin();
   config.max_speed = 5.0;

@@ -88,7 +88,7 @@ struct RobotConfig {
   bool hasIns() const { return !scan_matching || scan_matching->fills_in; }
 };
 
-/// Names of the processes that every robot has on the bus.
+/// Names of the processes that a robot with an INS has on the bus; scan_matching may be there, too.
 const std::vector<std::string>& robotNodes();
 
 /// Reads a robot's folder (config/robots/teodor: one file a process); throws ConfigError with one

@@ -8,7 +8,8 @@
 namespace tread::ins {
 namespace {
 
-constexpr int64_t kMaxGap = 300'000;   // [us] between poses of the device around one of a scan
+constexpr int64_t kMaxGap = 300'000;  // [us] between poses of the device around one of a scan
+constexpr int64_t kScansMissing = 1'000'000;  // [us] without one: nothing is filled in any more
 constexpr int64_t kCarried = 150'000;  // [us] for which a pose of a scan is carried by its twist
 
 double square(double value) {
@@ -108,7 +109,10 @@ bool FillIn::complete(InsEstimate& estimate, int64_t now) {
     return true;
   }
   const auto filled = at(estimate.utime);
-  if (!filled) return true;
+  if (!filled) {
+    since_.reset();
+    return true;
+  }
   if (no_heading) {
     estimate.R_map_body = Eigen::AngleAxisd(filled->T_map_body.yaw, Eigen::Vector3d::UnitZ());
     estimate.attitude_std = {kUnmeasured, kUnmeasured, filled->std[2]};
@@ -137,9 +141,13 @@ bool FillIn::complete(InsEstimate& estimate, int64_t now) {
 
 std::optional<InsEstimate> FillIn::next(int64_t now) {
   if (!scan_ || now < heard_ + config_.after_us) return std::nullopt;
+  if (now > scan_->utime + kScansMissing) since_.reset();
   if (last_utime_ && scan_->utime <= *last_utime_) return std::nullopt;
   const auto filled = at(scan_->utime);
-  if (!filled) return std::nullopt;
+  if (!filled) {
+    since_.reset();
+    return std::nullopt;
+  }
   InsEstimate estimate;
   estimate.utime = scan_->utime;
   estimate.p_map_body = {filled->T_map_body.x, filled->T_map_body.y, anchor_->z};

@@ -53,7 +53,7 @@ class FillIn {
 
   /// Estimates that were completed or filled in.
   int64_t filled() const { return filled_; }
-  /// [us] since when estimates have been filled in; nothing while the device gives them.
+  /// [us] since when estimates have been filled in; nothing while the device gives them, or nobody.
   std::optional<int64_t> since() const { return since_; }
   /// [us] of the newest pose of scan matching.
   std::optional<int64_t> newestScan() const;

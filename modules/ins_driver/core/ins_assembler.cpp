@@ -116,12 +116,11 @@ std::optional<InsEstimate> InsAssembler::solve(const DeviceEpoch& epoch) {
     velocity_utime_ = estimate.utime;
   }
   setVelocity(epoch.position ? epoch.velocity : velocityAt(estimate), armOf(epoch), estimate);
-  const bool believed = setPosition(epoch, estimate);
-  watchTrack(estimate);
-  if (!believed) {
+  if (!setPosition(epoch, estimate)) {
     ++counts_.doubted;
     return std::nullopt;
   }
+  watchTrack(estimate);
   ++counts_.published;
   return estimate;
 }

@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/robot/setup/core/car_check.hpp"
 
-#include <array>
 #include <cmath>
 
 #include "tools/robot/setup/core/car_fit.hpp"

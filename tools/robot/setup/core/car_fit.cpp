@@ -11,10 +11,11 @@ namespace tread::setup {
 namespace {
 
 constexpr double kLeastCount = 10.0;
-// What is usual counts as so much: a minute's drive outweighs it, a few seconds do not.
+// What is usual: a minute's drive outweighs it, a few seconds do not.
 const Shape kUsualShape(0.1, 0.15, 0.05), kShapeSpread(0.08, 0.15, 0.08);
-constexpr double kPlaceDoubt = 0.06;  // (.05 m/s of noise over .2 m that it may be elsewhere)2
-constexpr double kCurveDoubt = 0.09;  // (.03 rad/s over .1 1/m that it may be askew)2
+constexpr double kPlaceDoubt =
+    0.06;  // .05 m/s of noise over .2 m that it may be elsewhere, squared
+constexpr double kCurveDoubt = 0.09;  // .03 rad/s over .1 1/m that it may be askew, squared
 constexpr double kSteeringLags[] = {0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.6};  // [s]
 
 /// Mean of a series over [from, to] s, by its integral.
