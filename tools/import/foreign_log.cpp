@@ -7,12 +7,14 @@
 
 #include "common/messages/blank.hpp"
 #include "common/recordings/csv_table.hpp"
-#include "tools/import/foreign_types.hpp"
+#include "common/recordings/foreign_types.hpp"
+#include "common/types/message_type.hpp"
 
 namespace tread::import {
 namespace {
 
 using recordings::DriveSample;
+using recordings::foreignTypes;
 using recordings::RecordedDrive;
 using recordings::RecordingError;
 
@@ -24,7 +26,7 @@ constexpr double kLongestScan = 1.0;  // [s]
 struct Timed {
   double time = 0.0;  // [s] since the log's first one
   std::string channel;
-  ForeignMessage content;
+  std::map<std::string, std::vector<double>> content;  // by field
 };
 
 double of(const Timed& message, const char* field) {
@@ -77,14 +79,15 @@ class LogContent {
 
   static std::string known() {
     std::string names;
-    for (const ForeignType& type : foreignTypes()) names += (names.empty() ? "" : ", ") + type.name;
+    for (const auto& [name, type] : foreignTypes().all())
+      names += (names.empty() ? "" : ", ") + name;
     return names;
   }
 
   void take(const LogEvent& event) {
-    const ForeignType* const type = foreignTypeOf(event.bytes);
+    const MessageType* const type = foreignTypes().typeOf(event.bytes);
     if (type == nullptr) return leaveOut(event.channel + ": another type");
-    auto content = decodeForeign(*type, event.bytes);
+    auto content = numbersOf(foreignTypes(), *type, event.bytes);
     if (!content) return leaveOut(event.channel + ": broken");
     // Some senders leave the time empty; then the logger's clock is moved to the senders'.
     const double utime = content->at("utime").at(0);

@@ -15,6 +15,7 @@
 #include "tools/replay/matching_replay.hpp"
 #include "tools/replay/pose_comparison.hpp"
 #include "tools/replay/robot_replay.hpp"
+#include "tools/replay/pass_overlap.hpp"
 #include "tools/replay/sensor_replay.hpp"
 
 using namespace tread;
@@ -66,8 +67,9 @@ void addIns(CLI::App& app, Arguments& arguments) {
 }
 
 void replayMappingLog(const Arguments& arguments) {
-  const MappingReplay replay = replayMapping(readMappingRecording(arguments.log));
-  say(reportOf(replay), arguments.output);
+  const MappingRecording recording = readMappingRecording(arguments.log);
+  const MappingReplay replay = replayMapping(recording);
+  say(reportOf(replay) + reportOf(overlapOf(recording)), arguments.output);
   if (!arguments.output.picture.empty()) drawMap(replay, arguments.output.picture);
 }
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -14,6 +13,8 @@
 #include "common/geometry/se2.hpp"
 #include "common/log/event_log.hpp"
 #include "common/messages/blank.hpp"
+#include "common/recordings/foreign_types.hpp"
+#include "common/types/message_type.hpp"
 #include "modules/lidar_driver/carmen/carmen_player.hpp"
 
 namespace tread {
@@ -32,11 +33,9 @@ constexpr double kNoReturn = 80.0;
 
 // The MBot's logs.
 constexpr int64_t kSweepUs = 200'000;
-constexpr uint64_t kLidarType = 0x89dc5b879a5056cf;  // lidar_t of that project
-constexpr uint64_t kPoseType = 0x1f317af1246276ac;   // pose_xyt_t of that project
-constexpr double kMbotLaserHeight = 0.15;            // [m]
-constexpr float kNearest = 0.12f;                    // [m] nearer returns are the robot's own
-constexpr float kFarthest = 6.0f;                    // [m]
+constexpr double kMbotLaserHeight = 0.15;  // [m]
+constexpr double kNearest = 0.12;          // [m] nearer returns are the robot's own
+constexpr double kFarthest = 6.0;          // [m]
 
 ins_t insAt(int64_t utime, const Pose2& pose) {
   auto message = blank<ins_t>();
@@ -152,61 +151,37 @@ void readCarmenLog(const std::string& path, MappingRecording& recording) {
         path + ": holds no FLASER or ROBOTLASER1 line; is it a CARMEN log with poses?");
 }
 
-/// Takes big-endian fields from a message's bytes; ok() turns false where they end.
-class Fields {
- public:
-  explicit Fields(const std::vector<uint8_t>& bytes) : bytes_(bytes) {}
-
-  template <class Value>
-  Value take() {
-    uint8_t reversed[sizeof(Value)] = {};
-    Value value{};
-    if (bytes_.size() - at_ < sizeof(Value)) {
-      ok_ = false;
-      return value;
-    }
-    for (size_t i = 0; i < sizeof(Value); ++i) reversed[sizeof(Value) - 1 - i] = bytes_[at_ + i];
-    at_ += sizeof(Value);
-    std::memcpy(&value, reversed, sizeof(Value));
-    return value;
-  }
-  bool ok() const { return ok_; }
-
- private:
-  const std::vector<uint8_t>& bytes_;
-  size_t at_ = 0;
-  bool ok_ = true;
-};
+/// What a message of that project holds, by its fields; nothing if it is of another type or broken.
+std::optional<std::map<std::string, std::vector<double>>> foreignNumbers(const LogEvent& event,
+                                                                         const char* type) {
+  const MessageTypes& types = recordings::foreignTypes();
+  return numbersOf(types, *types.find(type), event.bytes);
+}
 
 std::optional<ins_t> poseOf(const LogEvent& event, int64_t utime) {
-  Fields fields(event.bytes);
-  if (fields.take<uint64_t>() != kPoseType) return std::nullopt;
-  fields.take<int64_t>();
-  Pose2 pose;
-  for (double* value : {&pose.x, &pose.y, &pose.yaw}) *value = double(fields.take<float>());
-  if (!fields.ok()) return std::nullopt;
-  return insAt(utime, pose);
+  const auto pose = foreignNumbers(event, "pose_xyt_t");
+  if (!pose) return std::nullopt;
+  return insAt(utime, {pose->at("x")[0], pose->at("y")[0], pose->at("theta")[0]});
 }
 
 /// Beams without an echo stay in the slice as NaN: a point's index gives its time.
-std::vector<float> pointOf(float range, float clockwise) {
+std::vector<float> pointOf(double range, double clockwise) {
   if (!(range > kNearest) || !(range < kFarthest)) return std::vector<float>(3, std::nanf(""));
-  return {range * std::cos(clockwise), -range * std::sin(clockwise), 0.0f};
+  return {static_cast<float>(range * std::cos(clockwise)),
+          static_cast<float>(-range * std::sin(clockwise)), 0.0f};
 }
 
 std::optional<scan_t> scanOf(const LogEvent& event, int64_t utime, int64_t& device_time) {
-  Fields fields(event.bytes);
-  if (fields.take<uint64_t>() != kLidarType) return std::nullopt;
-  device_time = fields.take<int64_t>();
-  const auto count = fields.take<int32_t>();
-  if (!fields.ok() || count < 2 || count > 10000) return std::nullopt;
-  std::vector<float> ranges(static_cast<size_t>(count));
-  for (float& range : ranges) range = fields.take<float>();
+  const auto sweep = foreignNumbers(event, "lidar_t");
+  if (!sweep) return std::nullopt;
+  device_time = static_cast<int64_t>(sweep->at("utime")[0]);
+  const std::vector<double>& ranges = sweep->at("ranges");
+  if (ranges.size() < 2 || ranges.size() > 10000) return std::nullopt;
   scan_t message = scanFrom(utime, kMbotLaserHeight);
   message.duration = static_cast<int32_t>(kSweepUs);
-  for (const float range : ranges) message.points.push_back(pointOf(range, fields.take<float>()));
-  message.num_points = count;
-  if (!fields.ok()) return std::nullopt;
+  for (size_t i = 0; i < ranges.size(); ++i)
+    message.points.push_back(pointOf(ranges[i], sweep->at("thetas")[i]));
+  message.num_points = static_cast<int32_t>(ranges.size());
   return message;
 }
 

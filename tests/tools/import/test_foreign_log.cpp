@@ -8,20 +8,19 @@
 #include <filesystem>
 
 #include "common/recordings/csv_table.hpp"
+#include "common/recordings/foreign_types.hpp"
 #include "tests/tools/import/drive_samples.hpp"
 #include "tools/import/foreign_log.hpp"
-#include "tools/import/foreign_types.hpp"
 
 using namespace tread;
 using namespace tread::import;
+using tread::recordings::foreignTypes;
 using tread::samples::Folder;
 
 namespace {
 
 uint64_t fingerprintOf(const std::string& name) {
-  for (const ForeignType& type : foreignTypes())
-    if (type.name == name) return type.fingerprint();
-  return 0;
+  return foreignTypes().fingerprint(*foreignTypes().find(name));
 }
 
 /// Big-endian bytes of a message, as lcm-gen's encoders make them.
@@ -77,23 +76,26 @@ TEST_CASE("fingerprints of foreign types are those that real logs of these robot
   REQUIRE(fingerprintOf("lidar_t") == 0x89dc5b879a5056cfu);
   REQUIRE(fingerprintOf("mbot_motor_command_t") == 0xe817386df0c405a3u);
   REQUIRE(fingerprintOf("mbot_wheel_ctrl_t") == 0xd88a1e900e511606u);
-  REQUIRE(foreignTypeOf(Bytes("mbot_motor_pwm_t").bytes)->name == "mbot_motor_pwm_t");
-  REQUIRE(foreignTypeOf({1, 2, 3}) == nullptr);
+  REQUIRE(foreignTypes().typeOf(Bytes("mbot_motor_pwm_t").bytes)->name == "mbot_motor_pwm_t");
+  REQUIRE(foreignTypes().typeOf({1, 2, 3}) == nullptr);
 }
 
 TEST_CASE("a foreign message that is cut, too long or of a length below zero is none") {
-  const ForeignType& lidar = *foreignTypeOf(Bytes("lidar_t").bytes);
+  const MessageType& lidar = *foreignTypes().find("lidar_t");
+  const auto decodeForeign = [&](const std::vector<uint8_t>& bytes) {
+    return numbersOf(foreignTypes(), lidar, bytes);
+  };
   Bytes good = Bytes("lidar_t").time(5).count(1).number(2.5).number(0.5).time(6).number(1.0);
-  const auto message = decodeForeign(lidar, good.bytes);
+  const auto message = decodeForeign(good.bytes);
   REQUIRE(message);
   REQUIRE(message->at("ranges") == std::vector<double>{2.5});
   REQUIRE(message->at("times") == std::vector<double>{6.0});
   for (size_t size = 0; size < good.bytes.size(); ++size)
-    REQUIRE_FALSE(decodeForeign(lidar, {good.bytes.begin(), good.bytes.begin() + long(size)}));
+    REQUIRE_FALSE(decodeForeign({good.bytes.begin(), good.bytes.begin() + long(size)}));
   good.bytes.push_back(0);
-  REQUIRE_FALSE(decodeForeign(lidar, good.bytes));
+  REQUIRE_FALSE(decodeForeign(good.bytes));
   for (const int32_t count : {-1, 2, 0x7fffffff, INT32_MIN})
-    REQUIRE_FALSE(decodeForeign(lidar, Bytes("lidar_t").time(5).count(count).bytes));
+    REQUIRE_FALSE(decodeForeign(Bytes("lidar_t").time(5).count(count).bytes));
 }
 
 TEST_CASE("held commands of a foreign log become executions, body speeds become tracks") {

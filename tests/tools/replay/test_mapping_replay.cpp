@@ -9,6 +9,7 @@
 
 #include "common/geometry/se2.hpp"
 #include "common/log/event_log.hpp"
+#include "tools/replay/pass_overlap.hpp"
 #include "tools/replay/sensor_replay.hpp"
 
 using namespace tread;
@@ -32,21 +33,25 @@ class TestFile {
   std::string path_;
 };
 
+/// A scan of a wall across x, and the pose it is said to be taken at: wrong by `drift` [m].
+std::string carmenLine(double wall, double x, double drift) {
+  std::ostringstream log;
+  log << "ODOM " << x << " 0 0 0 0 0 0 host 0\nFLASER 360";
+  for (int beam = 0; beam < 360; ++beam) {
+    const double angle = -kPi / 2.0 + beam * kPi / 360.0;
+    const double range = (wall - x) / std::max(1e-3, std::cos(angle));
+    log << ' ' << std::min(81.91, range);
+  }
+  log << ' ' << x + drift << " 0 0 " << x + drift << " 0 0 0 host 0\n";
+  return log.str();
+}
+
 /// A CARMEN log of a drive along x towards a wall across the way.
 std::string carmenDrive(double wall, int lines) {
-  std::ostringstream log;
-  log << "# message formats defined: PARAM ODOM FLASER\nPARAM robot_length 0.47 1 host 1\n";
-  for (int i = 0; i < lines; ++i) {
-    const double x = 1.0 * i;
-    log << "ODOM " << x << " 0 0 0 0 0 0 host 0\nFLASER 360";
-    for (int beam = 0; beam < 360; ++beam) {
-      const double angle = -kPi / 2.0 + beam * kPi / 360.0;
-      const double range = (wall - x) / std::max(1e-3, std::cos(angle));
-      log << ' ' << std::min(81.91, range);
-    }
-    log << ' ' << x << " 0 0 " << x << " 0 0 0 host 0\n";
-  }
-  return log.str();
+  std::string log =
+      "# message formats defined: PARAM ODOM FLASER\nPARAM robot_length 0.47 1 host 1\n";
+  for (int i = 0; i < lines; ++i) log += carmenLine(wall, i, 0.0);
+  return log;
 }
 
 std::string recording(const std::string& name) {
@@ -72,6 +77,30 @@ TEST_CASE("a CARMEN log becomes a map with its wall, and every scan is taken") {
   REQUIRE(at(replay, 8.0, 1.0) == kFree);
   REQUIRE(at(replay, 13.0, 0.0) == kUnknown);
   REQUIRE(reportOf(replay).find("scans taken: 6") != std::string::npos);
+}
+
+TEST_CASE(
+    "a map closes where passes agree, and does not where the poses had drifted between them") {
+  for (const double drift : {0.0, 0.2, 0.6}) {
+    // There and back and there again; the last way's poses are wrong by the drift.
+    std::string log = carmenDrive(12.03, 10);
+    for (int i = 9; i >= 0; --i) log += carmenLine(12.03, i, 0.0);
+    for (int i = 0; i < 10; ++i) log += carmenLine(12.03, i, drift);
+    const TestFile file("passes.clf", log);
+    const PassOverlap overlap = overlapOf(readMappingRecording(file.path()));
+    CAPTURE(drift, reportOf(overlap));
+    REQUIRE(overlap.again.pairs > 0);
+    REQUIRE(overlap.again.cells > 100);
+    CHECK(overlap.again.within_ten == overlap.again.cells);
+    // The ends of the wall are seen from nearby only.
+    const double share =
+        static_cast<double>(overlap.again.within_two) / static_cast<double>(overlap.again.cells);
+    if (drift < 0.5)
+      CHECK(share > 0.95);
+    else
+      CHECK(share < 0.8);
+    CHECK(overlap.in_a_row.within_two > 0);
+  }
 }
 
 TEST_CASE("lines of a CARMEN log that are not whole are skipped and counted") {
@@ -118,7 +147,7 @@ TEST_CASE("an MBot log that is cut off says so") {
     std::vector<uint8_t> scan{0x89, 0xdc, 0x5b, 0x87, 0x9a, 0x50, 0x56, 0xcf};
     scan.resize(8 + 8, 0);  // utime
     scan.insert(scan.end(), {0, 0, 0, 2});
-    scan.resize(scan.size() + 4 * 8, 0);  // two ranges, angles, times, intensities
+    scan.resize(scan.size() + 2 * (4 + 4 + 8 + 4), 0);  // two ranges, angles, times, intensities
     log.write(1'000'000, "LIDAR", scan.data(), scan.size());
     log.write(1'100'000, "LIDAR", scan.data(), scan.size());
   }

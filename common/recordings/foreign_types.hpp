@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include "common/types/message_type.hpp"
+
+namespace tread::recordings {
+
+/// Types of other projects' robots, MAEBot and MBot; of equal fingerprint there is one.
+const MessageTypes& foreignTypes();
+
+}  // namespace tread::recordings
