@@ -13,6 +13,7 @@
 #include "common/recordings/imported_log.hpp"
 #include "tools/import/csv_drive.hpp"
 #include "tools/import/foreign_log.hpp"
+#include "tools/import/mcap_log.hpp"
 #include "tools/import/rawlog.hpp"
 
 using namespace tread;
@@ -115,7 +116,19 @@ RecordedDrive readForeign(const Arguments& arguments, Session& session) {
   return std::move(foreign.drive);
 }
 
+/// Messages as they are, not a drive made of samples.
+void takeMcap(const Arguments& arguments) {
+  LogWriter writer(arguments.log);
+  const import::McapCounts counts = import::importMcap(arguments.csv, writer);
+  writer.flush();
+  for (const auto& [what, count] : counts.left_out)
+    std::printf("left out: %lld of %s\n", static_cast<long long>(count), what.c_str());
+  if (!counts.problem.empty()) std::printf("%s\n", counts.problem.c_str());
+  std::printf("%s: %lld messages\n", arguments.log.c_str(), static_cast<long long>(counts.taken));
+}
+
 void run(const Arguments& arguments) {
+  if (arguments.format == "mcap") return takeMcap(arguments);
   checkLength(arguments.layout.length);
   checkFormat(arguments);
   Session session;
@@ -143,12 +156,13 @@ int parseAndRun(int argc, char** argv) {
   Arguments arguments;
   CLI::App app{
       "Turns a recording of a drive (CSV, an LCM log of a MAEBot or MBot, or an MRPT rawlog) into "
-      "an "
-      "LCM log: INS, MOTOR, SCAN, EXECUTION, MARK"};
+      "an LCM log: INS, MOTOR, SCAN, EXECUTION, MARK; or an MCAP file of tread-export into the log "
+      "that it was made of"};
   app.add_option("--format", arguments.format,
-                 "which kind of file: lcm; rawlog; csv as --mapping says; or one with --sessions")
+                 "which kind of file: mcap; lcm; rawlog; csv as --mapping says; or one with "
+                 "--sessions")
       ->required()
-      ->check(CLI::IsMember({"steps", "aligned", "continuous", "lcm", "rawlog", "csv"}));
+      ->check(CLI::IsMember({"steps", "aligned", "continuous", "lcm", "rawlog", "csv", "mcap"}));
   app.add_option("--mapping", arguments.mapping,
                  "csv: what its columns mean, as config/imports/example.yaml does");
   app.add_option("--set", arguments.overrides,

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/geometry/se2.hpp"
+#include "common/grid/grid.hpp"
+#include "common/scene/event_teller.hpp"
+
+namespace tread {
+
+/// A message for viewers, in one of Foxglove's own schemas, which these draw without a plugin.
+struct SceneMessage {
+  std::string topic;
+  std::string schema;  ///< its name
+  std::string json;
+};
+
+/// The schema (JSON Schema) of such a message, as far as we fill it.
+std::string sceneSchema(const std::string& name);
+/// Topics with their schemas' names.
+const std::vector<std::pair<std::string, std::string>>& sceneTopics();
+
+/// Draws the robot, the map, the scan, the plan with its tree, and tells events, from Tread's
+/// messages.
+/** Frames: map, body. All times are those of recording: a viewer's clock is the recorder's. */
+class SceneMaker {
+ public:
+  std::vector<SceneMessage> take(const LogEvent& event);
+
+ private:
+  void hear(const ins_t& ins);
+  void hear(const map_tile_t& tile);
+  void hear(const scan_t& scan);
+  void hear(const plan_t& plan);
+  void hear(const plan_tree_t& tree);
+  void hear(const goal_t& goal);
+  void hear(const config_t& config);
+  void drawMap();
+
+  int64_t now_ = 0;  ///< [us] of recording
+  std::vector<SceneMessage> made_;
+  EventTeller teller_;
+  Pose2 T_map_body_;
+  bool placed_ = false;
+  std::unique_ptr<TileMap> map_;
+  bool map_changed_ = false;
+  int64_t map_drawn_ = INT64_MIN;  ///< [us]
+};
+
+}  // namespace tread

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include <nlohmann/json.hpp>
+
+#include "common/types/message_json.hpp"
+#include "tools/export/log_export.hpp"
+
+namespace tread::exporting {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Values of a field whose length is always the same; 0 = it varies.
+size_t fixedCount(const MessageField& field) {
+  size_t count = 1;
+  for (const std::string& length : field.lengths) {
+    if (length.find_first_not_of("0123456789") != std::string::npos) return 0;
+    count *= std::stoul(length);
+  }
+  return count;
+}
+
+/// Numbers stand apart, messages are opened, and what varies in length stays together.
+enum class Layout { kOne, kEach, kMessage, kTogether };
+
+Layout layoutOf(const MessageField& field) {
+  const bool message = treadTypes().find(field.type) != nullptr;
+  if (field.lengths.empty()) return message ? Layout::kMessage : Layout::kOne;
+  const bool bytes = field.type == "byte";
+  return message || bytes || fixedCount(field) == 0 ? Layout::kTogether : Layout::kEach;
+}
+
+void addNames(const MessageType& type, const std::string& prefix, std::string& row) {
+  for (const MessageField& field : type.fields) {
+    const std::string name = prefix + field.name;
+    const Layout layout = layoutOf(field);
+    if (layout == Layout::kMessage) {
+      addNames(*treadTypes().find(field.type), name + ".", row);
+    } else if (layout == Layout::kEach) {
+      for (size_t i = 0; i < fixedCount(field); ++i)
+        row += "," + name + "[" + std::to_string(i) + "]";
+    } else {
+      row += "," + name;
+    }
+  }
+}
+
+/// A text as a cell (RFC 4180).
+std::string cellOf(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string cell = "\"";
+  for (const char letter : text) cell += letter == '"' ? "\"\"" : std::string(1, letter);
+  return cell + '"';
+}
+
+std::string cellOf(const Json& value) {
+  return cellOf(value.is_string() ? value.get<std::string>() : value.dump());
+}
+
+void addCells(const MessageType& type, const Json& message, std::string& row) {
+  for (const MessageField& field : type.fields) {
+    const Json& value = message.at(field.name);
+    const Layout layout = layoutOf(field);
+    if (layout == Layout::kMessage)
+      addCells(*treadTypes().find(field.type), value, row);
+    else if (layout == Layout::kEach)
+      for (const Json& item : value) row += "," + cellOf(item);
+    else
+      row += "," + cellOf(value);
+  }
+}
+
+/// The files of a folder, one a channel.
+class CsvExport {
+ public:
+  explicit CsvExport(std::string folder) : folder_(std::move(folder)) {
+    std::error_code error;
+    std::filesystem::create_directories(folder_, error);
+    if (error) throw std::runtime_error(folder_ + ": cannot be made: " + error.message());
+  }
+
+  void take(const LogEvent& event) {
+    const MessageType* const type = typeOfChannel(event.channel);
+    const auto json = type == nullptr ? std::nullopt : jsonOf(treadTypes(), *type, event.bytes);
+    if (!json) {
+      ++counts.left_out[event.channel + (type == nullptr ? ": not of Tread" : ": broken")];
+      return;
+    }
+    std::string row = std::to_string(event.utime);
+    addCells(*type, Json::parse(*json), row);
+    std::ofstream& file = fileOf(event.channel, *type);
+    file << row << "\n";
+    if (!file) throw std::runtime_error(folder_ + ": cannot be written; is the disk full?");
+    ++counts.written[event.channel];
+  }
+
+  ExportCounts counts;
+
+ private:
+  std::ofstream& fileOf(const std::string& channel, const MessageType& type) {
+    const auto [entry, first] = files_.try_emplace(channel);
+    if (!first) return entry->second;
+    const std::string path = folder_ + "/" + channel + ".csv";
+    entry->second.open(path);
+    if (!entry->second) throw std::runtime_error(path + ": cannot be written");
+    std::string names = "recorded";
+    addNames(type, "", names);
+    entry->second << names << "\n";
+    return entry->second;
+  }
+
+  std::string folder_;
+  std::map<std::string, std::ofstream> files_;
+};
+
+}  // namespace
+
+ExportCounts exportCsv(const std::vector<std::string>& logs, const Selection& selection,
+                       const std::string& folder) {
+  CsvExport csv(folder);
+  csv.counts.problem =
+      SelectedEvents(logs, selection).forEach([&](const LogEvent& event) { csv.take(event); });
+  return std::move(csv.counts);
+}
+
+}  // namespace tread::exporting
