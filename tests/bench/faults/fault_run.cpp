@@ -137,6 +137,7 @@ class Run {
 
   void watch() {
     bus_.setTap([this](int64_t now, const char* channel, const uint8_t* bytes, size_t size) {
+      if (options_.log != nullptr) options_.log->write(now, channel, bytes, size);
       sent(now, channel, {bytes, bytes + size});
     });
     bus_.setArrivalTap([this](int64_t now, const std::string& node, const char* channel,

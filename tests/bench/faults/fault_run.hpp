@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "common/log/event_log.hpp"
 #include "tests/bench/faults/fault_schedule.hpp"
 #include "tools/missions/robot_system.hpp"
 
@@ -37,6 +38,7 @@ struct RunOptions {
   int64_t operator_lease_us = 1'000'000;  ///< that the rules count with
   double tilt = 30.0 / 180.0 * kPi;       ///< [rad] that the rules count with
   bool keeps_fences = true;               ///< false: nobody on the robot knows those of its file
+  LogWriter* log = nullptr;               ///< records all messages
 };
 
 /// Drives a mission of this seed under its faults, and looks at the rules at each message and every

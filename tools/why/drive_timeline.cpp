@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/why/drive_timeline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "common/messages/ins_messages.hpp"
+#include "common/messages/pattern_messages.hpp"
+
+namespace tread::why {
+namespace {
+
+constexpr double kInsStep = 0.1;      // [s] between notes
+constexpr double kBatteryStep = 1.0;  // [s] the same
+constexpr double kCellReach = 8.0;    // [m] from the robot
+constexpr double kDead = 2.5;         // [s] without HEALTH, which comes every second
+constexpr double kStep = 0.02;        // [m] below this an INS that stands wanders
+
+class TimelineReader {
+ public:
+  explicit TimelineReader(DriveTimeline& drive) : drive_(drive) {}
+
+  void take(const LogEvent& event) {
+    if (drive_.begun == 0) drive_.begun = event.utime;
+    now_ = static_cast<double>(event.utime - drive_.begun) * 1e-6;
+    drive_.duration = std::max(drive_.duration, now_);
+    if (event.channel != kHealth.name) drive_.heard[event.channel].push_back(now_);
+    dispatch(
+        event, [this](const auto& message) { hear(message); }, kIns, kMotor, kPlan, kHealth,
+        kLearning, kExecution, kGoal, kMap, kArm, kEstop, kFence, kMark, kConfig);
+  }
+
+ private:
+  void hear(const ins_t& ins) {
+    const auto pose = planarPose(ins);
+    if (pose) {
+      if (last_ && distanceBetween(*last_, *pose) > kStep) {
+        if ((ins.ins_status & ins_t::STATUS_JUMP) == 0)
+          drive_.distance += distanceBetween(*last_, *pose);
+        last_ = pose;
+      }
+      if (!last_) last_ = pose;
+    }
+    const bool same = !drive_.ins.empty() && drive_.ins.back().status == ins.ins_status;
+    if (same && now_ - drive_.ins.back().time < kInsStep) return;
+    drive_.ins.push_back(
+        {now_, ins.ins_status, pose.value_or(Pose2{}), pose.has_value(), tilt(ins).inclination});
+  }
+
+  void hear(const motor_t& motor) {
+    std::vector<StateNote>& notes = drive_.motors;
+    if (notes.empty() || notes.back().state != motor.bridge_state ||
+        notes.back().reason != motor.state_reason)
+      notes.push_back({now_, motor.bridge_state, motor.state_reason});
+    if (motor.device_fault != 0) drive_.device_faults.insert(motor.device_fault);
+    if (std::isfinite(motor.battery_voltage) &&
+        (drive_.battery.empty() || now_ - drive_.battery.back().first >= kBatteryStep))
+      drive_.battery.emplace_back(now_, static_cast<double>(motor.battery_voltage));
+  }
+
+  void hear(const plan_t& plan) {
+    std::vector<StateNote>& notes = drive_.plans;
+    // While it drives the reason tells of a stop that is planned.
+    const std::string reason = plan.plan_status == plan_t::PLAN_DRIVING ? "" : plan.reason;
+    if (notes.empty() || notes.back().state != plan.plan_status || notes.back().reason != reason)
+      notes.push_back({now_, plan.plan_status, reason});
+  }
+
+  void hear(const health_t& health) {
+    HealthNote note{now_,
+                    health.boot_id,
+                    health.health_state == health_t::HEALTH_OK,
+                    health.health_reason,
+                    health.received,
+                    health.undecodable,
+                    health.lost,
+                    health.late,
+                    {}};
+    for (const counter_t& counter : health.counters)
+      note.counters[counter.counter_name] = counter.counted;
+    drive_.health[health.process].push_back(std::move(note));
+  }
+
+  void hear(const learning_t& learning) {
+    PatternNote note;
+    note.time = now_;
+    note.pattern = learning.learned_pattern_name;
+    note.accepted = learning.accepted != 0;
+    note.words = learning.accepted ? learning.change_reason : learning.gate_reason;
+    note.position = learning.error_position;
+    note.yaw = learning.error_yaw;
+    note.path = learning.path_length;
+    note.ground_changed = learning.ground_changed;
+    note.surface = learning.surface;
+    drive_.patterns.push_back(std::move(note));
+  }
+
+  void hear(const execution_t& executions) {
+    for (const execution_record_t& record : executions.records) {
+      if (record.outcome == execution_record_t::OUTCOME_RUNNING) continue;
+      if (!ended_.insert(keyOf(record)).second) continue;
+      if (record.outcome == execution_record_t::OUTCOME_ABORTED)
+        drive_.aborts.push_back({now_, record.record_pattern_id, record.outcome_reason});
+      else
+        ++drive_.completed;
+    }
+  }
+
+  void hear(const goal_t& goal) {
+    if (goal.goal_id == 0 || (!drive_.goals.empty() && drive_.goals.back().id == goal.goal_id))
+      return;
+    drive_.goals.push_back(
+        {now_, goal.goal_id, {goal.goal_pose[0], goal.goal_pose[1], goal.goal_pose[2]}});
+  }
+
+  void hear(const map_tile_t& message) {
+    if (!drive_.map && message.tile_cells > 0 && message.cell_size > 0.0)
+      drive_.map = std::make_unique<TileMap>(message.cell_size, message.tile_cells);
+    if (!drive_.map || message.tile_cells != drive_.map->tileCells()) return;
+    compare(message);
+    drive_.map->put({message.tile_x, message.tile_y, message.utime, message.cells});
+  }
+
+  /// What came and went since the tile before; unknown ground that turns out blocked is no news.
+  void compare(const map_tile_t& message) {
+    const auto known = drive_.map->tiles().find({message.tile_x, message.tile_y});
+    if (known == drive_.map->tiles().end() || !last_) return;
+    const std::vector<uint8_t>& before = known->second.cells;
+    if (before.size() != message.cells.size()) return;
+    for (size_t i = 0; i < before.size(); ++i) {
+      const bool came = isFree(before[i]) && message.cells[i] == kObstacle;
+      const bool went = before[i] == kObstacle && isFree(message.cells[i]);
+      if (!came && !went) continue;
+      const int side = message.tile_cells;
+      const Eigen::Vector2d p_map(
+          (message.tile_x * side + static_cast<int>(i) % side + 0.5) * message.cell_size,
+          (message.tile_y * side + static_cast<int>(i) / side + 0.5) * message.cell_size);
+      if ((p_map - last_->position()).norm() < kCellReach)
+        drive_.cells.push_back({now_, p_map, came});
+    }
+  }
+
+  void person(const std::string& who, const std::string& what) {
+    if (!drive_.people.empty() && drive_.people.back().who == who &&
+        drive_.people.back().what == what && now_ - drive_.people.back().time < 2.0)
+      return;
+    drive_.people.push_back({now_, who, what});
+  }
+  void hear(const arm_t& arm) {
+    person(arm.armed_by, (arm.armed ? "arms" : "disarms") +
+                             (arm.arm_reason.empty() ? "" : ": " + arm.arm_reason));
+  }
+  void hear(const estop_t& estop) {
+    person(estop.estop_by, (estop.engaged ? "E-stop" : "clears the E-stop") +
+                               (estop.estop_reason.empty() ? "" : ": " + estop.estop_reason));
+  }
+  void hear(const fence_t& fence) { person(fence.fence_by, "fence " + fence.fence_name); }
+  void hear(const mark_t& mark) { person("operator", mark.mark_kind + ": " + mark.mark_value); }
+  void hear(const config_t& config) { drive_.configs[config.config_process] = config.config_text; }
+
+  DriveTimeline& drive_;
+  double now_ = 0.0;
+  std::optional<Pose2> last_;
+  std::set<ExecutionKey> ended_;
+};
+
+}  // namespace
+
+std::optional<DriveTimeline::Silence> DriveTimeline::silenceOf(const std::string& channel,
+                                                               double time, double longest) const {
+  const auto found = heard.find(channel);
+  if (found == heard.end()) return std::nullopt;
+  const std::vector<double>& times = found->second;
+  std::optional<Silence> worst;
+  for (size_t i = 0; i < times.size(); ++i) {
+    const Silence silence{times[i], i + 1 < times.size() ? times[i + 1] : duration};
+    if (silence.from > time + 0.05 || silence.to < time - longest) continue;
+    if (silence.length() > longest && (!worst || silence.length() > worst->length()))
+      worst = silence;
+  }
+  return worst;
+}
+
+std::optional<double> DriveTimeline::restartOf(const std::string& process, double from,
+                                               double to) const {
+  const auto found = health.find(process);
+  if (found == health.end()) return std::nullopt;
+  for (size_t i = 1; i < found->second.size(); ++i) {
+    const HealthNote& note = found->second[i];
+    if (note.boot == found->second[i - 1].boot) continue;
+    if (note.time >= from && note.time <= to) return note.time;
+  }
+  return std::nullopt;
+}
+
+std::optional<double> DriveTimeline::deathOf(const std::string& process) const {
+  const auto found = health.find(process);
+  if (found == health.end() || duration - found->second.back().time < kDead) return std::nullopt;
+  return found->second.back().time;
+}
+
+const HealthNote* DriveTimeline::healthAt(const std::string& process, double time) const {
+  const auto found = health.find(process);
+  if (found == health.end()) return nullptr;
+  const HealthNote* newest = nullptr;
+  for (const HealthNote& note : found->second)
+    if (note.time <= time) newest = &note;
+  return newest;
+}
+
+const HealthNote* DriveTimeline::complaintOf(const std::string& process, double from, double to,
+                                             const std::string& words) const {
+  const auto found = health.find(process);
+  if (found == health.end()) return nullptr;
+  for (const HealthNote& note : found->second)
+    if (note.time >= from && note.time <= to && note.reason.find(words) != std::string::npos)
+      return &note;
+  return nullptr;
+}
+
+std::optional<Pose2> DriveTimeline::poseAt(double time) const {
+  std::optional<Pose2> pose;
+  for (const InsNote& note : ins) {
+    if (note.time > time) break;
+    if (note.placed) pose = note.T_map_body;
+  }
+  return pose;
+}
+
+DriveTimeline readTimeline(const std::vector<std::string>& logs) {
+  DriveTimeline drive;
+  TimelineReader timeline(drive);
+  for (const std::string& path : logs) {
+    LogReader log(path);
+    LogEvent event;
+    while (log.next(event)) timeline.take(event);
+    if (drive.problem.empty()) drive.problem = log.problem();
+  }
+  if (logs.empty() || drive.heard.empty())
+    throw std::runtime_error((logs.empty() ? std::string("no log") : logs.front()) +
+                             ": holds no message of Tread; is it a robot's log?");
+  drive.name = logs.front().substr(logs.front().find_last_of('/') + 1);
+  return drive;
+}
+
+}  // namespace tread::why
