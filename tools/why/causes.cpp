@@ -14,13 +14,14 @@
 namespace tread::why {
 namespace {
 
-constexpr double kTogether = 1.5;      // [s] between reasons of one stop
-constexpr double kFirst = 0.6;         // [s] in which the nearest reason to the cause is looked for
-constexpr double kBefore = 1.5;        // [s] before a stop in which its cause lies
-constexpr double kAfterwards = 8.0;    // [s] after it in which processes complain or start again
-constexpr double kHealthLate = 1.4;    // [s] between HEALTH, which comes every second
-constexpr double kObstacleSize = 0.7;  // [m] about its nearest cell
-constexpr double kGhost = 12.0;        // [s] in which an obstacle that was none goes
+constexpr double kTogether = 1.5;    // [s] between reasons of one stop
+constexpr double kFirst = 0.6;       // [s] in which the nearest reason to the cause is looked for
+constexpr double kBefore = 1.5;      // [s] before a stop in which its cause lies
+constexpr double kAfterwards = 8.0;  // [s] after it in which processes complain or start again
+constexpr double kHealthLate = 1.4;  // [s] between HEALTH, which comes every second
+constexpr int64_t kManyGarbled = 100;
+constexpr double kOneHeading = 0.03;  // [rad] the same
+constexpr double kOnePlace = 0.05;    // [m] noise of an INS that does not move
 
 /// A reason that was published.
 struct Signal {
@@ -36,6 +37,15 @@ struct Incident {
   double until = 0.0;
 
   double time() const { return signals.front().time; }
+  /// Whether what comes next is another stop: the first that an input or the bridge is to blame
+  /// for.
+  bool endsBefore(const Signal& next) const {
+    const auto takesPermission = [](const Signal& signal) {
+      return signal.channel == std::string("MOTOR") || signal.topic == Topic::kMap;
+    };
+    return takesPermission(next) && next.time > time() + kFirst &&
+           std::none_of(signals.begin(), signals.end(), takesPermission);
+  }
   /// The one nearest to the cause.
   const Signal& main() const {
     const Signal* best = &signals.front();
@@ -88,9 +98,12 @@ double drivesAgain(const DriveTimeline& drive, double time) {
 std::vector<Incident> incidentsOf(const DriveTimeline& drive) {
   std::vector<Incident> incidents;
   for (Signal& signal : signalsOf(drive)) {
-    const bool same =
-        !incidents.empty() && (signal.time - incidents.back().signals.back().time < kTogether ||
-                               signal.time <= incidents.back().until);
+    // What takes the permission away is a stop of its own, whatever the planner had found before.
+    const bool same = !incidents.empty() && !incidents.back().endsBefore(signal) &&
+                      (signal.time - incidents.back().signals.back().time < kTogether ||
+                       signal.time <= incidents.back().until);
+    if (!same && !incidents.empty())
+      incidents.back().until = std::min(incidents.back().until, signal.time);
     if (!same) incidents.emplace_back();
     incidents.back().until = drivesAgain(drive, signal.time);
     incidents.back().signals.push_back(std::move(signal));
@@ -273,12 +286,15 @@ class CauseSearch {
     const HealthNote* const before = drive_.healthAt(to, t_ - 1.0);
     const HealthNote* const after = drive_.healthAt(to, t_ + 3.0);
     if (before == nullptr || after == nullptr || before->boot != after->boot) return;
+    const int64_t missing = after->lost - before->lost;
     prove(after->time, "HEALTH",
-          to + formatted(
-                   ": since the note before the stop %lld messages lost, %lld late, %lld broken",
-                   static_cast<long long>(after->lost - before->lost),
-                   static_cast<long long>(after->late - before->late),
-                   static_cast<long long>(after->undecodable - before->undecodable)));
+          to + ": since a second before the stop " +
+              (missing > kMostLost
+                   ? std::string("numbers of messages that cannot be")
+                   : formatted("%lld messages lost", static_cast<long long>(missing))) +
+              formatted(", %lld late, %lld broken",
+                        static_cast<long long>(after->late - before->late),
+                        static_cast<long long>(after->undecodable - before->undecodable)));
   }
 
   void insStale() {
@@ -296,15 +312,38 @@ class CauseSearch {
   }
 
   void insBlind() {
-    say("ins_no_fix", "the INS lost its position or heading");
-    for (const InsNote& note : drive_.ins)
-      if (note.time > t_ - kBefore && note.time < t_ + 1.0 && !note.placed) {
-        prove(note.time, "INS", formatted("status %d, no pose", note.status));
-        break;
-      }
+    const auto blind = std::find_if(drive_.ins.begin(), drive_.ins.end(), [&](const InsNote& note) {
+      return note.time > t_ - kBefore && note.time < t_ + 1.0 && !note.placed;
+    });
+    // What motor_bridge took for no position had one when it was sent.
+    if (blind == drive_.ins.end()) return lost("INS", "ins_driver", "motor_bridge");
+    const int64_t garbled = garbledSince(t_ - kBefore);
+    if (garbled > kManyGarbled) {
+      say("ins_device", "what the INS says arrives garbled, and no pose comes of it");
+      prove(t_, "HEALTH",
+            formatted("ins_driver: %lld bytes or sentences more that make no sense",
+                      static_cast<long long>(garbled)));
+    } else {
+      say("ins_no_fix", "the INS lost its position or heading");
+    }
+    prove(blind->time, "INS", formatted("status %d, no pose", blind->status));
     if (const HealthNote* const note =
             drive_.complaintOf("ins_driver", t_ - 1.0, t_ + kAfterwards, "no "))
       prove("ins_driver", *note);
+  }
+
+  /// How many bytes and sentences ins_driver counted as senseless from then to 3 s later.
+  int64_t garbledSince(double time) const {
+    const HealthNote* const before = drive_.healthAt("ins_driver", time);
+    const HealthNote* const after = drive_.healthAt("ins_driver", time + 3.0);
+    if (before == nullptr || after == nullptr || before->boot != after->boot) return 0;
+    int64_t garbled = 0;
+    for (const char* name : {"stray bytes", "refused: wrong checksum", "refused: not printable"}) {
+      const auto then = before->counters.find(name), now = after->counters.find(name);
+      if (now == after->counters.end()) continue;
+      garbled += now->second - (then == before->counters.end() ? 0 : then->second);
+    }
+    return garbled;
   }
 
   void motion() {
@@ -318,27 +357,34 @@ class CauseSearch {
         return say("ins_jump", "the INS jumped: " + main_.reason);
       }
     if (says("jumps")) return say("ins_jump", "the INS jumped: " + main_.reason);
-    if (says("frozen") && frozen())
-      return say("ins_frozen", "the INS repeated one pose while the robot moved: " + main_.reason);
+    if (frozen())
+      return say("ins_frozen", "the INS repeated one place while the robot moved: " + main_.reason);
     if (says("track dead") || says("tracks blocked") || says("wrong way"))
       return say("drive", "the drive failed: " + main_.reason);
     if (says("frozen")) return say("stuck", "it got stuck: " + main_.reason);
     say("ins_drift", "the pose moved in a way that the commands do not explain: " + main_.reason);
   }
 
-  /// Whether the pose stayed the same to the millimetre for a while.
+  /// Whether the pose stayed in one place for a while after the robot had moved.
   bool frozen() {
+    const auto last = drive_.poseAt(t_);
+    if (!last) return false;
     double since = t_;
-    const InsNote* last = nullptr;
-    for (const InsNote& note : drive_.ins) {
-      if (note.time > t_ || !note.placed) continue;
-      if (last == nullptr || distanceBetween(last->T_map_body, note.T_map_body) > 1e-3)
-        since = note.time;
-      last = &note;
+    for (auto note = drive_.ins.rbegin(); note != drive_.ins.rend(); ++note) {
+      if (note->time > t_ || !note->placed) continue;
+      if (!atOnePlace(note->T_map_body, *last, 1.0)) break;
+      since = note->time;
     }
-    if (t_ - since < 0.25) return false;
-    prove(since, "INS", formatted("the same pose for %.2f s", t_ - since));
+    const auto before = drive_.poseAt(since - 0.5);
+    const bool moved = before && !atOnePlace(*before, *last, 3.0);
+    if (t_ - since < 0.3 || !moved) return false;
+    prove(since, "INS", formatted("one place for %.2f s", t_ - since));
     return true;
+  }
+
+  static bool atOnePlace(const Pose2& a, const Pose2& b, double tolerance) {
+    return distanceBetween(a, b) < tolerance * kOnePlace &&
+           std::abs(wrapAngle(a.yaw - b.yaw)) < tolerance * kOneHeading;
   }
 
   void map() {
@@ -366,17 +412,12 @@ class CauseSearch {
           (nearest == nullptr || distance(cell) < distance(*nearest)))
         nearest = &cell;
     if (nearest == nullptr) return say("no_way", "no way was free: " + main_.reason);
-    int came = 0, went = 0;
-    for (const CellNote& cell : drive_.cells) {
-      if ((cell.p_map - nearest->p_map).norm() > kObstacleSize) continue;
-      if (cell.came && cell.time > t_ - 3.0 && cell.time <= t_ + 0.3) ++came;
-      if (!cell.came && cell.time > nearest->time && cell.time < t_ + kGhost) ++went;
-    }
+    const auto ghost = drive_.ghostAt(nearest->p_map, t_ - 3.0, t_ + 0.3);
     const std::string where = formatted("x %.1f m, y %.1f m, %.1f m from the robot",
                                         nearest->p_map.x(), nearest->p_map.y(), distance(*nearest));
     prove(nearest->time, "MAP",
-          formatted("%d cells there became obstacles, %d went again", came, went));
-    if (went * 2 >= came)
+          formatted("%d cells there became obstacles, %d went again", ghost.came, ghost.went));
+    if (ghost.alone && ghost.went * 2 >= ghost.came)
       return say("ghost", "an obstacle appeared at " + where +
                               ", and went again: something passed, or the range finder saw what "
                               "was not there");

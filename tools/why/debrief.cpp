@@ -18,6 +18,9 @@ constexpr double kMuchWorse = 2.5;   // [1] of the errors before
 constexpr size_t kRun = 4;           // patterns that are compared with those before
 constexpr double kLostShare = 0.03;  // [1] of a process' messages between two of its HEALTH
 constexpr int64_t kLostLeast = 5;
+constexpr double kInTheWay = 3.0;     // [m] from the robot
+constexpr int kGhostCells = 4;        // that came within a second
+constexpr double kGhostPause = 12.0;  // [s] within which they are told once
 
 double median(std::vector<double> values) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -130,7 +133,8 @@ void addLosses(const DriveTimeline& drive, std::vector<Finding>& findings) {
     for (size_t i = 1; i < notes.size(); ++i) {
       const HealthNote &before = notes[i - 1], &now = notes[i];
       if (before.boot != now.boot) continue;
-      const int64_t missing = now.lost - before.lost;
+      // More within a second is a broken number.
+      const int64_t missing = now.lost - before.lost > kMostLost ? 0 : now.lost - before.lost;
       const int64_t bad = missing + now.late - before.late + now.undecodable - before.undecodable;
       const int64_t all = now.received - before.received + missing;
       if (bad < kLostLeast || static_cast<double>(bad) < kLostShare * static_cast<double>(all))
@@ -154,6 +158,36 @@ void addLosses(const DriveTimeline& drive, std::vector<Finding>& findings) {
         process + formatted(" missed messages: %lld lost, %lld late, %lld broken",
                             static_cast<long long>(lost), static_cast<long long>(late),
                             static_cast<long long>(broken));
+    findings.push_back(std::move(finding));
+  }
+}
+
+/// Obstacles that came and went again although nothing stopped the robot.
+void addGhosts(const DriveTimeline& drive, std::vector<Finding>& findings) {
+  double told = -kGhostPause;
+  for (const CellNote& first : drive.cells) {
+    if (!first.came || first.time < told + kGhostPause) continue;
+    const auto pose = drive.poseAt(first.time);
+    if (!pose || (first.p_map - pose->position()).norm() > kInTheWay) continue;
+    const auto ghost = drive.ghostAt(first.p_map, first.time - 1.0, first.time + 1.0);
+    if (!ghost.alone || ghost.came < kGhostCells || ghost.went * 4 < ghost.came * 3) continue;
+    told = first.time;
+    const bool stopped = std::any_of(findings.begin(), findings.end(), [&](const Finding& finding) {
+      return finding.cause == "ghost" && std::abs(finding.time - first.time) < kGhostPause;
+    });
+    if (stopped) continue;
+    Finding finding;
+    finding.kind = FindingKind::kDetour;
+    finding.time = first.time;
+    finding.until = ghost.gone;
+    finding.cause = "ghost";
+    finding.sentence = formatted(
+        "an obstacle appeared at x %.1f m, y %.1f m on ground that had been free, and went again",
+        first.p_map.x(), first.p_map.y());
+    finding.evidence.push_back(
+        {first.time, "MAP",
+         formatted("%d cells became obstacles, %d went again by %.1f s, none is left", ghost.came,
+                   ghost.went, ghost.gone)});
     findings.push_back(std::move(finding));
   }
 }
@@ -215,8 +249,9 @@ void addGoals(const DriveTimeline& drive, std::vector<Finding>& findings) {
     double arrived = -1.0;
     const StateNote* last = nullptr;
     for (const StateNote& plan : drive.plans) {
-      if (plan.time < goal.time + 0.3 || plan.time > end) continue;
-      if (plan.state == plan_t::PLAN_ARRIVED && arrived < 0.0) arrived = plan.time;
+      if (plan.time > end) break;
+      const bool follows = plan.time > goal.time + 0.3;
+      if (follows && plan.state == plan_t::PLAN_ARRIVED && arrived < 0.0) arrived = plan.time;
       if (arrived < 0.0) last = &plan;
     }
     const auto start = drive.poseAt(goal.time);
@@ -259,6 +294,31 @@ void addGoals(const DriveTimeline& drive, std::vector<Finding>& findings) {
   }
 }
 
+/// Patterns that ended far from their predictions from the first on, until they had been corrected.
+void addBeginning(const std::vector<const PatternNote*>& measured, std::vector<Finding>& findings) {
+  if (measured.size() < 4 * kRun) return;
+  std::vector<double> first, later;
+  for (size_t i = 0; i < measured.size(); ++i)
+    if (i < kRun || i >= 2 * kRun)
+      (i < kRun ? first : later).push_back(std::abs(measured[i]->position));
+  const double begun = median(first), usual = std::max(0.03, median(later));
+  if (begun < kMuchWorse * usual) return;
+  Finding finding;
+  finding.kind = FindingKind::kPrediction;
+  finding.cause = "prediction";
+  finding.time = measured.front()->time;
+  finding.until = measured[kRun - 1]->time;
+  finding.sentence = formatted(
+      "the first patterns ended %.2f m from their predictions, later ones %.2f m: the set that it "
+      "began with was another vehicle's or ground's",
+      begun, usual);
+  for (size_t i = 0; i < kRun; ++i)
+    finding.evidence.push_back(
+        {measured[i]->time, "LEARNING",
+         measured[i]->pattern + formatted(": %.2f m", measured[i]->position)});
+  findings.push_back(std::move(finding));
+}
+
 /// Stretches in which patterns ended much further from their predictions than before.
 void addPredictions(const DriveTimeline& drive, std::vector<Finding>& findings) {
   std::vector<const PatternNote*> measured;
@@ -269,6 +329,7 @@ void addPredictions(const DriveTimeline& drive, std::vector<Finding>& findings) 
     for (size_t i = from; i < to; ++i) errors.push_back(std::abs(measured[i]->*error));
     return median(errors);
   };
+  addBeginning(measured, findings);
   for (size_t i = kRun; i + kRun <= measured.size();) {
     const size_t before = i > 2 * kRun ? i - 2 * kRun : 0;
     const double usual = std::max(0.03, typical(before, i, &PatternNote::position));
@@ -295,6 +356,14 @@ void addPredictions(const DriveTimeline& drive, std::vector<Finding>& findings) 
       if (!note.words.empty()) words += "; " + note.words;
       finding.evidence.push_back({note.time, "LEARNING", words});
     }
+    const auto sameSide = [&](double sign) {
+      return std::all_of(measured.begin() + static_cast<long>(i),
+                         measured.begin() + static_cast<long>(i + kRun),
+                         [&](const PatternNote* note) { return sign * note->yaw > 0.01; });
+    };
+    if (sameSide(1.0) || sameSide(-1.0))
+      finding.sentence +=
+          std::string(", each time too far to the ") + (sameSide(1.0) ? "left" : "right");
     const auto changed = std::find_if(
         measured.begin() + static_cast<long>(i), measured.begin() + static_cast<long>(i + kRun),
         [](const PatternNote* note) { return note->ground_changed > 0.5; });
@@ -308,17 +377,19 @@ void addPredictions(const DriveTimeline& drive, std::vector<Finding>& findings) 
   }
 }
 
-/// How much a finding counts: what stopped the robot first.
+/// How much a finding counts: what stopped the robot first, and most what it had no part in.
 int weightOf(const Finding& finding) {
+  const std::string& cause = finding.cause;
+  if (cause == "obstacle" || cause == "no_way" || cause == "goal") return 1;
+  if (cause == "ghost") return 3;
   switch (finding.kind) {
     case FindingKind::kStop:
-      return finding.cause == "obstacle" || finding.cause == "no_way" ? 3 : 5;
+      return 5;
     case FindingKind::kProcess:
       return 4;
     case FindingKind::kMessages:
-      return 2;
     case FindingKind::kPrediction:
-      return 1;
+      return 2;
     default:
       return 0;
   }
@@ -348,6 +419,7 @@ Debrief debrief(const DriveTimeline& drive) {
   debrief.figures.stops = static_cast<int>(debrief.findings.size());
   addProcesses(drive, debrief.findings);
   addInsEvents(drive, debrief.findings);
+  addGhosts(drive, debrief.findings);
   addComplaints(drive, debrief.findings);
   addLosses(drive, debrief.findings);
   addGoals(drive, debrief.findings);

@@ -16,6 +16,9 @@ constexpr double kInsStep = 0.1;      // [s] between notes
 constexpr double kBatteryStep = 1.0;  // [s] the same
 constexpr double kCellReach = 8.0;    // [m] from the robot
 constexpr double kDead = 2.5;         // [s] without HEALTH, which comes every second
+constexpr double kGhostSize = 0.7;    // [m]
+constexpr double kGhostLife = 12.0;   // [s]
+constexpr double kAlone = 0.4;        // [m] flickering beside a wall is no ghost
 constexpr double kStep = 0.02;        // [m] below this an INS that stands wanders
 
 class TimelineReader {
@@ -218,6 +221,26 @@ const HealthNote* DriveTimeline::complaintOf(const std::string& process, double 
     if (note.time >= from && note.time <= to && note.reason.find(words) != std::string::npos)
       return &note;
   return nullptr;
+}
+
+DriveTimeline::Ghost DriveTimeline::ghostAt(const Eigen::Vector2d& p_map, double from,
+                                            double to) const {
+  Ghost ghost;
+  ghost.gone = to;
+  for (const CellNote& cell : cells) {
+    if ((cell.p_map - p_map).norm() > kGhostSize) continue;
+    if (cell.came && cell.time >= from && cell.time <= to) ++ghost.came;
+    if (cell.came || cell.time <= from || cell.time > to + kGhostLife) continue;
+    ++ghost.went;
+    ghost.gone = std::max(ghost.gone, cell.time);
+  }
+  if (!map) return ghost;
+  const int reach = static_cast<int>(kAlone / map->cellSize());
+  const CellIndex lower{static_cast<int>(std::floor(p_map.x() / map->cellSize())) - reach,
+                        static_cast<int>(std::floor(p_map.y() / map->cellSize())) - reach};
+  const Grid around = map->window(lower, 2 * reach + 1, 2 * reach + 1);
+  ghost.alone = std::count(around.cells().begin(), around.cells().end(), kObstacle) == 0;
+  return ghost;
 }
 
 std::optional<Pose2> DriveTimeline::poseAt(double time) const {

@@ -16,6 +16,9 @@
 
 namespace tread::why {
 
+/// More messages than that are not lost within seconds: a broken number.
+inline constexpr int64_t kMostLost = 100'000;
+
 /// A process' state from some time on. All times are [s] since the log began.
 struct HealthNote {
   double time = 0.0;
@@ -111,6 +114,14 @@ struct DriveTimeline {
   /// The first note within these times whose reason holds the words; nullptr if there is none.
   const HealthNote* complaintOf(const std::string& process, double from, double to,
                                 const std::string& words) const;
+  /// Of the cells near a place that became obstacles within these times, how many, and how many of
+  /// these places were free again later.
+  struct Ghost {
+    int came = 0, went = 0;
+    double gone = 0.0;  ///< [s] when the last of them went
+    bool alone = true;  ///< no obstacle is there at the end of the log
+  };
+  Ghost ghostAt(const Eigen::Vector2d& p_map, double from, double to) const;
   /// Where the robot was; nothing before the INS knew.
   std::optional<Pose2> poseAt(double time) const;
 };

@@ -10,6 +10,7 @@ const std::vector<ReasonWords>& reasonTable() {
       {"disarmed by ", Topic::kPerson},
       {"controller lost: ", Topic::kController},
       {"controller is being started up", Topic::kController},
+      {"controller: ", Topic::kController},
       {"motor_bridge was held up", Topic::kBridge},
       {"the robot's clock went back", Topic::kBridge},
       {"the operator is lost", Topic::kOperator},
@@ -71,11 +72,10 @@ Topic topicOf(const std::string& reason) {
 }
 
 bool isOrdinary(const std::string& reason) {
-  for (const char* words :
-       {"not armed yet", "stopping to", "stopping at the goal", "stopping for", "armed by",
-        "not armed since", "stopping: the plan ends there", "no goal"})
+  for (const char* words : {"not armed yet", "stopping to", "stopping at the goal", "stopping for",
+                            "not armed since", "stopping: the plan ends there", "no goal"})
     if (reason.find(words) != std::string::npos) return true;
-  return reason.empty();
+  return reason.empty() || reason.rfind("armed by", 0) == 0;
 }
 
 }  // namespace tread::why

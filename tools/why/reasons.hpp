@@ -16,8 +16,8 @@ enum class Topic {
   kBridge,      ///< motor_bridge itself
   kOperator,    ///< the operator's lease
   kProgram,     ///< the planner's orders
+  kInsBlind,    ///< no position or no heading
   kInsStale,
-  kInsBlind,  ///< no position or no heading
   kTilt,
   kFence,
   kMotion,  ///< what was measured does not fit what was commanded
