@@ -269,6 +269,14 @@ bool LogReader::next(LogEvent& event) {
   return true;
 }
 
+uint64_t LogReader::position() const {
+  return file_->position;
+}
+
+void LogReader::seek(uint64_t position) {
+  file_->position = position;
+}
+
 const std::string& LogReader::problem() const {
   return file_->problem;
 }

@@ -81,6 +81,10 @@ class LogReader {
   /// The next event, without the seal that a robot with a key puts behind each message, and as its
   /// type is today (see older_types.hpp); false at the end.
   bool next(LogEvent& event);
+  /// Where the next event begins [bytes]: a place to come back to.
+  uint64_t position() const;
+  /// Goes to a place that position() told.
+  void seek(uint64_t position);
   /// One clear line if the log ends in the middle of an event or holds damaged bytes; empty if it
   /// is whole.
   const std::string& problem() const;

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace tread::view {
+
+/// Topic of what happened since the beginning, and of where a log's playback is.
+inline constexpr const char* kHistoryTopic = "view/history";
+inline constexpr const char* kPlayerTopic = "view/player";
+
+/// What a viewer can subscribe to.
+struct OfferedChannel {
+  uint32_t id = 0;
+  std::string topic;
+  std::string schema_name;
+  std::string schema;  ///< JSON Schema
+};
+
+/// Tread's channels, the scene's topics and those of the page itself.
+class OfferedChannels {
+ public:
+  OfferedChannels();
+  const std::vector<OfferedChannel>& all() const { return all_; }
+  /// nullptr if there is none.
+  const OfferedChannel* find(const std::string& topic) const;
+
+ private:
+  void add(const std::string& topic, const std::string& schema_name, const std::string& schema);
+
+  std::vector<OfferedChannel> all_;
+  std::map<std::string, size_t> by_topic_;
+};
+
+}  // namespace tread::view

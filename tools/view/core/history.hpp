@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/scene/event_teller.hpp"
+
+namespace tread::view {
+
+/// What a page must know of the time before it was opened: events, how patterns ended, the way,
+/// the battery.
+class History {
+ public:
+  void take(const LogEvent& event);
+  /// All of it as JSON.
+  std::string whole() const;
+  /// What came since the last call, as JSON; empty if nothing did.
+  std::string news();
+
+ private:
+  struct Pattern {
+    int64_t utime;
+    std::string name, words;
+    bool accepted, changed;
+    double position, yaw, ground_changed;
+    int32_t surface;
+  };
+  struct Sample {
+    int64_t utime;
+    double a, b;
+  };
+  /// How much of each list there is.
+  struct Mark {
+    size_t events = 0, patterns = 0, way = 0, battery = 0;
+    bool operator==(const Mark& other) const {
+      return events == other.events && patterns == other.patterns && way == other.way &&
+             battery == other.battery;
+    }
+  };
+  Mark end() const { return {events_.size(), patterns_.size(), way_.size(), battery_.size()}; }
+  std::string since(const Mark& mark, bool from_start) const;
+
+  EventTeller teller_;
+  std::vector<Event> events_;
+  std::vector<Pattern> patterns_;
+  std::vector<Sample> way_;      ///< x, y [m] in map
+  std::vector<Sample> battery_;  ///< [V]
+  Mark told_;
+};
+
+}  // namespace tread::view

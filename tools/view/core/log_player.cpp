@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/view/core/log_player.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <stdexcept>
+
+namespace tread::view {
+namespace {
+
+/// What is older than that at some time is no state any more [us], but for what never changes.
+constexpr int64_t kLongestAge = 120'000'000;
+
+bool lasts(const std::string& channel) {
+  return channel == kConfig.name || channel == kPatternSet.name || channel == kFence.name ||
+         channel == kGoal.name;
+}
+
+}  // namespace
+
+uint64_t partOf(const LogEvent& event) {
+  map_tile_t tile;
+  health_t health;
+  config_t config;
+  pattern_set_part_t part;
+  if (event.channel == kMap.name && decode(event, kMap, tile))
+    return static_cast<uint64_t>(static_cast<uint32_t>(tile.tile_x)) << 32 |
+           static_cast<uint32_t>(tile.tile_y);
+  if (event.channel == kPatternSet.name && decode(event, kPatternSet, part))
+    return static_cast<uint64_t>(part.part);
+  const std::hash<std::string> hash;
+  if (event.channel == kHealth.name && decode(event, kHealth, health)) return hash(health.process);
+  if (event.channel == kConfig.name && decode(event, kConfig, config))
+    return hash(config.config_process);
+  return 0;
+}
+
+LogPlayer::LogPlayer(const std::vector<std::string>& logs) {
+  for (const std::string& path : logs) index(path);
+  if (entries_.empty())
+    throw std::runtime_error((logs.empty() ? std::string("no log") : logs.front()) +
+                             ": holds no message; is it a robot's log?");
+  // Recorders write in the order of receipt, whose times may lie a little out of order.
+  if (!std::is_sorted(entries_.begin(), entries_.end(),
+                      [](const Entry& a, const Entry& b) { return a.utime < b.utime; })) {
+    std::vector<size_t> order(entries_.size()), place(entries_.size());
+    for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::stable_sort(order.begin(), order.end(),
+                     [&](size_t a, size_t b) { return entries_[a].utime < entries_[b].utime; });
+    std::vector<Entry> sorted;
+    for (size_t i = 0; i < order.size(); ++i) {
+      place[order[i]] = i;
+      sorted.push_back(entries_[order[i]]);
+    }
+    entries_ = std::move(sorted);
+    for (auto& [part, entries] : parts_) {
+      for (size_t& entry : entries) entry = place[entry];
+      std::sort(entries.begin(), entries.end());
+    }
+  }
+}
+
+void LogPlayer::index(const std::string& path) {
+  files_.push_back(std::make_unique<LogReader>(path));
+  LogReader& log = *files_.back();
+  LogEvent event;
+  for (;;) {
+    const uint64_t position = log.position();
+    if (!log.next(event)) break;
+    parts_[{event.channel, partOf(event)}].push_back(entries_.size());
+    entries_.push_back({event.utime, position, static_cast<uint32_t>(files_.size() - 1)});
+    history_.take(event);
+  }
+  if (problem_.empty()) problem_ = log.problem();
+}
+
+void LogPlayer::tell(size_t entry, const Take& take) {
+  LogReader& log = *files_[entries_[entry].file];
+  log.seek(entries_[entry].position);
+  LogEvent event;
+  if (log.next(event)) take(event);
+}
+
+void LogPlayer::seek(int64_t time, const Take& take) {
+  now_ = time;
+  std::vector<size_t> wanted;
+  for (const auto& [part, entries] : parts_) {
+    const auto after =
+        std::upper_bound(entries.begin(), entries.end(), time,
+                         [&](int64_t at, size_t entry) { return at < entries_[entry].utime; });
+    if (after == entries.begin()) continue;
+    const size_t newest = *std::prev(after);
+    if (!lasts(part.first) && time - entries_[newest].utime > kLongestAge) continue;
+    const auto [known, first] = told_.try_emplace(part, newest);
+    if (!first && known->second == newest) continue;
+    known->second = newest;
+    wanted.push_back(newest);
+  }
+  std::sort(wanted.begin(), wanted.end());
+  for (const size_t entry : wanted) tell(entry, take);
+  next_ = static_cast<size_t>(
+      std::upper_bound(entries_.begin(), entries_.end(), time,
+                       [](int64_t at, const Entry& entry) { return at < entry.utime; }) -
+      entries_.begin());
+}
+
+void LogPlayer::advance(int64_t time, const Take& take) {
+  now_ = std::min(time, end());
+  for (; next_ < entries_.size() && entries_[next_].utime <= time; ++next_)
+    tell(next_, [&](const LogEvent& event) {
+      told_[{event.channel, partOf(event)}] = next_;
+      take(event);
+    });
+}
+
+}  // namespace tread::view

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <optional>
+#include <thread>
+
+#include <sodium.h>
+#include <CLI/CLI.hpp>
+#include <lcm/lcm-cpp.hpp>
+
+#include "common/bus/host_clock.hpp"
+#include "common/bus/key_option.hpp"
+#include "common/bus/shell.hpp"
+#include "common/config/command_line.hpp"
+#include "common/seal/key_file.hpp"
+#include "tools/robot/launch/running_robots.hpp"
+#include "tools/robot/operator/command.hpp"
+#include "tools/view/operator_desk.hpp"
+#include "tools/view/view_server.hpp"
+
+namespace {
+
+using namespace tread;
+using namespace tread::view;
+
+constexpr int kWaitMs = 4;
+
+struct Arguments {
+  std::vector<std::string> logs;
+  ServerSettings server;
+  std::string lcm_url;
+  std::string key;
+  std::string operator_name = operatorName();
+  bool look_only = false;
+};
+
+double secondsNow() {
+  using namespace std::chrono;
+  return duration<double>(steady_clock::now().time_since_epoch()).count();
+}
+
+std::string newToken() {
+  if (sodium_init() < 0) throw std::runtime_error("libsodium cannot make a token");
+  unsigned char bytes[12];
+  randombytes_buf(bytes, sizeof bytes);
+  char text[2 * sizeof bytes + 1];
+  return sodium_bin2hex(text, sizeof text, bytes, sizeof bytes);
+}
+
+bool isLoopback(const std::string& address) {
+  return address.rfind("127.", 0) == 0 || address == "::1" || address == "localhost";
+}
+
+void sayWhere(const ViewServer& server, const ServerSettings& settings) {
+  const std::string token = settings.token.empty() ? "" : "?token=" + settings.token;
+  std::printf("tread-view: open http://%s:%d/%s\n", settings.address.c_str(), server.port(),
+              token.c_str());
+  std::printf("tread-view: Foxglove, Lichtblick: ws://%s:%d/%s\n", settings.address.c_str(),
+              server.port(), token.c_str());
+  std::fflush(stdout);
+}
+
+/// Every message of the bus as it is recorded, whoever may have sealed it.
+class Listener {
+ public:
+  Listener(const std::string& url, Feed& feed) : lcm_(url), feed_(feed) {
+    if (!lcm_.good()) throw std::runtime_error("LCM cannot be used at " + url);
+    lcm_.subscribe(".*", &Listener::hear, this)->setQueueCapacity(2000);
+  }
+  void handle(int milliseconds) {
+    if (lcm_.handleTimeout(milliseconds) <= 0) return;
+    for (int i = 0; i < 200 && lcm_.handleTimeout(0) > 0; ++i) {
+    }
+  }
+
+ private:
+  void hear(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+    const auto* const bytes = static_cast<const uint8_t*>(buffer->data);
+    LogEvent event;
+    event.utime = hostNow();
+    event.channel = channel;
+    event.bytes.assign(bytes, bytes + sizeWithoutSeal(bytes, buffer->data_size));
+    feed_.take(event);
+  }
+
+  lcm::LCM lcm_;
+  Feed& feed_;
+};
+
+void live(const Arguments& arguments, const std::atomic<bool>& stop) {
+  const launch::RunningRobot robot = launch::findRobot(arguments.lcm_url, arguments.key);
+  LcmBus bus(
+      BusAccess{robot.lcm_url, robot.here ? hostSealer(robot.key) : stationSealer(robot.key)},
+      TimeSource::kHost);
+  OperatorDesk desk(bus, arguments.operator_name);
+  ServerSettings settings = arguments.server;
+  settings.may_command = !arguments.look_only;
+  ViewServer server(
+      settings,
+      [&](const std::string& json, uint64_t page) { return desk.take(json, page, bus.now()); },
+      [&](uint64_t page) { desk.leave(page, bus.now()); });
+  Listener listener(robot.lcm_url, server.feed());
+  sayWhere(server, settings);
+  std::string told;
+  for (double last = secondsNow(); !stop;) {
+    listener.handle(kWaitMs);
+    bus.handle(0);
+    desk.step(bus.now());
+    const double now = secondsNow();
+    server.step(now - last);
+    last = now;
+    const std::string words = desk.words(bus.now());
+    if (words != told) server.tell(0, "desk: " + words);
+    told = words;
+  }
+}
+
+void replay(const Arguments& arguments, const std::atomic<bool>& stop) {
+  ServerSettings settings = arguments.server;
+  settings.may_command = false;
+  ViewServer server(
+      settings, [](const std::string&, uint64_t) { return "this is a log"; }, [](uint64_t) {});
+  server.feed().openLogs(arguments.logs);
+  sayWhere(server, settings);
+  for (double last = secondsNow(); !stop;) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(kWaitMs));
+    const double now = secondsNow();
+    server.step(now - last);
+    last = now;
+  }
+}
+
+int run(const Arguments& arguments) {
+  const std::atomic<bool>& stop = stopRequest(0);
+  arguments.logs.empty() ? live(arguments, stop) : replay(arguments, stop);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "A page for the browser: map, plan, patterns, learning, health and events of the running "
+      "robot, with goal, fences and E-stop; or of a log, with a time slider. Foxglove and "
+      "Lichtblick connect to the same address.",
+      "tread-view"};
+  Arguments arguments;
+  app.add_option("logs", arguments.logs,
+                 "LCM log; several are parts of one recording, in order; none = the running robot");
+  app.add_option("--address", arguments.server.address,
+                 "to listen at; others than this machine's own need the token that is printed")
+      ->capture_default_str();
+  app.add_option("--port", arguments.server.port, "0 = any that is free")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
+  app.add_option("--token", arguments.server.token,
+                 "asked of every viewer; default: none on this machine, else a new one");
+  app.add_flag("--look-only", arguments.look_only, "no page operates the robot");
+  app.add_option("--operator", arguments.operator_name, operators::kOperatorHelp)
+      ->capture_default_str();
+  app.add_option("--lcm-url", arguments.lcm_url, operators::kUrlHelp);
+  addKeyOption(app, arguments.key);
+  if (const auto code = parseCommandLine(app, argc, argv)) return *code;
+  if (arguments.server.token.empty() && !isLoopback(arguments.server.address))
+    arguments.server.token = newToken();
+  return runProgram("tread-view", [&] { return run(arguments); });
+}

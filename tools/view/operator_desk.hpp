@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <string>
+
+#include "tools/robot/operator/calls.hpp"
+
+namespace tread::view {
+
+/// What a page asks of the robot, with the operator's lease: it holds for as long as the page is
+/// alive, shown by its signs of life.
+/** A page that is closed, hidden, frozen or cut off lets the robot stop as tread-goal does that is
+ * halted. The emergency stop is taken from every page. */
+class OperatorDesk {
+ public:
+  OperatorDesk(Bus& bus, std::string operator_name);
+
+  /// A command as JSON: {"op": "alive"}, "estop", "clear_estop", "arm", "disarm", "goal" (x, y,
+  /// perhaps yaw [rad]), "cancel", "fence" (name, keep_out, corners [m]), "remove_fence" (name).
+  /** Returns what is wrong with it in one line; empty = taken. `page` differs for each page. */
+  std::string take(const std::string& json, uint64_t page, int64_t utime);
+  /// A page is gone.
+  void leave(uint64_t page, int64_t utime);
+  /// Call each 20 ms or so.
+  void step(int64_t utime);
+
+  /// How the calls go, a line each: what the page shows.
+  std::string words(int64_t utime) const;
+
+ private:
+  static constexpr int64_t kPageLease = 600'000;  ///< [us] without a sign of life of the page
+  static constexpr int64_t kShown = 6'000'000;    ///< [us] for which an ended call is shown
+
+  struct Running {
+    std::string what;
+    std::unique_ptr<operators::Call> call;
+    bool holds = false;  ///< only while its page lives
+    bool ended = false;
+    int64_t ended_at = 0;  ///< [us]
+    std::string words;
+  };
+  void start(const std::string& what, std::unique_ptr<operators::Call> call, bool holds);
+  /// Ends what moves the robot.
+  void letGo(int64_t utime, const std::string& why);
+
+  Bus& bus_;
+  operators::Requester requester_;
+  std::list<Running> calls_;
+  /// Ended ones stay: the bus calls them back.
+  std::list<std::unique_ptr<operators::Call>> past_;
+  uint64_t page_ = 0;  ///< that holds the robot; 0 = none
+  int64_t alive_ = 0;  ///< [us] its last sign of life
+};
+
+}  // namespace tread::view

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// What the page knows: the newest message of each channel, with the time at which it was recorded and that at which it came.
+
+// Numbers that JSON lacks come as texts.
+export const number = (value) => (typeof value === "number" ? value : Number(value));
+export const known = (value) => Number.isFinite(number(value));
+
+const MOTOR = ["disarmed", "armed", "driving", "stopping", "FAULT", "E-STOP", "by hand"];
+const PLAN = ["no goal", "driving", "arrived", "waiting", "blocked", "cannot be reached", "stopped"];
+export const motorWord = (state) => MOTOR[state] ?? "unknown";
+export const planWord = (state) => PLAN[state] ?? "unknown";
+export const mayDrive = (state) => [1, 2, 3, 6].includes(state);
+
+export class State {
+  constructor() {
+    this.latest = new Map(); // topic -> { message, time [us], arrived [ms] }
+    this.health = new Map(); // process -> the same
+    this.tiles = new Map(); // "x,y" -> { time, tile, image }
+    this.patterns = new Map(); // part -> pattern
+    this.before = new Map(); // part -> the pattern as it was before the newest change
+    this.history = { events: [], patterns: [], way: [], battery: [] };
+    this.player = null;
+    this.offered = {};
+    this.outline = { front: 0.65, rear: 0.65, half_width: 0.34 };
+    this.outlineKnown = false;
+    this.run = null; // the running pattern: { execution, pattern, start }
+    this.fences = new Map();
+  }
+
+  get live() {
+    return this.player === null || this.player.live;
+  }
+
+  // [us] the time of what is shown.
+  now() {
+    return this.live ? Infinity : this.player.now + 1;
+  }
+
+  take(topic, message, time, arrived) {
+    if (topic === "view/history") return this.takeHistory(message);
+    if (topic === "view/player") {
+      this.player = message;
+      this.offered = message.channels ?? this.offered;
+      return;
+    }
+    const entry = { message, time, arrived };
+    if (topic === "HEALTH") this.health.set(message.process, entry);
+    else if (topic === "MAP") this.tiles.set(`${message.tile_x},${message.tile_y}`, { time, tile: message, image: null });
+    else if (topic === "PATTERN_SET") this.takePattern(message, time);
+    else if (topic === "CONFIG") this.takeConfig(message);
+    else if (topic === "FENCE") this.takeFence(message);
+    else this.latest.set(topic, entry);
+    if (topic === "PROGRAM") this.takeProgram(message, time);
+  }
+
+  get(topic) {
+    const entry = this.latest.get(topic);
+    return entry && entry.time <= this.now() ? entry : null;
+  }
+
+  // [s] since the entry came, or since it was recorded where a log is shown.
+  age(entry, clock) {
+    return this.live ? (clock - entry.arrived) / 1000 : (this.player.now - entry.time) / 1e6;
+  }
+
+  takeHistory(message) {
+    if (message.from_start) this.history = { events: [], patterns: [], way: [], battery: [] };
+    for (const list of ["events", "patterns", "way", "battery"]) this.history[list].push(...message[list]);
+  }
+
+  takePattern(part, time) {
+    const known = this.patterns.get(part.part);
+    const pattern = { id: part.set_pattern_id, name: part.pattern_name, version: part.set_version, time,
+      trajectory: part.trajectory, key: part.trajectory.join() };
+    if (known && known.name === pattern.name && known.key !== pattern.key) this.before.set(part.part, known);
+    if (!known || known.key !== pattern.key || known.name !== pattern.name || time < known.time) this.patterns.set(part.part, pattern);
+  }
+
+  takeConfig(config) {
+    if (config.config_process !== "mapping" && config.config_process !== "planner") return;
+    const found = /outline:\s*\n\s*front: ([\d.]+)\s*\n\s*rear: ([\d.]+)\s*\n\s*half_width: ([\d.]+)/.exec(config.config_text);
+    if (!found) return;
+    this.outline = { front: Number(found[1]), rear: Number(found[2]), half_width: Number(found[3]) };
+    this.outlineKnown = true;
+  }
+
+  takeFence(fence) {
+    if (fence.fence_kind === 0) this.fences.delete(fence.fence_name);
+    else this.fences.set(fence.fence_name, fence);
+  }
+
+  takeProgram(program, time) {
+    const slot = program.running;
+    if (slot.execution_id === 0) this.run = null;
+    else if (!this.run || this.run.execution !== slot.execution_id) {
+      const pose = this.pose();
+      this.run = pose && { execution: slot.execution_id, pattern: slot.slot_pattern_id, start: pose, time };
+    }
+  }
+
+  pattern(id) {
+    for (const pattern of this.patterns.values()) if (pattern.id === id) return pattern;
+    return null;
+  }
+
+  pose() {
+    const ins = this.get("INS");
+    if (!ins) return null;
+    const [x, y] = ins.message.position.map(number);
+    const [w, , , z] = ins.message.orientation.map(number);
+    const q = ins.message.orientation.map(number);
+    if (!Number.isFinite(x + y + w + z)) return null;
+    const yaw = Math.atan2(2 * (q[0] * q[3] + q[1] * q[2]), 1 - 2 * (q[2] * q[2] + q[3] * q[3]));
+    return { x, y, yaw };
+  }
+}

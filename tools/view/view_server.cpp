@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/view/view_server.hpp"
+
+#include <libwebsockets.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <deque>
+#include <list>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include <nlohmann/json.hpp>
+
+namespace tread::view {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr size_t kLargestRequest = 1 << 16;  // [bytes] of a client
+constexpr size_t kCrowded = 64;              // frames that wait, from which on older ones give way
+constexpr size_t kHttpPiece = 16384;         // [bytes]
+constexpr const char* kCommandTopic = "view/command";
+constexpr const char* kControlTopic = "view/control";
+
+std::string headerOf(lws* socket, lws_token_indexes token) {
+  std::string text(static_cast<size_t>(lws_hdr_total_length(socket, token)) + 1, '\0');
+  const int size = lws_hdr_copy(socket, text.data(), static_cast<int>(text.size()), token);
+  text.resize(static_cast<size_t>(std::max(0, size)));
+  return text;
+}
+
+/// The value of an argument of the address: "?token=..."
+std::string argumentOf(lws* socket, const char* name) {
+  char value[256] = {};
+  const std::string wanted = std::string(name) + "=";
+  return lws_get_urlarg_by_name(socket, wanted.c_str(), value, sizeof value) != nullptr ? value
+                                                                                        : "";
+}
+
+/// As long for a wrong guess as for a right one.
+bool sameText(const std::string& a, const std::string& b) {
+  unsigned char different = a.size() == b.size() ? 0 : 1;
+  for (size_t i = 0; i < a.size(); ++i)
+    different = static_cast<unsigned char>(different | (a[i] ^ b[b.empty() ? 0 : i % b.size()]));
+  return different == 0;
+}
+
+/// Host of an address "http://host:port", without its scheme.
+std::string hostOf(const std::string& origin) {
+  const size_t scheme = origin.find("://");
+  return scheme == std::string::npos ? origin : origin.substr(scheme + 3);
+}
+
+bool isLoopbackName(const std::string& host) {
+  const std::string name = host.substr(0, host.rfind(':'));
+  return name == "localhost" || name == "127.0.0.1" || name == "[::1]" || host == "localhost" ||
+         host == "127.0.0.1";
+}
+
+}  // namespace
+
+/// One WebSocket of a viewer.
+struct ViewServer::Client {
+  struct Frame {
+    std::string bytes;
+    bool binary = false;
+    std::pair<uint32_t, uint64_t> part{0, 0};  ///< channel and part; 0 = may not be left out
+  };
+  lws* socket = nullptr;
+  uint64_t number = 0;
+  bool may_command = false;
+  std::map<uint32_t, uint32_t> subscriptions;  ///< by channel
+  std::map<uint32_t, std::string> topics;      ///< its own channels
+  std::deque<Frame> frames;
+  std::string received;
+
+  void push(Frame frame) {
+    if (frames.size() >= kCrowded && frame.part.first != 0) {
+      const auto older = std::find_if(frames.begin() + 1, frames.end(), [&](const Frame& waiting) {
+        return waiting.part == frame.part;
+      });
+      if (older != frames.end()) {
+        *older = std::move(frame);
+        return;
+      }
+    }
+    frames.push_back(std::move(frame));
+    lws_callback_on_writable(socket);
+  }
+};
+
+/// What libwebsockets calls back.
+struct ViewServer::Sockets {
+  explicit Sockets(ViewServer& owner) : server(owner) {}
+
+  static int called(lws* socket, lws_callback_reasons reason, void* user, void* in, size_t size) {
+    auto* const sockets = static_cast<Sockets*>(lws_context_user(lws_get_context(socket)));
+    // Nothing may be thrown through C.
+    try {
+      return sockets == nullptr ? 0 : sockets->handle(socket, reason, user, in, size);
+    } catch (const std::exception&) {
+      return -1;
+    }
+  }
+
+  int handle(lws* socket, lws_callback_reasons reason, void* user, void* in, size_t size) {
+    switch (reason) {
+      case LWS_CALLBACK_HTTP:
+        return http(socket, static_cast<size_t*>(user));
+      case LWS_CALLBACK_HTTP_WRITEABLE:
+        return httpBody(socket, static_cast<size_t*>(user));
+      case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
+        return allowed(socket) ? 0 : -1;
+      case LWS_CALLBACK_ESTABLISHED:
+        open(socket);
+        return 0;
+      case LWS_CALLBACK_CLOSED:
+        close(socket);
+        return 0;
+      case LWS_CALLBACK_RECEIVE:
+        return receive(socket, in, size);
+      case LWS_CALLBACK_SERVER_WRITEABLE:
+        return write(socket);
+      default:
+        return 0;
+    }
+  }
+
+  /// A stranger's page in the same browser must not talk to the robot: without a token only those
+  /// who name this machine are let in.
+  bool allowed(lws* socket) const {
+    const ServerSettings& settings = server.settings_;
+    if (!settings.token.empty()) return sameText(argumentOf(socket, "token"), settings.token);
+    return isLoopbackName(headerOf(socket, WSI_TOKEN_HOST));
+  }
+
+  int http(lws* socket, size_t* sent) const {
+    const bool ours = allowed(socket);
+    const std::string path = headerOf(socket, WSI_TOKEN_GET_URI);
+    if (!ours || (path != "/" && path != "/index.html")) {
+      lws_return_http_status(socket, ours ? HTTP_STATUS_NOT_FOUND : HTTP_STATUS_FORBIDDEN,
+                             ours ? "only the page is here"
+                                  : "the address must end with ?token=..., as tread-view said");
+      return lws_http_transaction_completed(socket) != 0 ? -1 : 0;
+    }
+    unsigned char head[LWS_PRE + 1024];
+    unsigned char *at = head + LWS_PRE, *const end = head + sizeof head;
+    unsigned char* const begin = at;
+    if (lws_add_http_common_headers(socket, HTTP_STATUS_OK, "text/html; charset=utf-8",
+                                    pageText().size(), &at, end) != 0 ||
+        lws_finalize_write_http_header(socket, begin, &at, end) != 0)
+      return 1;
+    *sent = 0;
+    lws_callback_on_writable(socket);
+    return 0;
+  }
+
+  static int httpBody(lws* socket, size_t* sent) {
+    const std::string_view page = pageText();
+    const size_t size = std::min(kHttpPiece, page.size() - *sent);
+    std::vector<unsigned char> piece(LWS_PRE + size);
+    std::memcpy(piece.data() + LWS_PRE, page.data() + *sent, size);
+    const bool last = *sent + size == page.size();
+    if (lws_write(socket, piece.data() + LWS_PRE, size,
+                  last ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP) != static_cast<int>(size))
+      return 1;
+    *sent += size;
+    if (!last) {
+      lws_callback_on_writable(socket);
+      return 0;
+    }
+    return lws_http_transaction_completed(socket) != 0 ? -1 : 0;
+  }
+
+  Client* find(lws* socket) {
+    for (Client& client : clients)
+      if (client.socket == socket) return &client;
+    return nullptr;
+  }
+
+  void open(lws* socket) {
+    clients.emplace_back();
+    Client& client = clients.back();
+    client.socket = socket;
+    client.number = ++numbers;
+    // Only our own page operates the robot; another site's may look.
+    const std::string origin = headerOf(socket, WSI_TOKEN_ORIGIN);
+    const bool same = origin.empty() || hostOf(origin) == headerOf(socket, WSI_TOKEN_HOST);
+    client.may_command = server.settings_.may_command && same;
+    client.push(
+        {serverInfo("tread-view", client.may_command || server.feed_.hasLog(), server.session_),
+         false,
+         {}});
+    client.push({advertisement(server.feed_.channels()), false, {}});
+  }
+
+  void close(lws* socket) {
+    for (auto client = clients.begin(); client != clients.end(); ++client)
+      if (client->socket == socket) {
+        server.leave_(client->number);
+        clients.erase(client);
+        return;
+      }
+  }
+
+  int receive(lws* socket, void* in, size_t size) {
+    Client* const client = find(socket);
+    if (client == nullptr) return -1;
+    client->received.append(static_cast<const char*>(in), size);
+    if (client->received.size() > kLargestRequest) return -1;
+    if (lws_is_final_fragment(socket) == 0 || lws_remaining_packet_payload(socket) > 0) return 0;
+    const std::string text = std::move(client->received);
+    client->received.clear();
+    server.receive(*client, text, lws_frame_is_binary(socket) != 0);
+    return 0;
+  }
+
+  int write(lws* socket) {
+    Client* const client = find(socket);
+    if (client == nullptr || client->frames.empty()) return 0;
+    const Client::Frame frame = std::move(client->frames.front());
+    client->frames.pop_front();
+    buffer.resize(LWS_PRE + frame.bytes.size());
+    std::memcpy(buffer.data() + LWS_PRE, frame.bytes.data(), frame.bytes.size());
+    const int written = lws_write(socket, buffer.data() + LWS_PRE, frame.bytes.size(),
+                                  frame.binary ? LWS_WRITE_BINARY : LWS_WRITE_TEXT);
+    if (written < static_cast<int>(frame.bytes.size())) return -1;
+    if (!client->frames.empty()) lws_callback_on_writable(socket);
+    return 0;
+  }
+
+  ViewServer& server;
+  std::vector<lws_protocols> protocols;
+  lws_context* context = nullptr;
+  std::list<Client> clients;
+  uint64_t numbers = 0;
+  std::vector<unsigned char> buffer;
+};
+
+ViewServer::ViewServer(const ServerSettings& settings, Command command, Leave leave)
+    : settings_(settings),
+      command_(std::move(command)),
+      leave_(std::move(leave)),
+      session_(std::to_string(std::chrono::system_clock::now().time_since_epoch().count())),
+      feed_([this](uint32_t channel) { return wanted(channel); },
+            [this](const FeedMessage& message) { send(message); }),
+      sockets_(std::make_unique<Sockets>(*this)) {
+  lws_set_log_level(0, nullptr);
+  // Without a subprotocol it is a browser that asks for the page.
+  sockets_->protocols.push_back({"http", &Sockets::called, sizeof(size_t), 0, 0, nullptr, 0});
+  for (const char* name : kSubprotocols)
+    sockets_->protocols.push_back({name, &Sockets::called, 0, kLargestRequest, 0, nullptr, 0});
+  sockets_->protocols.push_back({nullptr, nullptr, 0, 0, 0, nullptr, 0});
+  lws_context_creation_info info{};
+  info.port = settings_.port;
+  info.iface = settings_.address.empty() ? nullptr : settings_.address.c_str();
+  info.protocols = sockets_->protocols.data();
+  info.user = sockets_.get();
+  info.gid = info.uid = static_cast<decltype(info.gid)>(-1);
+  info.options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS;
+  sockets_->context = lws_create_context(&info);
+  lws_vhost* const host =
+      sockets_->context == nullptr ? nullptr : lws_create_vhost(sockets_->context, &info);
+  port_ = host == nullptr ? -1 : lws_get_vhost_listen_port(host);
+  if (port_ <= 0) {
+    if (sockets_->context != nullptr) lws_context_destroy(sockets_->context);
+    throw std::runtime_error(settings_.address + ":" + std::to_string(settings_.port) +
+                             " cannot be listened at; is it taken (--port)?");
+  }
+}
+
+ViewServer::~ViewServer() {
+  lws_context_destroy(sockets_->context);
+}
+
+void ViewServer::step(double elapsed) {
+  feed_.step(elapsed);
+  // Negative: without waiting. Each call serves what is ready; several frames may be waiting.
+  for (int i = 0; i < 8; ++i) lws_service(sockets_->context, -1);
+}
+
+void ViewServer::tell(int level, const std::string& words) {
+  const std::string text = statusMessage(level, words);
+  for (Client& client : sockets_->clients) client.push({text, false, {}});
+}
+
+size_t ViewServer::viewers() const {
+  return sockets_->clients.size();
+}
+
+bool ViewServer::wanted(uint32_t channel) const {
+  return sockets_ != nullptr &&
+         std::any_of(sockets_->clients.begin(), sockets_->clients.end(),
+                     [&](const Client& client) { return client.subscriptions.count(channel) > 0; });
+}
+
+void ViewServer::send(const FeedMessage& message) {
+  if (sockets_ == nullptr) return;
+  for (Client& client : sockets_->clients) {
+    const auto subscription = client.subscriptions.find(message.channel);
+    if (subscription == client.subscriptions.end()) continue;
+    client.push({messageFrame(subscription->second, message.time, *message.payload),
+                 true,
+                 {message.channel, message.part}});
+  }
+}
+
+void ViewServer::receive(Client& client, const std::string& text, bool binary) {
+  if (!binary) return serve(client, readRequest(text));
+  uint32_t channel = 0;
+  std::string payload;
+  if (!readClientFrame(text, channel, payload)) return;
+  const auto topic = client.topics.find(channel);
+  if (topic != client.topics.end()) control(client, topic->second, payload);
+}
+
+void ViewServer::serve(Client& client, const ClientRequest& request) {
+  if (!request.problem.empty()) client.push({statusMessage(1, request.problem), false, {}});
+  for (const auto& [subscription, channel] : request.subscribe) {
+    if (channel == 0 || channel > feed_.channels().all().size()) {
+      client.push({statusMessage(1, "there is no channel " + std::to_string(channel)), false, {}});
+      continue;
+    }
+    client.subscriptions[channel] = subscription;
+    for (const FeedMessage& message : feed_.stateOf(channel))
+      client.push({messageFrame(subscription, message.time, *message.payload), true, {}});
+  }
+  for (const uint32_t subscription : request.unsubscribe)
+    for (auto entry = client.subscriptions.begin(); entry != client.subscriptions.end();)
+      entry = entry->second == subscription ? client.subscriptions.erase(entry) : std::next(entry);
+  for (const auto& [id, topic] : request.advertise) client.topics[id] = topic;
+  for (const uint32_t id : request.unadvertise) client.topics.erase(id);
+}
+
+void ViewServer::control(Client& client, const std::string& topic, const std::string& payload) {
+  std::string problem;
+  if (topic == kCommandTopic) {
+    problem = client.may_command ? command_(payload, client.number)
+                                 : "this page may look, but not operate the robot";
+  } else if (topic == kControlTopic) {
+    try {
+      const Json json = Json::parse(payload);
+      const auto op = json.at("op").get<std::string>();
+      if (op == "seek")
+        feed_.seek(json.at("time").get<int64_t>(), json.value("request", int64_t{0}));
+      if (op == "play") feed_.play(true, json.value("speed", 1.0));
+      if (op == "pause") feed_.play(false, json.value("speed", 1.0));
+    } catch (const Json::exception&) {
+      problem = "a control that cannot be read was passed over";
+    }
+  } else {
+    problem = "nobody listens to " + topic + " here";
+  }
+  if (!problem.empty()) client.push({statusMessage(1, problem), false, {}});
+}
+
+}  // namespace tread::view

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "tools/view/core/feed.hpp"
+#include "tools/view/core/protocol.hpp"
+
+namespace tread::view {
+
+/// The page as one HTML file; made by the build.
+std::string_view pageText();
+
+/// Where viewers come in.
+struct ServerSettings {
+  std::string address = "127.0.0.1";
+  int port = 8765;          ///< 0 = any that is free
+  std::string token;        ///< asked of everybody; empty = none, for this machine alone
+  bool may_command = true;  ///< pages may operate the robot
+};
+
+/// Serves the page by HTTP and the feed by WebSocket (the Foxglove protocol), with libwebsockets.
+/** One thread: step() does all. A slow viewer gets the newest of each channel's parts, and never
+ * holds up the others. */
+class ViewServer {
+ public:
+  /// `command`: of a page, with the page's number; returns what is wrong with it, empty = taken.
+  using Command = std::function<std::string(const std::string& json, uint64_t page)>;
+  using Leave = std::function<void(uint64_t page)>;
+
+  /// Throws std::runtime_error with one clear line if the address cannot be used.
+  ViewServer(const ServerSettings& settings, Command command, Leave leave);
+  ~ViewServer();
+  ViewServer(const ViewServer&) = delete;
+  ViewServer& operator=(const ViewServer&) = delete;
+
+  Feed& feed() { return feed_; }
+  /// Serves what is due without waiting. `elapsed` [s] since the last call.
+  void step(double elapsed);
+  /// Tells all pages in a line how things are.
+  void tell(int level, const std::string& words);
+  int port() const { return port_; }
+  size_t viewers() const;
+
+ private:
+  struct Client;
+  struct Sockets;
+
+  bool wanted(uint32_t channel) const;
+  void send(const FeedMessage& message);
+  void receive(Client& client, const std::string& text, bool binary);
+  void serve(Client& client, const ClientRequest& request);
+  void control(Client& client, const std::string& topic, const std::string& payload);
+
+  ServerSettings settings_;
+  Command command_;
+  Leave leave_;
+  std::string session_;
+  int port_ = 0;
+  Feed feed_;
+  std::unique_ptr<Sockets> sockets_;
+};
+
+}  // namespace tread::view
