@@ -83,10 +83,6 @@ void EventTeller::hear(const motor_t& motor) {
   if (changes("motors", moves ? "armed" : withReason(state.words, motor.state_reason)))
     tell(state.severity, "motor_bridge",
          moves ? "armed" : withReason(state.words, motor.state_reason));
-  if (motor.device_fault != learned_faults_ && motor.device_fault != 0)
-    tell(Severity::kError, "motor_bridge",
-         formatted("the controller's fault flags are 0x%x", motor.device_fault));
-  learned_faults_ = motor.device_fault;
 }
 
 void EventTeller::hear(const plan_t& plan) {

@@ -51,7 +51,6 @@ class EventTeller {
   std::map<std::string, std::string> states_;  ///< by source
   std::map<std::string, int64_t> boots_;       ///< by process
   std::set<ExecutionKey> aborted_;
-  int32_t learned_faults_ = 0;
   int32_t ins_status_ = 0;
   bool ins_heard_ = false;
 };

@@ -25,7 +25,7 @@ namespace {
 using namespace tread;
 using namespace tread::view;
 
-constexpr int kWaitMs = 4;
+constexpr int kWaitMs = 2;
 
 struct Arguments {
   std::vector<std::string> logs;

@@ -21,6 +21,7 @@ using operators::GoalRequest;
 using operators::StopCall;
 
 constexpr double kPatience = 3.0;  // [s]
+constexpr const char* kArming = "arming";
 
 double finite(const Json& json, const char* key) {
   const double value = json.at(key).get<double>();
@@ -64,7 +65,7 @@ std::string OperatorDesk::take(const std::string& text, uint64_t page, int64_t u
     alive_ = utime;
     if (op == "alive") return "";
     if (op == "arm") {
-      start("arming",
+      start(kArming,
             std::make_unique<ArmCall>(bus_, requester_, ArmRequest{true, true, ""}, kPatience),
             true);
     } else if (op == "goal") {
@@ -136,8 +137,9 @@ void OperatorDesk::step(int64_t utime) {
     if (running.ended) continue;
     const CallResult result = running.call->step(utime);
     running.words = running.call->describe(utime);
-    if (const std::string notice = running.call->notice(); !notice.empty())
-      running.words += "; " + notice;
+    // What a call in a terminal says of its keys is nothing for a page.
+    if (running.what == kArming && running.words.rfind("armed and held", 0) == 0)
+      running.words = "armed, and held by this page";
     if (result == CallResult::kPending) continue;
     running.call->letGo(utime);
     running.ended = true;

@@ -35,10 +35,10 @@ std::string headerOf(lws* socket, lws_token_indexes token) {
 
 /// The value of an argument of the address: "?token=..."
 std::string argumentOf(lws* socket, const char* name) {
-  char value[256] = {};
-  const std::string wanted = std::string(name) + "=";
-  return lws_get_urlarg_by_name(socket, wanted.c_str(), value, sizeof value) != nullptr ? value
-                                                                                        : "";
+  char buffer[256] = {};
+  const char* const value =
+      lws_get_urlarg_by_name(socket, (std::string(name) + "=").c_str(), buffer, sizeof buffer);
+  return value != nullptr ? value : "";
 }
 
 /// As long for a wrong guess as for a right one.
@@ -221,14 +221,18 @@ struct ViewServer::Sockets {
 
   int write(lws* socket) {
     Client* const client = find(socket);
-    if (client == nullptr || client->frames.empty()) return 0;
-    const Client::Frame frame = std::move(client->frames.front());
-    client->frames.pop_front();
-    buffer.resize(LWS_PRE + frame.bytes.size());
-    std::memcpy(buffer.data() + LWS_PRE, frame.bytes.data(), frame.bytes.size());
-    const int written = lws_write(socket, buffer.data() + LWS_PRE, frame.bytes.size(),
-                                  frame.binary ? LWS_WRITE_BINARY : LWS_WRITE_TEXT);
-    if (written < static_cast<int>(frame.bytes.size())) return -1;
+    if (client == nullptr) return 0;
+    // As much as the line takes at once: a seek answers with a hundred frames.
+    while (!client->frames.empty()) {
+      const Client::Frame frame = std::move(client->frames.front());
+      client->frames.pop_front();
+      buffer.resize(LWS_PRE + frame.bytes.size());
+      std::memcpy(buffer.data() + LWS_PRE, frame.bytes.data(), frame.bytes.size());
+      const int written = lws_write(socket, buffer.data() + LWS_PRE, frame.bytes.size(),
+                                    frame.binary ? LWS_WRITE_BINARY : LWS_WRITE_TEXT);
+      if (written < static_cast<int>(frame.bytes.size())) return -1;
+      if (lws_send_pipe_choked(socket) != 0) break;
+    }
     if (!client->frames.empty()) lws_callback_on_writable(socket);
     return 0;
   }

@@ -171,15 +171,28 @@ class TimelineReader {
 
 }  // namespace
 
+namespace {
+
+/// The first note at this time or later: a day's log is looked at by its moments.
+template <class Note>
+auto firstFrom(const std::vector<Note>& notes, double time) {
+  return std::lower_bound(notes.begin(), notes.end(), time,
+                          [](const Note& note, double at) { return note.time < at; });
+}
+
+}  // namespace
+
 std::optional<DriveTimeline::Silence> DriveTimeline::silenceOf(const std::string& channel,
                                                                double time, double longest) const {
   const auto found = heard.find(channel);
   if (found == heard.end()) return std::nullopt;
   const std::vector<double>& times = found->second;
   std::optional<Silence> worst;
-  for (size_t i = 0; i < times.size(); ++i) {
+  const auto at = std::lower_bound(times.begin(), times.end(), time - longest);
+  for (size_t i = at == times.begin() ? 0 : static_cast<size_t>(at - times.begin()) - 1;
+       i < times.size(); ++i) {
     const Silence silence{times[i], i + 1 < times.size() ? times[i + 1] : duration};
-    if (silence.from > time + 0.05 || silence.to < time - longest) continue;
+    if (silence.from > time + 0.05) break;
     if (silence.length() > longest && (!worst || silence.length() > worst->length()))
       worst = silence;
   }
@@ -207,19 +220,17 @@ std::optional<double> DriveTimeline::deathOf(const std::string& process) const {
 const HealthNote* DriveTimeline::healthAt(const std::string& process, double time) const {
   const auto found = health.find(process);
   if (found == health.end()) return nullptr;
-  const HealthNote* newest = nullptr;
-  for (const HealthNote& note : found->second)
-    if (note.time <= time) newest = &note;
-  return newest;
+  const auto after = firstFrom(found->second, time + 1e-9);
+  return after == found->second.begin() ? nullptr : &*std::prev(after);
 }
 
 const HealthNote* DriveTimeline::complaintOf(const std::string& process, double from, double to,
                                              const std::string& words) const {
   const auto found = health.find(process);
   if (found == health.end()) return nullptr;
-  for (const HealthNote& note : found->second)
-    if (note.time >= from && note.time <= to && note.reason.find(words) != std::string::npos)
-      return &note;
+  for (auto note = firstFrom(found->second, from); note != found->second.end() && note->time <= to;
+       ++note)
+    if (note->reason.find(words) != std::string::npos) return &*note;
   return nullptr;
 }
 
@@ -227,8 +238,10 @@ DriveTimeline::Ghost DriveTimeline::ghostAt(const Eigen::Vector2d& p_map, double
                                             double to) const {
   Ghost ghost;
   ghost.gone = to;
-  for (const CellNote& cell : cells) {
-    if ((cell.p_map - p_map).norm() > kGhostSize) continue;
+  for (auto note = firstFrom(cells, from); note != cells.end() && note->time <= to + kGhostLife;
+       ++note) {
+    const CellNote& cell = *note;
+    if ((cell.p_map - p_map).squaredNorm() > kGhostSize * kGhostSize) continue;
     if (cell.came && cell.time >= from && cell.time <= to) ++ghost.came;
     if (cell.came || cell.time <= from || cell.time > to + kGhostLife) continue;
     ++ghost.went;
@@ -244,12 +257,9 @@ DriveTimeline::Ghost DriveTimeline::ghostAt(const Eigen::Vector2d& p_map, double
 }
 
 std::optional<Pose2> DriveTimeline::poseAt(double time) const {
-  std::optional<Pose2> pose;
-  for (const InsNote& note : ins) {
-    if (note.time > time) break;
-    if (note.placed) pose = note.T_map_body;
-  }
-  return pose;
+  for (auto note = firstFrom(ins, time + 1e-9); note != ins.begin();)
+    if ((--note)->placed) return note->T_map_body;
+  return std::nullopt;
 }
 
 DriveTimeline readTimeline(const std::vector<std::string>& logs) {

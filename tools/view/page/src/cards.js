@@ -75,7 +75,7 @@ export function showDrive(state, clock) {
       return `<div>${name} ${number(value).toFixed(2)}${unit}${current}${measured}</div><div class="bar"><i style="left:${share < 0 ? 50 + 50 * share : 50}%;width:${50 * Math.abs(share)}%"></i><b></b></div>`;
     });
     const battery = known(m.battery_voltage) ? `battery ${number(m.battery_voltage).toFixed(1)} V` : "battery not measured";
-    put("drive", `${bars.join("")}<div>${battery}${m.device_fault ? `, <b>fault flags 0x${m.device_fault.toString(16)}</b>` : ""}</div>`);
+    put("drive", `${bars.join("")}<div>${battery}${m.device_fault ? ` <span class="why">controller's flags 0x${m.device_fault.toString(16)}</span>` : ""}</div>`);
   }
   setAge("drive", motor ? state.age(motor, clock) : null, 0.5);
 }

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <catch2/catch.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include "common/log/drive_log.hpp"
+#include "common/messages/blank.hpp"
+#include "tests/tools/called_program.hpp"
+#include "tools/view/core/feed.hpp"
+
+using namespace tread;
+using namespace tread::view;
+using tread::samples::OwnFolder;
+using Json = nlohmann::json;
+
+namespace {
+
+map_tile_t tileAt(int x, int64_t utime, uint8_t cell) {
+  auto tile = blank<map_tile_t>();
+  tile.utime = utime;
+  tile.tile_x = x;
+  tile.tile_cells = 8;
+  tile.cell_size = 0.1;
+  tile.num_cells = 64;
+  tile.cells.assign(64, cell);
+  return tile;
+}
+
+ins_t insAt(double x, int64_t utime) {
+  auto ins = blank<ins_t>();
+  ins.utime = utime;
+  ins.position[0] = x;
+  ins.position[1] = ins.position[2] = 0.0;
+  DriveLogBuilder::setAttitude(ins, 0.0);
+  ins.ins_status = ins_t::STATUS_GOOD;
+  return ins;
+}
+
+/// Ten seconds of driving at 1 m/s; a tile each second, the first one again each second.
+void writeLog(const std::string& path) {
+  LogWriter log(path);
+  for (int i = 0; i <= 100; ++i) {
+    const int64_t utime = 1'000'000 + i * 100'000;
+    log.write(kIns, insAt(0.1 * i, utime));
+    if (i % 10 == 0) log.write(kMap, tileAt(i / 10, utime, kFree));
+    if (i % 10 == 0) log.write(kMap, tileAt(-1, utime, i < 50 ? kFree : kObstacle));
+    if (i == 70) {
+      auto motor = blank<motor_t>();
+      motor.utime = utime;
+      motor.bridge_state = motor_t::STATE_FAULT;
+      motor.state_reason = "the serial line is gone";
+      log.write(kMotor, motor);
+    }
+  }
+}
+
+/// A viewer that subscribes to everything and keeps what came.
+struct Viewer {
+  std::vector<FeedMessage> got;
+  Feed feed{[](uint32_t) { return true; },
+            [this](const FeedMessage& message) { got.push_back(message); }};
+
+  int count(const std::string& topic) const {
+    const uint32_t id = feed.channels().find(topic)->id;
+    return static_cast<int>(std::count_if(
+        got.begin(), got.end(), [&](const FeedMessage& message) { return message.channel == id; }));
+  }
+  Json last(const std::string& topic) const {
+    const uint32_t id = feed.channels().find(topic)->id;
+    Json found;
+    for (const FeedMessage& message : got)
+      if (message.channel == id) found = Json::parse(*message.payload);
+    return found;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a seek tells the newest of each part, and later ones only what differs") {
+  const OwnFolder folder;
+  writeLog(folder.path("drive.lcmlog"));
+  Viewer viewer;
+  viewer.feed.openLogs({folder.path("drive.lcmlog")});
+  viewer.got.clear();
+  viewer.feed.seek(6'050'000, 7);
+  CHECK(viewer.last("INS")["position"][0] == 5.0);
+  CHECK(viewer.count("MAP") == 6);  // five new tiles, and the one that changed
+  CHECK(viewer.last("view/player")["now"] == 6'050'000);
+  CHECK(viewer.last("view/player")["answered"] == 7);
+  viewer.got.clear();
+  viewer.feed.seek(6'060'000, 8);
+  CHECK(viewer.count("MAP") == 0);
+  CHECK(viewer.count("INS") == 0);
+  viewer.feed.seek(3'050'000, 9);
+  CHECK(viewer.last("INS")["position"][0] == 2.0);
+  CHECK(viewer.count("MAP") == 1);  // the first tile as it was then
+}
+
+TEST_CASE("a log is played at its speed, message for message, and stops at its end") {
+  const OwnFolder folder;
+  writeLog(folder.path("drive.lcmlog"));
+  Viewer viewer;
+  viewer.feed.openLogs({folder.path("drive.lcmlog")});
+  viewer.got.clear();
+  viewer.feed.play(true, 2.0);
+  for (int i = 0; i < 10; ++i) viewer.feed.step(0.1);
+  CHECK(viewer.count("INS") == 20);
+  CHECK(viewer.feed.now() == 3'000'000);
+  viewer.feed.play(false, 2.0);
+  viewer.feed.step(1.0);
+  CHECK(viewer.count("INS") == 20);
+  viewer.feed.play(true, 16.0);
+  for (int i = 0; i < 10; ++i) viewer.feed.step(0.1);
+  CHECK(viewer.count("INS") == 100);
+  CHECK(viewer.last("view/player")["playing"] == false);
+}
+
+TEST_CASE("who comes later gets the state at once, and the history from the beginning") {
+  Viewer viewer;
+  LogEvent event = eventOf(kMap, tileAt(1, 5, kFree));
+  viewer.feed.take(event);
+  viewer.feed.take(eventOf(kMap, tileAt(2, 6, kFree)));
+  viewer.feed.take(eventOf(kMap, tileAt(1, 7, kObstacle)));
+  CHECK(viewer.feed.stateOf(viewer.feed.channels().find("MAP")->id).size() == 2);
+  auto motor = blank<motor_t>();
+  motor.bridge_state = motor_t::STATE_ESTOP;
+  motor.state_reason = "a person in the way";
+  viewer.feed.take(eventOf(kMotor, motor));
+  const auto history = viewer.feed.stateOf(viewer.feed.channels().find("view/history")->id);
+  REQUIRE(history.size() == 1);
+  const Json told = Json::parse(*history[0].payload);
+  REQUIRE(told["events"].size() == 1);
+  CHECK(told["events"][0][3] == "emergency stop: a person in the way");
+  CHECK(told["from_start"] == true);
+}
+
+TEST_CASE("the history of a log holds what comes later, so that one can go there") {
+  const OwnFolder folder;
+  writeLog(folder.path("drive.lcmlog"));
+  Viewer viewer;
+  viewer.feed.openLogs({folder.path("drive.lcmlog")});
+  const auto history = viewer.feed.stateOf(viewer.feed.channels().find("view/history")->id);
+  const Json told = Json::parse(*history.at(0).payload);
+  REQUIRE(told["events"].size() == 1);
+  CHECK(told["events"][0][0] == 8'000'000);
+  CHECK(told["way"].size() > 50);
+}
+
+TEST_CASE("nothing is turned into JSON that nobody wants") {
+  int sent = 0;
+  Feed feed([](uint32_t) { return false; }, [&](const FeedMessage&) { ++sent; });
+  feed.take(eventOf(kIns, insAt(1.0, 5)));
+  CHECK(sent == 0);
+}
+
+TEST_CASE("a log that holds nothing is one clear line") {
+  const OwnFolder folder;
+  { LogWriter log(folder.path("empty.lcmlog")); }
+  Viewer viewer;
+  CHECK_THROWS_WITH(viewer.feed.openLogs({folder.path("empty.lcmlog")}),
+                    Catch::Contains("holds no message"));
+}

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// tread-view as people and programs meet it: the protocol's own client, a browser without a screen,
+// the format's checker.
+#include <catch2/catch.hpp>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/helpers.hpp"
+#include "tests/system/process.hpp"
+#include "tests/system/robot_run.hpp"
+#include "tests/system/worlds.hpp"
+#include "tests/tools/called_program.hpp"
+#include "tests/tools/missions/shipped_robot.hpp"
+#include "tools/missions/report.hpp"
+
+using namespace tread;
+using namespace tread::testing;
+using tread::samples::called;
+using tread::samples::OwnFolder;
+
+namespace {
+
+const std::string kScripts = std::string(TREAD_SOURCE_DIR) + "/tests/tools/view/browser/";
+
+/// The log of a mission of the whole robot, made once.
+std::string missionLog() {
+  static const OwnFolder folder;
+  static const std::string path = [] {
+    LogWriter log(folder.path("mission.lcmlog"));
+    missions::MissionOptions options;
+    options.log = &log;
+    options.shortest_line = 8.0;
+    missions::runMission(missions::teodor(), 5, options);
+    log.flush();
+    return folder.path("mission.lcmlog");
+  }();
+  return path;
+}
+
+/// tread-view, and where it says that it can be opened.
+class View {
+ public:
+  View(const OwnFolder& folder, std::vector<std::string> arguments) {
+    const std::string output = folder.path("view.txt");
+    arguments.insert(arguments.end(), {"--port", "0"});
+    process_ = std::make_unique<Process>("tread-view", arguments, output);
+    for (int i = 0; i < 2000 && url_.empty(); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      const std::string text = contentOf(output);
+      const size_t at = text.find("open http://"), end = text.find('\n', at);
+      if (at != std::string::npos && end != std::string::npos)
+        url_ = text.substr(at + 5, end - at - 5);
+    }
+    CAPTURE(contentOf(output));
+    REQUIRE_FALSE(url_.empty());
+  }
+  const std::string& url() const { return url_; }
+  std::string socket() const { return "ws" + url_.substr(4); }
+  Process& process() { return *process_; }
+
+ private:
+  std::unique_ptr<Process> process_;
+  std::string url_;
+};
+
+/// Runs a script of node; `during` is called every 50 ms with what it has printed.
+template <class During>
+void runScript(const OwnFolder& folder, const std::string& name, std::vector<std::string> arguments,
+               const During& during) {
+  const std::string output = folder.path(name + ".txt");
+  std::vector<std::string> words{"node", kScripts + name, TREAD_PAGE_MODULES};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  Process node("/usr/bin/env", words, output);
+  for (int i = 0; i < 2400 && !node.waitFor(0.05); ++i) during(contentOf(output));
+  CAPTURE(contentOf(output));
+  REQUIRE(node.waitFor(0.0));
+  REQUIRE(node.exitCode() == 0);
+  REQUIRE(contentOf(output).find("1 passed, 0 failed") != std::string::npos);
+}
+void runScript(const OwnFolder& folder, const std::string& name,
+               std::vector<std::string> arguments) {
+  runScript(folder, name, std::move(arguments), [](const std::string&) {});
+}
+
+}  // namespace
+
+TEST_CASE("the WebSocket speaks to the protocol's own client, in our channels and in Foxglove's") {
+  const OwnFolder folder;
+  View view(folder, {missionLog()});
+  runScript(folder, "foxglove.mjs", {view.socket()});
+  view.process().signal(SIGINT);
+  CHECK(view.process().waitFor(5.0));
+  CHECK(view.process().exitCode() == 0);
+}
+
+TEST_CASE("an exported log passes the readers of the format itself") {
+  const OwnFolder folder;
+  REQUIRE(called("tread-export " + missionLog() + " -o " + folder.path("drive.mcap")).status == 0);
+  runScript(folder, "mcap.mjs", {folder.path("drive.mcap")});
+}
+
+TEST_CASE("the page shows a log in a browser: map, slider through its time, events, playing") {
+  const OwnFolder folder;
+  View view(folder, {missionLog()});
+  runScript(folder, "page.mjs", {view.url(), "log", folder.path("log.png")});
+  CHECK(samples::isPng(folder.text("log.png")));
+}
+
+TEST_CASE(
+    "the page operates the robot: arms, goes where it is clicked, stops by one key, greys out") {
+  const OwnFolder folder;
+  RobotRun run(kField, "[-20, 0, 0]");
+  run.startAll();
+  REQUIRE(run.until(20.0, [&] { return run.plan().any() && run.ins().any(); }));
+  View view(folder, {"--lcm-url", run.url(), "--operator", "page"});
+  bool killed = false;
+  runScript(folder, "page.mjs", {view.url(), "live", folder.path("live.png")},
+            [&](const std::string& printed) {
+              if (killed || printed.find("kill") == std::string::npos) return;
+              run.signal("motor_bridge", SIGKILL);
+              killed = true;
+            });
+  CHECK(killed);
+}
+
+TEST_CASE("viewers from elsewhere need the token, strangers' pages may not talk to the robot") {
+  const OwnFolder folder;
+  View open(folder, {missionLog()});
+  const auto fetch = [&](const std::string& url, const std::string& more) {
+    const std::string file = folder.path("got.txt");
+    std::vector<std::string> words{
+        "node", "-e",
+        "fetch(process.argv[1],{headers:JSON.parse(process.argv[2])}).then("
+        "r=>console.log(r.status)).catch(e=>console.log(String(e)))",
+        url, more};
+    std::filesystem::remove(file);
+    Process node("/usr/bin/env", words, file);
+    REQUIRE(node.waitFor(10.0));
+    return contentOf(file);
+  };
+  CHECK(fetch(open.url(), "{}") == "200\n");
+  CHECK(fetch(open.url() + "else", "{}") == "404\n");
+  const OwnFolder other;
+  View asked(other, {missionLog(), "--token", "secret"});
+  const std::string bare = asked.url().substr(0, asked.url().find('?'));
+  CHECK(fetch(asked.url(), "{}") == "200\n");
+  CHECK(fetch(bare, "{}") == "403\n");
+  CHECK(fetch(bare + "?token=wrong", "{}") == "403\n");
+}
+
+TEST_CASE("what tread-view cannot use is one clear line") {
+  const OwnFolder folder;
+  const auto missing = called("tread-view /nowhere.lcmlog --port 0");
+  CHECK(missing.status == 2);
+  CHECK(missing.isOneLine());
+  View first(folder, {missionLog()});
+  const std::string port = first.url().substr(first.url().rfind(':') + 1);
+  const auto taken =
+      called("tread-view " + missionLog() + " --port " + port.substr(0, port.size() - 1));
+  CHECK(taken.status == 2);
+  CHECK(taken.says("is it taken"));
+}
