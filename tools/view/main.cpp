@@ -17,7 +17,7 @@
 #include "common/seal/key_file.hpp"
 #include "tools/robot/launch/running_robots.hpp"
 #include "tools/robot/operator/command.hpp"
-#include "tools/view/operator_desk.hpp"
+#include "tools/robot/operator/desk.hpp"
 #include "tools/view/view_server.hpp"
 
 namespace {
@@ -94,7 +94,7 @@ void live(const Arguments& arguments, const std::atomic<bool>& stop) {
   LcmBus bus(
       BusAccess{robot.lcm_url, robot.here ? hostSealer(robot.key) : stationSealer(robot.key)},
       TimeSource::kHost);
-  OperatorDesk desk(bus, arguments.operator_name);
+  operators::OperatorDesk desk(bus, arguments.operator_name, "by the page of tread-view");
   ServerSettings settings = arguments.server;
   settings.may_command = !arguments.look_only;
   ViewServer server(

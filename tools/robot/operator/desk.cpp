@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/view/operator_desk.hpp"
+#include "tools/robot/operator/desk.hpp"
 
 #include <cmath>
 
@@ -8,17 +8,10 @@
 
 #include "tools/robot/operator/fence_call.hpp"
 
-namespace tread::view {
+namespace tread::operators {
 namespace {
 
 using Json = nlohmann::json;
-using operators::ArmCall;
-using operators::ArmRequest;
-using operators::CallResult;
-using operators::FenceCall;
-using operators::GoalCall;
-using operators::GoalRequest;
-using operators::StopCall;
 
 constexpr double kPatience = 3.0;  // [s]
 constexpr const char* kArming = "arming";
@@ -31,14 +24,13 @@ double finite(const Json& json, const char* key) {
 
 }  // namespace
 
-OperatorDesk::OperatorDesk(Bus& bus, std::string operator_name) : bus_(bus) {
+OperatorDesk::OperatorDesk(Bus& bus, std::string operator_name, std::string why) : bus_(bus) {
   requester_.by = operator_name;
   requester_.operator_name = operator_name;
-  requester_.why = "by the page of tread-view";
+  requester_.why = std::move(why);
 }
 
-void OperatorDesk::start(const std::string& what, std::unique_ptr<operators::Call> call,
-                         bool holds) {
+void OperatorDesk::start(const std::string& what, std::unique_ptr<Call> call, bool holds) {
   calls_.push_back({what, std::move(call), holds, false, 0, ""});
 }
 
@@ -84,7 +76,7 @@ std::string OperatorDesk::take(const std::string& text, uint64_t page, int64_t u
         }
       start("goal",
             std::make_unique<GoalCall>(bus_, request, requester_.operator_name, bus_.newStation(),
-                                       operators::SurfaceNames()),
+                                       SurfaceNames()),
             true);
     } else if (op == "fence" || op == "remove_fence") {
       std::vector<double> numbers;
@@ -95,8 +87,7 @@ std::string OperatorDesk::take(const std::string& text, uint64_t page, int64_t u
                            op == "remove_fence",
                            {json.at("name").get<std::string>(), false, {}}};
       if (op == "fence")
-        request.fence =
-            operators::fenceFrom(request.fence.name, json.value("keep_out", true), numbers);
+        request.fence = fenceFrom(request.fence.name, json.value("keep_out", true), numbers);
       start(op == "fence" ? "fence" : "removing a fence",
             std::make_unique<FenceCall>(bus_, requester_, request, kPatience), false);
     } else {
@@ -162,4 +153,4 @@ std::string OperatorDesk::words(int64_t) const {
   return words;
 }
 
-}  // namespace tread::view
+}  // namespace tread::operators

@@ -9,15 +9,16 @@
 
 #include "tools/robot/operator/calls.hpp"
 
-namespace tread::view {
+namespace tread::operators {
 
-/// What a page asks of the robot, with the operator's lease: it holds for as long as the page is
-/// alive, shown by its signs of life.
+/// What a page, or a terminal, asks of the robot with the operator's lease: it holds for as long as
+/// the page is alive, shown by its signs of life.
 /** A page that is closed, hidden, frozen or cut off lets the robot stop as tread-goal does that is
  * halted. The emergency stop is taken from every page. */
 class OperatorDesk {
  public:
-  OperatorDesk(Bus& bus, std::string operator_name);
+  /// `why`: what the log says of its arming and stopping.
+  OperatorDesk(Bus& bus, std::string operator_name, std::string why);
 
   /// A command as JSON: {"op": "alive"}, "estop", "clear_estop", "arm", "disarm", "goal" (x, y,
   /// perhaps yaw [rad]), "cancel", "fence" (name, keep_out, corners [m]), "remove_fence" (name).
@@ -37,23 +38,23 @@ class OperatorDesk {
 
   struct Running {
     std::string what;
-    std::unique_ptr<operators::Call> call;
+    std::unique_ptr<Call> call;
     bool holds = false;  ///< only while its page lives
     bool ended = false;
     int64_t ended_at = 0;  ///< [us]
     std::string words;
   };
-  void start(const std::string& what, std::unique_ptr<operators::Call> call, bool holds);
+  void start(const std::string& what, std::unique_ptr<Call> call, bool holds);
   /// Ends what moves the robot.
   void letGo(int64_t utime, const std::string& why);
 
   Bus& bus_;
-  operators::Requester requester_;
+  Requester requester_;
   std::list<Running> calls_;
   /// Ended ones stay: the bus calls them back.
-  std::list<std::unique_ptr<operators::Call>> past_;
+  std::list<std::unique_ptr<Call>> past_;
   uint64_t page_ = 0;  ///< that holds the robot; 0 = none
   int64_t alive_ = 0;  ///< [us] its last sign of life
 };
 
-}  // namespace tread::view
+}  // namespace tread::operators

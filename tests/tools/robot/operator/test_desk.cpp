@@ -4,17 +4,17 @@
 
 #include "common/bus/virtual_bus.hpp"
 #include "common/messages/blank.hpp"
-#include "tools/view/operator_desk.hpp"
+#include "tools/robot/operator/desk.hpp"
 
 using namespace tread;
-using namespace tread::view;
+using tread::operators::OperatorDesk;
 
 namespace {
 
 /// A desk, and a robot that only says that it is armed.
 struct Desk {
   VirtualBus bus{1};
-  OperatorDesk desk{bus.outside(), "ADA"};
+  OperatorDesk desk{bus.outside(), "ADA", "test"};
   int arms = 0, disarms = 0, stops = 0, cancels = 0, goals = 0, let_go = 0;
   int64_t last_allowed = 0;
   Bus* robot = nullptr;

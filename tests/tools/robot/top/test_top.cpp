@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// tread-top in a terminal of its own, with a robot that only says that it is there.
+#include <catch2/catch.hpp>
+
+#include <pty.h>
+
+#include "common/bus/lcm_bus.hpp"
+#include "common/messages/blank.hpp"
+#include "tests/system/process.hpp"
+#include "tests/tools/called_program.hpp"
+
+using namespace tread;
+using namespace tread::testing;
+
+namespace {
+
+/// A robot's end of the bus: MOTOR, and what it was asked.
+class Robot {
+ public:
+  explicit Robot(const std::string& url) : bus_(url, TimeSource::kHost) {
+    bus_.subscribe<estop_t>(kEstop, [this](const estop_t& stop) { stopped = stop.engaged != 0; });
+    bus_.subscribe<arm_t>(kArm, [this](const arm_t& arm) { armed = arm.armed != 0; });
+  }
+  void run(double seconds) {
+    const int64_t end = bus_.now() + static_cast<int64_t>(1e6 * seconds);
+    while (bus_.now() < end) {
+      auto motor = blank<motor_t>();
+      motor.utime = bus_.now();
+      motor.seq = seq_++;
+      motor.bridge_state = stopped ? motor_t::STATE_ESTOP
+                           : armed ? motor_t::STATE_ARMED
+                                   : motor_t::STATE_DISARMED;
+      motor.state_reason = "says the test";
+      bus_.publish(kMotor, motor);
+      bus_.handle(40);
+    }
+  }
+  bool stopped = false;
+  bool armed = false;
+
+ private:
+  LcmBus bus_;
+  int64_t seq_ = 0;
+};
+
+}  // namespace
+
+TEST_CASE("tread-top --once prints what it saw, without a terminal") {
+  const std::string url = ownLcmUrl();
+  Robot robot(url);
+  const samples::OwnFolder folder;
+  Process top("tread-top", {"--once", "2", "--lcm-url", url}, folder.path("out.txt"));
+  while (top.running()) robot.run(0.1);
+  CAPTURE(folder.text("out.txt"));
+  CHECK(top.exitCode() == 0);
+  CHECK_THAT(folder.text("out.txt"), Catch::Contains("motors   disarmed: says the test"));
+  CHECK_THAT(folder.text("out.txt"), Catch::Contains("MOTOR"));
+}
+
+TEST_CASE("in a terminal a key arms, another one stops, and q gives the terminal back") {
+  const std::string url = ownLcmUrl();
+  Robot robot(url);
+  winsize size{40, 120, 0, 0};
+  int terminal = -1;
+  const pid_t child = forkpty(&terminal, nullptr, nullptr, &size);
+  if (child == 0) {
+    setenv("TERM", "xterm", 1);
+    const std::string program = std::string(TREAD_BIN_DIR) + "/tread-top";
+    execl(program.c_str(), "tread-top", "--lcm-url", url.c_str(), nullptr);
+    _exit(127);
+  }
+  fcntl(terminal, F_SETFL, O_NONBLOCK);
+  std::string seen;
+  const auto look = [&](double seconds) {
+    for (int i = 0; i < static_cast<int>(seconds * 10.0); ++i) {
+      robot.run(0.1);
+      char buffer[4096];
+      for (ssize_t got = 0; (got = read(terminal, buffer, sizeof buffer)) > 0;)
+        seen.append(buffer, static_cast<size_t>(got));
+    }
+  };
+  const auto press = [&](char key) { REQUIRE(write(terminal, &key, 1) == 1); };
+  for (int i = 0; i < 50 && seen.find("says the test") == std::string::npos; ++i) look(0.2);
+  CHECK(seen.find("disarmed") != std::string::npos);
+  press('a');
+  for (int i = 0; i < 25 && !robot.armed; ++i) look(0.2);
+  CHECK(robot.armed);
+  press(' ');
+  for (int i = 0; i < 25 && !robot.stopped; ++i) look(0.2);
+  CHECK(robot.stopped);
+  press('q');
+  int status = -1;
+  for (int i = 0; i < 50 && waitpid(child, &status, WNOHANG) != child; ++i) look(0.1);
+  CHECK(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == 0);
+  close(terminal);
+}

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <atomic>
+#include <clocale>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+
+#include <ncurses.h>
+#include <CLI/CLI.hpp>
+#include <lcm/lcm-cpp.hpp>
+
+#include "common/bus/host_clock.hpp"
+#include "common/bus/key_option.hpp"
+#include "common/bus/shell.hpp"
+#include "common/config/command_line.hpp"
+#include "common/seal/key_file.hpp"
+#include "tools/robot/launch/running_robots.hpp"
+#include "tools/robot/operator/command.hpp"
+#include "tools/robot/operator/desk.hpp"
+#include "tools/robot/top/monitor.hpp"
+
+// ncurses has a macro of this name.
+#undef timeout
+
+namespace {
+
+using namespace tread;
+using namespace tread::top;
+
+constexpr int kWaitMs = 20;
+constexpr int64_t kShow = 250'000;  // [us] between pictures
+constexpr uint64_t kTerminal = 1;   // the one page of the desk
+
+struct Arguments {
+  std::string lcm_url;
+  std::string key;
+  std::string operator_name = operatorName();
+  double once = 0.0;
+};
+
+class Listener {
+ public:
+  Listener(const std::string& url, Monitor& monitor) : lcm_(url), monitor_(monitor) {
+    if (!lcm_.good()) throw std::runtime_error("LCM cannot be used at " + url);
+    lcm_.subscribe(".*", &Listener::hear, this)->setQueueCapacity(2000);
+  }
+  void handle(int milliseconds) {
+    for (int wait = milliseconds; lcm_.handleTimeout(wait) > 0; wait = 0) {
+    }
+    std::ifstream file("/proc/net/snmp");
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    if (const auto counters = kernelCounters(text)) monitor_.take(*counters);
+  }
+
+ private:
+  void hear(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+    monitor_.take(channel, static_cast<const uint8_t*>(buffer->data), buffer->data_size, hostNow());
+  }
+
+  lcm::LCM lcm_;
+  Monitor& monitor_;
+};
+
+/// The terminal as long as it lives; given back in good order, also where something throws.
+class Screen {
+ public:
+  Screen() {
+    std::setlocale(LC_ALL, "");
+    if (newterm(nullptr, stdout, stdin) == nullptr)
+      throw std::runtime_error(
+          "this terminal cannot be used (TERM); tread-top --once 3 needs none");
+    cbreak();
+    noecho();
+    nodelay(stdscr, TRUE);
+    keypad(stdscr, TRUE);
+    curs_set(0);
+    if (!has_colors()) return;
+    start_color();
+    use_default_colors();
+    init_pair(1, COLOR_GREEN, -1);
+    init_pair(2, COLOR_YELLOW, -1);
+    init_pair(3, COLOR_RED, -1);
+  }
+  ~Screen() { endwin(); }
+  Screen(const Screen&) = delete;
+  Screen& operator=(const Screen&) = delete;
+
+  void show(const std::vector<Line>& lines, const std::string& words) const {
+    erase();
+    const int room = LINES - 2;
+    for (int i = 0; i < static_cast<int>(lines.size()) && i < room; ++i) {
+      const Line& line = lines[static_cast<size_t>(i)];
+      attrset(attributesOf(line.mood));
+      mvaddnstr(i, 0, line.text.c_str(), COLS);
+    }
+    attrset(A_NORMAL);
+    mvaddnstr(LINES - 2, 0, words.c_str(), COLS);
+    attrset(A_REVERSE);
+    mvaddnstr(LINES - 1, 0, "space E-stop   a arm and hold   d disarm   c clear E-stop   q quit",
+              COLS);
+    attrset(A_NORMAL);
+    refresh();
+  }
+
+ private:
+  static int attributesOf(Mood mood) {
+    switch (mood) {
+      case Mood::kTitle:
+        return A_BOLD | A_UNDERLINE;
+      case Mood::kGood:
+        return COLOR_PAIR(1);
+      case Mood::kDoubt:
+        return COLOR_PAIR(2);
+      case Mood::kBad:
+        return COLOR_PAIR(3) | A_BOLD;
+      case Mood::kPlain:
+        break;
+    }
+    return A_NORMAL;
+  }
+};
+
+/// Prints once what a terminal would show.
+int printOnce(Listener& listener, const Monitor& monitor, double seconds,
+              const std::atomic<bool>& stop) {
+  for (const int64_t end = hostNow() + static_cast<int64_t>(1e6 * seconds);
+       !stop && hostNow() < end;)
+    listener.handle(kWaitMs);
+  for (const Line& line : monitor.lines(hostNow())) std::printf("%s\n", line.text.c_str());
+  return 0;
+}
+
+int watch(Listener& listener, const Monitor& monitor, LcmBus& bus, operators::OperatorDesk& desk,
+          const std::atomic<bool>& stop) {
+  const Screen screen;
+  bool holds = false;
+  std::string refused;
+  const auto say = [&](const char* json) { refused = desk.take(json, kTerminal, bus.now()); };
+  for (int64_t next = 0; !stop;) {
+    listener.handle(kWaitMs);
+    bus.handle(0);
+    for (int key = getch(); key != ERR; key = getch()) {
+      if (key == 'q') {
+        desk.leave(kTerminal, bus.now());
+        return 0;
+      }
+      if (key == ' ') say(R"({"op":"estop"})");
+      if (key == 'c') say(R"({"op":"clear_estop"})");
+      if (key == 'a') say(R"({"op":"arm"})");
+      if (key == 'd') say(R"({"op":"disarm"})");
+      if (key == 'a' || key == 'd') holds = key == 'a';
+    }
+    // The terminal is the page: it lives for as long as this loop turns.
+    if (holds) desk.take(R"({"op":"alive"})", kTerminal, bus.now());
+    desk.step(bus.now());
+    if (hostNow() < next) continue;
+    next = hostNow() + kShow;
+    screen.show(monitor.lines(hostNow()), refused.empty() ? desk.words(bus.now()) : refused);
+  }
+  desk.leave(kTerminal, bus.now());
+  return 0;
+}
+
+int run(const Arguments& arguments) {
+  const std::atomic<bool>& stop = stopRequest(0);
+  const launch::RunningRobot robot = launch::findRobot(arguments.lcm_url, arguments.key);
+  Monitor monitor;
+  Listener listener(robot.lcm_url, monitor);
+  if (arguments.once > 0.0) return printOnce(listener, monitor, arguments.once, stop);
+  LcmBus bus(
+      BusAccess{robot.lcm_url, robot.here ? hostSealer(robot.key) : stationSealer(robot.key)},
+      TimeSource::kHost);
+  operators::OperatorDesk desk(bus, arguments.operator_name, "at the terminal of tread-top");
+  return watch(listener, monitor, bus, desk, stop);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "Watches the robot in a terminal: channels with rates, ages, sizes and losses, processes, "
+      "motors; arms, disarms and stops by a key. Works over ssh, where --operator should say who "
+      "you are.",
+      "tread-top"};
+  Arguments arguments;
+  app.add_option("--once", arguments.once, "print once what was seen in so many seconds, and end")
+      ->check(CLI::Range(0.1, 3600.0));
+  app.add_option("--operator", arguments.operator_name, operators::kOperatorHelp)
+      ->capture_default_str();
+  app.add_option("--lcm-url", arguments.lcm_url, operators::kUrlHelp);
+  addKeyOption(app, arguments.key);
+  if (const auto code = parseCommandLine(app, argc, argv)) return *code;
+  return runProgram("tread-top", [&] { return run(arguments); });
+}
