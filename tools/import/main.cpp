@@ -9,11 +9,11 @@
 
 #include "common/config/command_line.hpp"
 #include "common/config/config_reader.hpp"
+#include "common/mcap/mcap_log.hpp"
 #include "common/recordings/csv_table.hpp"
 #include "common/recordings/imported_log.hpp"
 #include "tools/import/csv_drive.hpp"
 #include "tools/import/foreign_log.hpp"
-#include "tools/import/mcap_log.hpp"
 #include "tools/import/rawlog.hpp"
 
 using namespace tread;
@@ -119,7 +119,7 @@ RecordedDrive readForeign(const Arguments& arguments, Session& session) {
 /// Messages as they are, not a drive made of samples.
 void takeMcap(const Arguments& arguments) {
   LogWriter writer(arguments.log);
-  const import::McapCounts counts = import::importMcap(arguments.csv, writer);
+  const mcap::LogCounts counts = mcap::writeLog(arguments.csv, writer);
   writer.flush();
   for (const auto& [what, count] : counts.left_out)
     std::printf("left out: %lld of %s\n", static_cast<long long>(count), what.c_str());

@@ -11,11 +11,12 @@
 #include "common/pattern/pattern_file.hpp"
 #include "common/store/store.hpp"
 #include "common/vehicle/model_document.hpp"
+#include "tools/replay/corpus.hpp"
 #include "tools/replay/learner_replay.hpp"
 #include "tools/replay/matching_replay.hpp"
+#include "tools/replay/pass_overlap.hpp"
 #include "tools/replay/pose_comparison.hpp"
 #include "tools/replay/robot_replay.hpp"
-#include "tools/replay/pass_overlap.hpp"
 #include "tools/replay/sensor_replay.hpp"
 
 using namespace tread;
@@ -227,6 +228,37 @@ void addLearner(CLI::App& app, LearnerArguments& arguments) {
   });
 }
 
+struct CorpusArguments {
+  std::string folder;
+  std::vector<std::string> overrides;
+  int threads = 1;
+  Output output;
+  bool different = false;
+};
+
+void addCorpus(CLI::App& app, CorpusArguments& arguments) {
+  CLI::App& command = *app.add_subcommand(
+      "corpus",
+      "all logs of a folder through planner and learner: what the code of today, or another "
+      "configuration, changes; code 1 if anything");
+  command.add_option("folder", arguments.folder, "with *.lcmlog and *.mcap")->required();
+  command
+      .add_option("--set", arguments.overrides,
+                  "PROCESS.KEY=VALUE in the place of what the logs say: planner.margins.plan=0.1")
+      ->expected(1)
+      ->take_all();
+  addThreads(command, arguments.threads);
+  command.add_option("--report", arguments.output.report, "also write the report into this file");
+  command.callback([&arguments] {
+    const auto corpus =
+        replay::replayCorpus(replay::corpusOf(arguments.folder), arguments.overrides,
+                             TREAD_CONFIG_DIR "/patterns", arguments.threads);
+    say(replay::reportOf(corpus), arguments.output);
+    arguments.different =
+        !std::all_of(corpus.begin(), corpus.end(), [](const auto& entry) { return entry.equal; });
+  });
+}
+
 struct RecipeArguments {
   std::string process;
   std::string log;
@@ -248,6 +280,7 @@ void addRecipe(CLI::App& app, RecipeArguments& arguments) {
 int parseAndRun(int argc, char** argv) {
   LearnerArguments learner_arguments;
   Arguments planner_arguments;
+  CorpusArguments corpus_arguments;
   Arguments ins_arguments;
   Arguments mapping_arguments;
   Arguments matching_arguments;
@@ -257,11 +290,14 @@ int parseAndRun(int argc, char** argv) {
   addRecipe(app, recipe_arguments);
   addLearner(app, learner_arguments);
   addPlanner(app, planner_arguments);
+  addCorpus(app, corpus_arguments);
   addIns(app, ins_arguments);
   addMapping(app, mapping_arguments);
   addMatching(app, matching_arguments);
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
-  return learner_arguments.different || planner_arguments.different ? 1 : 0;
+  return learner_arguments.different || planner_arguments.different || corpus_arguments.different
+             ? 1
+             : 0;
 }
 
 }  // namespace

@@ -221,14 +221,14 @@ bool LearnerCheck::equal() const {
   return same_twice && first_difference.empty() && versions.equal > 0;
 }
 
-learner::LearnerNodeConfig learnerConfigOf(const RobotLog& log,
-                                           const std::string& patterns_folder) {
+learner::LearnerNodeConfig learnerConfigOf(const RobotLog& log, const std::string& patterns_folder,
+                                           const std::vector<std::string>& overrides) {
   const auto text = log.configs.find("learner");
   if (text == log.configs.end())
     throw std::runtime_error(log.name +
                              ": no CONFIG of the learner; give its configuration with --config, or "
                              "--model or --patterns for a log without a learner");
-  ConfigReader reader = ConfigReader::fromText(text->second, log.name + ", CONFIG of the learner");
+  ConfigReader reader = loggedConfig(log, "learner", overrides);
   std::string name;
   int64_t checksum = 0;
   reader.text("shipped_set", name, true);

@@ -321,4 +321,27 @@ std::vector<LearnerLife> learnerLives(const RobotLog& log, const PatternSet& shi
   return lives;
 }
 
+ConfigReader loggedConfig(const RobotLog& log, const std::string& process,
+                          const std::vector<std::string>& overrides) {
+  const std::string& text = log.configs.at(process);
+  const std::string name = log.name + ", CONFIG of the " + process;
+  for (const std::string& override : overrides) {
+    ConfigReader known = ConfigReader::fromText(text, name);
+    const std::string key = override.substr(0, override.find('='));
+    std::optional<ConfigReader> section;
+    size_t from = 0;
+    for (size_t dot = key.find('.'); dot != std::string::npos; dot = key.find('.', from)) {
+      ConfigReader& at = section ? *section : known;
+      const std::string part = key.substr(from, dot - from);
+      if (!at.has(part)) break;
+      ConfigReader inner = at.section(part);
+      section.emplace(std::move(inner));
+      from = dot + 1;
+    }
+    if (!(section ? *section : known).has(key.substr(from)))
+      throw std::runtime_error(name + ": knows no key " + key);
+  }
+  return ConfigReader::fromText(text, name, overrides);
+}
+
 }  // namespace tread::replay

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/bus/lcm_bus.hpp"
+#include "common/config/config_reader.hpp"
 #include "common/log/drive_log.hpp"
 #include "common/log/event_log.hpp"
 
@@ -52,6 +53,11 @@ RobotLog readRobotLog(const std::string& path);
 
 /// The same from events in memory; `name` stands for the log in reports.
 RobotLog toRobotLog(const std::string& name, std::vector<LogEvent> events);
+
+/// The CONFIG of a process with other values in it, KEY=VALUE with dots between sections; throws
+/// std::runtime_error with one clear line if it knows no such key: CONFIG holds them all.
+ConfigReader loggedConfig(const RobotLog& log, const std::string& process,
+                          const std::vector<std::string>& overrides);
 
 /// The bus of one node that receives a log: the replay sets the time, and nothing is lost.
 /** The node's own messages are kept and delivered to nobody, so that it never receives its own

@@ -180,12 +180,13 @@ std::string verdictOf(const PlannerCheck& check) {
 
 }  // namespace
 
-planner::PlannerConfig plannerConfigOf(const RobotLog& log) {
+planner::PlannerConfig plannerConfigOf(const RobotLog& log,
+                                       const std::vector<std::string>& overrides) {
   const auto text = log.configs.find("planner");
   if (text == log.configs.end())
     throw std::runtime_error(log.name +
                              ": no CONFIG of the planner; give its configuration with --config");
-  ConfigReader reader = ConfigReader::fromText(text->second, log.name + ", CONFIG of the planner");
+  ConfigReader reader = loggedConfig(log, "planner", overrides);
   return planner::readLoggedPlannerConfig(reader);
 }
 

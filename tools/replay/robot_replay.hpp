@@ -121,10 +121,12 @@ struct LearnerCheck : ReplayCheck {
   bool equal() const;
 };
 
-/// The learner's configuration as the log's CONFIG has it, with the shipped set that it names.
+/// The learner's configuration as the log's CONFIG has it, with the shipped set that it names;
+/// `overrides` are KEY=VALUE in the place of what it says.
 /** The set is found by its checksum: as the log's first version, else among the pattern files of
  * `patterns_folder`. Throws std::runtime_error with one clear line. */
-learner::LearnerNodeConfig learnerConfigOf(const RobotLog& log, const std::string& patterns_folder);
+learner::LearnerNodeConfig learnerConfigOf(const RobotLog& log, const std::string& patterns_folder,
+                                           const std::vector<std::string>& overrides = {});
 
 /// Replays the log twice and compares. Throws std::runtime_error with one clear line if the log
 /// does not say where the learner began.
@@ -171,7 +173,8 @@ struct PlannerCheck : ReplayCheck {
 
 /// The planner's configuration as the log's CONFIG has it. Throws std::runtime_error with one clear
 /// line.
-planner::PlannerConfig plannerConfigOf(const RobotLog& log);
+planner::PlannerConfig plannerConfigOf(const RobotLog& log,
+                                       const std::vector<std::string>& overrides = {});
 
 /// Replays the log twice and compares. Throws std::runtime_error with one clear line if the log
 /// holds no PROGRAM.

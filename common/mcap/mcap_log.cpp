@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/import/mcap_log.hpp"
+#include "common/mcap/mcap_log.hpp"
 
 #include <stdexcept>
 
 #include "common/mcap/mcap_reader.hpp"
 #include "common/types/message_json.hpp"
 
-namespace tread::import {
+namespace tread::mcap {
 
-McapCounts importMcap(const std::string& path, LogWriter& log) {
-  mcap::Reader reader(path);
-  mcap::Message message;
-  McapCounts counts;
+LogCounts writeLog(const std::string& path, LogWriter& log) {
+  Reader reader(path);
+  Message message;
+  LogCounts counts;
   while (reader.next(message)) {
     const MessageType* const type = typeOfChannel(message.topic);
     if (type == nullptr || message.schema_name != "tread." + type->name ||
@@ -36,4 +36,4 @@ McapCounts importMcap(const std::string& path, LogWriter& log) {
   return counts;
 }
 
-}  // namespace tread::import
+}  // namespace tread::mcap

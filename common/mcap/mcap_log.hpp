@@ -8,10 +8,10 @@
 
 #include "common/log/event_log.hpp"
 
-namespace tread::import {
+namespace tread::mcap {
 
 /// What became of an MCAP file's messages.
-struct McapCounts {
+struct LogCounts {
   int64_t taken = 0;
   std::map<std::string, int64_t> left_out;  ///< by topic and why
   std::string problem;                      ///< one clear line if the file is damaged
@@ -20,6 +20,6 @@ struct McapCounts {
 /// Writes the messages of an MCAP file that are Tread's (JSON, as tread-export writes it) to a log,
 /// each at the time at which it was recorded.
 /** Throws std::runtime_error with one clear line if the file cannot be read or holds none. */
-McapCounts importMcap(const std::string& path, LogWriter& log);
+LogCounts writeLog(const std::string& path, LogWriter& log);
 
-}  // namespace tread::import
+}  // namespace tread::mcap
