@@ -19,23 +19,6 @@ bool lasts(const std::string& channel) {
 
 }  // namespace
 
-uint64_t partOf(const LogEvent& event) {
-  map_tile_t tile;
-  health_t health;
-  config_t config;
-  pattern_set_part_t part;
-  if (event.channel == kMap.name && decode(event, kMap, tile))
-    return static_cast<uint64_t>(static_cast<uint32_t>(tile.tile_x)) << 32 |
-           static_cast<uint32_t>(tile.tile_y);
-  if (event.channel == kPatternSet.name && decode(event, kPatternSet, part))
-    return static_cast<uint64_t>(part.part);
-  const std::hash<std::string> hash;
-  if (event.channel == kHealth.name && decode(event, kHealth, health)) return hash(health.process);
-  if (event.channel == kConfig.name && decode(event, kConfig, config))
-    return hash(config.config_process);
-  return 0;
-}
-
 LogPlayer::LogPlayer(const std::vector<std::string>& logs) {
   for (const std::string& path : logs) index(path);
   if (entries_.empty())

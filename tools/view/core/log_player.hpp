@@ -10,13 +10,10 @@
 #include <vector>
 
 #include "common/log/event_log.hpp"
+#include "common/log/message_part.hpp"
 #include "tools/view/core/history.hpp"
 
 namespace tread::view {
-
-/// What of a channel a message replaces: of MAP the same tile, of HEALTH the same process, of most
-/// the message before.
-uint64_t partOf(const LogEvent& event);
 
 /// A log that can be looked at any time of it.
 class LogPlayer {

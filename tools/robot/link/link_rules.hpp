@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/config/config_reader.hpp"
+
+namespace tread::link {
+
+/// What of a channel crosses the link.
+struct LinkRule {
+  std::string channel;
+  double rate = 0.0;  ///< [Hz] at most, of each part (a tile of MAP, a process of HEALTH); 0 = all
+};
+
+/// How the robot's own bus and the one towards the operator's station are joined.
+struct LinkConfig {
+  std::string station_url;           ///< LCM provider of the link; ttl=1
+  std::vector<LinkRule> to_station;  ///< of the robot's channels
+  std::vector<LinkRule> to_robot;    ///< of the station's: all of what they say crosses
+  double most = 500.0;               ///< [kB/s] to the station, of what is limited in rate
+  std::string effective;             ///< as text, for CONFIG
+};
+
+/// Strict; throws ConfigError with file:line. A channel in both directions is refused: it would go
+/// round for ever.
+LinkConfig readLinkConfig(ConfigReader& reader);
+
+/// Decides for one direction, message by message.
+/** What is not limited in rate always passes: commands, and above all stops. The rest shares a
+ * budget of bytes, which a burst of half a second may use at once. */
+class LinkFilter {
+ public:
+  LinkFilter(const std::vector<LinkRule>& rules, double most_kilobytes);
+
+  /// Whether a message passes now [us]; `bytes` is the message without its seal, `size` with it.
+  bool passes(const std::string& channel, const std::vector<uint8_t>& bytes, size_t size,
+              int64_t now);
+  bool carries(const std::string& channel) const { return intervals_.count(channel) > 0; }
+
+  int64_t passed() const { return passed_; }
+  int64_t thinned() const { return thinned_; }  ///< left out for their channel's rate
+  int64_t over_budget() const { return over_budget_; }
+
+ private:
+  std::map<std::string, int64_t> intervals_;                  ///< [us] by channel; 0 = all
+  std::map<std::pair<std::string, uint64_t>, int64_t> last_;  ///< [us] passed, by part
+  double most_;                                               ///< [bytes/s]
+  double room_;                                               ///< [bytes]
+  int64_t filled_ = 0;                                        ///< [us]
+  int64_t passed_ = 0, thinned_ = 0, over_budget_ = 0;
+};
+
+}  // namespace tread::link
