@@ -7,7 +7,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/types/message_json.hpp"
 #include "tools/export/log_export.hpp"
 
 namespace tread::exporting {
@@ -85,18 +84,13 @@ class CsvExport {
   }
 
   void take(const LogEvent& event) {
-    const MessageType* const type = typeOfChannel(event.channel);
-    const auto json = type == nullptr ? std::nullopt : jsonOf(treadTypes(), *type, event.bytes);
-    if (!json) {
-      ++counts.left_out[event.channel + (type == nullptr ? ": not of Tread" : ": broken")];
-      return;
-    }
+    const auto message = countedJson(event, counts);
+    if (!message) return;
     std::string row = std::to_string(event.utime);
-    addCells(*type, Json::parse(*json), row);
-    std::ofstream& file = fileOf(event.channel, *type);
+    addCells(*message->type, Json::parse(message->json), row);
+    std::ofstream& file = fileOf(event.channel, *message->type);
     file << row << "\n";
     if (!file) throw std::runtime_error(folder_ + ": cannot be written; is the disk full?");
-    ++counts.written[event.channel];
   }
 
   ExportCounts counts;

@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "common/log/event_log.hpp"
+#include "common/types/message_type.hpp"
 
 namespace tread::exporting {
 
@@ -26,6 +28,13 @@ struct ExportCounts {
   std::map<std::string, int64_t> left_out;  ///< by what they are: of another type, broken
   std::string problem;  ///< one clear line if the log is damaged; what is whole was exported
 };
+
+/// The event's message as JSON, counted; nothing, counted too, if it is none of Tread's.
+struct JsonMessage {
+  const MessageType* type = nullptr;
+  std::string json;
+};
+std::optional<JsonMessage> countedJson(const LogEvent& event, ExportCounts& counts);
 
 /// Reads the events of logs (parts of one recording, in order) that are wanted.
 class SelectedEvents {

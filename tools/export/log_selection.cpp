@@ -4,7 +4,20 @@
 
 #include <cmath>
 
+#include "common/types/message_json.hpp"
+
 namespace tread::exporting {
+
+std::optional<JsonMessage> countedJson(const LogEvent& event, ExportCounts& counts) {
+  const MessageType* const type = typeOfChannel(event.channel);
+  auto json = type == nullptr ? std::nullopt : jsonOf(treadTypes(), *type, event.bytes);
+  if (!json) {
+    ++counts.left_out[event.channel + (type == nullptr ? ": not of Tread" : ": broken")];
+    return std::nullopt;
+  }
+  ++counts.written[event.channel];
+  return JsonMessage{type, std::move(*json)};
+}
 
 bool SelectedEvents::isWanted(const LogEvent& event) {
   if (begun_ < 0) begun_ = event.utime;

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <optional>
-
 #include "common/mcap/mcap_writer.hpp"
 #include "common/scene/scene.hpp"
 #include "common/types/message_json.hpp"
@@ -20,15 +18,9 @@ class McapExport {
   explicit McapExport(const std::string& path) : writer_(path) {}
 
   void take(const LogEvent& event) {
-    const MessageType* const type = typeOfChannel(event.channel);
-    const auto json = type == nullptr ? std::nullopt : jsonOf(treadTypes(), *type, event.bytes);
-    if (!json) {
-      ++counts.left_out[event.channel + (type == nullptr ? ": not of Tread" : ": broken")];
-      return;
-    }
-    put(event.channel, "tread." + type->name, event.utime, *json,
-        [&] { return jsonSchemaOf(treadTypes(), *type); });
-    ++counts.written[event.channel];
+    if (const auto message = countedJson(event, counts))
+      put(event.channel, "tread." + message->type->name, event.utime, message->json,
+          [&] { return jsonSchemaOf(treadTypes(), *message->type); });
   }
   void draw(const LogEvent& event) {
     for (const SceneMessage& message : scene_.take(event))

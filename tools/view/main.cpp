@@ -8,10 +8,9 @@
 
 #include <sodium.h>
 #include <CLI/CLI.hpp>
-#include <lcm/lcm-cpp.hpp>
 
-#include "common/bus/host_clock.hpp"
 #include "common/bus/key_option.hpp"
+#include "common/bus/lcm_listener.hpp"
 #include "common/bus/shell.hpp"
 #include "common/config/command_line.hpp"
 #include "common/seal/key_file.hpp"
@@ -26,6 +25,7 @@ using namespace tread;
 using namespace tread::view;
 
 constexpr int kWaitMs = 2;
+constexpr double kDeskPeriod = 0.3;  // [s]
 
 struct Arguments {
   std::vector<std::string> logs;
@@ -62,33 +62,6 @@ void sayWhere(const ViewServer& server, const ServerSettings& settings) {
   std::fflush(stdout);
 }
 
-/// Every message of the bus as it is recorded, whoever may have sealed it.
-class Listener {
- public:
-  Listener(const std::string& url, Feed& feed) : lcm_(url), feed_(feed) {
-    if (!lcm_.good()) throw std::runtime_error("LCM cannot be used at " + url);
-    lcm_.subscribe(".*", &Listener::hear, this)->setQueueCapacity(2000);
-  }
-  void handle(int milliseconds) {
-    if (lcm_.handleTimeout(milliseconds) <= 0) return;
-    for (int i = 0; i < 200 && lcm_.handleTimeout(0) > 0; ++i) {
-    }
-  }
-
- private:
-  void hear(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
-    const auto* const bytes = static_cast<const uint8_t*>(buffer->data);
-    LogEvent event;
-    event.utime = hostNow();
-    event.channel = channel;
-    event.bytes.assign(bytes, bytes + sizeWithoutSeal(bytes, buffer->data_size));
-    feed_.take(event);
-  }
-
-  lcm::LCM lcm_;
-  Feed& feed_;
-};
-
 void live(const Arguments& arguments, const std::atomic<bool>& stop) {
   const launch::RunningRobot robot = launch::findRobot(arguments.lcm_url, arguments.key);
   LcmBus bus(
@@ -101,9 +74,13 @@ void live(const Arguments& arguments, const std::atomic<bool>& stop) {
       settings,
       [&](const std::string& json, uint64_t page) { return desk.take(json, page, bus.now()); },
       [&](uint64_t page) { desk.leave(page, bus.now()); });
-  Listener listener(robot.lcm_url, server.feed());
+  LcmListener listener(robot.lcm_url, [&](const std::string& channel, const uint8_t* bytes,
+                                          size_t size, int64_t now) {
+    server.feed().take({now, channel, {bytes, bytes + sizeWithoutSeal(bytes, size)}});
+  });
   sayWhere(server, settings);
   std::string told;
+  double told_at = 0.0;
   for (double last = secondsNow(); !stop;) {
     listener.handle(kWaitMs);
     bus.handle(0);
@@ -111,9 +88,12 @@ void live(const Arguments& arguments, const std::atomic<bool>& stop) {
     const double now = secondsNow();
     server.step(now - last);
     last = now;
+    // A goal's progress changes with every look, and nobody reads that fast.
     const std::string words = desk.words(bus.now());
-    if (words != told) server.tell(0, "desk: " + words);
+    if (words == told || now - told_at < kDeskPeriod) continue;
+    server.tell(0, "desk: " + words);
     told = words;
+    told_at = now;
   }
 }
 

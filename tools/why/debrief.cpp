@@ -13,8 +13,9 @@
 namespace tread::why {
 namespace {
 
-constexpr double kDetour = 1.3;      // [1] of the straight line
-constexpr double kMuchWorse = 2.5;   // [1] of the errors before
+constexpr double kDetour = 1.3;     // [1] of the straight line
+constexpr double kMuchWorse = 2.5;  // [1] of the errors before
+constexpr size_t kManyRefused = 3;
 constexpr size_t kRun = 4;           // patterns that are compared with those before
 constexpr double kLostShare = 0.03;  // [1] of a process' messages between two of its HEALTH
 constexpr int64_t kLostLeast = 5;
@@ -377,6 +378,34 @@ void addPredictions(const DriveTimeline& drive, std::vector<Finding>& findings) 
   }
 }
 
+/// Patterns of which the learner took no measurement, by reason.
+void addRefusals(const DriveTimeline& drive, std::vector<Finding>& findings) {
+  std::map<std::string, std::vector<const PatternNote*>> by_reason;
+  size_t refused = 0;
+  for (const PatternNote& note : drive.patterns)
+    if (!note.accepted) {
+      by_reason[note.words].push_back(&note);
+      ++refused;
+    }
+  if (refused < kManyRefused || refused * 5 < drive.patterns.size()) return;
+  Finding finding;
+  finding.kind = FindingKind::kRefusal;
+  finding.cause = "refused_measurements";
+  finding.time = finding.until = by_reason.begin()->second.front()->time;
+  std::vector<std::string> words;
+  for (const auto& [reason, notes] : by_reason) {
+    words.push_back(formatted("%zu for ", notes.size()) + reason);
+    finding.time = std::min(finding.time, notes.front()->time);
+    finding.until = std::max(finding.until, notes.back()->time);
+    finding.evidence.push_back(
+        {notes.front()->time, "LEARNING", notes.front()->pattern + ": " + reason});
+  }
+  finding.sentence =
+      formatted("the learner refused %zu of %zu patterns: ", refused, drive.patterns.size()) +
+      joined(words);
+  findings.push_back(std::move(finding));
+}
+
 /// How much a finding counts: what stopped the robot first, and most what it had no part in.
 int weightOf(const Finding& finding) {
   const std::string& cause = finding.cause;
@@ -398,7 +427,8 @@ int weightOf(const Finding& finding) {
 }  // namespace
 
 const char* nameOf(FindingKind kind) {
-  constexpr const char* kNames[] = {"stop", "process", "messages", "detour", "goal", "prediction"};
+  constexpr const char* kNames[] = {"stop", "process", "messages",  "detour",
+                                    "goal", "refusal", "prediction"};
   return kNames[static_cast<size_t>(kind)];
 }
 
@@ -424,6 +454,7 @@ Debrief debrief(const DriveTimeline& drive) {
   addLosses(drive, debrief.findings);
   addGoals(drive, debrief.findings);
   addPredictions(drive, debrief.findings);
+  addRefusals(drive, debrief.findings);
   std::stable_sort(debrief.findings.begin(), debrief.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.time < b.time; });
   return debrief;

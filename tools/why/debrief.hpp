@@ -10,7 +10,7 @@
 namespace tread::why {
 
 /// What a finding is about.
-enum class FindingKind { kStop, kProcess, kMessages, kDetour, kGoal, kPrediction };
+enum class FindingKind { kStop, kProcess, kMessages, kDetour, kGoal, kRefusal, kPrediction };
 const char* nameOf(FindingKind kind);
 
 /// A message of the log that speaks for a finding.

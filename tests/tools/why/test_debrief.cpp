@@ -29,6 +29,7 @@ struct InventedDrive {
   std::string margin = "0.2";
   double error = 0.04;
   double error_late = 0.04;  ///< from 10 s on
+  int refused = 0;           ///< of the twenty patterns
 
   void write(const std::string& path) const {
     DriveLogBuilder log;
@@ -90,7 +91,8 @@ struct InventedDrive {
     auto learning = blank<learning_t>();
     learning.utime = at(time);
     learning.learned_pattern_name = "straight";
-    learning.accepted = 1;
+    learning.accepted = time >= refused;
+    learning.gate_reason = learning.accepted ? "" : "entered in another motion";
     learning.error_position = time < 10.0 ? error : error_late;
     learning.error_yaw = 0.01;
     log.add(kLearning, learning);
@@ -149,6 +151,18 @@ TEST_CASE("patterns that end further off than before are told with the patterns"
   CHECK(found.worst()->cause == "prediction");
   CHECK(found.worst()->evidence.size() == 4);
   CHECK(found.worst()->time == Approx(10.0).margin(2.1));
+}
+
+TEST_CASE("measurements that the learner refused are told by their reason, where they are many") {
+  InventedDrive drive;
+  drive.refused = 2;
+  CHECK(debriefOf(drive).findings.empty());
+  drive.refused = 8;
+  const Debrief found = debriefOf(drive);
+  REQUIRE(found.findings.size() == 1);
+  CHECK(found.findings[0].sentence ==
+        "the learner refused 8 of 20 patterns: 8 for entered in another motion");
+  CHECK(found.findings[0].evidence.size() == 1);
 }
 
 TEST_CASE("another drive is compared: figures, causes and keys of the configuration") {

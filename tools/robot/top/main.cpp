@@ -8,10 +8,10 @@
 
 #include <ncurses.h>
 #include <CLI/CLI.hpp>
-#include <lcm/lcm-cpp.hpp>
 
 #include "common/bus/host_clock.hpp"
 #include "common/bus/key_option.hpp"
+#include "common/bus/lcm_listener.hpp"
 #include "common/bus/shell.hpp"
 #include "common/config/command_line.hpp"
 #include "common/seal/key_file.hpp"
@@ -39,27 +39,23 @@ struct Arguments {
   double once = 0.0;
 };
 
-class Listener {
+/// The bus, and what the kernel has lost of it.
+class Watch {
  public:
-  Listener(const std::string& url, Monitor& monitor) : lcm_(url), monitor_(monitor) {
-    if (!lcm_.good()) throw std::runtime_error("LCM cannot be used at " + url);
-    lcm_.subscribe(".*", &Listener::hear, this)->setQueueCapacity(2000);
-  }
+  Watch(const std::string& url, Monitor& monitor)
+      : monitor_(monitor),
+        listener_(url, [&](const std::string& channel, const uint8_t* bytes, size_t size,
+                           int64_t now) { monitor_.take(channel, bytes, size, now); }) {}
   void handle(int milliseconds) {
-    for (int wait = milliseconds; lcm_.handleTimeout(wait) > 0; wait = 0) {
-    }
+    listener_.handle(milliseconds);
     std::ifstream file("/proc/net/snmp");
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     if (const auto counters = kernelCounters(text)) monitor_.take(*counters);
   }
 
  private:
-  void hear(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
-    monitor_.take(channel, static_cast<const uint8_t*>(buffer->data), buffer->data_size, hostNow());
-  }
-
-  lcm::LCM lcm_;
   Monitor& monitor_;
+  LcmListener listener_;
 };
 
 /// The terminal as long as it lives; given back in good order, also where something throws.
@@ -122,7 +118,7 @@ class Screen {
 };
 
 /// Prints once what a terminal would show.
-int printOnce(Listener& listener, const Monitor& monitor, double seconds,
+int printOnce(Watch& listener, const Monitor& monitor, double seconds,
               const std::atomic<bool>& stop) {
   for (const int64_t end = hostNow() + static_cast<int64_t>(1e6 * seconds);
        !stop && hostNow() < end;)
@@ -131,7 +127,7 @@ int printOnce(Listener& listener, const Monitor& monitor, double seconds,
   return 0;
 }
 
-int watch(Listener& listener, const Monitor& monitor, LcmBus& bus, operators::OperatorDesk& desk,
+int watch(Watch& listener, const Monitor& monitor, LcmBus& bus, operators::OperatorDesk& desk,
           const std::atomic<bool>& stop) {
   const Screen screen;
   bool holds = false;
@@ -166,7 +162,7 @@ int run(const Arguments& arguments) {
   const std::atomic<bool>& stop = stopRequest(0);
   const launch::RunningRobot robot = launch::findRobot(arguments.lcm_url, arguments.key);
   Monitor monitor;
-  Listener listener(robot.lcm_url, monitor);
+  Watch listener(robot.lcm_url, monitor);
   if (arguments.once > 0.0) return printOnce(listener, monitor, arguments.once, stop);
   LcmBus bus(
       BusAccess{robot.lcm_url, robot.here ? hostSealer(robot.key) : stationSealer(robot.key)},

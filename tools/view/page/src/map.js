@@ -64,13 +64,24 @@ export class MapView {
     this.drawGrid();
     this.drawWay();
     this.drawFences();
-    this.drawTree();
-    this.drawPlan();
-    this.drawRun();
-    this.drawScan();
+    this.faded("PLAN_TREE", clock, () => this.drawTree());
+    this.faded("PLAN", clock, () => this.drawPlan());
+    this.faded("PROGRAM", clock, () => this.drawRun());
+    this.faded("SCAN", clock, () => this.drawScan());
     this.drawGoal();
     const ins = this.state.get("INS");
     if (pose) this.drawRobot(pose, ins ? this.state.age(ins, clock) > 0.5 : true);
+  }
+
+  // What is older than thrice its channel's period, and a second, fades.
+  faded(topic, clock, draw) {
+    const entry = this.state.get(topic);
+    if (!entry) return;
+    const [rate] = this.state.offered[topic] ?? [1];
+    const stale = this.state.age(entry, clock) > Math.max(1, 3 / Math.max(rate, 0.1));
+    this.context.globalAlpha = stale ? 0.25 : 1;
+    draw();
+    this.context.globalAlpha = 1;
   }
 
   tileImage(entry) {
