@@ -2,13 +2,21 @@
 // Copyright (c) 2026 The Tread authors
 #include "tests/system/two_hosts.hpp"
 
+#include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <map>
+#include <random>
 #include <stdexcept>
 
 #include <fcntl.h>
+#include <linux/if_tun.h>
+#include <net/if.h>
+#include <poll.h>
 #include <sched.h>
+#include <sys/ioctl.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -56,16 +64,65 @@ pid_t makeStation() {
   return -1;
 }
 
+/// A network device whose frames come and go through the descriptor; -1 if it cannot be made.
+int openDevice(const char* name) {
+  const int device = open("/dev/net/tun", O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  ifreq request{};
+  request.ifr_flags = IFF_TAP | IFF_NO_PI;
+  std::snprintf(request.ifr_name, sizeof request.ifr_name, "%s", name);
+  if (device >= 0 && ioctl(device, TUNSETIFF, &request) == 0) return device;
+  if (device >= 0) close(device);
+  return -1;
+}
+
 }  // namespace
 
-TwoHosts::TwoHosts()
+BadCable::BadCable(int robot, int station, const CableFaults& faults)
+    : ends_{robot, station}, faults_(faults), thread_([this] { carry(); }) {}
+
+BadCable::~BadCable() {
+  stop_ = true;
+  thread_.join();
+  for (const int end : ends_) close(end);
+}
+
+void BadCable::carry() {
+  using Clock = std::chrono::steady_clock;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  /// By the time at which it arrives: the end where it does, and its bytes.
+  std::multimap<Clock::time_point, std::pair<int, std::vector<char>>> frames;
+  while (!stop_) {
+    pollfd polled[2] = {{ends_[0], POLLIN, 0}, {ends_[1], POLLIN, 0}};
+    poll(polled, 2, 1);
+    for (int end = 0; end < 2; ++end) {
+      std::vector<char> frame(2048);
+      while ((polled[end].revents & POLLIN) != 0) {
+        const ssize_t size = read(ends_[end], frame.data(), frame.size());
+        if (size <= 0) break;
+        if (!plugged_ || share(random) < faults_.loss) continue;
+        const std::chrono::duration<double> late(faults_.delay + faults_.jitter * share(random));
+        frames.emplace(Clock::now() + std::chrono::duration_cast<Clock::duration>(late),
+                       std::pair(1 - end, std::vector<char>(frame.begin(), frame.begin() + size)));
+      }
+    }
+    for (auto due = frames.begin(); due != frames.end() && due->first <= Clock::now();
+         due = frames.erase(due)) {
+      const auto& [end, bytes] = due->second;
+      // A device that is down takes nothing: so is the cable.
+      if (write(ends_[end], bytes.data(), bytes.size()) < 0) continue;
+    }
+  }
+}
+
+TwoHosts::TwoHosts(const CableFaults& faults)
     : url_("udpm://239.255.76.67:" + std::to_string(20000 + getpid() % 20000) +
            "?ttl=1&recv_buf_size=2097152") {
   if (!leaveNetwork()) throw std::runtime_error("two hosts are not allowed here");
   station_ = makeStation();
   if (station_ < 0) throw std::runtime_error("two hosts are not allowed here");
   try {
-    joinHosts();
+    joinHosts(faults);
   } catch (...) {
     kill(station_, SIGKILL);
     waitpid(station_, nullptr, 0);
@@ -74,42 +131,57 @@ TwoHosts::TwoHosts()
 }
 
 TwoHosts::~TwoHosts() {
+  bad_cable_.reset();
   kill(station_, SIGKILL);
   waitpid(station_, nullptr, 0);
 }
 
-void TwoHosts::joinHosts() const {
-  const std::string there = "nsenter --net=" + network() + " ";
-  must("ip link add robot type veth peer name station netns " + std::to_string(station_));
+/// What `make` gives, made in the station's network.
+template <class Make>
+int TwoHosts::there(const Make& make) const {
+  const int here = open("/proc/self/ns/net", O_RDONLY | O_CLOEXEC);
+  const int station = open(network().c_str(), O_RDONLY | O_CLOEXEC);
+  int made = -1;
+  if (setns(station, CLONE_NEWNET) == 0) made = make();
+  const bool back = setns(here, CLONE_NEWNET) == 0;
+  close(here);
+  close(station);
+  if (!back || made < 0) throw std::runtime_error("the station's network cannot be used");
+  return made;
+}
+
+void TwoHosts::joinHosts(const CableFaults& faults) {
+  const std::string at_station = "nsenter --net=" + network() + " ";
+  if (faults.delay + faults.jitter + faults.loss > 0.0) {
+    const int robot = openDevice("robot");
+    if (robot < 0) throw std::runtime_error("two hosts are not allowed here: /dev/net/tun");
+    bad_cable_ =
+        std::make_unique<BadCable>(robot, there([] { return openDevice("station"); }), faults);
+  } else {
+    must("ip link add robot type veth peer name station netns " + std::to_string(station_));
+  }
   must("ip link set lo up && ip link set robot up");
   must("ip addr add " + std::string(kRobot) + "/24 dev robot");
   must("ip route add 224.0.0.0/4 dev robot");
-  must(there + "ip link set lo up && " + there + "ip link set station up");
-  must(there + "ip addr add " + std::string(kStation) + "/24 dev station");
-  must(there + "ip route add 224.0.0.0/4 dev station");
+  must(at_station + "ip link set lo up && " + at_station + "ip link set station up");
+  must(at_station + "ip addr add " + std::string(kStation) + "/24 dev station");
+  must(at_station + "ip route add 224.0.0.0/4 dev station");
 }
 
 std::vector<std::string> TwoHosts::atStation() const {
   return {"/usr/bin/nsenter", "--net=" + network()};
 }
 
-void TwoHosts::plug(bool in) const {
+void TwoHosts::plug(bool in) {
+  if (bad_cable_) return bad_cable_->plug(in);
   // Routes go with the station's end, and come back with it. The robot's end stays up.
-  const std::string there = "nsenter --net=" + network() + " ";
-  must(there + "ip link set station " + (in ? "up" : "down"));
-  if (in) must(there + "ip route add 224.0.0.0/4 dev station");
+  const std::string at_station = "nsenter --net=" + network() + " ";
+  must(at_station + "ip link set station " + (in ? "up" : "down"));
+  if (in) must(at_station + "ip route add 224.0.0.0/4 dev station");
 }
 
 int TwoHosts::stationSocket() const {
-  const int here = open("/proc/self/ns/net", O_RDONLY | O_CLOEXEC);
-  const int there = open(network().c_str(), O_RDONLY | O_CLOEXEC);
-  int made = -1;
-  if (setns(there, CLONE_NEWNET) == 0) made = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  const bool back = setns(here, CLONE_NEWNET) == 0;
-  close(here);
-  close(there);
-  if (!back || made < 0) throw std::runtime_error("no socket at the station");
-  return made;
+  return there([] { return socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0); });
 }
 
 }  // namespace tread::testing

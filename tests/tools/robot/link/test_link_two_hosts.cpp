@@ -40,25 +40,61 @@ double rateOf(const std::string& seen, const std::string& channel) {
 
 }  // namespace
 
-TEST_CASE("over the link crosses what is chosen, and a robot whose operator is cut off stops") {
-  std::unique_ptr<TwoHosts> hosts;
+namespace {
+
+/// The robot with tread-link, and its operator's programs at the station.
+struct LinkedRobot {
+  explicit LinkedRobot(TwoHosts& two_hosts)
+      : hosts(two_hosts),
+        link("tread-link",
+             {"--config", std::string(TREAD_SOURCE_DIR) + "/config/robots/teodor/link.yaml",
+              "--set", "station_url=" + hosts.url(), "--lcm-url", run.url()},
+             folder.path("link.txt")) {
+    run.startAll();
+    REQUIRE(run.until(20.0, [&] { return run.plan().any() && run.ins().any(); }));
+  }
+  bool moves() const {
+    return run.motor().message().command[0] != 0.0F || run.motor().message().command[1] != 0.0F;
+  }
+  /// Arms and gives a goal from the station; whether the robot drives then.
+  bool drive() {
+    run.leaveTo(30.0, 0.0, {"/usr/bin/env", "true"});
+    const auto arm = atStation(hosts, "tread-arm", {"--operator", "station", "--timeout", "20"},
+                               folder.path("arm.txt"));
+    run.until(20.0, [&] { return !arm->running(); });
+    CAPTURE(contentOf(folder.path("arm.txt")));
+    REQUIRE(arm->exitCode() == 0);
+    goal = atStation(hosts, "tread-goal", {"30", "0", "--quiet", "--operator", "station"},
+                     folder.path("goal.txt"));
+    return run.until(15.0, [&] { return run.driving() && run.motor().message().command[0] > 0.3; });
+  }
+
+  const samples::OwnFolder folder;
+  TwoHosts& hosts;
+  RobotRun run{kField, "[-20, 0, 0]"};
+  Process link;
+  std::unique_ptr<Process> goal;
+};
+
+std::unique_ptr<TwoHosts> hostsOrSkip(const CableFaults& faults) {
   try {
-    hosts = std::make_unique<TwoHosts>();
+    return std::make_unique<TwoHosts>(faults);
   } catch (const std::runtime_error& error) {
     WARN("skipped: " << error.what());
-    return;
+    return nullptr;
   }
-  const samples::OwnFolder folder;
-  RobotRun run(kField, "[-20, 0, 0]");
-  run.startAll();
-  Process link("tread-link",
-               {"--config", std::string(TREAD_SOURCE_DIR) + "/config/robots/teodor/link.yaml",
-                "--set", "station_url=" + hosts->url(), "--lcm-url", run.url()},
-               folder.path("link.txt"));
-  REQUIRE(run.until(20.0, [&] { return run.plan().any() && run.ins().any(); }));
-  REQUIRE(atStation(*hosts, "tread-top", {"--once", "2.5"}, folder.path("top.txt"))->waitFor(20.0));
-  const std::string seen = contentOf(folder.path("top.txt"));
-  CAPTURE(seen, contentOf(folder.path("link.txt")));
+}
+
+}  // namespace
+
+TEST_CASE("over the link crosses what is chosen, and a robot whose operator is cut off stops") {
+  const auto hosts = hostsOrSkip({});
+  if (!hosts) return;
+  LinkedRobot robot(*hosts);
+  REQUIRE(atStation(*hosts, "tread-top", {"--once", "2.5"}, robot.folder.path("top.txt"))
+              ->waitFor(20.0));
+  const std::string seen = contentOf(robot.folder.path("top.txt"));
+  CAPTURE(seen, contentOf(robot.folder.path("link.txt")));
   // The robot's INS comes at 50 Hz, and the range finder's scans are not for the station.
   CHECK(rateOf(seen, "INS") > 6.0);
   CHECK(rateOf(seen, "INS") < 13.0);
@@ -66,26 +102,33 @@ TEST_CASE("over the link crosses what is chosen, and a robot whose operator is c
   CHECK(rateOf(seen, "SCAN") == 0.0);
   CHECK(rateOf(seen, "MAP") > 0.0);
   CHECK(rateOf(seen, "HEALTH") > 3.0);
-
-  // The operator's programs are at the station: what they say crosses, and what they see.
-  run.leaveTo(30.0, 0.0, {"/usr/bin/env", "true"});
-  const auto arm = atStation(*hosts, "tread-arm", {"--operator", "station", "--timeout", "20"},
-                             folder.path("arm.txt"));
-  run.until(20.0, [&] { return !arm->running(); });
-  CAPTURE(contentOf(folder.path("arm.txt")));
-  REQUIRE(arm->exitCode() == 0);
-  const auto goal = atStation(*hosts, "tread-goal", {"30", "0", "--quiet", "--operator", "station"},
-                              folder.path("goal.txt"));
-  CHECK(run.until(15.0, [&] { return run.driving() && run.motor().message().command[0] > 0.3; }));
-  CAPTURE(contentOf(folder.path("goal.txt")));
+  CHECK(robot.drive());
   hosts->plug(false);
-  CHECK(run.until(2.5, [&] {
-    return run.motor().message().command[0] == 0.0F && run.motor().message().command[1] == 0.0F;
-  }));
-  CHECK_FALSE(run.until(1.5, [&] { return run.motor().message().command[0] != 0.0F; }));
+  CHECK(robot.run.until(2.5, [&] { return !robot.moves(); }));
+  CHECK_FALSE(robot.run.until(1.5, [&] { return robot.moves(); }));
   hosts->plug(true);
-  CHECK_FALSE(run.until(2.0, [&] { return run.motor().message().command[0] != 0.0F; }));
-  link.signal(SIGINT);
-  CHECK(link.waitFor(5.0));
-  CHECK(link.exitCode() == 0);
+  CHECK_FALSE(robot.run.until(2.0, [&] { return robot.moves(); }));
+  robot.link.signal(SIGINT);
+  CHECK(robot.link.waitFor(5.0));
+  CHECK(robot.link.exitCode() == 0);
+}
+
+TEST_CASE(
+    "a link that is late and loses frames is driven over, and stops the robot when it is gone") {
+  // As a radio at the end of its range: 60 to 100 ms, one frame in ten.
+  const auto hosts = hostsOrSkip({0.06, 0.04, 0.1});
+  if (!hosts) return;
+  LinkedRobot robot(*hosts);
+  REQUIRE(robot.drive());
+  // Now and then it stands between two patterns.
+  int moving = 0;
+  for (int i = 0; i < 40; ++i) {
+    robot.run.wait(0.1);
+    moving += robot.moves() ? 1 : 0;
+  }
+  CAPTURE(contentOf(robot.folder.path("goal.txt")));
+  CHECK(moving > 25);
+  hosts->plug(false);
+  CHECK(robot.run.until(2.5, [&] { return !robot.moves(); }));
+  CHECK_FALSE(robot.run.until(1.5, [&] { return robot.moves(); }));
 }
