@@ -101,10 +101,24 @@ TEST_CASE("an exported log passes the readers of the format itself") {
   runScript(folder, "mcap.mjs", {folder.path("drive.mcap")});
 }
 
-TEST_CASE("the page shows a log in a browser: map, slider through its time, events, playing") {
+TEST_CASE(
+    "the page shows a log in a browser: map, slider, events, playing, and a server that is back") {
   const OwnFolder folder;
   View view(folder, {missionLog()});
-  runScript(folder, "page.mjs", {view.url(), "log", folder.path("log.png")});
+  // The same place for the one that follows.
+  const std::string port = view.url().substr(view.url().rfind(':') + 1);
+  std::unique_ptr<Process> again;
+  runScript(folder, "page.mjs", {view.url(), "log", folder.path("log.png")},
+            [&](const std::string& printed) {
+              if (again || printed.find("restart") == std::string::npos) return;
+              view.process().signal(SIGKILL);
+              view.process().waitFor(5.0);
+              std::this_thread::sleep_for(std::chrono::seconds(2));
+              again = std::make_unique<Process>(
+                  "tread-view",
+                  std::vector<std::string>{missionLog(), "--port", port.substr(0, port.find('/'))});
+            });
+  CHECK(again);
   CHECK(samples::isPng(folder.text("log.png")));
 }
 

@@ -64,11 +64,23 @@ if (mode === "log") {
   await page.locator("#play").click();
   await until("it plays", async () => (await text("#play")) === "pause");
   if (!(await page.locator("#estop").isHidden())) fail("a log has no E-stop");
+  // The server goes and comes back: the page says so, and goes on by itself.
+  console.log("restart");
+  await until("the lost connection is told", async () => (await text("#mode")) === "NO CONNECTION", 20);
+  await until("it is back", async () => (await text("#mode")) === "LOG", 20);
+  await until("it shows the log again", () => page.evaluate(() => window.treadView.state().history.events.length > 0));
 } else {
   await until("LIVE is shown", async () => (await text("#mode")) === "LIVE");
   await until("the robot is known", () => page.evaluate(() => window.treadView.state().pose() !== null));
   await until("the motors are known", async () => (await text("#robot")).includes("disarmed"));
   if (await page.locator("#estop").isHidden()) fail("the E-stop is hidden");
+  // A fence by three clicks, far from the way.
+  await page.locator("#fence").click();
+  const map = await page.locator("#map").boundingBox();
+  for (const [x, y] of [[-300, -200], [-220, -200], [-220, -140]])
+    await page.mouse.click(map.x + map.width / 2 + x, map.y + map.height / 2 + y);
+  await page.locator("#finish").click();
+  await until("the fence is there", () => page.evaluate(() => window.treadView.state().fences.size === 1));
   // Arms, goes where the map is clicked, and stops by the one key.
   await page.locator("#arm").click();
   await until("it is armed", async () => (await text("#robot")).includes("armed by"), 15);
