@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include "tools/view/core/feed.hpp"
-#include "tools/view/core/protocol.hpp"
+#include "tools/view/feed/feed.hpp"
+#include "tools/view/feed/protocol.hpp"
 
 namespace tread::view {
 

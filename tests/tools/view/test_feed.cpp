@@ -7,7 +7,7 @@
 #include "common/log/drive_log.hpp"
 #include "common/messages/blank.hpp"
 #include "tests/tools/called_program.hpp"
-#include "tools/view/core/feed.hpp"
+#include "tools/view/feed/feed.hpp"
 
 using namespace tread;
 using namespace tread::view;

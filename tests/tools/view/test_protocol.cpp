@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tools/view/core/protocol.hpp"
+#include "tools/view/feed/protocol.hpp"
 
 using namespace tread::view;
 using Json = nlohmann::json;

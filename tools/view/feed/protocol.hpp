@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/view/core/channels.hpp"
+#include "tools/view/feed/channels.hpp"
 
 namespace tread::view {
 

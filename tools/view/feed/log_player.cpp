@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/view/core/log_player.hpp"
+#include "tools/view/feed/log_player.hpp"
 
 #include <algorithm>
 #include <functional>

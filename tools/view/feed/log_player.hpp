@@ -11,7 +11,7 @@
 
 #include "common/log/event_log.hpp"
 #include "common/log/message_part.hpp"
-#include "tools/view/core/history.hpp"
+#include "tools/view/feed/history.hpp"
 
 namespace tread::view {
 

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "common/scene/scene.hpp"
-#include "tools/view/core/channels.hpp"
-#include "tools/view/core/history.hpp"
-#include "tools/view/core/log_player.hpp"
+#include "tools/view/feed/channels.hpp"
+#include "tools/view/feed/history.hpp"
+#include "tools/view/feed/log_player.hpp"
 
 namespace tread::view {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/view/core/channels.hpp"
+#include "tools/view/feed/channels.hpp"
 
 #include "common/bus/channels.hpp"
 #include "common/scene/scene.hpp"

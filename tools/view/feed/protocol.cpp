@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/view/core/protocol.hpp"
+#include "tools/view/feed/protocol.hpp"
 
 #include <nlohmann/json.hpp>
 
