@@ -15,6 +15,7 @@ using Json = nlohmann::json;
 
 constexpr double kPatience = 3.0;  // [s]
 constexpr const char* kArming = "arming";
+constexpr const char* kGoing = "goal";
 
 double finite(const Json& json, const char* key) {
   const double value = json.at(key).get<double>();
@@ -43,12 +44,15 @@ std::string OperatorDesk::take(const std::string& text, uint64_t page, int64_t u
             std::make_unique<StopCall>(bus_, requester_, op == "estop", kPatience), false);
       return "";
     }
-    if (op == "disarm" || op == "cancel") {
-      letGo(utime, op == "cancel" ? "cancelled" : "disarmed");
-      if (op == "disarm")
-        start("disarming",
-              std::make_unique<ArmCall>(bus_, requester_, ArmRequest{false, false, ""}, kPatience),
-              false);
+    if (op == "cancel") {
+      letGo(utime, "cancelled", kGoing);
+      return "";
+    }
+    if (op == "disarm") {
+      letGo(utime, "disarmed");
+      start("disarming",
+            std::make_unique<ArmCall>(bus_, requester_, ArmRequest{false, false, ""}, kPatience),
+            false);
       return "";
     }
     const bool lives = page_ != 0 && utime - alive_ < kPageLease;
@@ -68,13 +72,13 @@ std::string OperatorDesk::take(const std::string& text, uint64_t page, int64_t u
         request.yaw_tolerance = 0.35;
       }
       for (Running& running : calls_)
-        if (!running.ended && running.what == "goal") {
+        if (!running.ended && running.what == kGoing) {
           running.call->letGo(utime);
           running.ended = true;
           running.ended_at = utime;
           running.words = "another goal follows";
         }
-      start("goal",
+      start(kGoing,
             std::make_unique<GoalCall>(bus_, request, requester_.operator_name, bus_.newStation(),
                                        SurfaceNames()),
             true);
@@ -101,9 +105,9 @@ std::string OperatorDesk::take(const std::string& text, uint64_t page, int64_t u
   }
 }
 
-void OperatorDesk::letGo(int64_t utime, const std::string& why) {
+void OperatorDesk::letGo(int64_t utime, const std::string& why, const std::string& only) {
   for (Running& running : calls_) {
-    if (running.ended || !running.holds) continue;
+    if (running.ended || !running.holds || (!only.empty() && running.what != only)) continue;
     running.call->cancel(utime);
     running.call->letGo(utime);
     running.ended = true;

@@ -45,8 +45,8 @@ class OperatorDesk {
     std::string words;
   };
   void start(const std::string& what, std::unique_ptr<Call> call, bool holds);
-  /// Ends what moves the robot.
-  void letGo(int64_t utime, const std::string& why);
+  /// Ends what moves the robot: all of it, or what is called so.
+  void letGo(int64_t utime, const std::string& why, const std::string& only = "");
 
   Bus& bus_;
   Requester requester_;

@@ -80,6 +80,22 @@ TEST_CASE("a goal by click holds the robot for as long as the page lives") {
   CHECK_THAT(desk.desk.words(desk.bus.now()), Catch::Contains("the page is silent"));
 }
 
+TEST_CASE("a goal that is cancelled leaves the robot armed and held") {
+  Desk desk;
+  REQUIRE(desk.take(R"({"op":"arm"})").empty());
+  desk.run(1.0, true);
+  REQUIRE(desk.take(R"({"op":"goal","x":3,"y":4})").empty());
+  desk.run(1.0, true);
+  REQUIRE(desk.take(R"({"op":"cancel"})").empty());
+  desk.run(2.0, true);
+  CHECK(desk.cancels > 0);
+  CHECK(desk.disarms == 0);
+  CHECK(desk.silentFor() < 0.3);
+  REQUIRE(desk.take(R"({"op":"disarm"})").empty());
+  desk.run(0.5, true);
+  CHECK(desk.disarms > 0);
+}
+
 TEST_CASE("a page that is closed lets go at once") {
   Desk desk;
   REQUIRE(desk.take(R"({"op":"goal","x":3,"y":4})").empty());
