@@ -3,6 +3,7 @@
 #include "common/log/drive_log.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <set>
 
@@ -56,6 +57,15 @@ class Reader {
 };
 
 }  // namespace
+
+bool isPossibleTile(const map_tile_t& tile) {
+  constexpr int32_t kMostCells = 1024, kFarthest = 1'000'000;  // a side; tiles from the origin
+  return tile.tile_cells > 0 && tile.tile_cells <= kMostCells && tile.cell_size >= 0.01 &&
+         tile.cell_size <= 10.0 && std::abs(tile.tile_x) < kFarthest &&
+         std::abs(tile.tile_y) < kFarthest &&
+         tile.cells.size() ==
+             static_cast<size_t>(tile.tile_cells) * static_cast<size_t>(tile.tile_cells);
+}
 
 std::string DriveLog::surfaceAt(int64_t utime) const {
   const auto after = surfaces.upper_bound(utime);

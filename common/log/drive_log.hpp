@@ -19,6 +19,9 @@ struct Stamp {
   int64_t seq = 0;
 };
 
+/// Whether a tile can be one of a robot's map: a log has no checksums, and a bus has strangers.
+bool isPossibleTile(const map_tile_t& tile);
+
 /// (run id, execution id).
 using ExecutionKey = std::pair<int64_t, int64_t>;
 inline ExecutionKey keyOf(const execution_record_t& record) {

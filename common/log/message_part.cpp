@@ -17,6 +17,9 @@ uint64_t partOf(const LogEvent& event) {
   if (event.channel == kPatternSet.name && decode(event, kPatternSet, part))
     return static_cast<uint64_t>(part.part);
   const std::hash<std::string> hash;
+  fence_t fence;
+  if (event.channel == kFence.name && decode(event, kFence, fence)) return hash(fence.fence_name);
+
   if (event.channel == kHealth.name && decode(event, kHealth, health)) return hash(health.process);
   if (event.channel == kConfig.name && decode(event, kConfig, config))
     return hash(config.config_process);

@@ -9,7 +9,7 @@
 namespace tread {
 
 /// What of a channel a message replaces: of MAP the same tile, of HEALTH and CONFIG the same
-/// process, of PATTERN_SET the same part, of the others the message before.
+/// process, of PATTERN_SET the same part, of FENCE the same name, of the others the message before.
 uint64_t partOf(const LogEvent& event);
 
 }  // namespace tread

@@ -21,6 +21,7 @@ using Json = nlohmann::json;
 
 constexpr int64_t kMapPeriodUs = 2'000'000;
 constexpr double kMapReach = 15.0;    // [m] around the robot
+constexpr double kFarthest = 1e6;     // [m] from the origin of map; farther is a broken number
 constexpr double kRobotHeight = 0.4;  // [m] drawn
 
 struct Rgba {
@@ -103,6 +104,11 @@ void appendPoint(std::string& bytes, float x, float y, float z) {
   bytes.append(raw, sizeof raw);
 }
 
+SceneMessage sceneOf(Json drawn) {
+  const uint64_t part = std::hash<std::string>()(drawn["id"].get<std::string>());
+  return {"scene/plan", "foxglove.SceneUpdate", updateOf(std::move(drawn)).dump(), part};
+}
+
 std::string pointsOf(const scan_t& scan) {
   std::string bytes;
   for (size_t i = 0; i < scan.ranges.size(); ++i) {
@@ -142,8 +148,8 @@ std::vector<SceneMessage> SceneMaker::take(const LogEvent& event) {
                                                             : 4;
     const Json log{{"timestamp", timeOf(now_)}, {"level", level}, {"message", told.words},
                    {"name", told.source},       {"file", ""},     {"line", 0}};
-    made_.push_back(
-        {"scene/events", "foxglove.Log", log.dump(-1, ' ', false, Json::error_handler_t::replace)});
+    made_.push_back({"scene/events", "foxglove.Log",
+                     log.dump(-1, ' ', false, Json::error_handler_t::replace), 0});
   }
   if (map_changed_ && placed_ && now_ - kMapPeriodUs >= map_drawn_) drawMap();
   return std::move(made_);
@@ -151,7 +157,7 @@ std::vector<SceneMessage> SceneMaker::take(const LogEvent& event) {
 
 void SceneMaker::hear(const ins_t& ins) {
   const auto pose = planarPose(ins);
-  if (!pose) return;
+  if (!pose || pose->position().norm() > kFarthest) return;
   T_map_body_ = *pose;
   placed_ = true;
   const double z = std::isfinite(ins.position[2]) ? ins.position[2] : 0.0;
@@ -164,13 +170,13 @@ void SceneMaker::hear(const ins_t& ins) {
                          {"x", ins.orientation[1]},
                          {"y", ins.orientation[2]},
                          {"z", ins.orientation[3]}}}};
-  made_.push_back({"scene/tf", "foxglove.FrameTransform", transform.dump()});
+  made_.push_back({"scene/tf", "foxglove.FrameTransform", transform.dump(), 0});
 }
 
 void SceneMaker::hear(const map_tile_t& message) {
-  if (!map_ && message.tile_cells > 0 && message.cell_size > 0.0)
-    map_ = std::make_unique<TileMap>(message.cell_size, message.tile_cells);
-  if (!map_ || message.tile_cells != map_->tileCells()) return;
+  if (!isPossibleTile(message)) return;
+  if (!map_) map_ = std::make_unique<TileMap>(message.cell_size, message.tile_cells);
+  if (message.tile_cells != map_->tileCells() || message.cell_size != map_->cellSize()) return;
   Tile tile{message.tile_x, message.tile_y, message.utime, message.cells};
   map_changed_ = map_->put(std::move(tile)) || map_changed_;
 }
@@ -197,7 +203,7 @@ void SceneMaker::drawMap() {
                   {"cell_stride", 4},
                   {"fields", fields},
                   {"data", base64(bytes)}};
-  made_.push_back({"scene/map", "foxglove.Grid", grid.dump()});
+  made_.push_back({"scene/map", "foxglove.Grid", grid.dump(), 0});
   map_changed_ = false;
   map_drawn_ = now_;
 }
@@ -218,7 +224,7 @@ void SceneMaker::hear(const scan_t& scan) {
       {"point_stride", 12},
       {"fields", fields},
       {"data", base64(pointsOf(scan))}};
-  made_.push_back({"scene/scan", "foxglove.PointCloud", cloud.dump()});
+  made_.push_back({"scene/scan", "foxglove.PointCloud", cloud.dump(), 0});
 }
 
 void SceneMaker::hear(const plan_t& plan) {
@@ -233,7 +239,7 @@ void SceneMaker::hear(const plan_t& plan) {
     if (!doubt.is_null()) drawn["cylinders"].push_back(std::move(doubt));
   }
   if (points.size() > 1) drawn["lines"].push_back(lineOf(kLineStrip, 0.08, kPlanColour, points));
-  made_.push_back({"scene/plan", "foxglove.SceneUpdate", updateOf(std::move(drawn)).dump()});
+  made_.push_back(sceneOf(std::move(drawn)));
 }
 
 void SceneMaker::hear(const plan_tree_t& tree) {
@@ -249,7 +255,7 @@ void SceneMaker::hear(const plan_tree_t& tree) {
     points.push_back(node(i));
   }
   if (!points.empty()) drawn["lines"].push_back(lineOf(kLineList, 0.02, kTreeColour, points));
-  made_.push_back({"scene/plan", "foxglove.SceneUpdate", updateOf(std::move(drawn)).dump()});
+  made_.push_back(sceneOf(std::move(drawn)));
 }
 
 void SceneMaker::hear(const goal_t& goal) {
@@ -262,7 +268,7 @@ void SceneMaker::hear(const goal_t& goal) {
                                   {"top_scale", 1.0},
                                   {"color", colourOf(kGoalColour)}});
   }
-  made_.push_back({"scene/plan", "foxglove.SceneUpdate", updateOf(std::move(drawn)).dump()});
+  made_.push_back(sceneOf(std::move(drawn)));
 }
 
 void SceneMaker::hear(const config_t& config) {
@@ -285,7 +291,7 @@ void SceneMaker::hear(const config_t& config) {
   } catch (const std::exception&) {
     return;  // a log from before robots were described
   }
-  made_.push_back({"scene/plan", "foxglove.SceneUpdate", updateOf(std::move(drawn)).dump()});
+  made_.push_back(sceneOf(std::move(drawn)));
 }
 
 }  // namespace tread

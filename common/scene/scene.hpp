@@ -17,6 +17,7 @@ struct SceneMessage {
   std::string topic;
   std::string schema;  ///< its name
   std::string json;
+  uint64_t part = 0;  ///< what of its topic it replaces: an entity
 };
 
 /// The schema (JSON Schema) of such a message, as far as we fill it.

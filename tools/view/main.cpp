@@ -62,18 +62,31 @@ void sayWhere(const ViewServer& server, const ServerSettings& settings) {
   std::fflush(stdout);
 }
 
+/// What the page operates with.
+struct Operating {
+  Operating(const launch::RunningRobot& robot, const std::string& name)
+      : bus(BusAccess{robot.lcm_url, robot.here ? hostSealer(robot.key) : stationSealer(robot.key)},
+            TimeSource::kHost),
+        desk(bus, name, "by the page of tread-view") {}
+  LcmBus bus;
+  operators::OperatorDesk desk;
+};
+
 void live(const Arguments& arguments, const std::atomic<bool>& stop) {
   const launch::RunningRobot robot = launch::findRobot(arguments.lcm_url, arguments.key);
-  LcmBus bus(
-      BusAccess{robot.lcm_url, robot.here ? hostSealer(robot.key) : stationSealer(robot.key)},
-      TimeSource::kHost);
-  operators::OperatorDesk desk(bus, arguments.operator_name, "by the page of tread-view");
+  auto operating = std::make_unique<Operating>(robot, arguments.operator_name);
   ServerSettings settings = arguments.server;
   settings.may_command = !arguments.look_only;
+  // The key keeps strangers out: whoever may use this machine must not come in by the page.
+  if (!robot.key.empty() && settings.may_command && settings.token.empty())
+    settings.token = newToken();
   ViewServer server(
       settings,
-      [&](const std::string& json, uint64_t page) { return desk.take(json, page, bus.now()); },
-      [&](uint64_t page) { desk.leave(page, bus.now()); });
+      [&](const std::string& json, uint64_t page) {
+        return operating->desk.take(json, page, operating->bus.now());
+      },
+      [&](uint64_t page) { operating->desk.leave(page, operating->bus.now()); });
+
   LcmListener listener(robot.lcm_url, [&](const std::string& channel, const uint8_t* bytes,
                                           size_t size, int64_t now) {
     server.feed().take({now, channel, {bytes, bytes + sizeWithoutSeal(bytes, size)}});
@@ -83,13 +96,16 @@ void live(const Arguments& arguments, const std::atomic<bool>& stop) {
   double told_at = 0.0;
   for (double last = secondsNow(); !stop;) {
     listener.handle(kWaitMs);
-    bus.handle(0);
-    desk.step(bus.now());
+    operating->bus.handle(0);
+    operating->desk.step(operating->bus.now());
+    if (operating->desk.worn())
+      operating = std::make_unique<Operating>(robot, arguments.operator_name);
+
     const double now = secondsNow();
     server.step(now - last);
     last = now;
     // A goal's progress changes with every look, and nobody reads that fast.
-    const std::string words = desk.words(bus.now());
+    const std::string words = operating->desk.words();
     if (words == told || now - told_at < kDeskPeriod) continue;
     server.tell(0, "desk: " + words);
     told = words;
@@ -135,8 +151,10 @@ int main(int argc, char** argv) {
   app.add_option("--port", arguments.server.port, "0 = any that is free")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
-  app.add_option("--token", arguments.server.token,
-                 "asked of every viewer; default: none on this machine, else a new one");
+  app.add_option(
+      "--token", arguments.server.token,
+      "asked of every viewer; default: none on this machine, unless the robot has a key; else "
+      "a new one");
   app.add_flag("--look-only", arguments.look_only, "no page operates the robot");
   app.add_option("--operator", arguments.operator_name, operators::kOperatorHelp)
       ->capture_default_str();

@@ -23,6 +23,7 @@ using Json = nlohmann::json;
 constexpr size_t kLargestRequest = 1 << 16;  // [bytes] of a client
 constexpr size_t kCrowded = 64;              // frames that wait, from which on older ones give way
 constexpr size_t kHttpPiece = 16384;         // [bytes]
+constexpr uint32_t kTimePart = UINT32_MAX;   // no channel has this number
 constexpr const char* kCommandTopic = "view/command";
 constexpr const char* kControlTopic = "view/control";
 
@@ -39,6 +40,13 @@ std::string argumentOf(lws* socket, const char* name) {
   const char* const value =
       lws_get_urlarg_by_name(socket, (std::string(name) + "=").c_str(), buffer, sizeof buffer);
   return value != nullptr ? value : "";
+}
+
+int addHeader(lws* socket, const char* name, const std::string& value, unsigned char** at,
+              unsigned char* end) {
+  return lws_add_http_header_by_name(socket, reinterpret_cast<const unsigned char*>(name),
+                                     reinterpret_cast<const unsigned char*>(value.data()),
+                                     static_cast<int>(value.size()), at, end);
 }
 
 /// As long for a wrong guess as for a right one.
@@ -152,6 +160,9 @@ struct ViewServer::Sockets {
     unsigned char* const begin = at;
     if (lws_add_http_common_headers(socket, HTTP_STATUS_OK, "text/html; charset=utf-8",
                                     pageText().size(), &at, end) != 0 ||
+        // In a stranger's frame clicks would be meant for something else.
+        addHeader(socket, "x-frame-options:", "DENY", &at, end) != 0 ||
+        addHeader(socket, "content-security-policy:", "frame-ancestors 'none'", &at, end) != 0 ||
         lws_finalize_write_http_header(socket, begin, &at, end) != 0)
       return 1;
     *sent = 0;
@@ -191,10 +202,10 @@ struct ViewServer::Sockets {
     const std::string origin = headerOf(socket, WSI_TOKEN_ORIGIN);
     const bool same = origin.empty() || hostOf(origin) == headerOf(socket, WSI_TOKEN_HOST);
     client.may_command = server.settings_.may_command && same;
-    client.push(
-        {serverInfo("tread-view", client.may_command || server.feed_.hasLog(), server.session_),
-         false,
-         {}});
+    client.push({serverInfo("tread-view", client.may_command || server.feed_.hasLog(),
+                            server.feed_.hasLog(), server.session_),
+                 false,
+                 {}});
     client.push({advertisement(server.feed_.channels()), false, {}});
   }
 
@@ -283,6 +294,12 @@ ViewServer::~ViewServer() {
 
 void ViewServer::step(double elapsed) {
   feed_.step(elapsed);
+  if (feed_.hasLog() && feed_.now() != told_time_) {
+    told_time_ = feed_.now();
+    for (Client& client : sockets_->clients)
+      client.push({timeFrame(told_time_), true, {kTimePart, 0}});
+  }
+
   // Negative: without waiting. Each call serves what is ready; several frames may be waiting.
   for (int i = 0; i < 8; ++i) lws_service(sockets_->context, -1);
 }
@@ -307,9 +324,11 @@ void ViewServer::send(const FeedMessage& message) {
   for (Client& client : sockets_->clients) {
     const auto subscription = client.subscriptions.find(message.channel);
     if (subscription == client.subscriptions.end()) continue;
-    client.push({messageFrame(subscription->second, message.time, *message.payload),
-                 true,
-                 {message.channel, message.part}});
+
+    // What only tells news cannot be replaced by later news.
+    std::pair<uint32_t, uint64_t> part{message.channel, message.part};
+    if (message.is_news) part = {0, 0};
+    client.push({messageFrame(subscription->second, message.time, *message.payload), true, part});
   }
 }
 

@@ -62,6 +62,7 @@ class ViewServer {
   Leave leave_;
   std::string session_;
   int port_ = 0;
+  int64_t told_time_ = 0;  ///< [us] of a log, told to viewers last
   Feed feed_;
   std::unique_ptr<Sockets> sockets_;
 };

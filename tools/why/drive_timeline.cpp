@@ -19,6 +19,7 @@ constexpr double kDead = 2.5;         // [s] without HEALTH, which comes every s
 constexpr double kGhostSize = 0.7;    // [m]
 constexpr double kGhostLife = 12.0;   // [s]
 constexpr double kAlone = 0.4;        // [m] flickering beside a wall is no ghost
+constexpr double kFarthest = 1e6;     // [m] from the origin of map; farther is a broken number
 constexpr double kStep = 0.02;        // [m] below this an INS that stands wanders
 
 class TimelineReader {
@@ -37,7 +38,8 @@ class TimelineReader {
 
  private:
   void hear(const ins_t& ins) {
-    const auto pose = planarPose(ins);
+    auto pose = planarPose(ins);
+    if (pose && pose->position().norm() > kFarthest) pose.reset();
     if (pose) {
       if (last_ && distanceBetween(*last_, *pose) > kStep) {
         if ((ins.ins_status & ins_t::STATUS_JUMP) == 0)
@@ -119,9 +121,11 @@ class TimelineReader {
   }
 
   void hear(const map_tile_t& message) {
-    if (!drive_.map && message.tile_cells > 0 && message.cell_size > 0.0)
-      drive_.map = std::make_unique<TileMap>(message.cell_size, message.tile_cells);
-    if (!drive_.map || message.tile_cells != drive_.map->tileCells()) return;
+    if (!isPossibleTile(message)) return;
+    if (!drive_.map) drive_.map = std::make_unique<TileMap>(message.cell_size, message.tile_cells);
+    if (message.tile_cells != drive_.map->tileCells() ||
+        message.cell_size != drive_.map->cellSize())
+      return;
     compare(message);
     drive_.map->put({message.tile_x, message.tile_y, message.utime, message.cells});
   }

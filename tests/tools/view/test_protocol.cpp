@@ -10,10 +10,11 @@ using namespace tread::view;
 using Json = nlohmann::json;
 
 TEST_CASE("the server says who it is and offers every channel with a schema") {
-  const Json info = Json::parse(serverInfo("tread-view", true, "7"));
+  const Json info = Json::parse(serverInfo("tread-view", true, true, "7"));
   CHECK(info["op"] == "serverInfo");
   CHECK(info["capabilities"] == Json({"time", "clientPublish"}));
-  CHECK(Json::parse(serverInfo("tread-view", false, "7"))["capabilities"] == Json({"time"}));
+  CHECK(Json::parse(serverInfo("tread-view", false, false, "7"))["capabilities"] == Json::array());
+
   const OfferedChannels channels;
   const Json offered = Json::parse(advertisement(channels));
   CHECK(offered["channels"].size() == channels.all().size());

@@ -123,12 +123,14 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "the page operates the robot: arms, goes where it is clicked, stops by one key, greys out") {
+    "the page operates the robot, a stranger's page does not: arms, goes, stops by one key, greys "
+    "out") {
   const OwnFolder folder;
   RobotRun run(kField, "[-20, 0, 0]");
   run.startAll();
   REQUIRE(run.until(20.0, [&] { return run.plan().any() && run.ins().any(); }));
   View view(folder, {"--lcm-url", run.url(), "--operator", "page"});
+  runScript(folder, "origin.mjs", {view.url()});
   bool killed = false;
   runScript(folder, "page.mjs", {view.url(), "live", folder.path("live.png")},
             [&](const std::string& printed) {

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/robot/operator/desk.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -15,12 +16,36 @@ using Json = nlohmann::json;
 
 constexpr double kPatience = 3.0;  // [s]
 constexpr const char* kArming = "arming";
+constexpr const char* kDisarming = "disarming";
 constexpr const char* kGoing = "goal";
+constexpr const char* kStopping = "E-stop";
+constexpr const char* kClearing = "clearing the E-stop";
+constexpr size_t kMostPast = 30;
 
 double finite(const Json& json, const char* key) {
   const double value = json.at(key).get<double>();
   if (!std::isfinite(value) || std::abs(value) > 1e5) throw std::invalid_argument(key);
   return value;
+}
+
+GoalRequest goalFrom(const Json& json) {
+  GoalRequest request;
+  request.T_map_goal = {finite(json, "x"), finite(json, "y"), 0.0};
+  if (!json.contains("yaw")) return request;
+  request.T_map_goal.yaw = finite(json, "yaw");
+  request.yaw_tolerance = 0.35;
+  return request;
+}
+
+FenceRequest fenceRequestFrom(const Json& json, const std::string& by) {
+  const bool removes = json.at("op") == "remove_fence";
+  FenceRequest request{by, removes, {json.at("name").get<std::string>(), false, {}}};
+  if (removes) return request;
+  std::vector<double> numbers;
+  for (const Json& corner : json.at("corners"))
+    for (const Json& number : corner) numbers.push_back(number.get<double>());
+  request.fence = fenceFrom(request.fence.name, json.value("keep_out", true), numbers);
+  return request;
 }
 
 }  // namespace
@@ -31,69 +56,56 @@ OperatorDesk::OperatorDesk(Bus& bus, std::string operator_name, std::string why)
   requester_.why = std::move(why);
 }
 
+bool OperatorDesk::runs(const std::string& what) const {
+  return std::any_of(calls_.begin(), calls_.end(), [&](const Running& running) {
+    return !running.ended && running.what == what;
+  });
+}
+
 void OperatorDesk::start(const std::string& what, std::unique_ptr<Call> call, bool holds) {
-  calls_.push_back({what, std::move(call), holds, false, 0, ""});
+  calls_.push_front({what, std::move(call), holds, false, 0, ""});
+}
+
+void OperatorDesk::end(Running& running, int64_t utime, const std::string& why) {
+  running.call->letGo(utime);
+  running.ended = true;
+  running.ended_at = utime;
+  if (!why.empty()) running.words = why;
 }
 
 std::string OperatorDesk::take(const std::string& text, uint64_t page, int64_t utime) {
   try {
     const Json json = Json::parse(text);
     const auto op = json.at("op").get<std::string>();
-    if (op == "estop" || op == "clear_estop") {
-      start(op == "estop" ? "E-stop" : "clearing the E-stop",
-            std::make_unique<StopCall>(bus_, requester_, op == "estop", kPatience), false);
-      return "";
+    if (takeStop(op, utime)) return "";
+    // A page that is behind shows a robot that was.
+    if (utime - json.at("seen").get<int64_t>() > kPageLease)
+      return "the page has not seen the robot for too long: it cannot operate it";
+    if (page_ != page && page_ != 0) {
+      if (utime - alive_ <= kPageLease) return "another page holds the robot";
+      letGo(utime, "another page took over");
     }
-    if (op == "cancel") {
-      letGo(utime, "cancelled", kGoing);
-      return "";
-    }
-    if (op == "disarm") {
-      letGo(utime, "disarmed");
-      start("disarming",
-            std::make_unique<ArmCall>(bus_, requester_, ArmRequest{false, false, ""}, kPatience),
-            false);
-      return "";
-    }
-    const bool lives = page_ != 0 && utime - alive_ < kPageLease;
-    if (page_ != page && lives) return "another page holds the robot";
     page_ = page;
     alive_ = utime;
     if (op == "alive") return "";
     if (op == "arm") {
-      start(kArming,
-            std::make_unique<ArmCall>(bus_, requester_, ArmRequest{true, true, ""}, kPatience),
-            true);
+      if (!runs(kArming))
+        start(kArming,
+              std::make_unique<ArmCall>(bus_, requester_, ArmRequest{true, true, ""}, kPatience),
+              true);
     } else if (op == "goal") {
-      GoalRequest request;
-      request.T_map_goal = {finite(json, "x"), finite(json, "y"), 0.0};
-      if (json.contains("yaw")) {
-        request.T_map_goal.yaw = finite(json, "yaw");
-        request.yaw_tolerance = 0.35;
-      }
+      const GoalRequest request = goalFrom(json);
       for (Running& running : calls_)
-        if (!running.ended && running.what == kGoing) {
-          running.call->letGo(utime);
-          running.ended = true;
-          running.ended_at = utime;
-          running.words = "another goal follows";
-        }
+        if (!running.ended && running.what == kGoing) end(running, utime, "another goal follows");
       start(kGoing,
             std::make_unique<GoalCall>(bus_, request, requester_.operator_name, bus_.newStation(),
                                        SurfaceNames()),
             true);
     } else if (op == "fence" || op == "remove_fence") {
-      std::vector<double> numbers;
-      if (op == "fence")
-        for (const Json& corner : json.at("corners"))
-          for (const Json& number : corner) numbers.push_back(number.get<double>());
-      FenceRequest request{requester_.operator_name,
-                           op == "remove_fence",
-                           {json.at("name").get<std::string>(), false, {}}};
-      if (op == "fence")
-        request.fence = fenceFrom(request.fence.name, json.value("keep_out", true), numbers);
       start(op == "fence" ? "fence" : "removing a fence",
-            std::make_unique<FenceCall>(bus_, requester_, request, kPatience), false);
+            std::make_unique<FenceCall>(
+                bus_, requester_, fenceRequestFrom(json, requester_.operator_name), kPatience),
+            false);
     } else {
       return "no such command: " + op;
     }
@@ -105,14 +117,36 @@ std::string OperatorDesk::take(const std::string& text, uint64_t page, int64_t u
   }
 }
 
+bool OperatorDesk::takeStop(const std::string& op, int64_t utime) {
+  if (op == "estop") {
+    // What still asked for the opposite must not win against it.
+    letGo(utime, "stopped");
+    for (Running& running : calls_)
+      if (!running.ended && running.what == kClearing) end(running, utime, "stopped again");
+    if (!runs(kStopping))
+      start(kStopping, std::make_unique<StopCall>(bus_, requester_, true, kPatience), false);
+  } else if (op == "clear_estop") {
+    if (!runs(kStopping) && !runs(kClearing))
+      start(kClearing, std::make_unique<StopCall>(bus_, requester_, false, kPatience), false);
+  } else if (op == "cancel") {
+    letGo(utime, "cancelled", kGoing);
+  } else if (op == "disarm") {
+    letGo(utime, "disarmed");
+    if (!runs(kDisarming))
+      start(kDisarming,
+            std::make_unique<ArmCall>(bus_, requester_, ArmRequest{false, false, ""}, kPatience),
+            false);
+  } else {
+    return false;
+  }
+  return true;
+}
+
 void OperatorDesk::letGo(int64_t utime, const std::string& why, const std::string& only) {
   for (Running& running : calls_) {
     if (running.ended || !running.holds || (!only.empty() && running.what != only)) continue;
     running.call->cancel(utime);
-    running.call->letGo(utime);
-    running.ended = true;
-    running.ended_at = utime;
-    running.words = why;
+    end(running, utime, why);
   }
 }
 
@@ -136,9 +170,10 @@ void OperatorDesk::step(int64_t utime) {
     if (running.what == kArming && running.words.rfind("armed and held", 0) == 0)
       running.words = "armed, and held by this page";
     if (result == CallResult::kPending) continue;
-    running.call->letGo(utime);
-    running.ended = true;
-    running.ended_at = utime;
+    if (result == CallResult::kRefused) running.call->cancel(utime);
+    end(running, utime, "");
+    if (running.what == kArming)
+      letGo(utime, "the robot is held no more: " + running.words, kGoing);
   }
   for (auto running = calls_.begin(); running != calls_.end();) {
     if (!running->ended || utime - running->ended_at < kShown) {
@@ -150,11 +185,19 @@ void OperatorDesk::step(int64_t utime) {
   }
 }
 
-std::string OperatorDesk::words(int64_t) const {
-  std::string words;
-  for (const Running& running : calls_)
+bool OperatorDesk::worn() const {
+  return past_.size() > kMostPast &&
+         std::all_of(calls_.begin(), calls_.end(),
+                     [](const Running& running) { return running.ended; });
+}
+
+std::string OperatorDesk::words() const {
+  std::string stops, others;
+  for (const Running& running : calls_) {
+    std::string& words = running.what == kStopping || running.what == kClearing ? stops : others;
     words += (words.empty() ? "" : "\n") + running.what + ": " + running.words;
-  return words;
+  }
+  return stops + (stops.empty() || others.empty() ? "" : "\n") + others;
 }
 
 }  // namespace tread::operators

@@ -20,8 +20,11 @@ class OperatorDesk {
   /// `why`: what the log says of its arming and stopping.
   OperatorDesk(Bus& bus, std::string operator_name, std::string why);
 
-  /// A command as JSON: {"op": "alive"}, "estop", "clear_estop", "arm", "disarm", "goal" (x, y,
-  /// perhaps yaw [rad]), "cancel", "fence" (name, keep_out, corners [m]), "remove_fence" (name).
+  /// A command as JSON: {"op": "estop"}, "clear_estop", "disarm", "cancel"; and with "seen", the
+  /// time
+  /// [us] of this host at which the newest MOTOR came that the page has shown: "alive", "arm",
+  /// "goal" (x, y, perhaps yaw [rad]), "fence" (name, keep_out, corners [m]), "remove_fence"
+  /// (name).
   /** Returns what is wrong with it in one line; empty = taken. `page` differs for each page. */
   std::string take(const std::string& json, uint64_t page, int64_t utime);
   /// A page is gone.
@@ -29,8 +32,11 @@ class OperatorDesk {
   /// Call each 20 ms or so.
   void step(int64_t utime);
 
-  /// How the calls go, a line each: what the page shows.
-  std::string words(int64_t utime) const;
+  /// How the calls go, a line each, stops first and newest first: what the page shows.
+  std::string words() const;
+  /// Nothing runs, and so many calls are over that a new bus and desk should take their place: the
+  /// bus calls them all back, to its end.
+  bool worn() const;
 
  private:
   static constexpr int64_t kPageLease = 600'000;  ///< [us] without a sign of life of the page
@@ -44,7 +50,12 @@ class OperatorDesk {
     int64_t ended_at = 0;  ///< [us]
     std::string words;
   };
+  /// Commands that only stop, and their undoing: no page must hold the robot for them.
+  bool takeStop(const std::string& op, int64_t utime);
+  bool runs(const std::string& what) const;
   void start(const std::string& what, std::unique_ptr<Call> call, bool holds);
+  static void end(Running& running, int64_t utime, const std::string& why);
+
   /// Ends what moves the robot: all of it, or what is called so.
   void letGo(int64_t utime, const std::string& why, const std::string& only = "");
 

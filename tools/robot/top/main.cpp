@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 #include <ncurses.h>
 #include <CLI/CLI.hpp>
@@ -29,8 +30,9 @@ using namespace tread;
 using namespace tread::top;
 
 constexpr int kWaitMs = 20;
-constexpr int64_t kShow = 250'000;  // [us] between pictures
-constexpr uint64_t kTerminal = 1;   // the one page of the desk
+constexpr int64_t kShow = 250'000;     // [us] between pictures
+constexpr int64_t kHold = 60'000'000;  // [us] without a key
+constexpr uint64_t kTerminal = 1;      // the one page of the desk
 
 struct Arguments {
   std::string lcm_url;
@@ -58,6 +60,18 @@ class Watch {
   LcmListener listener_;
 };
 
+/// What is shown here is what comes now.
+std::string withTime(const char* op, int64_t now) {
+  return std::string("{\"op\":\"") + op + "\",\"seen\":" + std::to_string(now) + "}";
+}
+
+std::vector<std::string> linesOf(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
 /// The terminal as long as it lives; given back in good order, also where something throws.
 class Screen {
  public:
@@ -84,16 +98,23 @@ class Screen {
 
   void show(const std::vector<Line>& lines, const std::string& words) const {
     erase();
-    const int room = LINES - 2;
+    const std::vector<std::string> told = linesOf(words);
+    const int below = static_cast<int>(std::min<size_t>(told.size(), 4)) + 1;
+    const int room = LINES - below;
+
     for (int i = 0; i < static_cast<int>(lines.size()) && i < room; ++i) {
       const Line& line = lines[static_cast<size_t>(i)];
       attrset(attributesOf(line.mood));
       mvaddnstr(i, 0, line.text.c_str(), COLS);
     }
     attrset(A_NORMAL);
-    mvaddnstr(LINES - 2, 0, words.c_str(), COLS);
+    for (int i = 0; i + 1 < below; ++i)
+      mvaddnstr(LINES - below + i, 0, told[static_cast<size_t>(i)].c_str(), COLS);
+
     attrset(A_REVERSE);
-    mvaddnstr(LINES - 1, 0, "space E-stop   a arm and hold   d disarm   c clear E-stop   q quit",
+    mvaddnstr(LINES - 1, 0,
+              "space E-stop   a arm, held for 60 s from the last key   d disarm   c clear E-stop   "
+              "q quit",
               COLS);
     attrset(A_NORMAL);
     refresh();
@@ -130,9 +151,13 @@ int printOnce(Watch& listener, const Monitor& monitor, double seconds,
 int watch(Watch& listener, const Monitor& monitor, LcmBus& bus, operators::OperatorDesk& desk,
           const std::atomic<bool>& stop) {
   const Screen screen;
-  bool holds = false;
+  // Over ssh nobody notices that a terminal is gone: who holds the robot shows it by a key.
+  int64_t held_until = 0;
+
   std::string refused;
-  const auto say = [&](const char* json) { refused = desk.take(json, kTerminal, bus.now()); };
+  const auto say = [&](const std::string& json) {
+    refused = desk.take(json, kTerminal, bus.now());
+  };
   for (int64_t next = 0; !stop;) {
     listener.handle(kWaitMs);
     bus.handle(0);
@@ -143,16 +168,19 @@ int watch(Watch& listener, const Monitor& monitor, LcmBus& bus, operators::Opera
       }
       if (key == ' ') say(R"({"op":"estop"})");
       if (key == 'c') say(R"({"op":"clear_estop"})");
-      if (key == 'a') say(R"({"op":"arm"})");
+      if (key == 'a') say(withTime("arm", bus.now()));
+
       if (key == 'd') say(R"({"op":"disarm"})");
-      if (key == 'a' || key == 'd') holds = key == 'a';
+      const bool held = hostNow() < held_until;
+      if (key == 'a' || (held && key != 'd')) held_until = hostNow() + kHold;
+      if (key == 'd' || key == ' ') held_until = 0;
     }
-    // The terminal is the page: it lives for as long as this loop turns.
-    if (holds) desk.take(R"({"op":"alive"})", kTerminal, bus.now());
+    if (hostNow() < held_until) desk.take(withTime("alive", bus.now()), kTerminal, bus.now());
+
     desk.step(bus.now());
     if (hostNow() < next) continue;
     next = hostNow() + kShow;
-    screen.show(monitor.lines(hostNow()), refused.empty() ? desk.words(bus.now()) : refused);
+    screen.show(monitor.lines(hostNow()), refused.empty() ? desk.words() : refused);
   }
   desk.leave(kTerminal, bus.now());
   return 0;

@@ -2,6 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/view/feed/feed.hpp"
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "common/bus/channels.hpp"
@@ -18,7 +20,7 @@ constexpr double kPlayerPeriod = 0.5;  // [s]
 }  // namespace
 
 Feed::Feed(std::function<bool(uint32_t)> wanted, Send send)
-    : wanted_(std::move(wanted)), send_(std::move(send)), scene_(std::make_unique<SceneMaker>()) {}
+    : wanted_(std::move(wanted)), send_(std::move(send)) {}
 
 void Feed::openLogs(const std::vector<std::string>& logs) {
   player_ = std::make_unique<LogPlayer>(logs);
@@ -33,23 +35,47 @@ void Feed::take(const LogEvent& event) {
 void Feed::pass(const LogEvent& event) {
   newest_ = std::max(newest_, event.utime);
   if (const auto message = messageOf(event)) send_(*message);
-  draw(event);
   newest_by_part_[{event.channel, partOf(event)}] = event;
+  draw(event);
+}
+
+bool Feed::sceneWanted() const {
+  const auto& topics = sceneTopics();
+  return std::any_of(topics.begin(), topics.end(), [this](const auto& topic) {
+    return wanted_(channels_.find(topic.first)->id);
+  });
 }
 
 /// The scene costs more than a message: nobody looks, nothing is drawn.
 void Feed::draw(const LogEvent& event) {
-  bool wanted = false;
-  for (const auto& [topic, schema] : sceneTopics())
-    wanted = wanted || wanted_(channels_.find(topic)->id);
-  if (!wanted) return;
-  for (SceneMessage& made : scene_->take(event)) {
-    const uint32_t id = channels_.find(made.topic)->id;
-    const FeedMessage message{id, 0, event.utime,
-                              std::make_shared<const std::string>(std::move(made.json))};
-    newest_scene_[made.topic] = message;
-    send_(message);
+  if (!sceneWanted()) {
+    scene_.reset();
+    return;
   }
+  if (!scene_) return redraw();
+  for (SceneMessage& made : scene_->take(event)) show(std::move(made), event.utime);
+}
+
+void Feed::show(SceneMessage made, int64_t time) {
+  const bool news = made.topic == "scene/events";
+  const FeedMessage message{channels_.find(made.topic)->id, made.part, time,
+                            std::make_shared<const std::string>(std::move(made.json)), news};
+  if (!news) newest_scene_[{made.topic, made.part}] = message;
+  send_(message);
+}
+
+void Feed::redraw() {
+  scene_ = std::make_unique<SceneMaker>();
+  newest_scene_.clear();
+  std::vector<const LogEvent*> events;
+  for (const auto& [part, event] : newest_by_part_)
+    if (event.utime <= now()) events.push_back(&event);
+  std::stable_sort(events.begin(), events.end(),
+                   [](const LogEvent* a, const LogEvent* b) { return a->utime < b->utime; });
+  for (const LogEvent* const event : events)
+    for (SceneMessage& made : scene_->take(*event))
+      // What had happened before is in the history.
+      if (made.topic != "scene/events") show(std::move(made), event->utime);
 }
 
 std::optional<FeedMessage> Feed::messageOf(const LogEvent& event) const {
@@ -59,12 +85,12 @@ std::optional<FeedMessage> Feed::messageOf(const LogEvent& event) const {
   auto json = jsonOf(treadTypes(), *type, event.bytes);
   if (!json) return std::nullopt;
   return FeedMessage{channel->id, partOf(event), event.utime,
-                     std::make_shared<const std::string>(std::move(*json))};
+                     std::make_shared<const std::string>(std::move(*json)), false};
 }
 
 FeedMessage Feed::ownMessage(const char* topic, std::string json) const {
-  return {channels_.find(topic)->id, 0, now(),
-          std::make_shared<const std::string>(std::move(json))};
+  return {channels_.find(topic)->id, 0, now(), std::make_shared<const std::string>(std::move(json)),
+          std::string(topic) == kHistoryTopic};
 }
 
 std::string Feed::playerJson() const {
@@ -107,8 +133,10 @@ std::vector<FeedMessage> Feed::stateOf(uint32_t channel) {
     if (const OfferedChannel* const offered = channels_.find(part.first);
         offered != nullptr && offered->id == channel)
       if (auto message = messageOf(event)) state.push_back(std::move(*message));
-  for (const auto& [topic, message] : newest_scene_)
+  if (!scene_ && sceneWanted()) redraw();
+  for (const auto& [part, message] : newest_scene_)
     if (message.channel == channel) state.push_back(message);
+
   if (channel == channels_.find(kHistoryTopic)->id)
     state.push_back(
         ownMessage(kHistoryTopic, player_ ? player_->history().whole() : history_.whole()));
@@ -120,10 +148,10 @@ std::vector<FeedMessage> Feed::stateOf(uint32_t channel) {
 void Feed::seek(int64_t time, int64_t request) {
   if (!player_) return;
   const bool back = time < player_->now();
-  // What is drawn now is not what was there before.
-  if (back) scene_ = std::make_unique<SceneMaker>();
   player_->seek(std::clamp(time, player_->begin(), player_->end()),
                 [this](const LogEvent& event) { pass(event); });
+  // What is drawn now is not what was there before.
+  if (back && scene_) redraw();
   answered_ = request;
   send_(ownMessage(kPlayerTopic, playerJson()));
 }

@@ -23,6 +23,7 @@ struct FeedMessage {
   uint64_t part = 0;                           ///< what of its channel it replaces
   int64_t time = 0;                            ///< [us] of recording
   std::shared_ptr<const std::string> payload;  ///< JSON
+  bool is_news = false;  ///< it replaces nothing: what came before must be heard, too
 };
 
 /// Turns messages of the bus or of a log into what viewers subscribe to, and remembers the newest
@@ -56,6 +57,11 @@ class Feed {
  private:
   void pass(const LogEvent& event);
   void draw(const LogEvent& event);
+  void show(SceneMessage made, int64_t time);
+  bool sceneWanted() const;
+  /// The scene anew, from the newest of all parts up to now: it was not drawn, or time went back.
+  void redraw();
+
   std::optional<FeedMessage> messageOf(const LogEvent& event) const;
   FeedMessage ownMessage(const char* topic, std::string json) const;
   std::string playerJson() const;
@@ -64,8 +70,10 @@ class Feed {
   std::function<bool(uint32_t)> wanted_;
   Send send_;
   std::map<std::pair<std::string, uint64_t>, LogEvent> newest_by_part_;
-  std::map<std::string, FeedMessage> newest_scene_;
-  std::unique_ptr<SceneMaker> scene_;
+  std::map<std::pair<std::string, uint64_t>, FeedMessage> newest_scene_;  ///< by topic and part
+
+  std::unique_ptr<SceneMaker> scene_;  ///< null: nobody looks
+
   History history_;  ///< of a bus
   std::unique_ptr<LogPlayer> player_;
   int64_t newest_ = 0;

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/view/feed/history.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -13,7 +14,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kWayStep = 0.15;            // [m]
+constexpr double kWayStep = 0.15;            // [m] at the beginning
+constexpr double kWayPoints = 5000.0;        // after which the points lie farther apart
 constexpr int64_t kBatteryStep = 2'000'000;  // [us]
 
 /// JSON has no number for what is not known.
@@ -31,8 +33,9 @@ void History::take(const LogEvent& event) {
   if (event.channel == kIns.name) {
     if (!decode(event, kIns, ins)) return;
     const auto pose = planarPose(ins);
+    const double step = kWayStep * std::max(1.0, static_cast<double>(way_.size()) / kWayPoints);
     if (pose &&
-        (way_.empty() || std::hypot(way_.back().a - pose->x, way_.back().b - pose->y) > kWayStep))
+        (way_.empty() || std::hypot(way_.back().a - pose->x, way_.back().b - pose->y) > step))
       way_.push_back({event.utime, pose->x, pose->y});
   } else if (decode(event, kMotor, motor)) {
     if (std::isfinite(motor.battery_voltage) &&

@@ -49,8 +49,10 @@ void read(const Json& message, ClientRequest& request) {
 
 }  // namespace
 
-std::string serverInfo(const std::string& name, bool may_publish, const std::string& session) {
-  Json capabilities = Json::array({"time"});
+std::string serverInfo(const std::string& name, bool may_publish, bool has_time,
+                       const std::string& session) {
+  Json capabilities = Json::array();
+  if (has_time) capabilities.push_back("time");
   if (may_publish) capabilities.push_back("clientPublish");
   return Json{{"op", "serverInfo"},           {"name", name},
               {"capabilities", capabilities}, {"supportedEncodings", {"json"}},

@@ -16,8 +16,10 @@ namespace tread::view {
 /// Names under which viewers ask for it; the second is what newer ones say to the same words.
 inline constexpr const char* kSubprotocols[] = {"foxglove.websocket.v1", "foxglove.sdk.v1"};
 
-/// `may_publish`: whether this client may send commands. `session`: differs for each server.
-std::string serverInfo(const std::string& name, bool may_publish, const std::string& session);
+/// `may_publish`: whether this client may send commands; `has_time`: the server tells the time,
+/// that of a log. `session`: differs for each server.
+std::string serverInfo(const std::string& name, bool may_publish, bool has_time,
+                       const std::string& session);
 std::string advertisement(const OfferedChannels& channels);
 /// `level`: 0 info, 1 warning, 2 error.
 std::string statusMessage(int level, const std::string& words);

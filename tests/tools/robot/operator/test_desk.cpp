@@ -15,7 +15,7 @@ namespace {
 struct Desk {
   VirtualBus bus{1};
   OperatorDesk desk{bus.outside(), "ADA", "test"};
-  int arms = 0, disarms = 0, stops = 0, cancels = 0, goals = 0, let_go = 0;
+  int arms = 0, disarms = 0, stops = 0, clears = 0, cancels = 0, goals = 0, let_go = 0;
   int64_t last_allowed = 0;
   Bus* robot = nullptr;
 
@@ -38,7 +38,8 @@ struct Desk {
   Desk() {
     bus.addNode("motor_bridge", [&](Bus& end) {
       end.subscribe<arm_t>(kArm, [this](const arm_t& arm) { ++(arm.armed ? arms : disarms); });
-      end.subscribe<estop_t>(kEstop, [this](const estop_t& stop) { stops += stop.engaged; });
+      end.subscribe<estop_t>(kEstop,
+                             [this](const estop_t& stop) { ++(stop.engaged ? stops : clears); });
       end.subscribe<goal_t>(
           kGoal, [this](const goal_t& goal) { ++(goal.goal_id != 0 ? goals : cancels); });
       end.subscribe<operator_t>(kOperator, [this](const operator_t& person) {
@@ -55,12 +56,15 @@ struct Desk {
     const int64_t end = bus.now() + std::llround(1e6 * seconds);
     while (bus.now() < end) {
       bus.runUntil(bus.now() + 20'000);
-      if (page_lives && bus.now() % 200'000 < 20'000) desk.take(R"({"op":"alive"})", 1, bus.now());
+      if (page_lives && bus.now() % 200'000 < 20'000) take(R"({"op":"alive"})");
       desk.step(bus.now());
     }
   }
+  /// A page that shows what is now, unless the command says itself what it has seen.
   std::string take(const std::string& json, uint64_t page = 1) {
-    return desk.take(json, page, bus.now());
+    const bool whole = json.find("\"seen\"") != std::string::npos || json.back() != '}';
+    const std::string seen = ",\"seen\":" + std::to_string(bus.now()) + "}";
+    return desk.take(whole ? json : json.substr(0, json.size() - 1) + seen, page, bus.now());
   }
   double silentFor() const { return static_cast<double>(bus.now() - last_allowed) * 1e-6; }
 };
@@ -77,7 +81,7 @@ TEST_CASE("a goal by click holds the robot for as long as the page lives") {
   CHECK(desk.silentFor() > 1.0);
   CHECK(desk.let_go > 0);
   CHECK(desk.cancels > 0);
-  CHECK_THAT(desk.desk.words(desk.bus.now()), Catch::Contains("the page is silent"));
+  CHECK_THAT(desk.desk.words(), Catch::Contains("the page is silent"));
 }
 
 TEST_CASE("a goal that is cancelled leaves the robot armed and held") {
@@ -121,6 +125,53 @@ TEST_CASE("a page may take over where the other one has gone silent") {
   REQUIRE(desk.take(R"({"op":"goal","x":3,"y":4})", 1).empty());
   desk.run(1.5, false);
   CHECK(desk.take(R"({"op":"goal","x":1,"y":1})", 2).empty());
+}
+
+TEST_CASE("a page that is behind holds nothing, and may still stop") {
+  Desk desk;
+  REQUIRE(desk.take(R"({"op":"goal","x":3,"y":4})").empty());
+  desk.run(1.0, true);
+  const std::string old =
+      R"({"op":"alive","seen":)" + std::to_string(desk.bus.now() - 900'000) + "}";
+  for (int i = 0; i < 10; ++i) {
+    CHECK_THAT(desk.take(old), Catch::Contains("has not seen the robot"));
+    desk.run(0.2, false);
+  }
+  CHECK(desk.silentFor() > 1.0);
+  CHECK(desk.take(R"({"op":"estop"})").empty());
+  desk.run(0.3, false);
+  CHECK(desk.stops > 0);
+}
+
+TEST_CASE("an emergency stop ends what asked for its opposite") {
+  Desk desk;
+  REQUIRE(desk.take(R"({"op":"clear_estop"})").empty());
+  desk.run(0.1, true);
+  REQUIRE(desk.take(R"({"op":"arm"})").empty());
+  REQUIRE(desk.take(R"({"op":"estop"})").empty());
+  desk.run(0.2, true);
+  const int cleared = desk.clears, armed = desk.arms;
+  desk.run(2.0, true);
+  CHECK(desk.stops > 5);
+  CHECK(desk.clears == cleared);
+  CHECK(desk.arms == armed);
+  // However often the key is pressed, it is one call.
+  const int stops = desk.stops;
+  for (int i = 0; i < 50; ++i) desk.take(R"({"op":"estop"})");
+  desk.run(1.0, true);
+  CHECK(desk.stops - stops < 40);
+}
+
+TEST_CASE("a page that takes over from a silent one does not inherit what that had asked for") {
+  Desk desk;
+  REQUIRE(desk.take(R"({"op":"goal","x":3,"y":4})", 1).empty());
+  desk.run(0.5, true);
+  // Time passes, and the other page is there before the desk has looked.
+  desk.bus.runUntil(desk.bus.now() + 700'000);
+  const int cancels = desk.cancels;
+  REQUIRE(desk.take(R"({"op":"alive"})", 2).empty());
+  desk.bus.runUntil(desk.bus.now() + 100'000);
+  CHECK(desk.cancels > cancels);
 }
 
 TEST_CASE("commands that are none are told in a line and do nothing") {

@@ -80,7 +80,7 @@ if (mode === "log") {
   for (const [x, y] of [[-300, -200], [-220, -200], [-220, -140]])
     await page.mouse.click(map.x + map.width / 2 + x, map.y + map.height / 2 + y);
   await page.locator("#finish").click();
-  await until("the fence is there", () => page.evaluate(() => window.treadView.state().fences.size === 1));
+  await until("the fence is there", () => page.evaluate(() => window.treadView.state().standingFences().length === 1));
   // Arms, goes where the map is clicked, and stops by the one key.
   await page.locator("#arm").click();
   await until("it is armed", async () => (await text("#robot")).includes("armed by"), 15);

@@ -7,6 +7,7 @@ import { headline, showDrive, showEvents, showHealth, showLearned, showRobot } f
 import { Connection } from "./connection.js";
 
 const ALIVE = 200; // [ms] between signs of life to the robot's desk
+const FRESH = 500; // [ms] a picture, for the robot to be held
 const WORDS = 100; // [ms] between looks at the cards: nobody reads faster
 const element = (id) => document.getElementById(id);
 
@@ -19,6 +20,9 @@ let seeking = null; // [us] where the slider was moved to
 let holds = false; // this page has taken the robot
 let tool = null; // "goal" or "fence": what a click on the map means
 let timeAt = null; // pixel of the chart -> time
+let drawn = 0; // [ms] when a picture was drawn last
+let shown = 0; // [us] when the newest MOTOR came that it shows, by the server's clock
+
 
 const connection = new Connection(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/${location.search}`, {
   onMessage(topic, message, time) {
@@ -81,13 +85,12 @@ element("events").addEventListener("click", (event) => {
 
 // Operating the robot.
 
-const estop = () => {
-  const stopped = state.get("MOTOR")?.message.bridge_state === 5;
-  if (!stopped) connection.command({ op: "estop" });
-  else if (window.confirm("Clear the emergency stop? Arming is needed afterwards.")) connection.command({ op: "clear_estop" });
-};
-element("estop").addEventListener("click", estop);
-element("arm").addEventListener("click", () => { holds = true; connection.command({ op: "arm" }); });
+// The E-stop is never withheld, whatever the robot is said to be in: what is known of it may be old.
+element("estop").addEventListener("click", () => connection.command({ op: "estop" }));
+element("clear").addEventListener("click", () => connection.command({ op: "clear_estop" }));
+// What moves the robot says what this page has shown of it last, and the desk refuses a page that is behind.
+const operate = (message) => connection.command({ ...message, seen: shown });
+element("arm").addEventListener("click", () => { holds = true; operate({ op: "arm" }); });
 element("disarm").addEventListener("click", () => { holds = false; connection.command({ op: "disarm" }); });
 element("cancel").addEventListener("click", () => connection.command({ op: "cancel" }));
 function choose(wanted) {
@@ -100,18 +103,20 @@ element("goal").addEventListener("click", () => choose("goal"));
 element("fence").addEventListener("click", () => choose("fence"));
 element("finish").addEventListener("click", () => {
   if (map.draft.length >= 3)
-    connection.command({ op: "fence", name: `page ${new Date().toISOString().slice(11, 19)}`, keep_out: true,
+        operate({ op: "fence", name: `page ${new Date().toISOString().slice(11, 19)}`, keep_out: true,
       corners: map.draft.map(({ x, y }) => [x, y]) });
   choose("fence");
 });
 // The robot moves only while somebody can see this page.
-setInterval(() => { if (holds && !document.hidden) connection.command({ op: "alive" }); }, ALIVE);
+setInterval(() => {
+  if (holds && !document.hidden && performance.now() - drawn < FRESH) operate({ op: "alive" });
+}, ALIVE);
 
 document.addEventListener("keydown", (event) => {
   if (["INPUT", "SELECT"].includes(event.target.tagName) && event.target.type !== "range") return;
   if (event.code === "Space") {
     event.preventDefault();
-    if (state.live && mayCommand && state.get("MOTOR")?.message.bridge_state !== 5) connection.command({ op: "estop" });
+        if (state.live && mayCommand && !event.repeat) connection.command({ op: "estop" });
   } else if (event.key === "p") toggle();
   else if (event.key === "Escape") choose(null);
 });
@@ -151,7 +156,7 @@ canvas.addEventListener("pointerup", (event) => {
   if (map.wanted) {
     const { x, y, yaw } = map.wanted;
     holds = true;
-    connection.command(yaw === null ? { op: "goal", x, y } : { op: "goal", x, y, yaw });
+        operate(yaw === null ? { op: "goal", x, y } : { op: "goal", x, y, yaw });
     map.wanted = null;
     choose("goal");
   } else if (tool === "fence" && dragged < 6) map.draft.push(map.toMap(event.offsetX, event.offsetY));
@@ -185,12 +190,20 @@ function span() {
 
 let worded = 0;
 function frame(clock) {
-  map.draw(clock);
-  if (clock - worded > WORDS) {
-    worded = clock;
-    words(clock);
-  }
   requestAnimationFrame(frame);
+  try {
+    map.draw(clock);
+    if (clock - worded > WORDS) {
+      worded = clock;
+      words(clock);
+    }
+    drawn = performance.now();
+    shown = state.get("MOTOR")?.time ?? 0;
+  } catch (error) {
+    // A picture that stands still is no sign of life: the robot is let go of.
+    notice(`this page cannot draw what came: ${error.message}`);
+    console.error(error);
+  }
 }
 
 function words(clock) {
@@ -200,12 +213,13 @@ function words(clock) {
   mode.className = `badge ${!connected ? "lost" : state.player === null ? "" : state.live ? "live" : "log"}`;
   element("headline").textContent = connected ? headline(state) : "no connection to tread-view: what is shown is old";
   document.body.classList.toggle("lost", !connected);
-  const operate = connected && state.live && mayCommand;
-  element("estop").hidden = !operate;
-  element("operate").hidden = !operate;
+    const operates = connected && state.live && mayCommand;
+  element("estop").hidden = !operates;
+  element("operate").hidden = !operates;
   const motor = state.get("MOTOR")?.message;
   element("arm").disabled = !motor || mayDrive(motor.bridge_state);
-  element("estop").firstChild.textContent = motor?.bridge_state === 5 ? "CLEAR E-STOP " : "E-STOP ";
+  element("clear").hidden = !(motor?.bridge_state === 5 && state.age(state.get("MOTOR"), clock) < 0.5);
+
   showRobot(state, clock);
   showDrive(state, clock);
   showLearned(state, clock);

@@ -287,7 +287,7 @@ export class MapView {
 
   drawFences() {
     const c = this.context;
-    for (const fence of this.state.fences.values()) {
+    for (const fence of this.state.standingFences()) {
       const flat = fence.corners.map(number);
       c.beginPath();
       for (let i = 0; i < flat.length; i += 2) c.lineTo(this.px(flat[i]), this.py(flat[i + 1]));

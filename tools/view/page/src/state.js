@@ -49,7 +49,7 @@ export class State {
     else if (topic === "MAP") this.tiles.set(`${message.tile_x},${message.tile_y}`, { time, tile: message, image: null });
     else if (topic === "PATTERN_SET") this.takePattern(message, time);
     else if (topic === "CONFIG") this.takeConfig(message);
-    else if (topic === "FENCE") this.takeFence(message);
+        else if (topic === "FENCE") this.takeFence(message, time);
     else this.latest.set(topic, entry);
     if (topic === "PROGRAM") this.takeProgram(message, time);
   }
@@ -66,7 +66,7 @@ export class State {
 
   takeHistory(message) {
     if (message.from_start) this.history = { events: [], patterns: [], way: [], battery: [] };
-    for (const list of ["events", "patterns", "way", "battery"]) this.history[list].push(...message[list]);
+    for (const list of ["events", "patterns", "way", "battery"]) this.history[list] = this.history[list].concat(message[list]);
   }
 
   takePattern(part, time) {
@@ -85,9 +85,13 @@ export class State {
     this.outlineKnown = true;
   }
 
-  takeFence(fence) {
-    if (fence.fence_kind === 0) this.fences.delete(fence.fence_name);
-    else this.fences.set(fence.fence_name, fence);
+    takeFence(fence, time) {
+    this.fences.set(fence.fence_name, { ...fence, time });
+  }
+
+  // Those that stand at the time of what is shown.
+  standingFences() {
+    return [...this.fences.values()].filter((fence) => fence.fence_kind !== 0 && fence.time <= this.now());
   }
 
   takeProgram(program, time) {
