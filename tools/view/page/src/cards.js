@@ -19,7 +19,7 @@ export function setAge(id, seconds, longest) {
   const card = document.getElementById(id);
   const stale = seconds === null || seconds > longest;
   card.classList.toggle("stale", stale);
-  const words = seconds === null ? "never heard" : seconds < 1 ? "now" : `${seconds < 100 ? seconds.toFixed(1) : Math.round(seconds)} s old`;
+    const words = seconds === null ? "never heard" : seconds < 1 ? "" : `${seconds < 100 ? seconds.toFixed(1) : Math.round(seconds)} s old`;
   const age = card.querySelector(".age");
   if (age.textContent !== words) age.textContent = words;
 }
@@ -42,11 +42,11 @@ export function showRobot(state, clock) {
   const pose = state.pose();
   const run = state.run && state.pattern(state.run.pattern);
   const rows = [];
-  if (motor) rows.push(["motors", `<b>${motorWord(motor.message.bridge_state)}</b> <span class="why">${escape(motor.message.state_reason)}</span>`]);
+  if (motor) rows.push(["motors", `<b>${motorWord(motor.message.bridge_state)}</b> <span class="why">${motor.message.bridge_state === 2 ? "" : escape(motor.message.state_reason)}</span>`]);
   if (plan) rows.push(["planner", `<b>${planWord(plan.message.plan_status)}</b> <span class="why">${escape(plan.message.reason)}</span>`]);
   if (pose) rows.push(["at", `x ${fixed(pose.x, 2)} m, y ${fixed(pose.y, 2)} m, ${fixed(degrees(pose.yaw), 0)}&deg;`]);
   if (ins) {
-    rows.push(["speed", fixed(ins.message.velocity[0], 2, " m/s")]);
+    rows.push(["speed", `${fixed(ins.message.velocity[0], 2, " m/s")}, turns ${fixed(degrees(ins.message.rate[2]), 0)}&deg;/s`]);
     const std = Math.max(number(ins.message.position_std[0]), number(ins.message.position_std[1]));
     rows.push(["position &plusmn;", fixed(std, 2, " m") + (ins.message.ins_status & 64 ? " (filled in by scan matching)" : "")]);
   }
@@ -85,11 +85,11 @@ export function showLearned(state, clock) {
   if (learning) {
     const l = learning.message;
     const result = l.accepted
-      ? `ended ${fixed(l.error_position, 2)} m and ${fixed(degrees(l.error_yaw), 1)}&deg; from its prediction, ${fixed(l.error_position_after, 2)} m after learning`
+      ? `ended ${fixed(l.error_position, 2)} m and ${fixed(degrees(l.error_yaw), 1)}&deg; from its prediction; the set that came of it would have been ${fixed(l.error_position_after, 2)} m off`
       : `not learned from: ${escape(l.gate_reason)}`;
     put("learned", `<div class="big">${escape(l.learned_pattern_name)}</div><div>${result}</div>` +
-      (l.change_reason ? `<div class="why">${escape(l.change_reason)}</div>` : "") +
-      `<div class="why">set ${l.result_version}, ${surfaceName(l.surface)}${known(l.ground_changed) && l.ground_changed > 0.5 ? ", the ground became another" : ""}</div>`);
+      (l.change_reason ? `<div class="why">taken for: ${escape(l.change_reason)}</div>` : "") +
+      `<div class="why">pattern set ${l.result_version}; ground: ${surfaceName(l.surface)}${known(l.ground_changed) && l.ground_changed > 0.5 ? ", the ground became another" : ""}</div>`);
   } else put("learned", "<div class=\"why\">nothing yet</div>");
   // It speaks when a pattern has ended: an old word is still true.
   setAge("learned", learning ? state.age(learning, clock) : null, 1e9);
@@ -113,4 +113,11 @@ export function showEvents(state, begin) {
   const nearest = state.live ? -1 : shown.findIndex(([time]) => time <= now);
   put("events", shown.slice(0, 120 + Math.max(0, nearest)).map(([time, severity, source, words], i) =>
     `<div class="event s${severity}${i === nearest ? " now" : ""}" data-time="${time}"><time>${((time - begin) / 1e6).toFixed(1)} s</time><span><b>${escape(source)}</b> ${escape(words)}</span></div>`).join("") || "<div class=\"why\">nothing yet</div>");
+  // A log's list goes with its time.
+  const row = document.querySelector("#events .event.now");
+  const list = document.querySelector("#events .body");
+  if (row && list.dataset.at !== row.dataset.time) {
+    list.dataset.at = row.dataset.time;
+    list.scrollTop = row.offsetTop - list.offsetTop - 30;
+  }
 }

@@ -46,6 +46,16 @@ export function drawErrors(canvas, state, span) {
   c.fillStyle = "#6b7680";
   c.textAlign = "left";
   c.fillText("how far each pattern ended from its prediction [m]; a bar: the ground was taken for another one", left, 10);
+  // Which ground a sign stands for.
+  const surfaces = [...new Set(patterns.map(([, , , , , surface]) => surface))].sort((a, b) => a - b);
+  let at = left + 560;
+  for (const surface of surfaces) {
+    c.fillStyle = SURFACE[surface % SURFACE.length];
+    mark(c, MARKS[surface % MARKS.length], at, 6, 3.2);
+    c.fillStyle = "#6b7680";
+    c.fillText(surfaceName(surface), at + 7, 10);
+    at += 22 + c.measureText(surfaceName(surface)).width;
+  }
   c.textAlign = "right";
   for (const value of [0, highest / 2, highest]) {
     c.fillText(value.toFixed(2), left - 4, y(value) + 4);
@@ -61,8 +71,11 @@ export function drawErrors(canvas, state, span) {
   for (let t = 0; t <= seconds; t += step) c.fillText(`${t} s`, x(begin + t * 1e6), height - 3);
   for (const [time, , , position, , surface, changed] of patterns) {
     if (changed !== null && changed > 0.5) { c.fillStyle = "#e69f0055"; c.fillRect(x(time) - 1.5, top, 3, bottom - top); }
-    c.fillStyle = SURFACE[surface % SURFACE.length];
+        c.fillStyle = SURFACE[surface % SURFACE.length];
+    // What is still to come in a log is there, but faint.
+    c.globalAlpha = !state.live && state.player && time > state.player.now ? 0.35 : 1;
     mark(c, MARKS[surface % MARKS.length], x(time), y(position), 3.2);
+    c.globalAlpha = 1;
   }
   if (!state.live && state.player) {
     c.strokeStyle = "#b3261e";
@@ -109,7 +122,15 @@ export function drawPatterns(canvas, state, learned) {
   }
   const last = all.find((pattern) => pattern.id === learned);
   if (last) stroke(last, "#0072b2", 3, []);
+    c.strokeStyle = "#5a646e";
+  c.lineWidth = 1.5;
+  c.beginPath();
+  c.moveTo(8, height - 22);
+  c.lineTo(8 + scale, height - 22);
+  c.stroke();
   c.fillStyle = "#6b7680";
+  c.textAlign = "left";
+  c.fillText("1 m", 8, height - 26);
   c.textAlign = "center";
   c.fillText("patterns now; dashed: the set before; thick: learned last", width / 2, height - 4);
 }

@@ -175,8 +175,8 @@ element("zoomin").addEventListener("click", () => map.zoom(1.4));
 element("zoomout").addEventListener("click", () => map.zoom(1 / 1.4));
 
 element("legend").innerHTML = LEGEND.map(([name, words, kind]) =>
-  `<span><i style="background:${COLOUR[name]};${kind === "line" ? "height:.2rem;vertical-align:middle" : "border:1px solid #6b7680"}"></i>${words}</span>`).join("") +
-  "<span>&#9652; robot, nose ahead</span>";
+  `<span><i style="background:${COLOUR[name]};${kind === "line" ? "height:.2rem;vertical-align:middle" : kind === "dot" ? "width:.3rem;height:.3rem;vertical-align:middle" : "border:1px solid #6b7680"}"></i>${words}</span>`).join("") +
+  "<span><i class=\"nose\">&#9654;</i>robot, nose ahead</span>";
 
 // Drawing.
 

@@ -8,8 +8,8 @@ export const COLOUR = { robot: "#0072b2", plan: "#e69f00", tree: "#56b4e9", goal
   obstacle: "#1c2126", free: "#f7f8f8", unknown: "#c9ced3", fence: "#d55e00" };
 
 export const LEGEND = [["obstacle", "obstacle", "box"], ["free", "free ground", "box"], ["unknown", "not seen yet", "box"],
-  ["plan", "plan, and how sure its ends are", "line"], ["tree", "looked at", "line"], ["goal", "goal", "box"],
-  ["way", "driven", "line"]];
+  ["plan", "plan, with two standard deviations", "line"], ["tree", "looked at", "line"], ["goal", "goal", "box"],
+    ["way", "driven", "line"], ["scan", "seen by the range finder now", "dot"]];
 
 const compose = (a, b) => ({ x: a.x + Math.cos(a.yaw) * b.x - Math.sin(a.yaw) * b.y,
   y: a.y + Math.sin(a.yaw) * b.x + Math.cos(a.yaw) * b.y, yaw: a.yaw + b.yaw });
@@ -133,8 +133,13 @@ export class MapView {
     const high = this.toMap(this.width, 0);
     for (let x = Math.ceil(low.x / step) * step; x < high.x; x += step) { c.moveTo(this.px(x), 0); c.lineTo(this.px(x), this.height); }
     for (let y = Math.ceil(low.y / step) * step; y < high.y; y += step) { c.moveTo(0, this.py(y)); c.lineTo(this.width, this.py(y)); }
-    c.stroke();
+        c.stroke();
     this.step = step;
+    c.fillStyle = "#5a646e";
+    c.font = "10px system-ui, sans-serif";
+    c.textAlign = "left";
+    for (let x = Math.ceil(low.x / step) * step; x < high.x; x += step) c.fillText(`x ${x}`, this.px(x) + 2, this.height - 3);
+    for (let y = Math.ceil(low.y / step) * step; y < high.y; y += step) c.fillText(`y ${y}`, 2, this.py(y) - 2);
   }
 
   line(points, colour, width, dash = []) {
