@@ -72,8 +72,9 @@ Topic topicOf(const std::string& reason) {
 }
 
 bool isOrdinary(const std::string& reason) {
-  for (const char* words : {"not armed yet", "stopping to", "stopping at the goal", "stopping for",
-                            "not armed since", "stopping: the plan ends there", "no goal"})
+  for (const char* words :
+       {"not armed yet", "stopping to", "stopping at the goal", "stopping for", "not armed since",
+        "stopping: the plan ends there", "no goal", "by the end of motor_bridge"})
     if (reason.find(words) != std::string::npos) return true;
   return reason.empty() || reason.rfind("armed by", 0) == 0;
 }

@@ -234,5 +234,6 @@ TEST_CASE("reasons are sorted by what they are about") {
   CHECK(topicOf("controller: undervoltage") == Topic::kController);
   CHECK(topicOf("what nobody has ever said") == Topic::kOther);
   CHECK(isOrdinary("armed by operator"));
+  CHECK(isOrdinary("disarmed by the end of motor_bridge"));
   CHECK_FALSE(isOrdinary("disarmed by operator"));
 }
