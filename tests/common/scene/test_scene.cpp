@@ -76,6 +76,29 @@ TEST_CASE("the map around the robot is drawn: obstacles dark, unknown not at all
   REQUIRE(grid["data"].get<std::string>().size() == 4 * 300 * 300 / 3 * 4);
 }
 
+TEST_CASE("a broken tile or pose draws nothing and ends nothing") {
+  Drawn drawn;
+  auto far = insAt(1e300, 0.0);
+  drawn.add(kIns, far);
+  CHECK(drawn.last.count("scene/tf") == 0);
+  drawn.add(kIns, insAt(0.0, 0.0));
+  auto tile = blank<map_tile_t>();
+  tile.tile_cells = 8;
+  tile.num_cells = 64;
+  tile.cells.assign(64, kFree);
+  for (const double cell_size : {1e-12, 0.0, -1.0, 1e9, std::nan("")}) {
+    tile.cell_size = cell_size;
+    drawn.add(kMap, tile);
+  }
+  tile.cell_size = 0.1;
+  tile.tile_x = INT32_MAX;
+  drawn.add(kMap, tile);
+  tile.tile_x = 0;
+  tile.tile_cells = 9;  // not as many as it holds
+  drawn.add(kMap, tile, 90'000'000);
+  CHECK(drawn.last.count("scene/map") == 0);
+}
+
 TEST_CASE("a plan is a line with the doubt at its patterns' ends") {
   Drawn drawn;
   drawn.add(kIns, insAt(0.0, 0.0));

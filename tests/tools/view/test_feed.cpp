@@ -147,6 +147,44 @@ TEST_CASE("the history of a log holds what comes later, so that one can go there
   CHECK(told["way"].size() > 50);
 }
 
+TEST_CASE("who looks at the scene late, or goes back in time, gets all of it") {
+  const OwnFolder folder;
+  writeLog(folder.path("drive.lcmlog"));
+  bool looks = false;
+  std::vector<FeedMessage> got;
+  Feed feed([&](uint32_t) { return looks; },
+            [&](const FeedMessage& message) { got.push_back(message); });
+  feed.openLogs({folder.path("drive.lcmlog")});
+  feed.seek(6'050'000, 1);
+  CHECK(got.size() <= 2);  // where the playback is
+  looks = true;
+  const uint32_t map = feed.channels().find("scene/map")->id;
+  CHECK(feed.stateOf(map).size() == 1);
+  CHECK(feed.stateOf(feed.channels().find("scene/tf")->id).size() == 1);
+  got.clear();
+  feed.seek(3'050'000, 2);
+  const auto drawn = std::count_if(
+      got.begin(), got.end(), [&](const FeedMessage& message) { return message.channel == map; });
+  CHECK(drawn >= 1);
+  const auto transform = feed.stateOf(feed.channels().find("scene/tf")->id);
+  REQUIRE(transform.size() == 1);
+  CHECK(Json::parse(*transform[0].payload)["translation"]["x"] == 2.0);
+}
+
+TEST_CASE("two fences are two parts, and news replace no news") {
+  Viewer viewer;
+  auto fence = blank<fence_t>();
+  for (const char* name : {"pond", "yard"}) {
+    fence.fence_name = name;
+    viewer.feed.take(eventOf(kFence, fence));
+  }
+  CHECK(viewer.feed.stateOf(viewer.feed.channels().find("FENCE")->id).size() == 2);
+  viewer.feed.step(1.0);
+  for (const FeedMessage& message : viewer.got)
+    CHECK(message.is_news == (message.channel == viewer.feed.channels().find("view/history")->id ||
+                              message.channel == viewer.feed.channels().find("scene/events")->id));
+}
+
 TEST_CASE("nothing is turned into JSON that nobody wants") {
   int sent = 0;
   Feed feed([](uint32_t) { return false; }, [&](const FeedMessage&) { ++sent; });
