@@ -59,6 +59,13 @@ Debrief debrief(const DriveTimeline& drive);
 /// The stops that nobody had planned, each with its cause.
 std::vector<Finding> stopsOf(const DriveTimeline& drive);
 
+/// Stretches in which patterns ended much further from their predictions than before, and patterns
+/// of which the learner took no measurement.
+std::vector<Finding> patternFindingsOf(const DriveTimeline& drive);
+
+/// The value in the middle; NaN of none.
+double median(std::vector<double> values);
+
 /// How a drive or its configuration differs from another one.
 struct Difference {
   std::string what;  ///< "planner.margins.growth", "patterns measured"
