@@ -16,7 +16,7 @@
 #include "common/seal/key_file.hpp"
 #include "tools/robot/launch/running_robots.hpp"
 #include "tools/robot/operator/command.hpp"
-#include "tools/robot/operator/desk.hpp"
+#include "tools/robot/operator/console.hpp"
 #include "tools/view/view_server.hpp"
 
 namespace {
@@ -25,7 +25,7 @@ using namespace tread;
 using namespace tread::view;
 
 constexpr int kWaitMs = 2;
-constexpr double kDeskPeriod = 0.3;  // [s]
+constexpr double kConsolePeriod = 0.3;  // [s]
 
 struct Arguments {
   std::vector<std::string> logs;
@@ -67,9 +67,9 @@ struct Operating {
   Operating(const launch::RunningRobot& robot, const std::string& name)
       : bus(BusAccess{robot.lcm_url, robot.here ? hostSealer(robot.key) : stationSealer(robot.key)},
             TimeSource::kHost),
-        desk(bus, name, "by the page of tread-view") {}
+        console(bus, name, "by the page of tread-view") {}
   LcmBus bus;
-  operators::OperatorDesk desk;
+  operators::OperatorConsole console;
 };
 
 void live(const Arguments& arguments, const std::atomic<bool>& stop) {
@@ -83,9 +83,9 @@ void live(const Arguments& arguments, const std::atomic<bool>& stop) {
   ViewServer server(
       settings,
       [&](const std::string& json, uint64_t page) {
-        return operating->desk.take(json, page, operating->bus.now());
+        return operating->console.take(json, page, operating->bus.now());
       },
-      [&](uint64_t page) { operating->desk.leave(page, operating->bus.now()); });
+      [&](uint64_t page) { operating->console.leave(page, operating->bus.now()); });
 
   LcmListener listener(robot.lcm_url, [&](const std::string& channel, const uint8_t* bytes,
                                           size_t size, int64_t now) {
@@ -97,17 +97,17 @@ void live(const Arguments& arguments, const std::atomic<bool>& stop) {
   for (double last = secondsNow(); !stop;) {
     listener.handle(kWaitMs);
     operating->bus.handle(0);
-    operating->desk.step(operating->bus.now());
-    if (operating->desk.worn())
+    operating->console.step(operating->bus.now());
+    if (operating->console.worn())
       operating = std::make_unique<Operating>(robot, arguments.operator_name);
 
     const double now = secondsNow();
     server.step(now - last);
     last = now;
     // A goal's progress changes with every look, and nobody reads that fast.
-    const std::string words = operating->desk.words();
-    if (words == told || now - told_at < kDeskPeriod) continue;
-    server.tell(0, "desk: " + words);
+    const std::string words = operating->console.words();
+    if (words == told || now - told_at < kConsolePeriod) continue;
+    server.tell(0, "console: " + words);
     told = words;
     told_at = now;
   }

@@ -309,10 +309,6 @@ void ViewServer::tell(int level, const std::string& words) {
   for (Client& client : sockets_->clients) client.push({text, false, {}});
 }
 
-size_t ViewServer::viewers() const {
-  return sockets_->clients.size();
-}
-
 bool ViewServer::wanted(uint32_t channel) const {
   return sockets_ != nullptr &&
          std::any_of(sockets_->clients.begin(), sockets_->clients.end(),

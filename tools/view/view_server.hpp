@@ -45,7 +45,6 @@ class ViewServer {
   /// Tells all pages in a line how things are.
   void tell(int level, const std::string& words);
   int port() const { return port_; }
-  size_t viewers() const;
 
  private:
   struct Client;

@@ -115,7 +115,7 @@ std::vector<Incident> incidentsOf(const DriveTimeline& drive) {
 class CauseSearch {
  public:
   CauseSearch(const DriveTimeline& drive, const Incident& incident)
-      : drive_(drive), incident_(incident), main_(incident.main()), t_(incident.time()) {
+      : drive_(drive), main_(incident.main()), t_(incident.time()) {
     finding_.kind = FindingKind::kStop;
     finding_.time = t_;
     finding_.until = incident.until;
@@ -425,7 +425,7 @@ class CauseSearch {
   }
 
   const DriveTimeline& drive_;
-  const Incident& incident_;
+
   const Signal& main_;
   double t_;
   Finding finding_;

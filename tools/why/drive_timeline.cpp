@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include "common/messages/ins_messages.hpp"
@@ -59,7 +60,7 @@ class TimelineReader {
     if (notes.empty() || notes.back().state != motor.bridge_state ||
         notes.back().reason != motor.state_reason)
       notes.push_back({now_, motor.bridge_state, motor.state_reason});
-    if (motor.device_fault != 0) drive_.device_faults.insert(motor.device_fault);
+
     if (std::isfinite(motor.battery_voltage) &&
         (drive_.battery.empty() || now_ - drive_.battery.back().first >= kBatteryStep))
       drive_.battery.emplace_back(now_, static_cast<double>(motor.battery_voltage));

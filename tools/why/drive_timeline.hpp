@@ -6,7 +6,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -92,7 +91,7 @@ struct DriveTimeline {
   std::vector<PersonNote> people;  ///< arming, disarming, E-stops, fences, marks
   std::vector<CellNote> cells;
   std::vector<std::pair<double, double>> battery;  ///< [s], [V] once a second
-  std::set<int32_t> device_faults;
+
   std::map<std::string, std::string> configs;  ///< by process, the last
   std::unique_ptr<TileMap> map;                ///< at the end
   int completed = 0;

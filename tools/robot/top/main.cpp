@@ -18,7 +18,7 @@
 #include "common/seal/key_file.hpp"
 #include "tools/robot/launch/running_robots.hpp"
 #include "tools/robot/operator/command.hpp"
-#include "tools/robot/operator/desk.hpp"
+#include "tools/robot/operator/console.hpp"
 #include "tools/robot/top/monitor.hpp"
 
 // ncurses has a macro of this name.
@@ -32,7 +32,7 @@ using namespace tread::top;
 constexpr int kWaitMs = 20;
 constexpr int64_t kShow = 250'000;     // [us] between pictures
 constexpr int64_t kHold = 60'000'000;  // [us] without a key
-constexpr uint64_t kTerminal = 1;      // the one page of the desk
+constexpr uint64_t kTerminal = 1;      // the one page of the console
 
 struct Arguments {
   std::string lcm_url;
@@ -148,7 +148,7 @@ int printOnce(Watch& listener, const Monitor& monitor, double seconds,
   return 0;
 }
 
-int watch(Watch& listener, const Monitor& monitor, LcmBus& bus, operators::OperatorDesk& desk,
+int watch(Watch& listener, const Monitor& monitor, LcmBus& bus, operators::OperatorConsole& console,
           const std::atomic<bool>& stop) {
   const Screen screen;
   // Over ssh nobody notices that a terminal is gone: who holds the robot shows it by a key.
@@ -156,14 +156,14 @@ int watch(Watch& listener, const Monitor& monitor, LcmBus& bus, operators::Opera
 
   std::string refused;
   const auto say = [&](const std::string& json) {
-    refused = desk.take(json, kTerminal, bus.now());
+    refused = console.take(json, kTerminal, bus.now());
   };
   for (int64_t next = 0; !stop;) {
     listener.handle(kWaitMs);
     bus.handle(0);
     for (int key = getch(); key != ERR; key = getch()) {
       if (key == 'q') {
-        desk.leave(kTerminal, bus.now());
+        console.leave(kTerminal, bus.now());
         return 0;
       }
       if (key == ' ') say(R"({"op":"estop"})");
@@ -175,14 +175,14 @@ int watch(Watch& listener, const Monitor& monitor, LcmBus& bus, operators::Opera
       if (key == 'a' || (held && key != 'd')) held_until = hostNow() + kHold;
       if (key == 'd' || key == ' ') held_until = 0;
     }
-    if (hostNow() < held_until) desk.take(withTime("alive", bus.now()), kTerminal, bus.now());
+    if (hostNow() < held_until) console.take(withTime("alive", bus.now()), kTerminal, bus.now());
 
-    desk.step(bus.now());
+    console.step(bus.now());
     if (hostNow() < next) continue;
     next = hostNow() + kShow;
-    screen.show(monitor.lines(hostNow()), refused.empty() ? desk.words() : refused);
+    screen.show(monitor.lines(hostNow()), refused.empty() ? console.words() : refused);
   }
-  desk.leave(kTerminal, bus.now());
+  console.leave(kTerminal, bus.now());
   return 0;
 }
 
@@ -195,8 +195,8 @@ int run(const Arguments& arguments) {
   LcmBus bus(
       BusAccess{robot.lcm_url, robot.here ? hostSealer(robot.key) : stationSealer(robot.key)},
       TimeSource::kHost);
-  operators::OperatorDesk desk(bus, arguments.operator_name, "at the terminal of tread-top");
-  return watch(listener, monitor, bus, desk, stop);
+  operators::OperatorConsole console(bus, arguments.operator_name, "at the terminal of tread-top");
+  return watch(listener, monitor, bus, console, stop);
 }
 
 }  // namespace

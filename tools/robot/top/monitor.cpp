@@ -73,7 +73,6 @@ std::optional<KernelCounters> kernelCounters(const std::string& snmp) {
     KernelCounters counters;
     for (size_t i = 0; i < std::min(names.size(), fields.size()); ++i) {
       if (names[i] == "RcvbufErrors") counters.buffer_errors = std::atoll(fields[i].c_str());
-      if (names[i] == "InErrors") counters.errors = std::atoll(fields[i].c_str());
     }
     return counters;
   }

@@ -26,7 +26,6 @@ struct Line {
 /// What the host's kernel has thrown away since it was started.
 struct KernelCounters {
   int64_t buffer_errors = 0;  ///< datagrams that found no room in a receiver's buffer
-  int64_t errors = 0;         ///< all that were not delivered
 };
 /// Of /proc/net/snmp; nothing if it says nothing of UDP.
 std::optional<KernelCounters> kernelCounters(const std::string& snmp);

@@ -6,7 +6,7 @@ import { drawErrors, drawPatterns } from "./charts.js";
 import { headline, showDrive, showEvents, showHealth, showLearned, showRobot } from "./cards.js";
 import { Connection } from "./connection.js";
 
-const ALIVE = 200; // [ms] between signs of life to the robot's desk
+const ALIVE = 200; // [ms] between signs of life to the operator console
 const FRESH = 500; // [ms] a picture, for the robot to be held
 const WORDS = 100; // [ms] between looks at the cards: nobody reads faster
 const element = (id) => document.getElementById(id);
@@ -41,7 +41,7 @@ const connection = new Connection(`${location.protocol === "https:" ? "wss" : "w
     connected = false;
     holds = false;
   },
-  onStatus({ message }) { notice(message.replace(/^desk: /, "")); },
+  onStatus({ message }) { notice(message.replace(/^console: /, "")); },
 });
 
 function notice(words) { element("notice").textContent = words; }
@@ -88,7 +88,7 @@ element("events").addEventListener("click", (event) => {
 // The E-stop is never withheld, whatever the robot is said to be in: what is known of it may be old.
 element("estop").addEventListener("click", () => connection.command({ op: "estop" }));
 element("clear").addEventListener("click", () => connection.command({ op: "clear_estop" }));
-// What moves the robot says what this page has shown of it last, and the desk refuses a page that is behind.
+// What moves the robot says what this page has shown of it last, and the operator console refuses a page that is behind.
 const operate = (message) => connection.command({ ...message, seen: shown });
 element("arm").addEventListener("click", () => { holds = true; operate({ op: "arm" }); });
 element("disarm").addEventListener("click", () => { holds = false; connection.command({ op: "disarm" }); });

@@ -185,7 +185,7 @@ export class MapView {
     if (!plan || plan.num_patterns === 0) return;
     const c = this.context;
     const points = [];
-    let at = this.run();
+    
     for (let i = 0; i < plan.num_patterns; ++i) {
       const [x, y, yaw] = plan.pose.slice(3 * i, 3 * i + 3).map(number);
       this.drawDoubt(x, y, plan.covariance.slice(6 * i, 6 * i + 6).map(number));
@@ -193,7 +193,7 @@ export class MapView {
       // From its end back to its beginning: only the end of the running one is known.
       if (pattern) points.push(...this.curve(pattern, { x, y, yaw }));
       else points.push([x, y]);
-      at = { x, y, yaw };
+      
     }
     this.line(points, COLOUR.plan, 3);
     c.fillStyle = COLOUR.plan;
@@ -204,7 +204,7 @@ export class MapView {
     }
   }
 
-  run() { return this.state.run?.start ?? this.state.pose(); }
+  
 
   // A pattern's path in map that ends at a pose.
   curve(pattern, end) {

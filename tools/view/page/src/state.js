@@ -112,9 +112,8 @@ export class State {
     const ins = this.get("INS");
     if (!ins) return null;
     const [x, y] = ins.message.position.map(number);
-    const [w, , , z] = ins.message.orientation.map(number);
-    const q = ins.message.orientation.map(number);
-    if (!Number.isFinite(x + y + w + z)) return null;
+        const q = ins.message.orientation.map(number);
+    if (!Number.isFinite(x + y + q[0] + q[3])) return null;
     const yaw = Math.atan2(2 * (q[0] * q[3] + q[1] * q[2]), 1 - 2 * (q[2] * q[2] + q[3] * q[3]));
     return { x, y, yaw };
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/robot/operator/desk.hpp"
+#include "tools/robot/operator/console.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -50,30 +50,30 @@ FenceRequest fenceRequestFrom(const Json& json, const std::string& by) {
 
 }  // namespace
 
-OperatorDesk::OperatorDesk(Bus& bus, std::string operator_name, std::string why) : bus_(bus) {
+OperatorConsole::OperatorConsole(Bus& bus, std::string operator_name, std::string why) : bus_(bus) {
   requester_.by = operator_name;
   requester_.operator_name = operator_name;
   requester_.why = std::move(why);
 }
 
-bool OperatorDesk::runs(const std::string& what) const {
+bool OperatorConsole::runs(const std::string& what) const {
   return std::any_of(calls_.begin(), calls_.end(), [&](const Running& running) {
     return !running.ended && running.what == what;
   });
 }
 
-void OperatorDesk::start(const std::string& what, std::unique_ptr<Call> call, bool holds) {
+void OperatorConsole::start(const std::string& what, std::unique_ptr<Call> call, bool holds) {
   calls_.push_front({what, std::move(call), holds, false, 0, ""});
 }
 
-void OperatorDesk::end(Running& running, int64_t utime, const std::string& why) {
+void OperatorConsole::end(Running& running, int64_t utime, const std::string& why) {
   running.call->letGo(utime);
   running.ended = true;
   running.ended_at = utime;
   if (!why.empty()) running.words = why;
 }
 
-std::string OperatorDesk::take(const std::string& text, uint64_t page, int64_t utime) {
+std::string OperatorConsole::take(const std::string& text, uint64_t page, int64_t utime) {
   try {
     const Json json = Json::parse(text);
     const auto op = json.at("op").get<std::string>();
@@ -117,7 +117,7 @@ std::string OperatorDesk::take(const std::string& text, uint64_t page, int64_t u
   }
 }
 
-bool OperatorDesk::takeStop(const std::string& op, int64_t utime) {
+bool OperatorConsole::takeStop(const std::string& op, int64_t utime) {
   if (op == "estop") {
     // What still asked for the opposite must not win against it.
     letGo(utime, "stopped");
@@ -142,7 +142,7 @@ bool OperatorDesk::takeStop(const std::string& op, int64_t utime) {
   return true;
 }
 
-void OperatorDesk::letGo(int64_t utime, const std::string& why, const std::string& only) {
+void OperatorConsole::letGo(int64_t utime, const std::string& why, const std::string& only) {
   for (Running& running : calls_) {
     if (running.ended || !running.holds || (!only.empty() && running.what != only)) continue;
     running.call->cancel(utime);
@@ -150,13 +150,13 @@ void OperatorDesk::letGo(int64_t utime, const std::string& why, const std::strin
   }
 }
 
-void OperatorDesk::leave(uint64_t page, int64_t utime) {
+void OperatorConsole::leave(uint64_t page, int64_t utime) {
   if (page != page_) return;
   letGo(utime, "the page was closed");
   page_ = 0;
 }
 
-void OperatorDesk::step(int64_t utime) {
+void OperatorConsole::step(int64_t utime) {
   // Nobody knows whether a silent page still shows the robot to anybody.
   if (page_ != 0 && utime - alive_ > kPageLease) {
     letGo(utime, "the page is silent: it let go of the robot");
@@ -185,13 +185,13 @@ void OperatorDesk::step(int64_t utime) {
   }
 }
 
-bool OperatorDesk::worn() const {
+bool OperatorConsole::worn() const {
   return past_.size() > kMostPast &&
          std::all_of(calls_.begin(), calls_.end(),
                      [](const Running& running) { return running.ended; });
 }
 
-std::string OperatorDesk::words() const {
+std::string OperatorConsole::words() const {
   std::string stops, others;
   for (const Running& running : calls_) {
     std::string& words = running.what == kStopping || running.what == kClearing ? stops : others;

@@ -15,10 +15,10 @@ namespace tread::operators {
 /// the page is alive, shown by its signs of life.
 /** A page that is closed, hidden, frozen or cut off lets the robot stop as tread-goal does that is
  * halted. The emergency stop is taken from every page. */
-class OperatorDesk {
+class OperatorConsole {
  public:
   /// `why`: what the log says of its arming and stopping.
-  OperatorDesk(Bus& bus, std::string operator_name, std::string why);
+  OperatorConsole(Bus& bus, std::string operator_name, std::string why);
 
   /// A command as JSON: {"op": "estop"}, "clear_estop", "disarm", "cancel"; and with "seen", the
   /// time
@@ -34,8 +34,8 @@ class OperatorDesk {
 
   /// How the calls go, a line each, stops first and newest first: what the page shows.
   std::string words() const;
-  /// Nothing runs, and so many calls are over that a new bus and desk should take their place: the
-  /// bus calls them all back, to its end.
+  /// Nothing runs, and so many calls are over that a new bus and console should take their place:
+  /// the bus calls them all back, to its end.
   bool worn() const;
 
  private:
