@@ -305,3 +305,19 @@ TEST_CASE("the table of channels says what the table in code says") {
 TEST_CASE("README is short (at most 9 kB) and manuals stand in the folders") {
   CHECK(contentOf(fs::path(TREAD_SOURCE_DIR) / "README.md").size() <= 9000);
 }
+
+TEST_CASE("the page and its tests need no newer node than Debian 12 has") {
+  constexpr int kDebiansNode = 18;
+  const std::string lock =
+      contentOf(fs::path(TREAD_SOURCE_DIR) / "tools/view/page/package-lock.json");
+  const std::regex demand("\"node\": \"([^\"]*)\"");
+  size_t demands = 0;
+  for (std::sregex_iterator found(lock.begin(), lock.end(), demand), end; found != end; ++found) {
+    ++demands;
+    const std::string versions = (*found)[1];
+    CAPTURE(versions);
+    REQUIRE(startsWith(versions, ">="));
+    CHECK(std::stoi(versions.substr(2)) <= kDebiansNode);
+  }
+  CHECK(demands > 20);
+}
