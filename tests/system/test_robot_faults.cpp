@@ -8,8 +8,8 @@
 
 #include "common/messages/blank.hpp"
 #include "tests/system/robot_run.hpp"
-#include "tests/system/stall_watch.hpp"
 #include "tests/system/worlds.hpp"
+#include "tools/robot/launch/stall_watch.hpp"
 
 namespace tread::testing {
 namespace {
@@ -75,7 +75,7 @@ void mustStop(const std::string& process, int how, double limit, const Reference
     double stands = -1.0;
     double stall = 0.0;
     {
-      const StallWatch watch;
+      const launch::StallWatch watch;
       run.signal(process, how);
       const int64_t killed = run.now();
       run.wait(0.05);  // what it said before is heard now
@@ -109,7 +109,7 @@ TEST_CASE("a killed or frozen operator's program: the motors stand within its le
       run.leaveTo(30.0, 1.0);
       run.wait(1.5);
       if (!run.driving() && trial < kTrials) continue;
-      const StallWatch watch;
+      const launch::StallWatch watch;
       const int64_t killed = run.now();
       run.signal("operator", how);
       const double stands = standsAfter(run, killed, 5.0);

@@ -16,9 +16,9 @@
 #include "common/messages/blank.hpp"
 #include "common/seal/key_file.hpp"
 #include "tests/system/robot_run.hpp"
-#include "tests/system/stall_watch.hpp"
 #include "tests/system/two_hosts.hpp"
 #include "tests/system/worlds.hpp"
+#include "tools/robot/launch/stall_watch.hpp"
 
 namespace tread::testing {
 namespace {
@@ -83,7 +83,7 @@ TEST_CASE(
     int64_t pulling = 0;
     int64_t pulled = 0;
     {
-      const StallWatch watch;
+      const launch::StallWatch watch;
       pulling = run.now();
       hosts->plug(false);  // by a program that has to be started: somewhere between the two times
       pulled = run.now();

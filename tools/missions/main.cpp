@@ -29,6 +29,9 @@ struct Arguments {
   std::optional<uint64_t> show;
   std::string picture = "mission.png";
   std::string log;
+  std::string simulator;  ///< configuration with the place to drive in; empty = drawn by the seed
+  std::vector<double> goal;  ///< [m] in map, with simulator
+  std::string truth;
   std::string robot = TREAD_CONFIG_DIR "/robots/teodor";
   std::vector<std::string> overrides;
   bool compare_omniscient = false;
@@ -74,6 +77,20 @@ void define(CLI::App& app, Arguments& arguments) {
   app.add_option("--picture", arguments.picture, "file of that picture (PNG)");
   app.add_option("--log", arguments.log,
                  "record the mission with seed --seed as an LCM log (first rule)");
+  CLI::Option* place =
+      app.add_option("--simulator", arguments.simulator,
+                     "one mission in the world of this configuration (config/simulators), from its "
+                     "start and with its seed, to --goal")
+          ->excludes("--missions")
+          ->excludes("--seed")
+          ->excludes("--world");
+  CLI::Option* goal = app.add_option("--goal", arguments.goal, "X Y in map [m]")
+                          ->type_size(2)
+                          ->expected(1)
+                          ->needs(place);
+  place->needs(goal);
+  app.add_option("--truth", arguments.truth,
+                 "record what really happened in the mission with seed --seed (CSV)");
   app.add_option("--robot", arguments.robot, "folder with the robot's configuration files");
   app.add_option("--set", arguments.overrides,
                  "PROCESS.KEY=VALUE in the place of what that process's file says; "
@@ -100,6 +117,13 @@ BatchOrder orderOf(const Arguments& arguments, const std::string& name, bool fir
   if (!arguments.fault_file.empty()) order.options.faults = readFaultFile(arguments.fault_file);
   order.show = arguments.show;
   if (first) order.log = arguments.log;
+  if (first) order.truth = arguments.truth;
+  if (!arguments.simulator.empty()) {
+    order.options.place =
+        readMissionWorld(arguments.simulator, {arguments.goal[0], arguments.goal[1]});
+    order.seed = order.options.place->seed;
+    if (arguments.show) order.show = order.seed;
+  }
   return order;
 }
 
@@ -185,11 +209,13 @@ void compareSpeeds(const Arguments& arguments, const RobotConfig& robot) {
 
 /// Batches take long: checks that the outputs can be written before driving.
 void protectInputs(const Arguments& arguments) {
-  std::vector<std::string> inputs{arguments.fault_file};
+  std::vector<std::string> inputs{arguments.fault_file, arguments.simulator};
   std::error_code failure;
   for (const auto& file : std::filesystem::directory_iterator(arguments.robot, failure))
     inputs.push_back(file.path().string());
-  checkOutputs({arguments.json, arguments.show ? arguments.picture : "", arguments.log}, inputs);
+  checkOutputs(
+      {arguments.json, arguments.show ? arguments.picture : "", arguments.log, arguments.truth},
+      inputs);
 }
 
 void drive(const Arguments& arguments) {

@@ -7,10 +7,13 @@
 #include <iostream>
 #include <map>
 #include <mutex>
+#include <sstream>
 
 #include "common/bus/virtual_bus.hpp"
 #include "common/parallel/parallel_for.hpp"
 #include "common/report/text.hpp"
+#include "common/store/store.hpp"
+#include "modules/simulator/simulator_files.hpp"
 #include "tools/missions/referee.hpp"
 #include "tools/missions/robot_system.hpp"
 
@@ -74,9 +77,13 @@ class BatchRun {
   MissionRun drive(uint64_t seed) {
     MissionOptions options = order_.options;
     std::optional<LogWriter> log;
+    std::ostringstream truth;
+    sim::TruthRecord record(truth);
     if (!order_.log.empty() && seed == order_.seed) options.log = &log.emplace(order_.log);
+    if (!order_.truth.empty() && seed == order_.seed) options.truth = &record;
     MissionRun run = runMission(robot_, seed, options);
     if (log) log->flush();
+    if (options.truth != nullptr) writeText(order_.truth, truth.str());
     if (order_.show == seed) {
       const std::lock_guard<std::mutex> lock(mutex_);
       batch_.shown = driveSceneOf(run.result, run.scene);
@@ -96,8 +103,9 @@ class BatchRun {
 MissionRun runMission(const RobotConfig& robot, uint64_t seed, const MissionOptions& options) {
   const double cpu_start = threadSeconds();
   MissionRun run;
-  run.scene.world =
-      makeMissionWorld(seed, robot.simulated.vehicle.outline, options.shortest_line, robot.world);
+  run.scene.world = options.place ? *options.place
+                                  : makeMissionWorld(seed, robot.simulated.vehicle.outline,
+                                                     options.shortest_line, robot.world);
   RobotSystem system(robot, run.scene.world.description, run.scene.world.T_map_start, seed,
                      options.rule, options.faults, options.true_patterns,
                      {vehicleOf(robot.world, robot.simulated.vehicle), nullptr});
@@ -112,6 +120,8 @@ MissionRun runMission(const RobotConfig& robot, uint64_t seed, const MissionOpti
   const int64_t start = system.bus().now();
   for (int64_t tick = 1; !referee.ended(); ++tick) {
     system.bus().runUntil(start + tick * kTick);
+    if (options.truth != nullptr)
+      options.truth->note(system.robot().truth(), system.devices().power(system.bus().now()));
     person.step(system.bus().now());
     referee.step();
   }

@@ -7,6 +7,10 @@
 #include <deque>
 #include <random>
 
+#include "common/config/config_reader.hpp"
+#include "modules/simulator/simulator_files.hpp"
+#include "modules/simulator/simulator_node.hpp"
+
 namespace tread::missions {
 namespace {
 
@@ -300,6 +304,19 @@ MissionWorld makeMissionWorld(uint64_t seed, const FootprintSize& robot, double 
   addTerrain(world, rng);
   addStretches(world, rng, kind);
   addRoughGround(world, rng, kind, T_map_way);
+  return world;
+}
+
+MissionWorld readMissionWorld(const std::string& simulator_file,
+                              const Eigen::Vector2d& p_map_goal) {
+  ConfigReader reader = ConfigReader::fromFile(simulator_file);
+  const sim::SimulatorConfig config = sim::readSimulatorConfig(reader);
+  MissionWorld world;
+  world.seed = config.settings.robot.seed;
+  world.T_map_start = config.settings.robot.start;
+  world.T_map_goal = {p_map_goal.x(), p_map_goal.y(), 0.0};
+  world.straight_line = (p_map_goal - world.T_map_start.position()).norm();
+  world.description = sim::readWorld(config.world);
   return world;
 }
 

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/log/event_log.hpp"
+#include "modules/simulator/simulator_files.hpp"
 #include "tools/missions/mission.hpp"
 #include "tools/missions/prediction_errors.hpp"
 #include "tools/missions/robot_system.hpp"
@@ -154,6 +155,8 @@ struct MissionOptions {
   FaultPlan faults;
   const TruePatterns* true_patterns = nullptr;  ///< if given: an omniscient robot drives
   LogWriter* log = nullptr;                     ///< every message, if given
+  std::optional<MissionWorld> place;            ///< where to drive; empty = drawn by the seed
+  sim::TruthRecord* truth = nullptr;            ///< what really happened, if given
 };
 
 /// World, map and search tree for a picture of a mission.
@@ -189,6 +192,7 @@ struct BatchOrder {
   MissionOptions options;              ///< of each mission; its log is set here
   std::optional<uint64_t> show;        ///< seed of the mission whose scene is kept
   std::string log;                     ///< of the first mission; empty = none
+  std::string truth;                   ///< the same: file of what really happened
 };
 
 /// Drives the missions; results are in the order of the seeds, lines go to stdout as they come.

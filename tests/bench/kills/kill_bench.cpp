@@ -10,9 +10,9 @@
 #include <CLI/CLI.hpp>
 
 #include "tests/system/robot_run.hpp"
-#include "tests/system/stall_watch.hpp"
 #include "tests/system/two_hosts.hpp"
 #include "tests/system/worlds.hpp"
+#include "tools/robot/launch/stall_watch.hpp"
 
 namespace {
 
@@ -63,7 +63,7 @@ class KillBench {
     driveOff();
     if (process == "operator") leave();
     const int64_t set = run_.lastSet();
-    const StallWatch watch;
+    const launch::StallWatch watch;
     longest_gap_ = 0.0;
     if (signal == kCutOff)
       hosts_.plug(false);

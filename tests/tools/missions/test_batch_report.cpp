@@ -337,6 +337,9 @@ TEST_CASE("tread-missions refuses bad input in one line with status 2, before it
       {"--set nothing", "PROCESS.KEY=VALUE"},
       {"--json /nowhere/report.json", "/nowhere/report.json"},
       {"--log /nowhere/drive.lcmlog", "/nowhere/drive.lcmlog"},
+      {"--simulator /no/simulator.yaml --goal 1 2", "/no/simulator.yaml"},
+      {"--simulator /no/simulator.yaml", "--goal"},
+      {"--goal 1 2", "--simulator"},
       {"--seed 4 --missions 2 --show 6", "--show"}};
   for (const auto& [arguments, words] : refused) {
     const CalledProgram run = called("tread-missions " + arguments);
@@ -350,4 +353,23 @@ TEST_CASE("tread-missions refuses bad input in one line with status 2, before it
   CHECK(same.status == 2);
   CHECK(same.isOneLine());
   CHECK_FALSE(std::filesystem::exists(folder.path("a")));
+}
+
+TEST_CASE("the mission of a simulator's file is reported from its log as one of real processes") {
+  const OwnFolder folder;
+  const std::string config = TREAD_SOURCE_DIR "/config";
+  const std::string outputs =
+      " --log " + folder.path("drive.lcmlog") + " --truth " + folder.path("truth.csv");
+  const CalledProgram mission = called("tread-missions --simulator " + config +
+                                       "/simulators/demo.yaml --goal -9.8 -2.8" + outputs);
+  INFO(mission.printed);
+  REQUIRE(mission.status == 0);
+  const CalledProgram report = called("tread-report " + folder.path("drive.lcmlog") + " --truth " +
+                                      folder.path("truth.csv") + " --world " + config +
+                                      "/worlds/demo.yaml --picture " + folder.path("drive.png"));
+  INFO(report.printed);
+  CHECK(report.status == 0);
+  CHECK(report.says("arrived after "));
+  CHECK(report.says("contacts 0"));
+  CHECK(isPng(folder.text("drive.png")));
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -9,6 +12,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <unistd.h>
@@ -17,10 +21,12 @@
 
 #include "common/bus/host_clock.hpp"
 #include "common/bus/lcm_bus.hpp"
+#include "common/bus/shell.hpp"
 #include "common/bus/tcp_relay.hpp"
 #include "common/config/command_line.hpp"
 #include "tools/robot/launch/host.hpp"
 #include "tools/robot/launch/running_robots.hpp"
+#include "tools/robot/launch/stall_watch.hpp"
 
 namespace {
 
@@ -35,6 +41,8 @@ struct Options {
   bool status = false;
   bool stop = false;
   bool no_watchdog = false;
+  std::optional<double> timing;  ///< [s]
+  double longest_ms = 100.0;     ///< motor_bridge's limit, and the age limit of the INS
   bool pre_drive = false;
 };
 
@@ -60,6 +68,19 @@ void declare(CLI::App& app, Options& options) {
   app.add_flag(
       "--pre-drive", options.pre_drive,
       "yes to the drive of 10 s by which the file's pre_drive tries the wiring; else asks");
+  app.add_option(
+         "--timing", options.timing,
+         "measures for so many seconds, or until it is stopped, how long this machine keeps "
+         "a process waiting; exit status 3 above --longest")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->excludes(check)
+      ->excludes(status)
+      ->excludes(stop)
+      ->excludes(only);
+  app.add_option("--longest", options.longest_ms,
+                 "[ms] for --timing; above 100 ms motor_bridge stops the motors")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str();
   check->excludes(status)->excludes(stop)->excludes(only);
   status->excludes(stop)->excludes(only);
   stop->excludes(only);
@@ -182,6 +203,21 @@ std::map<std::string, std::string> troubles(const std::string& lcm_url) {
   return lines;
 }
 
+/// Whether this machine keeps real time: a process that should run is not kept waiting for long.
+int timing(const std::string& name, double seconds, double longest_ms) {
+  const std::atomic<bool>& stop = stopRequest(0);
+  const StallWatch watch;
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  while (!stop && std::chrono::steady_clock::now() < end)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  const double wait_ms = 1e3 * watch.longest();
+  const bool kept = wait_ms <= longest_ms;
+  std::cout << name << ": this machine " << (kept ? "keeps" : "does not keep")
+            << " real time: a process waited for " << std::lround(wait_ms) << " ms, at most "
+            << std::lround(longest_ms) << " ms are allowed" << std::endl;
+  return kept ? 0 : 3;
+}
+
 int status(const LaunchFile& launch, const RunPaths& paths) {
   if (!RunLock::isHeld(paths.lock)) {
     std::cout << launch.name << ": nothing runs in " << paths.folder << std::endl;
@@ -203,6 +239,7 @@ int run(int argc, char** argv) {
   ConfigReader reader = ConfigReader::fromFile(options.settings.file);
   const LaunchFile launch = readLaunchFile(reader, options.settings);
   const RunPaths paths(options.settings.run);
+  if (options.timing) return timing(launch.name, *options.timing, options.longest_ms);
   if (options.stop) return stopRun(launch.name, paths);
   if (options.status) return status(launch, paths);
   if (!options.only.empty()) return only(launch, options);

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <filesystem>
+
 #include <catch2/catch.hpp>
 
 #include "common/seal/key_file.hpp"
 #include "tests/tools/robot/launch/launched.hpp"
 #include "tools/robot/launch/host.hpp"
+
+namespace fs = std::filesystem;
 
 using namespace tread::testing;
 using Catch::Contains;
@@ -180,6 +184,29 @@ TEST_CASE("start-up checks name what is wrong and nothing is started") {
   const CommandOutcome good = call(launched, {"--check"});
   CHECK(good.code == 0);
   CHECK_THAT(good.output, Contains("trial: ready to start"));
+}
+
+TEST_CASE(
+    "a machine that keeps a process waiting does not keep real time, and its status says so") {
+  const std::string file = TREAD_SOURCE_DIR "/config/launch/simulated.yaml";
+  const std::string words =
+      fs::temp_directory_path() / ("tread_timing_" + std::to_string(getpid()));
+  fs::remove(words);
+  Process halted("tread-launch", {file, "--timing", "60"}, words);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  halted.signal(SIGSTOP);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  halted.signal(SIGCONT);
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  halted.signal(SIGTERM);
+  REQUIRE(halted.waitFor(10.0));
+  INFO(contentOf(words));
+  CHECK(halted.exitCode() == 3);
+  CHECK_THAT(contentOf(words), Catch::Contains("does not keep real time"));
+  Process left_alone("tread-launch", {file, "--timing", "0.2", "--longest", "10000"}, words);
+  REQUIRE(left_alone.waitFor(10.0));
+  CHECK(left_alone.exitCode() == 0);
+  fs::remove(words);
 }
 
 TEST_CASE("one process alone can be started for systemd") {

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <thread>
 
-namespace tread::testing {
+namespace tread::launch {
 
 /// Notes how long the machine kept a sleeping thread waiting: what a real-time measurement that was
 /// made meanwhile is worth.
@@ -41,4 +41,4 @@ class StallWatch {
   std::thread thread_;
 };
 
-}  // namespace tread::testing
+}  // namespace tread::launch
