@@ -179,16 +179,19 @@ void supervisorLog(const uint8_t* bytes, size_t size) {
   }
 }
 
-bool isShare(const drive::Wishes& wishes) {
-  return std::abs(wishes.forward) <= 1.0 && std::abs(wishes.turn) <= 1.0;
+bool isShare(double share) {
+  return std::abs(share) <= 1.0;
 }
 
 void gamepad(const uint8_t* bytes, size_t size) {
   const MemoryFile file(bytes, size);
   refusing([&] {
     drive::RecordedPad pad(file.path());
-    for (const int64_t now : {1'000'000L, 1'020'000L, 2'000'000L, 2'000'000'000'000'000'000L})
-      require(isShare(pad.read(now)));
+    for (const int64_t now : {1'000'000L, 1'020'000L, 2'000'000L, 2'000'000'000'000'000'000L}) {
+      const drive::Wishes wishes = pad.read(now);
+      for (const double share : {wishes.forward, wishes.turn})
+        require(std::isnan(share) || isShare(share));
+    }
   });
 }
 
@@ -199,7 +202,8 @@ void keyboard(const uint8_t* bytes, size_t size) {
   for (size_t at = 0; at < size; at += 3) {
     now += 2000 * bytes[at];
     keys.take({reinterpret_cast<const char*>(bytes) + at, std::min<size_t>(3, size - at)}, now);
-    require(isShare(keys.wishes(now)));
+    const drive::Wishes wishes = keys.wishes(now);
+    require(isShare(wishes.forward) && isShare(wishes.turn));
   }
 }
 

@@ -12,6 +12,7 @@ using namespace tread::motor;
 namespace {
 
 constexpr int64_t kBridgeStep = BridgeWorld::kStep;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// A bridge in its world, and a person's program that sends MANUAL at 50 Hz.
 struct HandWorld : BridgeWorld {
@@ -32,6 +33,14 @@ struct HandWorld : BridgeWorld {
   }
   void run(int64_t us) {
     for (const int64_t end = now + us; now < end;) step();
+  }
+  /// A planner that wants nothing: only the hand may move the robot, which is armed.
+  void armForHand() {
+    planner.stands = true;
+    run(1'200'000);
+    arm();
+    run(100'000);
+    REQUIRE(isArmed(state()));
   }
   void stick(double left, double right) {
     wish.left = left;
@@ -150,14 +159,15 @@ TEST_CASE(
   world.hand_alive = world.loop_closed = true;
   world.run(1'000'000);
   CHECK(world.stands());  // nobody has touched the stick since
-  CHECK(world.reason() == "in the hand of operator: let the stick go once");
-  const bool lets_go_of_the_stick = GENERATE(true, false);
-  if (lets_go_of_the_stick)
-    world.stick(0.0, 0.0);
-  else
-    world.wish.hold = false;
+  CHECK(world.reason() ==
+        "in the hand of operator: the stick was not seen at rest: let it go once");
+  world.wish.hold = false;
   world.run(50'000);
   world.wish.hold = true;
+  world.run(500'000);
+  CHECK(world.stands());  // a released button is no rest
+  world.stick(0.0, 0.0);
+  world.run(50'000);
   world.stick(0.5, 0.5);
   CHECK(world.until([&] { return !world.stands(); }) <= 60'000);
 }
@@ -298,7 +308,9 @@ TEST_CASE("the hand needs the dead-man's button, the lease and valid numbers to 
     world.wish.give_back = true;
   }
   SECTION("no number") {
-    world.stick(std::numeric_limits<double>::quiet_NaN(), 0.5);
+    world.stick(kUnknown, 0.5);
+    world.run(1'000'000);
+    world.stick(0.5, kUnknown);
     world.run(1'000'000);
     world.stick(0.5, std::numeric_limits<double>::infinity());
     world.run(1'000'000);
@@ -528,8 +540,153 @@ TEST_CASE("a program that is new takes over only after its stick has been at res
   says(7, 1, 0.0, 1'000'000);
   says(8, 1, 0.5, 2'000'000);
   CHECK_FALSE(hand.takes());
-  CHECK(hand.words() == "in the hand of operator: let the stick go once");
+  CHECK(hand.words() == "in the hand of operator: the stick was not seen at rest: let it go once");
   says(8, 2, 0.0, 2'020'000);
   says(8, 3, 0.5, 2'040'000);
   CHECK(hand.takes());
+}
+
+TEST_CASE("a stick that was not seen at rest moves nothing, whatever is done with the button") {
+  HandWorld world;
+  const double left = GENERATE(-1.0, 0.06, kUnknown, 0.0);
+  const double right = GENERATE(1.0, kUnknown, -0.06);
+  world.stick(left, right);
+  world.wish.hold = GENERATE(true, false);
+  world.armForHand();
+  for (int i = 0; i < 400; ++i) {
+    if (i % 30 == 0) world.wish.hold = !world.wish.hold;
+    world.step();
+    REQUIRE(world.stands());
+    REQUIRE(world.state() == State::kArmed);
+  }
+  world.wish.hold = true;
+  world.run(50'000);
+  CHECK(world.reason() == "armed by operator; the stick was not seen at rest: let it go once");
+  world.wish.hold = false;
+  world.run(50'000);
+  CHECK(world.reason() == "armed by operator");
+  world.stick(0.0, 0.0);
+  world.run(50'000);
+  world.wish.hold = true;
+  world.stick(0.5, 0.5);
+  world.run(100'000);
+  CHECK(world.state() == State::kManual);
+  CHECK_FALSE(world.stands());
+}
+
+TEST_CASE("a track at a time is no rest: both are seen at rest in one message") {
+  HandWorld world;
+  world.armForHand();
+  world.run(500'000);
+  world.hand_alive = false;
+  world.run(500'000);  // silent: it must be seen at rest again
+  world.hand_alive = true;
+  for (int i = 0; i < 50; ++i) {
+    world.stick(i % 2 == 0 ? 0.0 : 1.0, i % 2 == 0 ? 1.0 : 0.0);
+    world.run(20'000);
+    REQUIRE(world.stands());
+  }
+}
+
+TEST_CASE("a stick whose place is lost while it drives: zero in the next step, until it rests") {
+  HandWorld world;
+  world.driveByHand();
+  const bool left = GENERATE(true, false);
+  world.stick(left ? kUnknown : 1.0, left ? 1.0 : kUnknown);
+  world.tell();
+  world.step();
+  CHECK(world.stands());
+  world.stick(1.0, 1.0);
+  world.run(500'000);
+  CHECK(world.stands());
+  CHECK(world.state() == State::kManual);
+  world.stick(0.0, 0.0);
+  world.run(50'000);
+  world.stick(1.0, 1.0);
+  world.run(100'000);
+  CHECK_FALSE(world.stands());
+}
+
+TEST_CASE("with its place unknown a stick gives back, and arms nothing for the hand") {
+  HandWorld world;
+  SECTION("gives back") {
+    world.driveByHand();
+    world.stick(kUnknown, kUnknown);
+    world.wish.give_back = true;
+    world.run(300'000);
+    CHECK(world.state() == State::kDriving);
+  }
+  SECTION("arms nothing") {
+    world.planner_alive = world.ins_alive = false;
+    world.stick(kUnknown, kUnknown);
+    world.run(1'300'000);
+    world.arm();
+    world.run(50'000);
+    CHECK(world.state() == State::kDisarmed);
+  }
+}
+
+TEST_CASE("a worn spring: up to a twentieth counts as rest, and moves nothing") {
+  HandWorld world;
+  world.wish.hold = false;
+  world.armForHand();
+  world.wish.hold = true;
+  world.stick(0.05, -0.05);
+  world.run(500'000);
+  CHECK(world.state() == State::kArmed);
+  world.stick(0.06, -0.05);
+  world.run(500'000);
+  CHECK(world.state() == State::kManual);
+  CHECK(world.out.command[0] == Approx(0.03));
+  world.stick(-0.05, 0.05);
+  world.tell();
+  world.step();
+  CHECK(world.stands());
+}
+
+TEST_CASE("a stick deflected with its button released while the robot is armed must rest first") {
+  HandWorld world;
+  world.planner.stands = true;
+  world.run(1'200'000);
+  world.wish.hold = false;
+  world.stick(1.0, 1.0);
+  world.run(100'000);
+  world.arm();
+  world.run(100'000);
+  REQUIRE(world.state() == State::kArmed);
+  world.wish.hold = true;
+  world.run(1'000'000);
+  CHECK(world.stands());
+  CHECK(world.state() == State::kArmed);
+}
+
+TEST_CASE("a stick that was silent while the planner drove takes over only after it rests again") {
+  HandWorld world;
+  world.drive();
+  world.hand_alive = false;
+  world.run(500'000);
+  world.stick(1.0, 1.0);
+  world.hand_alive = true;
+  world.run(500'000);
+  CHECK(world.state() == State::kDriving);
+  world.stick(0.0, 0.0);
+  world.run(50'000);
+  world.stick(1.0, 1.0);
+  world.run(50'000);
+  CHECK(world.state() == State::kManual);
+}
+
+TEST_CASE("two stations of which each rests for the other move nothing") {
+  HandWorld world;
+  world.armForHand();
+  for (int i = 0; i < 8; ++i) {
+    world.hand_alive = false;
+    world.run(250'000);
+    world.wish.station = 7 + i % 2;
+    const double way = i % 2 == 0 ? 0.0 : 1.0;
+    world.stick(way, way);
+    world.hand_alive = true;
+    world.run(200'000);
+    REQUIRE(world.stands());
+  }
 }

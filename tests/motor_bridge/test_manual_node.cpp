@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <limits>
+
 #include <catch2/catch.hpp>
 
 #include "common/messages/blank.hpp"
@@ -103,4 +105,40 @@ TEST_CASE(
   world.runHand(5'000'000);
   CHECK(world.stoodFor() >= 4'900'000);
   CHECK(world.motor.bridge_state == motor_t::STATE_DISARMED);
+}
+
+TEST_CASE("a stick that is at an extreme or unknown from its first message on moves nothing") {
+  HandOnTheBus world;
+  const float place = GENERATE(1.0F, std::numeric_limits<float>::quiet_NaN());
+  world.wish.hand_left = place;
+  world.wish.hold = false;
+  world.drive();
+  world.wish.hold = true;
+  for (int i = 0; i < 10; ++i) {
+    world.runHand(200'000);
+    world.wish.hold = !world.wish.hold;
+    REQUIRE(world.motor.bridge_state != motor_t::STATE_MANUAL);
+  }
+  world.wish.hold = true;
+  world.runHand(100'000);
+  CHECK_THAT(world.motor.state_reason, Catch::Contains("the stick was not seen at rest"));
+  world.wish.hand_left = 0.0F;
+  world.runHand(100'000);
+  world.wish.hand_left = 1.0F;
+  world.runHand(100'000);
+  CHECK(world.motor.bridge_state == motor_t::STATE_MANUAL);
+}
+
+TEST_CASE("a program that says nothing of the stick's place says no rest") {
+  HandOnTheBus world;
+  world.drive();
+  manual_t bare = blank<manual_t>();
+  bare.station = world.wish.station;
+  bare.operator_name = world.wish.operator_name;
+  bare.hold = true;
+  world.wish = bare;
+  world.runHand(200'000);
+  world.wish.hand_left = world.wish.hand_right = 1.0F;
+  world.runHand(500'000);
+  CHECK(world.motor.bridge_state != motor_t::STATE_MANUAL);
 }

@@ -11,7 +11,10 @@
 namespace tread::testing {
 namespace {
 
-const std::string kPad = "A: 00 0 255 0 0 0\nA: 01 0 255 0 0 0\nE: 0.000000 0000 0000 0\n";
+/// What the kernel tells at first, then the stick's first report: at rest.
+const std::string kPad =
+    "A: 00 0 255 0 0 0\nA: 01 0 255 0 0 0\nE: 0.000000 0003 0000 0\nE: 0.000000 0003 0001 0\n"
+    "E: 0.100000 0003 0000 128\nE: 0.100000 0003 0001 128\nE: 0.100000 0000 0000 0\n";
 const std::string kForward =
     "E: 1.000000 0001 0137 1\n"   // shoulder button
     "E: 1.300000 0003 0001 0\n";  // stick forward

@@ -225,6 +225,7 @@ void Bridge::lookForHand(int64_t now, FailsafeInputs& in) {
   const bool wants = isArmed(failsafe_.state()) ? manual_.takes() : manual_.ready();
   in.hand = operator_.valid(now) && (has ? !manual_.givenBack() : wants);
   in.hand_words = manual_.words();
+  if (!has) in.hand_bar = manual_.bar();
 }
 
 std::string Bridge::leaseFault(int64_t now) const {

@@ -114,6 +114,7 @@ FailsafeOutputs Failsafe::update(const FailsafeInputs& in) {
   const bool barred =
       !in.program_bar.empty() && out.reason.find(in.program_bar) == std::string::npos;
   if (barred) out.reason += "; programs refused: " + in.program_bar;
+  if (!in.hand_bar.empty()) out.reason += "; " + in.hand_bar;
   if (const std::optional<Fault> fault = worstFault(in)) out.standing_fault = fault->reason;
   out.changed = state_ != state_before || reason_ != reason_before || refusal_ != refusal_before;
   return out;

@@ -128,6 +128,7 @@ struct FailsafeInputs {
   bool fenced = false;         ///< there are fences to keep
   bool hand = false;          ///< a person takes or keeps the robot, or wants it armed for the hand
   std::string hand_words;     ///< who does, and why it stands, if it does
+  std::string hand_bar;       ///< why a hand that holds the button does not take the robot
   bool playing = false;       ///< a series is being played and goes on
   bool start_wanted = false;  ///< a series is offered to a standing robot
   std::string program_bar;    ///< why no series may start, though a person may drive by hand

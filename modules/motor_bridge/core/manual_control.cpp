@@ -8,6 +8,8 @@
 namespace tread::motor {
 namespace {
 
+const std::string kNotAtRest = "the stick was not seen at rest: let it go once";
+
 /// Stopping is never delayed: what is nearer to zero is given at once, and what grows, grows from
 /// there.
 double limited(double wanted, double given, double growth) {
@@ -18,9 +20,9 @@ double limited(double wanted, double given, double growth) {
 }  // namespace
 
 std::string ManualControl::receive(const ManualNotice& notice, int64_t now) {
-  // NaN fails both comparisons.
-  const bool valid = std::abs(notice.left) <= 1.0 && std::abs(notice.right) <= 1.0;
-  if (!valid) return "a command that is no share of the largest, -1 to 1";
+  // Where the stick's place is not known (NaN), what the message says of the buttons counts.
+  if (std::abs(notice.left) > 1.0 || std::abs(notice.right) > 1.0)
+    return "a command that is no share of the largest, -1 to 1";
   const bool same = notice.station == last_.station;
   if (same && notice.seq <= last_.seq) return "overtaken on its way";
   const OperatorNotice seen{
@@ -34,9 +36,10 @@ std::string ManualControl::receive(const ManualNotice& notice, int64_t now) {
       return "its program has not seen the robot within " +
              std::to_string(limits_.lease_us / 1000) + " ms";
   }
-  if (!same) must_rest_ = true;
+  const bool known = !std::isnan(notice.left) && !std::isnan(notice.right);
+  if (!known) must_rest_ = true;
   last_ = notice;
-  if (!notice.hold || !moved()) must_rest_ = false;
+  if (atRest()) must_rest_ = false;
   return "";
 }
 
@@ -50,16 +53,20 @@ void ManualControl::update(int64_t now, bool has, bool armed) {
   fresh_ = lease_.valid(now);
   live_ = fresh_ && last_.hold && !last_.give_back;
   // After a stop the stick may still be where it was: arming must not move the robot.
-  if ((has && !fresh_) || (!armed && last_.hold && moved())) must_rest_ = true;
+  if (!fresh_ || (!armed && !atRest())) must_rest_ = true;
   if (has) return;
   command_ = TrackCommand{};
   commanded_.reset();
 }
 
+std::string ManualControl::bar() const {
+  return live_ && must_rest_ ? kNotAtRest : "";
+}
+
 std::string ManualControl::words() const {
   if (!fresh_) return "in the hand of " + last_.name + ", who is silent";
   if (!last_.hold) return "in the hand of " + last_.name + ", dead-man's button released";
-  if (must_rest_) return "in the hand of " + last_.name + ": let the stick go once";
+  if (must_rest_) return "in the hand of " + last_.name + ": " + kNotAtRest;
   return "driven by hand by " + last_.name;
 }
 
@@ -70,9 +77,8 @@ Command commandOf(const TrackCommand& stick, const ManualLimits& limits) {
 }
 
 TrackCommand ManualControl::command(int64_t now) {
-  if (!live_ || must_rest_) return command_ = TrackCommand{};
+  if (!live_ || must_rest_ || atRest()) return command_ = TrackCommand{};
   const TrackCommand wanted{last_.left * limits_.max_command, last_.right * limits_.max_command};
-  if (wanted == TrackCommand{}) return command_ = wanted;
   if (commanded_ && now - *commanded_ < kInterval) return command_;
   const double growth =
       commanded_

@@ -2,7 +2,9 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -32,15 +34,17 @@ struct ManualNotice {
   int64_t seen_utime = 0;  ///< [us] of the newest MOTOR that the program has heard
   bool hold = false;       ///< the dead-man's button is pressed
   bool give_back = false;
-  double left = 0.0;  ///< [1] share of the largest command, -1..1, + forward
-  double right = 0.0;
+  /// [1] share of the largest command, -1..1, + forward; NaN: the stick's place is not known.
+  double left = std::numeric_limits<double>::quiet_NaN();
+  double right = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// What a person at the stick wants of the robot, and what the motors are given of it.
 /** A moved stick takes the robot over, with the dead-man's button held. Without the button, and a
  * lease after the newest that was seen, the command is zero at once; the robot stays in the hand
- * until it is given back. After such a silence, and when the robot is armed, the stick must have
- * been at rest before it moves anything. Pure: time is an argument. */
+ * until it is given back. At first, after such a silence, when its place was not known and when the
+ * robot is armed, the stick must be seen at rest before it moves anything: in one message that
+ * tells both tracks. A released button is no rest. Pure: time is an argument. */
 class ManualControl {
  public:
   explicit ManualControl(const ManualLimits& limits) : limits_(limits), lease_(limits.lease_us) {}
@@ -54,10 +58,12 @@ class ManualControl {
   void update(int64_t now, bool has, bool armed);
 
   /// A robot that is armed is to be taken over.
-  bool takes() const { return live_ && !must_rest_ && moved(); }
+  bool takes() const { return live_ && !must_rest_ && !atRest(); }
   /// A robot that is not armed is to be armed for the hand: the button is held, the stick rests.
-  bool ready() const { return live_ && !moved(); }
+  bool ready() const { return live_ && atRest(); }
   bool givenBack() const { return last_.give_back; }
+  /// Why a held button moves nothing; empty = nothing is in the way, or it is not held.
+  std::string bar() const;
   /// In whose hand, and why it stands, if it does.
   std::string words() const;
   /// Command of now [us]; call it once in each step while the robot is in the hand.
@@ -66,14 +72,18 @@ class ManualControl {
  private:
   static constexpr int64_t kInterval = 20'000;  ///< [us] a command is held
 
-  bool moved() const { return last_.left != 0.0 || last_.right != 0.0; }
+  /// [1] of the largest command: a worn spring's rest, which moves nothing.
+  static constexpr double kRest = 0.05;
+
+  /// False where it is not known.
+  bool atRest() const { return std::abs(last_.left) <= kRest && std::abs(last_.right) <= kRest; }
 
   ManualLimits limits_;
   OperatorLease lease_;  ///< its holder is a station: one hand at a time
   ManualNotice last_;
-  bool fresh_ = false;      ///< what was seen last is younger than the lease
-  bool live_ = false;       ///< fresh, with the button held, and not given back
-  bool must_rest_ = false;  ///< the stick moves nothing until it rests, or the button is released
+  bool fresh_ = false;     ///< what was seen last is younger than the lease
+  bool live_ = false;      ///< fresh, with the button held, and not given back
+  bool must_rest_ = true;  ///< the stick moves nothing until it is seen at rest
   TrackCommand command_;
   std::optional<int64_t> commanded_;  ///< [us] when the command was last changed
 };

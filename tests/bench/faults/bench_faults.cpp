@@ -24,6 +24,7 @@ struct Arguments {
   bool only = false;
   bool go_back = false;
   bool bare = false;
+  bool lies = false;
   RunOptions run;
 };
 
@@ -45,14 +46,15 @@ int drive(const Arguments& arguments) {
   const missions::RobotConfig robot = missions::readRobot(TREAD_CONFIG_DIR "/robots/teodor");
   const RunOptions& options = arguments.run;
   int broken = 0, drove = 0, again = 0, arrived = 0, collided = 0;
-  int by_hand = 0, returned = 0, tilts = 0, fences = 0, held = 0;
+  int by_hand = 0, lied = 0, alone = 0, moved = 0, returned = 0, tilts = 0, fences = 0, held = 0;
   double least_room = 1e9;
   int64_t paths = 0, faults = 0;
   const int missions = arguments.only ? 1 : arguments.missions;
   for (int i = 0; i < missions; ++i) {
     const uint64_t seed = arguments.seed + static_cast<uint64_t>(i);
-    const FaultSchedule schedule = arguments.bare ? bareScheduleOf(seed, options.duration)
-                                                  : scheduleOf(seed, options.duration);
+    const FaultSchedule schedule = arguments.bare   ? bareScheduleOf(seed, options.duration)
+                                   : arguments.lies ? lyingScheduleOf(seed, options.duration)
+                                                    : scheduleOf(seed, options.duration);
     const FaultyRun run = runFaulty(robot, schedule, options);
     if (run.violation || run.collisions > 0 || arguments.only) printSeed(seed, schedule, run);
     broken += run.violation ? 1 : 0;
@@ -61,6 +63,9 @@ int drive(const Arguments& arguments) {
     arrived += run.arrived ? 1 : 0;
     collided += run.collisions > 0 ? 1 : 0;
     by_hand += run.by_hand ? 1 : 0;
+    lied += run.lied ? 1 : 0;
+    alone += run.lied && schedule.onlyLies() ? 1 : 0;
+    moved += run.by_hand && schedule.onlyLies() ? 1 : 0;
     returned += run.returned ? 1 : 0;
     tilts += run.tilt_stop ? 1 : 0;
     fences += run.fence_stop ? 1 : 0;
@@ -78,6 +83,10 @@ int drive(const Arguments& arguments) {
       "%d were driven by hand, %d moved without their operator, %d were stopped for their tilt, %d "
       "at a fence; %d held to fences, least room %.3f m\n",
       by_hand, returned, tilts, fences, held, least_room);
+  std::printf(
+      "%d had a stick that lies, its button held while the robot was armed; in %d nobody else told "
+      "of a rest: %d of them were moved by a stick that was not seen at rest\n",
+      lied, alone, moved);
   return broken == 0 ? 0 : 1;
 }
 
@@ -123,6 +132,8 @@ int main(int argc, char** argv) {
   app.add_flag("--only", arguments.only, "that seed alone, with its faults in words");
   app.add_flag("--go-back", arguments.go_back,
                "instead: the operator falls silent for good, and the robot shall return");
+  app.add_flag("--lies", arguments.lies,
+               "each mission with a pad, keyboard or page that never tells a rest");
   app.add_flag("--bare", arguments.bare, "without fences, driving by hand, tilts and returns");
   app.add_option("--seconds", arguments.run.duration, "of each mission")
       ->check(CLI::Range(8.0, 600.0));

@@ -15,6 +15,7 @@
 #include "tests/bench/faults/forger.hpp"
 #include "tests/bench/faults/invariants.hpp"
 #include "tests/bench/faults/limit_rules.hpp"
+#include "tests/bench/faults/lying_hand.hpp"
 #include "tests/bench/faults/person_at_stick.hpp"
 #include "tools/missions/mission.hpp"
 
@@ -91,6 +92,7 @@ class Run {
     if (schedule.keyed) bus_.useKey(someKey());
     person_.emplace(bus_.outside(), world_.T_map_goal);
     if (schedule.scenario.hand) hand_.emplace(bus_.outside(), *schedule.scenario.hand);
+    if (schedule.scenario.lie) liar_.emplace(bus_.outside(), *schedule.scenario.lie);
     watch();
   }
 
@@ -180,7 +182,10 @@ class Run {
     const auto says = [&](const char* words) {
       return motor.state_reason.find(words) != std::string::npos;
     };
-    result_.by_hand |= moves && motor.bridge_state == motor_t::STATE_MANUAL;
+    const bool by_hand = moves && motor.bridge_state == motor_t::STATE_MANUAL;
+    result_.by_hand |= by_hand;
+    result_.lied |= liar_ && liar_->holds() && mayDrive(motor.bridge_state);
+    if (by_hand && schedule_.onlyLies()) breaks("moved by a stick that was not seen at rest");
     result_.returned |= moves && bus_.now() > operator_until_ + 3'000'000;
     const bool stopped = motor.bridge_state == motor_t::STATE_DISARMED;
     result_.tilt_stop |= stopped && (says("rolled") || says("pitched"));
@@ -236,6 +241,8 @@ class Run {
     if ((now - start_) % kOperatorPeriod == 0 && !operator_lost_) person_->step(now);
     if ((now - start_) % kHandPeriod == 0 && !operator_lost_ && hand_)
       hand_->step(now, now - start_);
+    if ((now - start_) % kHandPeriod == 0 && !operator_lost_ && liar_)
+      liar_->step(now, now - start_);
     putFence(now - start_);
     judgeFences(now);
     const std::array<double, 2> power = system_.devices().power(now);
@@ -417,6 +424,7 @@ class Run {
   CountRule counts_;
   std::optional<missions::Operator> person_;
   std::optional<PersonAtStick> hand_;
+  std::optional<LyingHand> liar_;
   std::optional<FenceRequest> put_;
   bool operator_lost_ = false;
   int64_t operator_until_ = 0;  ///< [us]
@@ -438,6 +446,12 @@ FaultSchedule bareScheduleOf(uint64_t seed, double duration) {
 FaultSchedule scheduleOf(uint64_t seed, double duration) {
   FaultSchedule schedule = bareScheduleOf(seed, duration);
   addScenario(schedule, kFirstFault, std::llround(0.7 * duration * 1e6));
+  return schedule;
+}
+
+FaultSchedule lyingScheduleOf(uint64_t seed, double duration) {
+  FaultSchedule schedule = scheduleOf(seed, duration);
+  addLie(schedule, kFirstFault, std::llround(0.7 * duration * 1e6));
   return schedule;
 }
 

@@ -27,6 +27,7 @@ struct FaultyRun {
   int64_t paths_judged = 0;
   double least_room = 0.0;  ///< [m] to a fence that it was held to; infinite if to none
   bool by_hand = false;     ///< a person drove it
+  bool lied = false;        ///< a stick that lies had its button held, and the robot was armed
   bool returned = false;    ///< it moved without its operator
   bool tilt_stop = false;   ///< the bridge stopped it for its roll or pitch
   bool fence_stop = false;  ///< ... or at a fence
@@ -49,5 +50,7 @@ FaultyRun runFaulty(const missions::RobotConfig& robot, const FaultSchedule& sch
 FaultSchedule bareScheduleOf(uint64_t seed, double duration);
 /// The same with them, and with faults of theirs.
 FaultSchedule scheduleOf(uint64_t seed, double duration);
+/// The same with a hand that lies in every mission.
+FaultSchedule lyingScheduleOf(uint64_t seed, double duration);
 
 }  // namespace tread::faults

@@ -3,7 +3,6 @@
 #include "tests/bench/faults/fault_schedule.hpp"
 
 #include <algorithm>
-#include <random>
 
 #include "common/config/scalars.hpp"
 #include "common/report/text.hpp"
@@ -40,25 +39,11 @@ const char* nameOf(FaultKind kind) {
   return kNames[static_cast<size_t>(kind)];
 }
 
-/// Draws in the same way on every machine.
-class Draw {
- public:
-  explicit Draw(uint64_t seed) : engine_(seed * 0x9e3779b97f4a7c15ULL + 77) {}
-  uint64_t below(uint64_t count) { return engine_() % count; }
-  double share() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
-  template <class List>
-  const auto& oneOf(const List& list) {
-    return list[below(std::size(list))];
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
-
 /// Kinds that drawSchedule() knows: more would change what each seed means.
 constexpr auto kFirstKinds = static_cast<uint64_t>(FaultKind::kTilt);
 constexpr uint64_t kScenarioStream = 0x5ce9a210;
 constexpr uint64_t kPlannerStream = 0x91a77e2;
+constexpr uint64_t kLieStream = 0x71e5;
 
 const std::vector<std::string> kForged{"ARM",   "GOAL", "PROGRAM", "PATTERN_SET",
                                        "ESTOP", "MAP",  "INS",     "OPERATOR"};
@@ -74,6 +59,14 @@ int64_t FaultSchedule::end() const {
   int64_t end = 0;
   for (const Fault& fault : faults) end = std::max(end, fault.until);
   return end;
+}
+
+bool FaultSchedule::onlyLies() const {
+  const bool believed = std::none_of(faults.begin(), faults.end(), [](const Fault& fault) {
+    const bool invents = fault.kind == FaultKind::kCorrupt || fault.kind == FaultKind::kForge;
+    return invents && (fault.channel == "MANUAL" || fault.channel == "*");
+  });
+  return scenario.lie && !scenario.hand && believed;
 }
 
 FaultSchedule drawSchedule(uint64_t seed, int64_t first, int64_t last) {
@@ -133,6 +126,17 @@ HandStretch drawHand(Draw& draw, int64_t first, int64_t last) {
   return hand;
 }
 
+HandLie drawLie(Draw& draw, int64_t first, int64_t last) {
+  HandLie lie;
+  lie.kind = static_cast<HandLie::Kind>(draw.below(3));
+  lie.seed = draw.below(1'000'000'000);
+  lie.from = moment(draw, 0, last, 0.5);
+  lie.until = lie.from + 3'000'000 + moment(draw, first, last, 1.0);
+  lie.silent_from = moment(draw, lie.from, lie.until, 1.0);
+  lie.silent_until = lie.silent_from + moment(draw, 0, 1'500'000, 1.0);
+  return lie;
+}
+
 Fault drawLater(Draw& draw, int64_t first, int64_t last) {
   Fault fault;
   const uint64_t kind = draw.below(10);
@@ -148,6 +152,12 @@ Fault drawLater(Draw& draw, int64_t first, int64_t last) {
 
 }  // namespace
 
+void addLie(FaultSchedule& schedule, int64_t first, int64_t last) {
+  Draw draw(schedule.seed ^ kLieStream);
+  schedule.scenario.hand.reset();
+  schedule.scenario.lie = drawLie(draw, first, last);
+}
+
 void addScenario(FaultSchedule& schedule, int64_t first, int64_t last) {
   Draw draw(schedule.seed ^ kScenarioStream);
   Scenario& scenario = schedule.scenario;
@@ -159,6 +169,8 @@ void addScenario(FaultSchedule& schedule, int64_t first, int64_t last) {
     scenario.fence_width = between(draw, 0.5, 4.0);
   }
   if (draw.share() < 0.35) scenario.hand = drawHand(draw, first, last);
+  if (!scenario.hand && Draw(~schedule.seed ^ kLieStream).below(3) == 0)
+    addLie(schedule, first, last);
   if (draw.share() < 0.5) schedule.faults.push_back(drawLater(draw, first, last));
   scenario.go_back = draw.share() < 0.25;
   if (!scenario.go_back) return;
@@ -232,6 +244,13 @@ std::string describe(const Scenario& scenario) {
                               static_cast<double>(hand->until) * 1e-6,
                               static_cast<double>(hand->silent_from) * 1e-6,
                               static_cast<double>(hand->silent_until) * 1e-6));
+  constexpr const char* kLiars[] = {"pad", "keyboard", "page"};
+  if (const auto& lie = scenario.lie)
+    words.push_back(formatted(
+        "a %s that lies from %.2f to %.2f s, halted from %.2f to %.2f s",
+        kLiars[static_cast<size_t>(lie->kind)], static_cast<double>(lie->from) * 1e-6,
+        static_cast<double>(lie->until) * 1e-6, static_cast<double>(lie->silent_from) * 1e-6,
+        static_cast<double>(lie->silent_until) * 1e-6));
   if (scenario.go_back) words.emplace_back("lost: go_back");
   return joinWords(words);
 }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,21 @@
 #include "common/fence/fence.hpp"
 
 namespace tread::faults {
+
+/// Draws in the same way on every machine.
+class Draw {
+ public:
+  explicit Draw(uint64_t seed) : engine_(seed * 0x9e3779b97f4a7c15ULL + 77) {}
+  uint64_t below(uint64_t count) { return engine_() % count; }
+  double share() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
+  template <class List>
+  const auto& oneOf(const List& list) {
+    return list[below(std::size(list))];
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
 
 enum class FaultKind {
   kDrop,
@@ -58,6 +74,17 @@ struct HandStretch {
   double forward = 0.0;      ///< [1] of the stick
 };
 
+/// Something to drive by hand with that never tells a rest; all times in [us] since the start.
+struct HandLie {
+  enum class Kind { kPad, kKeyboard, kPage };
+  Kind kind = Kind::kPad;
+  uint64_t seed = 0;  ///< of what it tells
+  int64_t from = 0;
+  int64_t until = 0;
+  int64_t silent_from = 0;
+  int64_t silent_until = 0;
+};
+
 /// What a mission has beside its faults. Fences are in the frame of the way: the start is its
 /// origin, the goal lies on its x axis.
 struct Scenario {
@@ -67,6 +94,7 @@ struct Scenario {
   double fence_ahead = 0.0;         ///< [m] from the body's origin to its near side
   double fence_width = 0.0;         ///< [m]
   std::optional<HandStretch> hand;
+  std::optional<HandLie> lie;
   bool go_back = false;  ///< `lost: go_back` in the robot's file
 };
 
@@ -77,6 +105,8 @@ struct FaultSchedule {
   std::vector<Fault> faults;
   Scenario scenario;
   int64_t end() const;  ///< [us] of the last fault
+  /// Nobody tells of a stick at rest: nothing may move by hand.
+  bool onlyLies() const;
 };
 
 /// One to four faults between `first` and `last` [us], the same for the same seed.
@@ -84,6 +114,8 @@ FaultSchedule drawSchedule(uint64_t seed, int64_t first, int64_t last);
 /// Adds fences, a hand, a return, and faults of them, from draws of their own: what
 /// drawSchedule() drew stays as it is.
 void addScenario(FaultSchedule& schedule, int64_t first, int64_t last);
+/// In place of a hand one that lies.
+void addLie(FaultSchedule& schedule, int64_t first, int64_t last);
 /// Those of messages, as the bus makes them.
 FaultPlan planOf(const FaultSchedule& schedule);
 /// "4.20 to 6.31 s: drop on MAP to planner, strength 0.52".

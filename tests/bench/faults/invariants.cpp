@@ -19,6 +19,7 @@ constexpr int64_t kNoticed = 30'000;        // [us] shorter faults may fall betw
 constexpr int64_t kProgramLease = 200'000;  // [us] at most
 constexpr int64_t kInsSilence = 100'000;    // [us]
 constexpr int64_t kInsAge = 300'000;        // [us]
+constexpr float kRest = 0.05F;              // [1] of the largest command
 constexpr int64_t kBump = 100'000;          // [us] for which a tilt may be beyond its limit
 constexpr int64_t kOneStep = 20'000;        // [us] of the bridge, and what delays it
 
@@ -58,13 +59,20 @@ void MotorRule::receive(const Received& received) {
 }
 
 void MotorRule::receiveManual(const manual_t& message, bool changed, int64_t now) {
-  const bool possible =
-      std::abs(message.hand_left) <= 1.0F && std::abs(message.hand_right) <= 1.0F &&
-      message.seen_utime <= now + 100'000 && message.seen_utime >= now - limits_.hand_lease_us;
+  const float left = std::abs(message.hand_left), right = std::abs(message.hand_right);
+  const bool known = !std::isnan(left) && !std::isnan(right);
+  const bool possible = !(left > 1.0F) && !(right > 1.0F) && message.seen_utime <= now + 100'000 &&
+                        message.seen_utime >= now - limits_.hand_lease_us;
   Hand& hand = hands_[message.station];
-  const bool moves = message.hand_left != 0.0F || message.hand_right != 0.0F;
+  const bool moves = known && (left != 0.0F || right != 0.0F);
   const bool holds = message.hold != 0 && message.give_back == 0;
-  const int64_t until = holds && moves ? message.seen_utime + limits_.hand_lease_us : now;
+  if (now > hand.heard + limits_.hand_lease_us + kOneStep ||
+      (!known && !changed && message.seq > hand.seq))
+    hand.rested = false;
+  hand.heard = now;
+  if (possible && left <= kRest && right <= kRest) hand.rested = true;
+  const bool may_move = holds && moves && hand.rested;
+  const int64_t until = may_move ? message.seen_utime + limits_.hand_lease_us : now;
   // Nobody outside can tell whether the bridge takes what was changed: it may move, and ends
   // nothing.
   if (possible && changed && holds) hand.until = std::max(hand.until, until);
@@ -132,7 +140,7 @@ std::string MotorRule::stopReason(int64_t now, bool faults) const {
   const std::string program = programStopReason(now, faults);
   if (faults) return inHand() ? "" : program;
   if (!program.empty() && !(present(now) && handMoves(now)))
-    return inHand() ? "the hand holds no button or is silent" : program;
+    return inHand() ? "the hand holds no button, is silent, or was not seen at rest" : program;
   return armed_ > needs_arm_ ? "" : "not armed since the last stop";
 }
 

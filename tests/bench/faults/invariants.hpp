@@ -55,7 +55,7 @@ struct MotorLimits {
 
 /// The motors are at zero unless the bridge was told of an operator, an arming that nothing has
 /// ended since, and either a program that wants motion, an INS that goes on and no tilt beyond its
-/// limit, or a hand that holds the button and sees the robot.
+/// limit, or a hand that holds the button, sees the robot, and was seen at rest.
 /** With `go_back` an armed robot may move without its operator, and then the planner's word decides
  * (ReturnRule); but arming it needs the operator. In the hand neither program nor INS is needed:
  * what a robot that may be in the hand lost of them asks for no ARM. A tilt beyond the limit in
@@ -79,6 +79,8 @@ class MotorRule {
     int64_t seq = INT64_MIN;
     int64_t until = INT64_MIN / 2;  ///< [us] the tracks may move
     bool holds = false;             ///< the robot may be in this hand
+    bool rested = false;            ///< seen at rest since it was last silent or not known
+    int64_t heard = INT64_MIN / 2;  ///< [us]
   };
 
   void receiveManual(const manual_t& message, bool changed, int64_t now);

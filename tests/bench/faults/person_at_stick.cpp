@@ -18,6 +18,7 @@ class ScriptedStick : public drive::Stick {
   drive::Wishes read(int64_t now) override {
     const int64_t since = now - begin_, length = stretch_.until - stretch_.from;
     drive::Wishes wishes;
+    wishes.forward = wishes.turn = 0.0;
     wishes.give_back = since >= length;
     if (since >= length) return wishes;
     const auto share = static_cast<double>(since) / static_cast<double>(length);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // The whole robot in virtual time under seeded faults, and that the rules can fail.
+#include <limits>
+#include <set>
+
 #include <catch2/catch.hpp>
 
 #include "common/messages/fence_messages.hpp"
@@ -76,7 +79,9 @@ TEST_CASE("seeds that once broke a rule, or touched something") {
   for (const uint64_t seed :
        {4, 200006, 200049, 200068, 200091, 200143, 200149, 202133, 305019, 305178, 308388}) {
     CAPTURE(seed);
-    const FaultyRun run = runFaulty(teodor(), scheduleOf(seed, 16.0));
+    FaultSchedule schedule = scheduleOf(seed, 16.0);
+    schedule.scenario.lie.reset();  // they knew none
+    const FaultyRun run = runFaulty(teodor(), schedule);
     CHECK((run.violation ? run.violation->what : "") == "");
   }
 }
@@ -237,7 +242,21 @@ TEST_CASE("the rules see a bridge that does not look at the lease of a hand") {
   loose.motor_bridge.bridge.manual.lease_us = 60'000'000;
   const FaultyRun run = byHand(loose, 8'000'000, 2.0);
   REQUIRE(run.violation);
-  CHECK(run.violation->what.find("the hand holds no button or is silent") != std::string::npos);
+  CHECK(run.violation->what.find("the hand holds no button, is silent") != std::string::npos);
+}
+
+TEST_CASE("no pad, keyboard or page moves a robot that never tells a rest") {
+  RunOptions options;
+  options.duration = 12.0;
+  std::set<HandLie::Kind> lied;
+  for (uint64_t seed = 1; seed <= 30; ++seed) {
+    const FaultSchedule schedule = lyingScheduleOf(seed, options.duration);
+    CAPTURE(seed, describe(schedule.scenario));
+    const FaultyRun run = runFaulty(teodor(), schedule, options);
+    CHECK((run.violation ? run.violation->what : "") == "");
+    if (run.lied && schedule.onlyLies()) lied.insert(schedule.scenario.lie->kind);
+  }
+  CHECK(lied.size() == 3);
 }
 
 TEST_CASE("the rules see a return that is none, and one that a stop has not ended") {
@@ -313,17 +332,17 @@ struct ToldBridge {
 }  // namespace
 
 TEST_CASE("the motors' rule: a hand moves while it holds and sees, and no longer") {
-  const auto drive = [](bool hold, bool give_back) {
+  const auto drive = [](bool hold, bool give_back, float begins = 0.0F) {
     ToldBridge told;
     told.arm();
     REQUIRE(told.drive("") == -1);
     manual_t manual{};
-    manual.seq = 1;
     manual.hold = 1;
-    manual.hand_left = 1.0F;
     manual.seen_utime = told.now;
-    told.tell(kManual, manual);
-    manual.seq = 2;
+    for (manual.seq = 1; manual.seq <= 2; ++manual.seq) {
+      manual.hand_left = manual.seq == 2 ? 1.0F : begins;
+      told.tell(kManual, manual);
+    }
     manual.hold = hold;
     manual.give_back = give_back;
     told.tell(kManual, manual);
@@ -332,14 +351,17 @@ TEST_CASE("the motors' rule: a hand moves while it holds and sees, and no longer
   // The program's lease of 200 ms is that of the last one that wanted motion.
   CHECK(drive(true, false) == 470);
   CHECK(drive(false, false) == 460);
+  // A stick that was not seen at rest moves nothing, whatever it holds.
+  CHECK(drive(true, false, 1.0F) == 460);
+  CHECK(drive(true, false, std::numeric_limits<float>::quiet_NaN()) == 460);
   ToldBridge told;
   told.arm();
   REQUIRE(told.drive("") == -1);
   // Without program and INS it may go on, and needs no ARM afterwards.
   manual_t manual{};
   manual.hold = 1;
-  manual.hand_left = 0.5F;
   for (int i = 0; i < 200; ++i, told.now += 10'000) {
+    manual.hand_left = i < 2 ? 0.0F : 0.5F;
     ++manual.seq;
     manual.seen_utime = told.now;
     told.tell(kManual, manual);

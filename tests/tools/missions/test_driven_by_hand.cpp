@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include <cstdio>
+#include <fstream>
 #include <optional>
 #include <random>
 
@@ -12,6 +13,8 @@
 #include "modules/simulator/simulator_files.hpp"
 #include "tests/tools/missions/shipped_robot.hpp"
 #include "tools/report/drive_report.hpp"
+#include "tools/robot/drive/drive_call.hpp"
+#include "tools/robot/drive/pad.hpp"
 
 using namespace tread;
 using namespace tread::missions;
@@ -121,4 +124,67 @@ TEST_CASE("at half power no pattern is driven by hand, and nothing is taught") {
   INFO(half.report);
   CHECK(half.taught == 0);
   CHECK(half.arrived);
+}
+
+namespace {
+
+/// What the kernel tells before the first movement of a pad whose axes count 0 to 255.
+const std::string kUntouched =
+    "A: 00 0 255 0 0 0\nA: 01 0 255 0 0 0\nE: 0.0 0003 0000 0\nE: 0.0 0003 0001 0\n";
+/// START, then the dead man's button, twice.
+const std::string kArmsAndHolds =
+    "E: 2.000000 0001 013b 1\nE: 2.200000 0001 013b 0\nE: 4.000000 0001 0137 1\n"
+    "E: 5.000000 0001 0137 0\nE: 5.500000 0001 0137 1\n";
+const std::string kEnds = "E: 8.000000 0000 0000 0\n";
+
+struct PadDriven {
+  bool moved = false;
+  bool armed = false;
+  std::string lines;  ///< what tread-drive said
+};
+
+/// The shipped robot on a meadow, with nobody but tread-drive and a recorded pad.
+PadDriven driveWith(const std::string& events) {
+  const std::string path = "test_driven_by_hand_" + std::to_string(getpid()) + ".evemu";
+  std::ofstream(path) << events;
+  PadDriven result;
+  RobotSystem system(teodor(),
+                     sim::readWorld(std::string(TREAD_SOURCE_DIR) + "/config/worlds/meadow.yaml"),
+                     {0.0, 0.0, 0.0}, 1, "", {});
+  Bus& outside = system.bus().outside();
+  const Latest<motor_t> motor(outside, kMotor);
+  drive::DriveCall call(outside, {"ada", "", "ada"}, std::make_unique<drive::RecordedPad>(path));
+  auto state = operators::CallResult::kPending;
+  for (int64_t now = outside.now(); state == operators::CallResult::kPending; now += 20'000) {
+    system.bus().runUntil(now);
+    state = call.step(now);
+    result.lines += call.describe(now) + "\n";
+    const std::array<double, 2> power = system.devices().power(now);
+    result.moved |= power[0] != 0.0 || power[1] != 0.0;
+    result.armed |= motor.any() && mayDrive(motor.message().bridge_state);
+  }
+  std::remove(path.c_str());
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("a pad that was not seen at rest moves nothing, and tread-drive says so") {
+  const std::string lies = GENERATE(as<std::string>{},
+                                    "",                                           // never touched
+                                    "E: 1.0 0003 0000 0\nE: 1.0 0003 0001 0\n",   // repeats it
+                                    "E: 1.0 0003 0001 128\n",                     // one axis only
+                                    "E: 1.0 0003 0000 1\nE: 1.0 0003 0001 2\n");  // at an extreme
+  const PadDriven run = driveWith(kUntouched + lies + kArmsAndHolds + kEnds);
+  INFO(run.lines);
+  CHECK(run.armed);
+  CHECK_FALSE(run.moved);
+  CHECK_THAT(run.lines, Catch::Contains("the stick was not seen at rest"));
+}
+
+TEST_CASE("a pad that was seen at rest drives, whatever the kernel told before") {
+  const PadDriven run = driveWith(kUntouched + "E: 1.0 0003 0000 128\nE: 1.0 0003 0001 127\n" +
+                                  kArmsAndHolds + "E: 6.0 0003 0001 0\n" + kEnds);
+  INFO(run.lines);
+  CHECK(run.moved);
 }

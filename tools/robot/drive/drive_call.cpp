@@ -21,8 +21,12 @@ constexpr int64_t kGiveBack = 300'000;  // [us] for which it is told
 constexpr int64_t kSilent = 500'000;    // [us] MOTOR older than this shows nothing
 constexpr int kRepeat = 3;              // of what must not be lost
 
+bool sameShare(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
+
 bool sameWishes(const Wishes& a, const Wishes& b) {
-  return a.forward == b.forward && a.turn == b.turn && a.hold == b.hold &&
+  return sameShare(a.forward, b.forward) && sameShare(a.turn, b.turn) && a.hold == b.hold &&
          a.give_back == b.give_back;
 }
 
@@ -124,6 +128,8 @@ std::string DriveCall::describe(int64_t utime) const {
                 motor.command[0], motor.command[1]);
   if (std::isfinite(motor.battery_voltage)) words += formatted("  %.1f V", motor.battery_voltage);
   words += wishes_.hold ? "  held" : "  not held";
+  if (std::isnan(wishes_.forward) || std::isnan(wishes_.turn))
+    words += "  the stick was not seen at rest: move it to all sides once and let it go";
   return words + "  " + motor.state_reason + operators::keyWords(bus_);
 }
 

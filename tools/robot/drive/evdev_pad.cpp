@@ -98,7 +98,7 @@ EvdevPad::EvdevPad(const std::string& path)
   for (const int axis : kSticks) {
     const input_absinfo* info = libevdev_get_abs_info(device_->evdev, static_cast<unsigned>(axis));
     state_.setRange(axis, info->minimum, info->maximum);
-    state_.take(EV_ABS, axis, info->value);
+    state_.begin(EV_ABS, axis, info->value);
   }
 }
 

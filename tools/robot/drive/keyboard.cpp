@@ -88,6 +88,7 @@ Wishes KeyState::wishes(int64_t now) const {
   Wishes wishes;
   const bool escaped = escapedAlone(now);
   const bool moves = now < moves_until_ && !escaped;
+  // No key pressed is a measurement.
   wishes.forward = moves ? forward_ : 0.0;
   wishes.turn = moves ? turn_ : 0.0;
   wishes.hold = moves || (now < holds_until_ && !escaped);

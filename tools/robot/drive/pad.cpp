@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -28,18 +29,26 @@ void PadState::setRange(int code, int least, int most) {
   if (most <= least) return;
   axes_[code].least = least;
   axes_[code].most = most;
-  axes_[code].value = static_cast<int>((int64_t{least} + most) / 2);
 }
 
-void PadState::take(int type, int code, int value) {
+void PadState::begin(int type, int code, int value) {
   if (type == EV_ABS) axes_[code].value = value;
   if (type == EV_KEY) pressed_[code] = value != 0;
 }
 
+void PadState::take(int type, int code, int value) {
+  if (type == EV_ABS) {
+    const std::optional<int> before = axes_[code].value;
+    axes_[code].measured |= before && *before != value;
+  }
+  begin(type, code, value);
+}
+
 double PadState::share(const Axis& axis) {
+  if (!axis.measured) return std::numeric_limits<double>::quiet_NaN();
   const double half = 0.5 * (static_cast<double>(axis.most) - axis.least);
   const double way =
-      std::clamp((static_cast<double>(axis.value) - axis.least) / half - 1.0, -1.0, 1.0);
+      std::clamp((static_cast<double>(*axis.value) - axis.least) / half - 1.0, -1.0, 1.0);
   const double beyond = std::max(0.0, std::abs(way) - kDeadZone) / (1.0 - kDeadZone);
   return std::copysign(beyond, way);
 }
@@ -54,7 +63,7 @@ bool PadState::anyPressed(std::initializer_list<int> buttons) const {
 Wishes PadState::wishes() const {
   const auto at = [this](int code) {
     const auto found = axes_.find(code);
-    return found == axes_.end() ? 0.0 : -share(found->second);  // up and left are negative
+    return -share(found == axes_.end() ? Axis{} : found->second);  // up and left are negative
   };
   Wishes wishes;
   wishes.forward = at(ABS_Y);
@@ -111,8 +120,14 @@ void RecordedPad::takeLine(const std::string& line, const std::string& where) {
 
 Wishes RecordedPad::read(int64_t now) {
   if (begun_ < 0) begun_ = now;
-  for (; next_ < events_.size() && events_[next_].time <= now - begun_; ++next_)
-    state_.take(events_[next_].type, events_[next_].code, events_[next_].value);
+  for (; next_ < events_.size() && events_[next_].time <= now - begun_; ++next_) {
+    const Event& event = events_[next_];
+    // What it begins with is what the kernel told when the device was opened.
+    if (event.time == 0)
+      state_.begin(event.type, event.code, event.value);
+    else
+      state_.take(event.type, event.code, event.value);
+  }
   Wishes wishes = state_.wishes();
   wishes.ended = next_ == events_.size();
   return wishes;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,10 @@ class PadState {
  public:
   /// Numbers that an axis (ABS_X, ABS_Y) counts from and to.
   void setRange(int code, int least, int most);
+  /// What the device says at first of an axis or button. For an axis that is no measurement: until
+  /// it is moved the kernel tells 0, or where it was when nobody looked.
+  void begin(int type, int code, int value);
+  /// An event. An axis counts from the first one that tells another value than it began with.
   void take(int type, int code, int value);
   Wishes wishes() const;
 
@@ -26,9 +31,10 @@ class PadState {
   struct Axis {
     int least = -32768;
     int most = 32767;
-    int value = 0;
+    std::optional<int> value;
+    bool measured = false;
   };
-  /// -1..1, and 0 around the middle.
+  /// -1..1, and 0 around the middle; NaN where it has not been measured.
   static double share(const Axis& axis);
   bool anyPressed(std::initializer_list<int> buttons) const;
 

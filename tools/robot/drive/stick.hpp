@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "common/pattern/pattern.hpp"
@@ -11,10 +12,11 @@ namespace tread::drive {
 
 /// What a person wants at one moment.
 struct Wishes {
-  double forward = 0.0;  ///< [1] -1..1
-  double turn = 0.0;     ///< [1] -1..1, + to the left
-  bool hold = false;     ///< the dead-man's button is pressed
-  bool arm = false;      ///< ... and these buttons
+  /// [1] -1..1, turn + to the left; NaN: where the stick is has not been measured.
+  double forward = std::numeric_limits<double>::quiet_NaN();
+  double turn = std::numeric_limits<double>::quiet_NaN();
+  bool hold = false;  ///< the dead-man's button is pressed
+  bool arm = false;   ///< ... and these buttons
   bool disarm = false;
   bool give_back = false;
   bool stop = false;   ///< whoever drives: a robot that drives by itself is disarmed
@@ -39,7 +41,7 @@ class Stick {
 };
 
 /// Shares of the largest command for both tracks, -1..1; a turn keeps its radius where one of them
-/// would be larger.
+/// would be larger. Where forward or turn is not known, neither track is (NaN).
 TrackCommand mixed(double forward, double turn);
 
 }  // namespace tread::drive

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <cmath>
 #include <memory>
 #include <stdexcept>
 #include <vector>
@@ -13,6 +14,8 @@ namespace tread::drive {
 namespace {
 
 using operators::CallResult;
+
+const Wishes kRests{0.0, 0.0};
 
 /// A stick in the test's own hand.
 class HeldStick : public Stick {
@@ -39,7 +42,7 @@ class Idle : public Node {
 /// A robot that says what the test wants, and a person's program on the outside of its bus.
 struct Cockpit {
   VirtualBus bus{1};
-  Wishes wishes;
+  Wishes wishes = kRests;
   std::string gone;
   int16_t state = motor_t::STATE_DISARMED;
   bool robot_there = true;
@@ -171,7 +174,7 @@ TEST_CASE("the arm button asks until the robot is armed, and an old press does n
   pit.state = motor_t::STATE_FAULT;
   pit.run(3'000'000);
   CHECK(pit.arms.empty());
-  pit.wishes = {};
+  pit.wishes = kRests;
   pit.wishes.disarm = true;
   pit.run(100'000);
   REQUIRE(!pit.arms.empty());
@@ -204,7 +207,7 @@ TEST_CASE("a stick that is gone ends in one line, and a robot in the hand is dis
         "the gamepad is gone: No such device; the robot is let go");
   CHECK_FALSE(pit.told.back().hold);
   CHECK_FALSE(pit.told.back().give_back);
-  CHECK(pit.told.back().hand_left == 0.0F);
+  CHECK(std::isnan(pit.told.back().hand_left));  // a stick that is gone rests nowhere
   REQUIRE(!pit.arms.empty());
   CHECK_FALSE(pit.arms.back().armed);
   CHECK(pit.operators_heard.back().allowed == operator_t::ALLOW_NOTHING);
@@ -219,6 +222,28 @@ TEST_CASE("ending while the planner drives stops nobody: the operator's other pr
   pit.call->letGo(pit.bus.now());
   pit.bus.runUntil(pit.bus.now() + 10'000);
   CHECK(pit.arms.empty());
+}
+
+TEST_CASE("a stick that is not known is told as unknown, at 50 Hz, and to the person in one line") {
+  Cockpit pit;
+  pit.wishes = Wishes{};
+  pit.wishes.hold = true;
+  pit.run(1'000'000);
+  REQUIRE(pit.told.size() >= 40);
+  CHECK(pit.told.size() <= 60);
+  CHECK(std::isnan(pit.told.back().hand_left));
+  CHECK(std::isnan(pit.told.back().hand_right));
+  CHECK(pit.told.back().hold);
+  const std::string line = "the stick was not seen at rest: move it to all sides once";
+  CHECK_THAT(pit.call->describe(pit.bus.now()), Catch::Contains(line));
+  pit.wishes.forward = 0.0;  // one axis is not enough
+  pit.run(100'000);
+  CHECK(std::isnan(pit.told.back().hand_left));
+  CHECK_THAT(pit.call->describe(pit.bus.now()), Catch::Contains(line));
+  pit.wishes.turn = 0.0;
+  pit.run(100'000);
+  CHECK(pit.told.back().hand_left == 0.0F);
+  CHECK_THAT(pit.call->describe(pit.bus.now()), !Catch::Contains(line));
 }
 
 TEST_CASE("the line shows state, commands, battery, button and reason") {

@@ -51,6 +51,8 @@ TEST_CASE("a stick's ends are full, its middle is nothing, and the numbers are t
   PadState pad;
   pad.setRange(ABS_X, 0, 255);
   pad.setRange(ABS_Y, 0, 255);
+  for (const int axis : {ABS_X, ABS_Y}) pad.begin(EV_ABS, axis, 0);
+  for (const int axis : {ABS_X, ABS_Y}) pad.take(EV_ABS, axis, 128);
   CHECK(pad.wishes().forward == 0.0);
   CHECK(pad.wishes().turn == 0.0);
   pad.take(EV_ABS, ABS_Y, 0);
@@ -61,6 +63,49 @@ TEST_CASE("a stick's ends are full, its middle is nothing, and the numbers are t
   CHECK(pad.wishes().forward == 0.0);
   pad.take(EV_ABS, ABS_Y, 99'999);
   CHECK(pad.wishes().forward == -1.0);
+}
+
+TEST_CASE("an axis counts from the first event that tells another value than it began with") {
+  PadState pad;
+  pad.setRange(ABS_X, 0, 255);
+  pad.setRange(ABS_Y, 0, 255);
+  const auto forward = [&] { return pad.wishes().forward; };
+  CHECK(std::isnan(forward()));  // nobody said anything
+  pad.begin(EV_ABS, ABS_Y, 0);
+  CHECK(std::isnan(forward()));
+  pad.take(EV_ABS, ABS_Y, 0);
+  pad.take(EV_ABS, ABS_Y, 0);
+  CHECK(std::isnan(forward()));  // a repetition is no movement
+  pad.take(EV_ABS, ABS_Y, 255);
+  CHECK(forward() == -1.0);
+  CHECK(std::isnan(pad.wishes().turn));  // one axis says nothing of the other
+  pad.take(EV_ABS, ABS_X, 128);
+  CHECK(std::isnan(pad.wishes().turn));  // its first value: nobody knows whether it moved
+  pad.take(EV_ABS, ABS_X, 127);
+  CHECK(pad.wishes().turn == 0.0);
+  pad.take(EV_ABS, ABS_Y, 0);
+  CHECK(forward() == 1.0);
+}
+
+TEST_CASE("what a recording begins with is what the kernel told, and no measurement") {
+  const Recording file(
+      "A: 00 0 255\nA: 01 0 255\nE: 3.000000 0003 0000 0\nE: 3.000000 0003 0001 0\n"
+      "E: 3.000000 0003 0000 128\nE: 3.000000 0003 0001 128\nE: 3.100000 0003 0000 128\n"
+      "E: 4.000000 0003 0000 129\nE: 5.000000 0003 0001 127\nE: 6.000000 0000 0000 0\n");
+  RecordedPad pad(file.path);
+  const TrackCommand begins = mixed(pad.read(0).forward, pad.read(0).turn);
+  CHECK((std::isnan(begins.left) && std::isnan(begins.right)));
+  CHECK(std::isnan(pad.read(500'000).turn));
+  const Wishes one = pad.read(1'000'000);
+  CHECK(one.turn == 0.0);
+  CHECK((std::isnan(mixed(one.forward, one.turn).left)));
+  const Wishes both = pad.read(2'000'000);
+  CHECK(mixed(both.forward, both.turn) == TrackCommand{0.0, 0.0});
+}
+
+TEST_CASE("a keyboard is known from the start: no key pressed is a measurement") {
+  const Wishes wishes = KeyState().wishes(1'000'000);
+  CHECK(mixed(wishes.forward, wishes.turn) == TrackCommand{0.0, 0.0});
 }
 
 TEST_CASE("the dead-man's button is each shoulder, the others arm, disarm and give back") {
@@ -84,8 +129,8 @@ TEST_CASE("the dead-man's button is each shoulder, the others arm, disarm and gi
 TEST_CASE("a recording is played at its own speed, and says when it is over") {
   const Recording file(
       "# EVEMU 1.3\nN: pad\nA: 00 0 255 0 0 0\nA: 01 0 255 0 0 0\n"
-      "E: 10.500000 0001 0137 0001\t# BTN_TR\nE: 10.700000 0003 0001 0\nE: 11.000000 0000 0000 "
-      "0\n");
+      "E: 10.500000 0001 0137 0001\t# BTN_TR\nE: 10.500000 0003 0001 255\n"
+      "E: 10.600000 0003 0001 128\nE: 10.700000 0003 0001 0\nE: 11.000000 0000 0000 0\n");
   RecordedPad pad(file.path);
   CHECK(pad.read(5'000'000).hold);
   CHECK(pad.read(5'190'000).forward == 0.0);
