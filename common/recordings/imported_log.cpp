@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include "common/messages/blank.hpp"
@@ -14,11 +15,11 @@ namespace {
 
 constexpr int64_t kImportOriginUs = 1'000'000;
 constexpr int64_t kPeriodUs = 50'000;
+constexpr int64_t kSame = 1000;  // [us] by which times differ that are meant to be one
 constexpr int64_t kImportRunId = 1;
 
-/// To whole milliseconds: the recordings know no more.
 int64_t utimeOf(double seconds) {
-  return kImportOriginUs + std::llround(seconds * 1e3) * 1000;
+  return kImportOriginUs + std::llround(seconds * 1e6);
 }
 
 /// One execution of the log.
@@ -29,29 +30,46 @@ struct Planned {
   std::string reason;
 };
 
+/// The first hole that ends after a time and begins before another one.
+const CommandHole* holeWithin(const std::vector<CommandHole>& holes, double begin, double end) {
+  const auto hole =
+      std::upper_bound(holes.begin(), holes.end(), begin,
+                       [](double time, const CommandHole& one) { return time < one.end; });
+  return hole != holes.end() && hole->begin < end ? &*hole : nullptr;
+}
+
+/// The n-th execution of a command; nothing where it would begin without the command.
+std::optional<Planned> plannedExecution(const CommandRun& run, int n, const ExecutionLayout& layout,
+                                        const std::vector<CommandHole>& holes) {
+  const double begin = run.begin + layout.offset + n * layout.length;
+  const CommandHole* const hole = holeWithin(holes, begin, begin + layout.length - kPeriod / 2.0);
+  const double known = hole == nullptr ? run.end : std::min(run.end, hole->begin);
+  Planned planned;
+  const int64_t started = planned.record.started = utimeOf(begin);
+  if (started >= utimeOf(known)) return std::nullopt;
+  const int64_t full = started + utimeOf(layout.length) - kImportOriginUs;
+  planned.completed = full <= utimeOf(known) + kPeriodUs / 2;
+  planned.end = planned.completed ? full : utimeOf(known);
+  if (!planned.completed) planned.reason = known < run.end ? kCommandsMissing : run.end_reason;
+  planned.record.record_run_id = kImportRunId;
+  planned.record.record_pattern_id = run.step;
+  planned.record.record_set_version = 1;
+  planned.record.commands_total = static_cast<int32_t>(std::lround(layout.length / kPeriod));
+  return planned;
+}
+
 std::vector<Planned> plannedExecutions(const std::vector<CommandRun>& runs,
-                                       const ExecutionLayout& layout) {
+                                       const ExecutionLayout& layout,
+                                       const std::vector<CommandHole>& holes) {
   std::vector<Planned> all;
   int64_t number = 0;
   for (const CommandRun& run : runs) {
     ++number;
     for (int n = 0; n < layout.executions; ++n) {
-      const int64_t started = utimeOf(run.begin + layout.offset + n * layout.length);
-      const int64_t full = started + utimeOf(layout.length) - kImportOriginUs;
-      const int64_t run_end = utimeOf(run.end);
-      if (started >= run_end) break;
-      Planned planned;
-      planned.completed = full <= run_end + kPeriodUs / 2;
-      planned.end = planned.completed ? full : run_end;
-      planned.reason = planned.completed ? "" : run.end_reason;
-      planned.record = blank<execution_record_t>();
-      planned.record.record_run_id = kImportRunId;
-      planned.record.record_execution_id = 10 * number + n + 1;
-      planned.record.started = started;
-      planned.record.record_pattern_id = run.step;
-      planned.record.record_set_version = 1;
-      planned.record.commands_total = static_cast<int32_t>(std::lround(layout.length / kPeriod));
-      all.push_back(planned);
+      auto planned = plannedExecution(run, n, layout, holes);
+      if (!planned) continue;
+      planned->record.record_execution_id = 10 * number + n + 1;
+      all.push_back(std::move(*planned));
     }
   }
   return all;
@@ -87,7 +105,7 @@ class ImportMaker {
     int64_t last = 0;
     for (const Fix& fix : fixes) {
       const int64_t utime = utimeOf(fix.time);
-      // Two fixes within a millisecond are one.
+      // Two fixes within a microsecond are one.
       if (utime <= last) continue;
       auto ins = blank<ins_t>();
       fill(ins, fix);
@@ -139,7 +157,7 @@ class ImportMaker {
                                          : execution_record_t::OUTCOME_ABORTED;
       record.outcome_reason = planned.reason;
       record.commands_played =
-          static_cast<int32_t>((planned.end - record.started + kPeriodUs - 1) / kPeriodUs);
+          static_cast<int32_t>((planned.end - record.started + kPeriodUs - kSame) / kPeriodUs);
       log_.publishExecutions(planned.end);
       ++(planned.completed ? counts_.completed : counts_.aborted);
     }
@@ -196,10 +214,19 @@ class ImportMaker {
 
 }  // namespace
 
+std::vector<CommandHole> commandHoles(const std::vector<DriveSample>& drive) {
+  std::vector<CommandHole> holes;
+  for (size_t i = 1; i < drive.size(); ++i)
+    if (!drive[i].apart && drive[i].time - drive[i - 1].time > kLongestHold + 1e-6)
+      holes.push_back({drive[i - 1].time + kPeriod, drive[i].time});
+  return holes;
+}
+
 std::vector<LogEvent> makeLog(const RecordedDrive& recording, const Session& session,
                               const std::string& format, const ExecutionLayout& layout,
                               LogCounts& counts) {
-  const auto executions = plannedExecutions(recording.runs, layout);
+  counts.holes = commandHoles(recording.drive);
+  const auto executions = plannedExecutions(recording.runs, layout, counts.holes);
   double begin = std::numeric_limits<double>::max();
   if (!recording.drive.empty()) begin = recording.drive.front().time;
   if (!recording.fixes.empty()) begin = std::min(begin, recording.fixes.front().time);

@@ -22,7 +22,8 @@
 // (k = 1, 2, ...), the n-th of its executions has
 //     execution id = 10 k + n,   pattern id = the recording's step number,   set version 1,   run
 //     id 1.
-// A command that did not last until the end of an execution leaves it aborted, with the reason.
+// A command that did not last until the end of an execution leaves it aborted, with the reason; so
+// does a time of which no command is known, and no MOTOR is made up for it.
 namespace tread::recordings {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -45,6 +46,7 @@ struct DriveSample {
   TrackCommand command;                      ///< [m/s]
   TrackCommand speed;                        ///< [m/s] of the wheels' rims
   bool automatic = true;                     ///< false: idle or driven by the operator
+  bool apart = false;                        ///< recorded apart from the sample before
   double voltage = kUnknown;                 ///< [V]
   TrackCommand current{kUnknown, kUnknown};  ///< [A]
 };
@@ -88,6 +90,10 @@ struct RecordedDrive {
 inline constexpr double kSilence = 2.0;
 /// Period of the recordings [s].
 inline constexpr double kPeriod = 0.05;
+/// A command is taken to hold until the next one for no longer than this [s].
+inline constexpr double kLongestHold = 0.3;
+/// Why a command ended where the recording has none.
+inline constexpr const char* kCommandsMissing = "commands are missing";
 
 /// steps/*.csv: poses held and late; a fix where pose_new says so. Throws RecordingError.
 /** A session without pose lag leaves the poses at the time at which they were logged. */
@@ -106,6 +112,15 @@ struct ExecutionLayout {
   int executions = 2;   ///< per command, at most 9
 };
 
+/// A time of which no command is known.
+struct CommandHole {
+  double begin = 0.0;  ///< [s] one period after the last command
+  double end = 0.0;    ///< [s]
+};
+
+/// Where samples that were recorded together are further apart than a command is taken to hold.
+std::vector<CommandHole> commandHoles(const std::vector<DriveSample>& drive);
+
 /// What was put into a log.
 struct LogCounts {
   size_t ins = 0;
@@ -114,6 +129,7 @@ struct LogCounts {
   size_t completed = 0;
   size_t aborted = 0;
   double duration = 0.0;  ///< [s]
+  std::vector<CommandHole> holes;
 };
 
 /// The events of the log of a recording in order of time: MARK, CONFIG, INS, MOTOR, SCAN,

@@ -85,6 +85,7 @@ RecordedDrive readByStep(const CsvTable& table, const Session& session, double b
     for (size_t row = rows.first; row < rows.last; ++row) {
       DriveSample sample;
       sample.time = rows.origin + table.number(row, "t_s");
+      sample.apart = row == rows.first;
       sample.command =
           trackSpeeds(table, row, session.wheel_radius, "cmd_left_rad_s", "cmd_right_rad_s");
       sample.speed =

@@ -40,6 +40,12 @@ class Series {
   size_t size() const { return samples_.size(); }
   double time(size_t i) const { return samples_[i].time; }
   size_t line(size_t i) const { return samples_[i].line; }
+  /// Between two of them, as a rule [s].
+  double period() const {
+    std::vector<double> times;
+    for (const Sample& sample : samples_) times.push_back(sample.time);
+    return usualPeriod(times);
+  }
   /// The newest one at a time, NaN if it is older than `age` [s].
   double at(double time, double age) const {
     const auto after =
@@ -92,33 +98,53 @@ class CsvContent {
   }
 
  private:
+  /// A row with its time.
+  struct Row {
+    double time;
+    size_t row;
+  };
+
   void read(const std::string& file, const CsvSource& source) {
     const CsvTable table(file, source.layout);
     for (const auto& [quantity, column] : source.columns) files_[quantity] = file;
-    double first = 0.0;
-    double last = -std::numeric_limits<double>::infinity();
-    for (size_t row = 0; row < table.rows(); ++row) {
-      const double time = timeOf(table, row, source);
-      if (row == 0) first = time;
-      if (time < last)
-        throw table.error(row, "column " + source.time + " goes back; are the rows in order?");
-      if (time - first > kLongest)
-        throw table.error(row, "column " + source.time + " is " + formatNumber(time - first) +
-                                   " s after the first row; is the unit of the time right?");
-      if (time == last) {
-        ++result_.left_out[file + ": the same time as the row before"];
-        continue;
-      }
-      last = time;
+    std::vector<Row> rows = rowsOf(table, source);
+    sortByTime(rows, "rows of " + file, result_);
+    for (const Row& row : rows)
       for (const auto& [quantity, column] : source.columns)
-        take(table, row, time, quantity, column, file);
-    }
-    begin_ = std::min(begin_, first);
+        take(table, row.row, row.time, quantity, column, file);
+    if (!rows.empty()) begin_ = std::min(begin_, rows.front().time);
   }
 
-  static double timeOf(const CsvTable& table, size_t row, const CsvSource& source) {
-    if (source.time.empty()) return static_cast<double>(row) / source.rate;
-    return source.time_unit * table.number(row, source.time);
+  /// The rows as they stand in the table.
+  static std::vector<Row> rowsOf(const CsvTable& table, const CsvSource& source) {
+    std::vector<Row> rows;
+    std::vector<double> raw;
+    for (size_t row = 0; row < table.rows(); ++row) {
+      raw.push_back(source.time.empty() ? static_cast<double>(row) / source.rate
+                                        : table.number(row, source.time));
+      rows.push_back({source.time_unit * raw.back(), row});
+    }
+    if (!source.time.empty())
+      if (const auto problem = timeUnitProblem(raw, source.time_unit))
+        throw table.error(0, "column " + source.time + ": " + *problem);
+    checkTimes(table, source, rows);
+    return rows;
+  }
+
+  static void checkTimes(const CsvTable& table, const CsvSource& source,
+                         const std::vector<Row>& rows) {
+    double newest = rows.empty() ? 0.0 : rows.front().time;
+    for (const Row& row : rows) {
+      const double since = row.time - rows.front().time;
+      if (since > kLongest)
+        throw table.error(row.row, "column " + source.time + " is " + formatNumber(since) +
+                                       " s after the first row; is the unit of the time right?");
+      if (row.time < newest - kOvertaking)
+        throw table.error(row.row, "column " + source.time + " goes back by " +
+                                       formatNumber(newest - row.time) +
+                                       " s; are these two drives? cut the file there");
+      newest = std::max(newest, row.time);
+    }
   }
 
   void take(const CsvTable& table, size_t row, double time, const std::string& quantity,
@@ -245,17 +271,21 @@ void takePoses(const CsvContent& content, const CsvMapping& mapping, ForeignDriv
 }
 
 void takeCommands(const CsvContent& content, const CsvMapping& mapping, RecordedDrive& drive) {
+  const double period = content.of("left_command").period();
+  const double hold = mapping.command_hold.value_or(holdOf(period));
   std::vector<DriveSample> commands;
   for (const char* side : {"left_command", "right_command"})
     for (size_t i = 0; i < content.of(side).size(); ++i) {
       DriveSample sample;
       sample.time = content.of(side).time(i);
-      sample.command = {content.at("left_command", sample.time, mapping.command_hold),
-                        content.at("right_command", sample.time, mapping.command_hold)};
+      sample.command = {content.at("left_command", sample.time, hold),
+                        content.at("right_command", sample.time, hold)};
       if (std::isfinite(sample.command.left + sample.command.right)) commands.push_back(sample);
     }
+  std::stable_sort(commands.begin(), commands.end(),
+                   [](const auto& a, const auto& b) { return a.time < b.time; });
   drive.kind = mapping.kind;
-  holdCommands(std::move(commands), mapping.command_hold, drive);
+  holdCommands(commands, period, hold, drive);
   for (DriveSample& sample : drive.drive) {
     sample.speed = {content.at("left_speed", sample.time, kSpeedAge),
                     content.at("right_speed", sample.time, kSpeedAge)};

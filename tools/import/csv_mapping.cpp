@@ -82,7 +82,8 @@ class MappingReader {
     reader_.text("surface", mapping_.surface);
     reader_.number("baseline", mapping_.baseline, {0.0, 10.0}, "m");
     reader_.number("wheel_radius", wheel_radius_, {0.001, 5.0}, "m");
-    reader_.number("command_hold", mapping_.command_hold, {0.05, 3600.0}, "s");
+    if (reader_.has("command_hold"))
+      reader_.number("command_hold", mapping_.command_hold.emplace(), {0.05, 3600.0}, "s");
     readOrigin(reader_.section("origin"));
     readHeading(reader_.section("heading"));
     for (ConfigReader& table : reader_.sections("tables", true))

@@ -38,7 +38,8 @@ struct CsvMapping {
   std::string surface = "unknown";
   double baseline = 0.0;  ///< [m] between the tracks; 0 = unknown
   CommandKind kind = CommandKind::kPower;
-  double command_hold = 0.5;  ///< [s] a command counts as gone if none came for so long
+  /// [s] a command is known to hold where none follows; nothing: as its period allows.
+  std::optional<double> command_hold;
   std::vector<CsvSource> sources;
   /// Where the map's origin is: metres where positions are x and y; degrees, degrees and metres
   /// where they are latitude and longitude. Nothing: where they are zero, or at the first fix.

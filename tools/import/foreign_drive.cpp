@@ -2,53 +2,115 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/import/foreign_drive.hpp"
 
-#include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include "common/report/text.hpp"
 
 namespace tread::import {
 
 using recordings::DriveSample;
+using recordings::kLongestHold;
 using recordings::kPeriod;
 using recordings::RecordedDrive;
 
-namespace {
+double largestShare(const std::vector<Loss>& losses) {
+  std::map<std::string, double> shares;
+  double largest = 0.0;
+  for (const Loss& loss : losses) {
+    double& share = shares[loss.unit];
+    share += loss.of > 0.0 ? loss.lost / loss.of : 1.0;
+    largest = std::max(largest, share);
+  }
+  return largest;
+}
 
-/// A longer silence of the commands leaves no samples [s].
-constexpr double kLongestIdle = 60.0;
+std::string lineOf(const Loss& loss) {
+  if (loss.of <= 0.0) return "an unknown part: " + loss.what;
+  const auto number = [](double value) {
+    return formatted(value == std::floor(value) ? "%.0f" : "%.1f", value);
+  };
+  return number(loss.lost) + " of " + number(loss.of) + " " + loss.unit +
+         formatted(" (%.2g %%): ", 100.0 * loss.lost / loss.of) + loss.what;
+}
 
-}  // namespace
+double usualPeriod(const std::vector<double>& times) {
+  std::vector<double> steps;
+  for (size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
+  if (steps.empty()) return 0.0;
+  const auto middle = steps.begin() + static_cast<long>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
 
-void holdCommands(std::vector<DriveSample> commands, double age, RecordedDrive& drive) {
-  if (commands.empty()) return;
-  std::stable_sort(commands.begin(), commands.end(),
-                   [](const DriveSample& a, const DriveSample& b) { return a.time < b.time; });
-  size_t at = 0;
-  const double begin = commands.front().time;
-  const auto count = static_cast<size_t>((commands.back().time - begin) / kPeriod) + 1;
-  for (size_t i = 0; i < count; ++i) {
-    const double time = begin + kPeriod * static_cast<double>(i);
-    while (at + 1 < commands.size() && commands[at + 1].time <= time) ++at;
-    if (time - commands[at].time > std::max(age, kLongestIdle)) continue;
-    DriveSample sample = commands[at];
-    sample.automatic = time - sample.time <= age;
-    if (!sample.automatic) sample.command = {0.0, 0.0};
-    sample.time = time;
-    drive.drive.push_back(sample);
+std::optional<std::string> timeUnitProblem(std::vector<double> times, double unit) {
+  static const std::pair<const char*, double> kUnits[] = {
+      {"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}};
+  if (times.size() < 3) return std::nullopt;
+  const double first = times.front();
+  const auto isCalendar = [&](double as) { return first * as > 1.2e9 && first * as < 2.2e9; };
+  std::sort(times.begin(), times.end());
+  const double period = usualPeriod(times);
+  const double seconds = period * unit;
+  const bool strange = first * unit > 4e9 || seconds < 1e-4 || seconds > 20.0;
+  const bool unusual = seconds < 1e-3 || seconds > 2.0;
+  const std::pair<const char*, double>* best = nullptr;
+  for (const auto& other : kUnits) {
+    const double as = period * other.second;
+    if (as < 1e-4 || as > 20.0 || other.second == unit || first * other.second > 4e9) continue;
+    const bool nearer = best == nullptr || std::abs(std::log(as / kPeriod)) <
+                                               std::abs(std::log(period * best->second / kPeriod));
+    if (isCalendar(other.second) || nearer) best = &other;
+    if (isCalendar(other.second)) break;
+  }
+  if (period <= 0.0 || isCalendar(unit) || best == nullptr) return std::nullopt;
+  if (!strange && !(unusual && isCalendar(best->second))) return std::nullopt;
+  return "the times are " + threeDigits(seconds) + " s apart; in " + best->first +
+         " they would be " + threeDigits(period * best->second) + " s apart: give that unit";
+}
+
+double holdOf(double period) {
+  return std::clamp(3.0 * period, kLongestHold, kCommandAge);
+}
+
+void holdCommands(const std::vector<DriveSample>& commands, double period, double hold,
+                  RecordedDrive& drive) {
+  constexpr double kSame = 1e-6;  // [s]
+  const auto follows = [&](size_t i) {
+    return commands[i].time - commands[i - 1].time <= hold + kSame;
+  };
+  for (size_t at = 0; at < commands.size(); ++at) {
+    const double begin = commands[at].time;
+    size_t last = at;
+    while (last + 1 < commands.size() && follows(last + 1)) ++last;
+    const double end = commands[last].time + std::max(kPeriod, std::min(period, hold));
+    for (int i = 0; begin + kPeriod * i < end - kSame; ++i) {
+      const double time = begin + kPeriod * i;
+      while (at < last && commands[at + 1].time <= time + kSame) ++at;
+      drive.drive.push_back(commands[at]);
+      drive.drive.back().time = time;
+    }
+    at = last;
   }
 }
 
 void findRuns(RecordedDrive& drive) {
   std::map<std::pair<double, double>, int> numbers;
   const std::vector<DriveSample>& samples = drive.drive;
+  const auto follows = [&](size_t i) {
+    return samples[i].time - samples[i - 1].time <= kLongestHold;
+  };
   for (size_t first = 0; first < samples.size();) {
     const TrackCommand& command = samples[first].command;
     size_t end = first + 1;
-    while (end < samples.size() && samples[end].command == command) ++end;
+    while (end < samples.size() && samples[end].command == command && follows(end)) ++end;
     if (command != TrackCommand{}) {
       const auto next = static_cast<int>(numbers.size()) + 1;
       const int number =
           numbers.emplace(std::pair(command.left, command.right), next).first->second;
-      const char* const why = end < samples.size() ? "the command changed" : "the log ended";
+      const char* const why = end == samples.size() ? "the log ended"
+                              : follows(end)        ? "the command changed"
+                                                    : recordings::kCommandsMissing;
       drive.runs.push_back({number, samples[first].time, samples[end - 1].time + kPeriod, why});
     }
     first = end;

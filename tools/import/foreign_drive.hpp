@@ -2,7 +2,9 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <algorithm>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,23 +12,77 @@
 
 namespace tread::import {
 
+/// What should have been taken from a recording and could not be.
+struct Loss {
+  std::string what;
+  double lost = 0.0;
+  double of = 0.0;   ///< all that there were; 0 = not known
+  std::string unit;  ///< of both: "rows of a.csv", "poses", "bytes", "s"
+};
+
+/// The largest share that was lost: the losses of a unit together.
+double largestShare(const std::vector<Loss>& losses);
+/// "1234 of 5678 rows (22 %): the same time as the one before".
+std::string lineOf(const Loss& loss);
+
 /// What was found in a recording of another robot.
 struct ForeignDrive {
   recordings::RecordedDrive drive;
   std::string poses;                       ///< whose poses were taken, in words
-  std::map<std::string, size_t> left_out;  ///< what was not taken, and why
+  std::map<std::string, size_t> left_out;  ///< what is no part of a drive, and why
+  std::vector<Loss> losses;
+
+  void lose(const std::string& what, size_t lost, size_t of, const std::string& unit) {
+    if (lost > 0) losses.push_back({what, double(lost), double(of), unit});
+  }
 };
 
 /// No pose of these robots is farther out [m].
 inline constexpr double kFarthest = 100'000.0;
 /// Recordings last no longer [s].
 inline constexpr double kLongest = 7.0 * 86'400.0;
-/// A command is as good as gone if none came for so long [s].
+/// A command is gone if none came for so long, whatever its period [s].
 inline constexpr double kCommandAge = 0.5;
+/// Messages and rows may overtake each other by so much [s].
+inline constexpr double kOvertaking = 0.2;
 
-/// Commands as they came become a sample every 50 ms: the newest command, none once it is older
-/// than `age` [s].
-void holdCommands(std::vector<recordings::DriveSample> commands, double age,
+/// Sorts what came by its time. What is older than its time allows belongs to a clock that went
+/// back, what has the time of the one before repeats it: both are taken out and counted as lost.
+template <class Item>
+void sortByTime(std::vector<Item>& items, const std::string& unit, ForeignDrive& result) {
+  const size_t all = items.size();
+  double newest = -1e300;
+  std::vector<Item> kept;
+  for (Item& item : items) {
+    const bool back = item.time < newest - kOvertaking;
+    newest = std::max(newest, item.time);
+    if (!back) kept.push_back(std::move(item));
+  }
+  result.lose("their clock goes back", all - kept.size(), all, unit);
+  std::stable_sort(kept.begin(), kept.end(),
+                   [](const Item& a, const Item& b) { return a.time < b.time; });
+  const auto last = std::unique(kept.begin(), kept.end(),
+                                [](const Item& a, const Item& b) { return a.time == b.time; });
+  result.lose("the same time as the one before", size_t(kept.end() - last), all, unit);
+  kept.erase(last, kept.end());
+  items = std::move(kept);
+}
+
+/// The usual time between two of these times, which are in order; 0 of fewer than two.
+double usualPeriod(const std::vector<double>& times);
+
+/// Why times cannot be in a unit [s], and in which they are instead; nothing where they can.
+/** Measurements of vehicles are .1 ms to 20 s apart, and no clock shows a later century. */
+std::optional<std::string> timeUnitProblem(std::vector<double> times, double unit);
+
+/// How long a command is known to hold where none follows: three of its periods, but .3 s at least
+/// and kCommandAge at most.
+double holdOf(double period);
+
+/// Commands as they came, in order of time, become a sample every 50 ms: the newest command.
+/** Between two that are further apart than `hold` [s] nothing is known, so that there are no
+ * samples from one `period` after the first on. */
+void holdCommands(const std::vector<recordings::DriveSample>& commands, double period, double hold,
                   recordings::RecordedDrive& drive);
 
 /// Runs of one command other than zero; equal commands have equal numbers.

@@ -8,6 +8,7 @@
 #include "common/messages/blank.hpp"
 #include "common/recordings/csv_table.hpp"
 #include "common/recordings/foreign_types.hpp"
+#include "common/report/text.hpp"
 #include "common/types/message_type.hpp"
 
 namespace tread::import {
@@ -40,12 +41,91 @@ bool finite(const Timed& message) {
   return true;
 }
 
+/// Bytes of a log that belong to no whole event, and how long they last.
+class Damage {
+ public:
+  /// An event was read from the bytes [from, to).
+  void add(uint64_t from, uint64_t to, const LogEvent& event) {
+    constexpr uint64_t kHeader = 28;  // [bytes] of an event
+    const uint64_t bytes = kHeader + event.channel.size() + event.bytes.size();
+    // Behind a sealed event stands its seal, too.
+    if (!event.sealed && to - from > bytes) add(from, to - from - bytes, event.utime);
+    if (!first_) first_ = event.utime;
+    last_ = event.utime;
+  }
+
+  /// No more events: the rest of the file is damaged, too.
+  void finish(uint64_t from, uint64_t size, ForeignDrive& result) {
+    if (size > from) add(from, size - from, last_);
+    if (places_ == 0) return;
+    const std::string where = "damaged, at " + std::to_string(places_) +
+                              (places_ == 1 ? " place" : " places") + ", the first at byte ";
+    result.lose(where + std::to_string(at_), bytes_, size, "bytes");
+    const double begin = 1e-6 * static_cast<double>(since_ - first_.value_or(since_));
+    if (seconds_ > 0.0)
+      result.losses.push_back({"in which bytes are damaged, from " + fixed(begin, 1) + " s on",
+                               seconds_, 1e-6 * static_cast<double>(last_ - *first_), "s"});
+  }
+
+ private:
+  void add(uint64_t at, uint64_t bytes, int64_t until) {
+    if (places_++ == 0) {
+      at_ = at;
+      since_ = first_ ? last_ : until;
+    }
+    bytes_ += bytes;
+    if (first_) seconds_ += 1e-6 * static_cast<double>(until - last_);
+  }
+
+  std::optional<int64_t> first_;  // [us] of the whole events
+  int64_t last_ = 0;              // [us]
+  int64_t since_ = 0;             // [us] last event before the first damage
+  size_t places_ = 0;
+  uint64_t at_ = 0;  // first damaged byte
+  uint64_t bytes_ = 0;
+  double seconds_ = 0.0;
+};
+
+/// How fast the messages' own times go beside the logger's clock.
+class Pace {
+ public:
+  void add(double own, double logged) {
+    if (!first_) first_ = {own, logged};
+    last_ = {own, logged};
+  }
+  /// The unit of the messages' times if it is not that of the logger, us.
+  std::optional<std::string> unit() const {
+    constexpr double kLeast = 1e5;  // [us] of which a pace can be told
+    if (!first_ || last_.second - first_->second < kLeast) return std::nullopt;
+    const double pace = (last_.first - first_->first) / (last_.second - first_->second);
+    for (const auto& [name, of] :
+         {std::pair("ns", 1e3), std::pair("ms", 1e-3), std::pair("s", 1e-6)})
+      if (std::abs(pace / of - 1.0) < 0.2) return name;
+    return std::nullopt;
+  }
+
+ private:
+  std::optional<std::pair<double, double>> first_;
+  std::pair<double, double> last_;
+};
+
 class LogContent {
  public:
   LogContent(const std::string& path, ForeignDrive& result) : path_(path), result_(result) {
     LogReader reader(path);
     LogEvent event;
-    while (reader.next(event)) take(event);
+    Damage damage;
+    uint64_t at = 0;
+    for (; reader.next(event); at = reader.position()) {
+      damage.add(at, reader.position(), event);
+      take(event);
+    }
+    damage.finish(at, reader.position(), result_);
+    if (const auto unit = pace_.unit())
+      throw RecordingError(path + ": its messages count time in " + *unit +
+                           ", their types say us; let their sender say us, or correct the log");
+    for (const auto& [what, count] : broken_)
+      result_.lose(what, count, events_, "messages of known types");
     if (by_type_.empty())
       throw RecordingError(path + ": holds no type that tread-import knows; known are " + known());
   }
@@ -88,42 +168,56 @@ class LogContent {
     const MessageType* const type = foreignTypes().typeOf(event.bytes);
     if (type == nullptr) return leaveOut(event.channel + ": another type");
     auto content = numbersOf(foreignTypes(), *type, event.bytes);
-    if (!content) return leaveOut(event.channel + ": broken");
+    ++events_;
+    if (!content) return void(++broken_[event.channel + ": broken"]);
     // Some senders leave the time empty; then the logger's clock is moved to the senders'.
     const double utime = content->at("utime").at(0);
     if (utime > 0.0 && !offset_) offset_ = utime - static_cast<double>(event.utime);
+    if (utime > 0.0) pace_.add(utime, static_cast<double>(event.utime));
     const double at =
         utime > 0.0 ? utime : static_cast<double>(event.utime) + offset_.value_or(0.0);
     if (!begin_) begin_ = at;
     const double since = (at - *begin_) * 1e-6;
     Timed message{since, event.channel, std::move(*content)};
     if (!finite(message) || std::abs(since) > kLongest)
-      return leaveOut(event.channel + ": numbers or times out of range");
+      return void(++broken_[event.channel + ": numbers or times out of range"]);
     by_type_[type->name].push_back(std::move(message));
   }
 
   std::string path_;
   ForeignDrive& result_;
   std::map<std::string, std::vector<Timed>> by_type_;
-  std::optional<double> offset_;  // [us] of the senders' clock from the logger's
-  std::optional<double> begin_;   // [us] of the first message
+  size_t events_ = 0;                     // of known types
+  std::map<std::string, size_t> broken_;  // of these, and how
+  std::optional<double> offset_;          // [us] of the senders' clock from the logger's
+  std::optional<double> begin_;           // [us] of the first message
+  Pace pace_;
 };
 
-void takePoses(const std::string& path, const std::vector<Timed>& poses, RecordedDrive& drive) {
-  double last = -1e9;
+void takePoses(const std::string& path, std::vector<Timed> poses, ForeignDrive& result) {
+  sortByTime(poses, "poses", result);
+  std::vector<recordings::Fix>& fixes = result.drive.fixes;
   for (const Timed& pose : poses) {
     const double x = of(pose, "x");
     const double y = of(pose, "y");
     if (std::max(std::abs(x), std::abs(y)) > kFarthest)
       throw RecordingError(path + ": a pose on " + pose.channel + " is at x " + std::to_string(x) +
                            ", y " + std::to_string(y) + " m, beyond 100 km; is the log damaged?");
-    if (pose.time <= last) continue;
     recordings::Fix fix;
-    fix.time = last = pose.time;
+    fix.time = pose.time;
     fix.T_map_body = {x, y, of(pose, "theta")};
-    fix.new_track = drive.fixes.empty();
-    drive.fixes.push_back(fix);
+    fix.new_track = fixes.empty();
+    fixes.push_back(fix);
   }
+}
+
+void takeCommands(std::vector<DriveSample> commands, ForeignDrive& result) {
+  sortByTime(commands, "commands", result);
+  std::vector<double> times;
+  for (const DriveSample& command : commands) times.push_back(command.time);
+  const double period = usualPeriod(times);
+  holdCommands(commands, period, holdOf(period), result.drive);
+  findRuns(result.drive);
 }
 
 /// Commands as they came; which of the types there are decides their kind.
@@ -188,9 +282,8 @@ ForeignDrive readForeignLog(const std::string& path, const ForeignRobot& robot) 
   ForeignDrive result;
   LogContent log(path, result);
   RecordedDrive& drive = result.drive;
-  takePoses(path, log.poses(robot.pose_channel), drive);
-  holdCommands(commandsOf(path, log, robot.baseline, drive.kind), kCommandAge, drive);
-  findRuns(drive);
+  takePoses(path, log.poses(robot.pose_channel), result);
+  takeCommands(commandsOf(path, log, robot.baseline, drive.kind), result);
   for (const Timed& laser : log.all("lidar_t")) {
     if (auto scan = scanOf(laser, robot.lidar_height))
       drive.scans.push_back(std::move(*scan));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -30,6 +31,7 @@ struct Arguments {
   std::string csv;
   std::string log;
   bool keep_lag = false;
+  bool allow_loss = false;
   Gyro gyro = Gyro::kAtFixes;
   ExecutionLayout layout;
   import::ForeignRobot robot;
@@ -90,30 +92,60 @@ Session foreignSession(const Arguments& arguments, const RecordedDrive& recordin
   return session;
 }
 
-void tell(const import::ForeignDrive& foreign) {
+/// What was read, and what of it is lost.
+struct Reading {
+  RecordedDrive drive;
+  std::vector<import::Loss> losses;
+};
+
+Reading taken(import::ForeignDrive foreign) {
   for (const auto& [what, count] : foreign.left_out)
     std::printf("left out: %zu of %s\n", count, what.c_str());
   if (!foreign.poses.empty()) std::printf("poses: %s\n", foreign.poses.c_str());
+  return {std::move(foreign.drive), std::move(foreign.losses)};
 }
 
-RecordedDrive readForeign(const Arguments& arguments, Session& session) {
+/// More than a hundredth lost is no good import: what is left may be another drive.
+int verdictOn(const std::vector<import::Loss>& losses, const Arguments& arguments) {
+  constexpr double kMostLost = 0.01;
+  for (const import::Loss& loss : losses) std::printf("lost: %s\n", lineOf(loss).c_str());
+  if (arguments.allow_loss || largestShare(losses) <= kMostLost) return 0;
+  std::fprintf(
+      stderr,
+      "tread-import: %s: more than 1 %% was lost; %s holds the rest, --allow-loss takes it\n",
+      arguments.csv.c_str(), arguments.log.c_str());
+  return 1;
+}
+
+void tellHoles(const std::vector<CommandHole>& holes) {
+  if (holes.empty()) return;
+  double sum = 0.0, longest = 0.0;
+  for (const CommandHole& hole : holes) {
+    sum += hole.end - hole.begin;
+    longest = std::max(longest, hole.end - hole.begin);
+  }
+  std::printf(
+      "no commands: %zu times, %.1f s in all, longest %.2f s, first from %.2f to %.2f s; no MOTOR "
+      "is there\n",
+      holes.size(), sum, longest, holes.front().begin, holes.front().end);
+}
+
+Reading readForeign(const Arguments& arguments, Session& session) {
   if (arguments.format != "csv") {
     import::ForeignDrive foreign = arguments.format == "lcm"
                                        ? import::readForeignLog(arguments.csv, arguments.robot)
                                        : import::readRawlog(arguments.csv);
-    tell(foreign);
     session = foreignSession(arguments, foreign.drive);
-    return std::move(foreign.drive);
+    return taken(std::move(foreign));
   }
   ConfigReader reader = ConfigReader::fromFile(arguments.mapping, arguments.overrides);
   const import::CsvMapping mapping = import::readCsvMapping(reader);
   import::ForeignDrive foreign = import::readMappedCsv(arguments.csv, mapping);
-  tell(foreign);
   session = foreignSession(arguments, foreign.drive);
   session.robot = mapping.robot;
   session.surface = mapping.surface;
   session.baseline = mapping.baseline;
-  return std::move(foreign.drive);
+  return taken(std::move(foreign));
 }
 
 /// Messages as they are, not a drive made of samples.
@@ -127,18 +159,19 @@ void takeMcap(const Arguments& arguments) {
   std::printf("%s: %lld messages\n", arguments.log.c_str(), static_cast<long long>(counts.taken));
 }
 
-void run(const Arguments& arguments) {
-  if (arguments.format == "mcap") return takeMcap(arguments);
+int run(const Arguments& arguments) {
+  if (arguments.format == "mcap") return takeMcap(arguments), 0;
   checkLength(arguments.layout.length);
   checkFormat(arguments);
   Session session;
-  RecordedDrive recording;
+  Reading reading;
   if (isForeign(arguments.format)) {
-    recording = readForeign(arguments, session);
+    reading = readForeign(arguments, session);
   } else {
     session = sessionOf(arguments);
-    recording = read(arguments, session);
+    reading.drive = read(arguments, session);
   }
+  const RecordedDrive& recording = reading.drive;
   LogCounts counts;
   const auto events = makeLog(recording, session, arguments.format, arguments.layout, counts);
   LogWriter writer(arguments.log);
@@ -150,6 +183,8 @@ void run(const Arguments& arguments) {
       "%.0f s\n",
       arguments.log.c_str(), recording.runs.size(), counts.completed, counts.aborted, counts.ins,
       counts.motor, counts.scans, counts.duration);
+  tellHoles(counts.holes);
+  return verdictOn(reading.losses, arguments);
 }
 
 int parseAndRun(int argc, char** argv) {
@@ -193,6 +228,8 @@ int parseAndRun(int argc, char** argv) {
   app.add_option("--executions", arguments.layout.executions, "per command")
       ->check(CLI::Range(1, 9))
       ->capture_default_str();
+  app.add_flag("--allow-loss", arguments.allow_loss,
+               "exit status 0 even where more than 1 % of the recording is lost");
   app.add_flag("--keep-lag", arguments.keep_lag,
                "poses at the time at which they were logged, not when they were measured");
   app.add_option("--gyro", arguments.gyro, "readings of the gyro: at fixes, or all")
@@ -200,8 +237,7 @@ int parseAndRun(int argc, char** argv) {
           std::map<std::string, Gyro>{{"fixes", Gyro::kAtFixes}, {"all", Gyro::kAll}}))
       ->default_str("fixes");
   if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
-  run(arguments);
-  return 0;
+  return run(arguments);
 }
 
 }  // namespace

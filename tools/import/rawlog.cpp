@@ -13,6 +13,8 @@
 namespace tread::import {
 namespace {
 
+using recordings::RecordedDrive;
+
 class RawlogDrive {
  public:
   explicit RawlogDrive(ForeignDrive& result) : result_(result) {}
@@ -21,32 +23,42 @@ class RawlogDrive {
     const Pose2& at = pose.T_odom_body;
     const auto time = since(pose.time);
     if (!time || !std::isfinite(at.yaw) || !(std::max(std::abs(at.x), std::abs(at.y)) <= kFarthest))
-      return leaveOut("poses: numbers or times out of range");
-    auto& fixes = result_.drive.fixes;
-    if (!fixes.empty() && *time <= fixes.back().time)
-      return leaveOut("poses: not later than the last");
+      return lose("poses: numbers or times out of range");
     recordings::Fix fix;
     fix.time = *time;
     fix.unix_time = pose.time;
     fix.T_map_body = at;
-    fix.new_track = fixes.empty();
-    fixes.push_back(fix);
+    result_.drive.fixes.push_back(fix);
   }
   void operator()(RawlogScan scan) {
     const auto time = since(scan.time);
     std::string refusal;
-    if (!time) return leaveOut("scans: times out of range");
+    if (!time) return lose("scans: times out of range");
     scan.message.utime = 1;  // set by makeLog
-    if (!readScan(scan.message, refusal)) return leaveOut("scans: " + refusal);
+    if (!readScan(scan.message, refusal)) return lose("scans: " + refusal);
     result_.drive.scans.push_back({*time, std::move(scan.message)});
   }
-  void operator()(const LeftOut& left) { leaveOut(left.what); }
+  void operator()(const LeftOut& left) {
+    if (left.lost) return lose(left.what);
+    ++result_.left_out[left.what];
+  }
   void operator()(const RawlogProblem& problem) {
     problem_ = problem.what;
-    leaveOut("what follows: " + problem.what);
+    result_.losses.push_back({"what follows: " + problem.what, 0.0, 0.0, ""});
   }
 
   const std::string& problem() const { return problem_; }
+
+  void finish() {
+    RecordedDrive& drive = result_.drive;
+    size_t all = drive.fixes.size() + drive.scans.size();
+    for (const auto& [what, count] : lost_) all += count;
+    for (const auto& [what, count] : lost_) result_.lose(what, count, all, "poses and scans");
+    sortByTime(drive.fixes, "poses", result_);
+    if (!drive.fixes.empty()) drive.fixes.front().new_track = true;
+    std::stable_sort(drive.scans.begin(), drive.scans.end(),
+                     [](const auto& a, const auto& b) { return a.time < b.time; });
+  }
 
  private:
   /// [s] since the first record that has a time.
@@ -56,9 +68,10 @@ class RawlogDrive {
     const double since = time - *begin_;
     return std::abs(since) > kLongest ? std::nullopt : std::optional(since);
   }
-  void leaveOut(const std::string& what) { ++result_.left_out[what]; }
+  void lose(const std::string& what) { ++lost_[what]; }
 
   ForeignDrive& result_;
+  std::map<std::string, size_t> lost_;
   std::optional<double> begin_;
   std::string problem_;
 };
@@ -73,8 +86,7 @@ ForeignDrive readRawlog(const std::string& path) {
     throw recordings::RecordingError(
         path + ": holds neither odometry nor scans" +
         (drive.problem().empty() ? "" : ": " + drive.problem() + "; is it an MRPT rawlog?"));
-  std::stable_sort(result.drive.scans.begin(), result.drive.scans.end(),
-                   [](const auto& a, const auto& b) { return a.time < b.time; });
+  drive.finish();
   if (!result.drive.fixes.empty()) result.poses = "odometry";
   return result;
 }

@@ -53,8 +53,11 @@ class RawlogReading {
   }
 
  private:
-  void leaveOut(const mrpt::rtti::CObject& object, const std::string& why) {
-    take_(LeftOut{std::string(object.GetRuntimeClass()->className) + ": " + why});
+  void leaveOut(const mrpt::rtti::CObject& object, const std::string& why, bool lost = false) {
+    take_(LeftOut{std::string(object.GetRuntimeClass()->className) + ": " + why, lost});
+  }
+  void lose(const mrpt::rtti::CObject& object, const std::string& why) {
+    leaveOut(object, why, true);
   }
 
   void action(const CAction& action) {
@@ -68,12 +71,12 @@ class RawlogReading {
   }
 
   void pose(const mrpt::rtti::CObject& object, mrpt::system::TTimeStamp time, const Pose2& pose) {
-    if (time == INVALID_TIMESTAMP) return leaveOut(object, "without a time");
+    if (time == INVALID_TIMESTAMP) return lose(object, "without a time");
     take_(OdometryPose{mrpt::Clock::toDouble(time), pose});
   }
 
   void observation(const CObservation& observation) {
-    if (observation.timestamp == INVALID_TIMESTAMP) return leaveOut(observation, "without a time");
+    if (observation.timestamp == INVALID_TIMESTAMP) return lose(observation, "without a time");
     if (const auto* odometry = dynamic_cast<const CObservationOdometry*>(&observation)) {
       const mrpt::poses::CPose2D& at = odometry->odometry;
       pose(observation, observation.timestamp, {at.x(), at.y(), at.phi()});
@@ -88,7 +91,7 @@ class RawlogReading {
 
   void sweep(const CObservation2DRangeScan& sweep) {
     const size_t beams = sweep.getScanSize();
-    if (beams < 2 || beams > kMostReturns) return leaveOut(sweep, "a wrong number of beams");
+    if (beams < 2 || beams > kMostReturns) return lose(sweep, "a wrong number of beams");
     if (sweep.deltaPitch != 0.0) return leaveOut(sweep, "tilts while it sweeps");
     auto scan = blank<scan_t>();
     setSensorPose(sweep.sensorPose, scan);
@@ -111,7 +114,7 @@ class RawlogReading {
 
   void points(const CObservationVelodyneScan& packets) {
     if (packets.scan_packets.empty() || packets.calibration.empty())
-      return leaveOut(packets, "without packets or calibration");
+      return lose(packets, "without packets or calibration");
     // Generating points writes into the observation.
     CObservationVelodyneScan working = packets;
     CObservationVelodyneScan::TGeneratePointCloudParameters parameters;
@@ -119,7 +122,7 @@ class RawlogReading {
     working.generatePointCloud(parameters);
     const auto& cloud = working.point_cloud;
     if (cloud.size() == 0 || cloud.size() > kMostReturns || cloud.timestamp.size() != cloud.size())
-      return leaveOut(packets, "a wrong number of returns");
+      return lose(packets, "a wrong number of returns");
     for (size_t first = 0; first < cloud.size(); first += kSlice)
       slice(working, first, std::min(first + kSlice, cloud.size()));
   }

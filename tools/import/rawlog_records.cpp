@@ -64,7 +64,7 @@ struct Sender {
     send(pipe, Kind::kScan, scan.time, bytes.data(), bytes.size());
   }
   void operator()(const LeftOut& left) const {
-    send(pipe, Kind::kLeftOut, 0.0, left.what.data(), left.what.size());
+    send(pipe, Kind::kLeftOut, left.lost ? 1.0 : 0.0, left.what.data(), left.what.size());
   }
   void operator()(const RawlogProblem& problem) const {
     send(pipe, Kind::kProblem, 0.0, problem.what.data(), problem.what.size());
@@ -106,7 +106,7 @@ bool readAll(int pipe, void* data, size_t size, bool& silent) {
 
 RawlogRecord recordOf(const Header& header, const std::vector<uint8_t>& bytes) {
   const std::string text(bytes.begin(), bytes.end());
-  if (header.kind == Kind::kLeftOut) return LeftOut{text};
+  if (header.kind == Kind::kLeftOut) return LeftOut{text, header.time != 0.0};
   if (header.kind == Kind::kProblem) return RawlogProblem{text};
   if (header.kind == Kind::kScan) {
     RawlogScan scan;

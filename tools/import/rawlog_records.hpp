@@ -28,6 +28,7 @@ struct RawlogScan {
 /// What is not taken, and why.
 struct LeftOut {
   std::string what;
+  bool lost = false;  ///< it is a part of the drive, but unusable
 };
 
 /// The reader cannot go on.

@@ -114,13 +114,13 @@ TEST_CASE("fields that are empty or nan are no measurements, but the rest of the
   REQUIRE(read.drive.fixes.size() == 2);
   CHECK(read.drive.fixes[1].T_map_body.x == 2.0);
   size_t of_x = 0;
-  size_t twice = 0;
-  for (const auto& [what, count] : read.left_out) {
+  for (const auto& [what, count] : read.left_out)
     if (what.find("no x") != std::string::npos) of_x = count;
-    if (what.find("the same time") != std::string::npos) twice = count;
-  }
   CHECK(of_x == 2);
-  CHECK(twice == 1);
+  REQUIRE(read.losses.size() == 1);
+  CHECK(read.losses[0].lost == 1.0);
+  CHECK(read.losses[0].of == 5.0);
+  CHECK(read.losses[0].what == "the same time as the one before");
 }
 
 TEST_CASE("refusals name file, line and column") {
@@ -128,8 +128,8 @@ TEST_CASE("refusals name file, line and column") {
         "drive.csv:3: column x is 'abc'; a finite number is needed");
   CHECK(complaint("t,x,y,yaw\n0,1,2,0\n100,1e10,2,0\n", kPoses) ==
         "drive.csv:3: column x (x) is 1e+10 after unit and scale; allowed is up to 1e+05");
-  CHECK(complaint("t,x,y,yaw\n0,1,2,0\n-100,1,2,0\n", kPoses) ==
-        "drive.csv:3: column t goes back; are the rows in order?");
+  CHECK(complaint("t,x,y,yaw\n0,1,2,0\n-300,1,2,0\n", kPoses) ==
+        "drive.csv:3: column t goes back by 0.3 s; are these two drives? cut the file there");
   CHECK(complaint("t,x,y,yaw\n0,1,2,0\n1e12,1,2,0\n", kPoses) ==
         "drive.csv:3: column t is 1e+09 s after the first row; is the unit of the time right?");
   CHECK(complaint("t,x,z,yaw\n0,1,2,0\n", kPoses) ==
@@ -143,6 +143,68 @@ TEST_CASE("refusals name file, line and column") {
   CHECK(complaint("t,x,y,yaw\n0,1,2,0\n1,2e5,0,0\n", "origin: {first_fix: true}\n" + kPoses) ==
         "drive.csv:3: column of x: the position is 199999 m from the origin, beyond 100 km; give "
         "another origin in the mapping");
+}
+
+TEST_CASE("rows that overtake each other are sorted by their times") {
+  const ForeignDrive read =
+      readText("t,x,y,yaw\n0,0,2,0\n100,1,2,0\n300,3,2,0\n200,2,2,0\n", kPoses);
+  REQUIRE(read.drive.fixes.size() == 4);
+  for (size_t i = 0; i < 4; ++i) CHECK(read.drive.fixes[i].T_map_body.x == double(i));
+  CHECK(read.losses.empty());
+}
+
+TEST_CASE("times in another unit than the mapping says are named with their unit") {
+  const auto rows = [](double begin, double period) {
+    std::string csv = "t,x,y,yaw\n";
+    for (int i = 0; i < 20; ++i) csv += line("%.6f,1,2,0\n", begin + period * i);
+    return csv;
+  };
+  const auto as = [](const std::string& unit) {
+    std::string yaml = kPoses;
+    return yaml.replace(yaml.find("ms"), 2, unit);
+  };
+  using Catch::Contains;
+  CHECK_THAT(complaint(rows(1.7e18, 5e7), as("us")),
+             Contains("in ns they would be 0.0500 s apart"));
+  CHECK_THAT(complaint(rows(0, 5e7), as("s")), Contains("in ns they would"));
+  CHECK_THAT(complaint(rows(3e9, 1e8), as("us")), Contains("in ns they would"));
+  CHECK_THAT(complaint(rows(1.7e9, 0.05), as("ms")), Contains("in s they would"));
+  CHECK_THAT(complaint(rows(1.7e12, 200), as("us")), Contains("in ms they would"));
+  for (const auto& [unit, second] :
+       {std::pair("s", 1.0), std::pair("ms", 1e3), std::pair("us", 1e6), std::pair("ns", 1e9)})
+    for (const double period : {0.001, 0.01, 0.1, 1.0, 5.0})
+      for (const double begin : {0.0, 100.0, 1e5, 1.7e9})
+        CHECK(complaint(rows(begin * second, period * second), as(unit)) == "nothing");
+}
+
+TEST_CASE("between two commands that are further apart than their period allows nothing is known") {
+  std::string csv = "t,l,r\n";
+  for (int i = 0; i < 400; ++i)
+    if (i < 100 || i >= 220) csv += line("%.2f,0.5,0.25\n", 0.05 * i);
+  const std::string mapping =
+      "tables:\n"
+      "  - time: {column: t}\n"
+      "    columns: {left_command: {column: l}, right_command: {column: r}}\n";
+  const recordings::RecordedDrive drive = readText(csv, mapping).drive;
+  REQUIRE(drive.drive.size() == 280);
+  for (const recordings::DriveSample& sample : drive.drive) {
+    CHECK(sample.automatic);
+    CHECK(sample.command.left == 0.5);
+    CHECK((sample.time < 5.0 || sample.time > 10.99));
+  }
+  REQUIRE(drive.runs.size() == 2);
+  recordings::LogCounts counts;
+  recordings::Session session;
+  session.pose_rate = 10.0;
+  const auto executions = [&](const recordings::ExecutionLayout& layout) {
+    const auto events = recordings::makeLog(drive, session, "csv", layout, counts);
+    return std::pair(counts.completed, counts.aborted);
+  };
+  CHECK(executions({1.0, 2.0, 2}) == std::pair<size_t, size_t>(4, 0));
+  counts = {};
+  CHECK(executions({1.0, 3.0, 2}) == std::pair<size_t, size_t>(3, 1));
+  // Where commands are only written when they change, the mapping says how long one lasts.
+  CHECK(readText(csv, "command_hold: 10\n" + mapping).drive.drive.size() == 400);
 }
 
 TEST_CASE("a mapping that cannot mean a drive is refused with its line") {

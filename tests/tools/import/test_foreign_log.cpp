@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 
 #include "common/recordings/csv_table.hpp"
 #include "common/recordings/foreign_types.hpp"
@@ -128,23 +129,83 @@ TEST_CASE("held commands of a foreign log become executions, body speeds become 
   REQUIRE(events.size() > 550);
 }
 
-TEST_CASE("power of two wheels stays power, and goes when nothing came for half a second") {
+TEST_CASE("power of two wheels stays power, and where no command came there is none") {
   ForeignLog log;
   const auto tell = [&](double seconds, double left) {
     const int64_t utime = kBegin + std::llround(seconds * 1e6);
     log.add(utime, "PWM", Bytes("mbot_motor_pwm_t").time(utime).number(left).number(-0.5));
   };
   for (int i = 0; i < 20; ++i) tell(0.05 * i, 0.25);
-  tell(3.0, 0.25);
+  for (int i = 0; i < 20; ++i) tell(3.0 + 0.05 * i, 0.25);
   const recordings::RecordedDrive drive = log.read().drive;
   REQUIRE(drive.kind == CommandKind::kPower);
   REQUIRE(drive.drive.front().command.left == 0.25);
   REQUIRE(drive.drive.front().command.right == -0.5);
   REQUIRE(std::isnan(drive.drive.front().speed.left));
-  REQUIRE_FALSE(drive.drive[40].automatic);
-  REQUIRE(drive.drive[40].command.left == 0.0);
+  REQUIRE(drive.drive.size() == 40);
+  REQUIRE(drive.drive[20].time == Approx(3.0));
+  for (const recordings::DriveSample& sample : drive.drive) REQUIRE(sample.automatic);
   REQUIRE(drive.runs.size() == 2);
+  REQUIRE(drive.runs[0].end == Approx(1.0));
+  REQUIRE(drive.runs[0].end_reason == recordings::kCommandsMissing);
   REQUIRE(drive.runs[0].step == drive.runs[1].step);
+}
+
+TEST_CASE("bytes of a foreign log that are damaged are counted with the seconds that they last") {
+  const Folder folder("import_damaged");
+  const std::string path = folder.file("foreign.log");
+  uint64_t from = 0, to = 0;
+  {
+    LogWriter writer(path);
+    for (int i = 0; i < 200; ++i) {
+      const int64_t utime = kBegin + 50'000 * i;
+      const auto pose = Bytes("pose_xyt_t").time(utime).number(0.01 * i).number(0).number(0);
+      const auto pwm = Bytes("mbot_motor_pwm_t").time(utime).number(0.5).number(0.5);
+      writer.write(utime, "POSE", pose.bytes.data(), pose.bytes.size());
+      writer.write(utime, "PWM", pwm.bytes.data(), pwm.bytes.size());
+      writer.flush();
+      if (i == 79) from = std::filesystem::file_size(path);
+      if (i == 139) to = std::filesystem::file_size(path);
+    }
+  }
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+  file.seekp(static_cast<std::streamoff>(from));
+  file << std::string(to - from, '\0');
+  file.close();
+  const ForeignDrive foreign = readForeignLog(path, {});
+  REQUIRE(foreign.losses.size() == 2);
+  // The event before the hole is whole only if a sync word follows it.
+  CHECK(foreign.losses[0].unit == "bytes");
+  CHECK(foreign.losses[0].lost == Approx(double(to - from)).margin(120.0));
+  CHECK(foreign.losses[1].unit == "s");
+  CHECK(foreign.losses[1].lost == Approx(3.05).margin(0.06));
+  CHECK(largestShare(foreign.losses) > 0.29);
+  const std::vector<recordings::CommandHole> holes = recordings::commandHoles(foreign.drive.drive);
+  REQUIRE(holes.size() == 1);
+  CHECK(holes[0].end - holes[0].begin == Approx(3.0).margin(0.06));
+  for (const recordings::DriveSample& sample : foreign.drive.drive)
+    CHECK(sample.command.left == 0.5);
+}
+
+TEST_CASE("poses out of order are sorted, repeated ones and a clock that goes back are counted") {
+  ForeignLog log;
+  for (const int i : {0, 1, 3, 2, 2, 4, 5, 6, 7, 8}) log.pose(kBegin + 50'000 * i, "POSE", 0.1 * i);
+  log.pose(kBegin, "POSE", 7.0);
+  const ForeignDrive foreign = log.read();
+  REQUIRE(foreign.drive.fixes.size() == 9);
+  for (size_t i = 0; i < 9; ++i)
+    CHECK(foreign.drive.fixes[i].T_map_body.x == Approx(0.1 * double(i)));
+  REQUIRE(foreign.losses.size() == 2);
+  CHECK(lineOf(foreign.losses[0]) == "1 of 11 poses (9.1 %): their clock goes back");
+  CHECK(lineOf(foreign.losses[1]) == "1 of 11 poses (9.1 %): the same time as the one before");
+}
+
+TEST_CASE("a foreign log whose messages count nanoseconds is named") {
+  ForeignLog log;
+  for (int i = 0; i < 100; ++i)
+    log.add(kBegin + 50'000 * i, "POSE",
+            Bytes("pose_xyt_t").time(1000 * (kBegin + 50'000 * i)).number(0).number(0).number(0));
+  REQUIRE_THROWS_WITH(log.read(), Catch::Contains("count time in ns"));
 }
 
 TEST_CASE("a foreign scan becomes points, its angles clockwise, its times in us or ms") {

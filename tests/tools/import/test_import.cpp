@@ -183,6 +183,29 @@ TEST_CASE("the log says on which ground it was driven, and is the same every tim
   }
 }
 
+TEST_CASE("steps: rows that are missing within a step leave no execution over them") {
+  const Folder folder("import_hole");
+  std::string rows, kept;
+  rows = stepRows(3);
+  int row = 0;
+  for (size_t at = 0; at < rows.size(); ++row) {
+    const size_t end = rows.find('\n', at) + 1;
+    if (row < 50 || row >= 90) kept += rows.substr(at, end - at);  // 2.5 to 4.5 s
+    at = end;
+  }
+  const std::string csv = folder.file("drive.csv", kStepsHeader + kept + stepRows(4));
+  const Session session = readSession(folder.file("sessions.csv", sessions(202)), "drive");
+  const Imported log = imported(readSteps(csv, session), session, "steps");
+  REQUIRE(log.motor.size() == 202);
+  REQUIRE(log.counts.holes.size() == 1);
+  REQUIRE(log.counts.holes[0].end - log.counts.holes[0].begin == Approx(2.0));
+  REQUIRE(log.executions.size() == 3);
+  REQUIRE(log.executions[0].outcome == execution_record_t::OUTCOME_ABORTED);
+  REQUIRE(log.executions[0].outcome_reason == "commands are missing");
+  REQUIRE(log.executions[0].commands_played == 26);
+  REQUIRE(log.counts.completed == 2);
+}
+
 TEST_CASE("aligned: poses as they are, but none inside a long ICP gap") {
   const Folder folder("import_aligned");
   const std::string csv = folder.file("drive.csv", kAlignedHeader + alignedRows(1));
@@ -268,6 +291,37 @@ TEST_CASE("the program ends with 2 and one line on bad input, as the gap workflo
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   REQUIRE(text.find("tread-import: ") == 0);
   REQUIRE(std::count(text.begin(), text.end(), '\n') == 1);
+}
+
+TEST_CASE("what is lost is told, and more than a hundredth of it is exit status 1") {
+  const Folder folder("import_loss");
+  const std::string said = folder.file("said.txt");
+  const std::string mapping =
+      folder.file("map.yaml",
+                  "tables: [{time: {column: t}, columns: {left_command: {column: l}, "
+                  "right_command: {column: r}}}]\n");
+  const auto exitOf = [&](int twice, const std::string& more) {
+    std::string csv = "t,l,r\n";
+    for (int i = 0; i < 500; ++i) csv += line("%.2f,0.5,0.5\n", 0.05 * (i < twice ? 0 : i));
+    const std::string command = std::string(TREAD_BIN_DIR) + "/tread-import --format csv " + more +
+                                " --mapping " + mapping + " " + folder.file("drive.csv", csv) +
+                                " -o " + folder.file("drive.lcmlog") + " > " + said + " 2>&1";
+    std::filesystem::remove(folder.file("drive.lcmlog"));
+    const int code = WEXITSTATUS(std::system(command.c_str()));
+    REQUIRE(std::filesystem::exists(folder.file("drive.lcmlog")));
+    return code;
+  };
+  const auto words = [&] {
+    std::ifstream file(said);
+    return std::string{std::istreambuf_iterator<char>(file), {}};
+  };
+  CHECK(exitOf(5, "") == 0);
+  CHECK_THAT(words(), Catch::Contains("lost: 4 of 500 rows of "));
+  CHECK(exitOf(50, "") == 1);
+  CHECK_THAT(words(), Catch::Contains("lost: 49 of 500 rows of ") &&
+                          Catch::Contains("more than 1 % was lost") &&
+                          Catch::Contains("no commands: 1 times, 2.5 s in all"));
+  CHECK(exitOf(50, "--allow-loss") == 0);
 }
 
 TEST_CASE("a session that is not known is refused, and so is a file that is not there") {
