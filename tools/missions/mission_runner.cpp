@@ -76,7 +76,7 @@ class BatchRun {
     std::optional<LogWriter> log;
     if (!order_.log.empty() && seed == order_.seed) options.log = &log.emplace(order_.log);
     MissionRun run = runMission(robot_, seed, options);
-    if (log) log->flush();
+    if (log) log->close();
     if (order_.show == seed) {
       const std::lock_guard<std::mutex> lock(mutex_);
       batch_.shown = driveSceneOf(run.result, run.scene);
