@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "common/config/scalars.hpp"
+#include "common/store/output_file.hpp"
 
 namespace tread {
 namespace {
@@ -110,6 +111,9 @@ std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv) {
     if (error.get_exit_code() == 0) return app.exit(error);  // help
     std::fprintf(stderr, "%s\n", usageError(app, error).c_str());
     return kBadInput;
+  } catch (const CLI::Error& refused) {  // see Outputs
+    std::fprintf(stderr, "%s: %s\n", app.get_name().c_str(), refused.what());
+    return refused.get_exit_code();
   }
   return std::nullopt;
 }
@@ -123,6 +127,9 @@ void addThreads(CLI::App& command, int& threads) {
 
 int runProgram(const char* name, const std::function<int()>& run) try {
   return run();
+} catch (const WriteError& problem) {
+  std::fprintf(stderr, "%s: %s\n", name, problem.what());
+  return kNotWritten;
 } catch (const std::exception& problem) {
   std::fprintf(stderr, "%s: %s\n", name, problem.what());
   return kBadInput;

@@ -12,6 +12,8 @@ namespace tread {
 
 /// Exit code of a program that cannot use its command line or what it was given to read.
 inline constexpr int kBadInput = 2;
+/// Exit code of a program whose result cannot be written, because the disk is full for instance.
+inline constexpr int kNotWritten = 1;
 
 /// What is wrong with a command line, in one line: where, what, and what would be right.
 /** "tread-gap find: '--thread' is not known; did you mean --threads? See tread-gap find --help". */
@@ -29,7 +31,8 @@ void addThreads(CLI::App& command, int& threads);
 /// USER@HOST: who operates the robot from here, unless --by says otherwise.
 std::string operatorName();
 
-/// The exit code of `run`; kBadInput with one line "name: what it threw" on stderr if it throws.
+/// The exit code of `run`; with one line "name: what it threw" on stderr kNotWritten if it throws a
+/// WriteError, else kBadInput.
 int runProgram(const char* name, const std::function<int()>& run);
 
 }  // namespace tread

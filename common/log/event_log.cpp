@@ -8,9 +8,9 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
+#include <exception>
 #include <stdexcept>
-#include <system_error>
+#include <utility>
 
 #include "common/log/older_types.hpp"
 #include "common/seal/seal.hpp"
@@ -42,37 +42,22 @@ uint64_t getBigEndian(const uint8_t* at) {
 }  // namespace
 
 struct LogWriter::File {
+  OutputFile output;
   std::string path;
-  std::FILE* stream = nullptr;
-  std::vector<char> buffer;
   uint64_t events = 0;
-  int error = 0;  // of the first failure; what was buffered then is lost, so it stays failed
-
-  std::runtime_error failure(const char* what) {
-    if (error == 0) error = errno;
-    return std::runtime_error("log " + path + ": " + what + " (" +
-                              std::generic_category().message(error) +
-                              "); check space and permissions");
-  }
-  void put(const void* bytes, size_t size) {
-    if (size == 0) return;  // an empty message may come with a null pointer
-    if (error != 0 || std::fwrite(bytes, 1, size, stream) != size)
-      throw failure("cannot be written");
-  }
+  int exceptions = std::uncaught_exceptions();
+  bool closed = false;
 };
 
-LogWriter::LogWriter(const std::string& path) : file_(std::make_unique<File>()) {
-  constexpr size_t kBufferSize = 1 << 18;  // [bytes]
-  file_->path = path;
-  errno = 0;
-  file_->stream = std::fopen(path.c_str(), "wbe");
-  if (file_->stream == nullptr) throw file_->failure("cannot be made");
-  file_->buffer.resize(kBufferSize);
-  std::setvbuf(file_->stream, file_->buffer.data(), _IOFBF, file_->buffer.size());
-}
+LogWriter::LogWriter(const std::string& path, OutputFile::Kind kind)
+    : file_(new File{OutputFile(path, kind), path}) {}
 
 LogWriter::~LogWriter() {
-  std::fclose(file_->stream);
+  // What an exception cut short is no log.
+  if (std::uncaught_exceptions() == file_->exceptions) try {
+      close();
+    } catch (const WriteError&) {
+    }
 }
 
 void LogWriter::write(int64_t utime, const std::string& channel, const uint8_t* bytes,
@@ -87,14 +72,17 @@ void LogWriter::write(int64_t utime, const std::string& channel, const uint8_t* 
   putBigEndian<8>(header + 12, static_cast<uint64_t>(utime));
   putBigEndian<4>(header + 20, channel.size());
   putBigEndian<4>(header + 24, size);
-  file_->put(header, sizeof header);
-  file_->put(channel.data(), channel.size());
-  file_->put(bytes, size);
+  file_->output.write(header, sizeof header);
+  file_->output.write(channel);
+  file_->output.write(bytes, size);
 }
 
 void LogWriter::flush() {
-  if (file_->error != 0 || std::fflush(file_->stream) != 0)
-    throw file_->failure("cannot be written");
+  file_->output.flush();
+}
+
+void LogWriter::close() {
+  if (!std::exchange(file_->closed, true)) file_->output.commit();
 }
 
 // Own reader: lcm::LogFile looks for the next sync word without a word about what it skipped, and

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/bus/channels.hpp"
+#include "common/store/output_file.hpp"
 
 namespace tread {
 
@@ -42,20 +43,21 @@ LogEvent eventOf(const Channel<Message>& channel, const Message& message) {
   return {message.utime, channel.name, encoded(message)};
 }
 
-/// Writes LCM event logs that lcm-logplayer and lcm-spy read.
-/** Throws std::runtime_error with one clear line if the file cannot be made. */
+/// Writes LCM event logs that lcm-logplayer and lcm-spy read, as OutputFile does.
 class LogWriter {
  public:
-  explicit LogWriter(const std::string& path);
+  explicit LogWriter(const std::string& path, OutputFile::Kind kind = OutputFile::Kind::kWhole);
   ~LogWriter();
   LogWriter(const LogWriter&) = delete;
   LogWriter& operator=(const LogWriter&) = delete;
 
-  /// Appends an event; throws std::runtime_error when the disk is full.
+  /// Appends an event; throws WriteError when the disk is full.
   void write(int64_t utime, const std::string& channel, const uint8_t* bytes, size_t size);
-  /// Hands over what is buffered; throws std::runtime_error when the disk is full. The destructor
-  /// does the same, but cannot complain.
+  /// Hands over what is buffered.
   void flush();
+  /// Puts the log in its place. The destructor does so, too, unless an exception is on its way, but
+  /// cannot complain.
+  void close();
 
   /// Encodes and appends a message at its own utime.
   template <class Message>

@@ -28,8 +28,7 @@ void Writer::Times::add(uint64_t time) {
   last = std::max(last, time);
 }
 
-Writer::Writer(const std::string& path) : path_(path), file_(path, std::ios::binary) {
-  if (!file_) throw std::runtime_error(path + ": cannot be written");
+Writer::Writer(const std::string& path) : file_(path) {
   put(std::string(kMagic, kMagicBytes));
   put(recordOf(Op::kHeader, FieldWriter().text("").text("tread").bytes));
 }
@@ -99,13 +98,11 @@ void Writer::close() {
   footer.u8(static_cast<uint8_t>(Op::kFooter)).u64(20).u64(summary).u64(offsets_at);
   const uint32_t crc = crc32Of(parts + footer.bytes);
   put(parts + footer.u32(crc).bytes + std::string(kMagic, kMagicBytes));
-  file_.close();
-  if (!file_) throw std::runtime_error(path_ + ": cannot be written; is the disk full?");
+  file_.commit();
 }
 
 void Writer::put(const std::string& bytes) {
-  file_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!file_) throw std::runtime_error(path_ + ": cannot be written; is the disk full?");
+  file_.write(bytes);
   data_crc_ = crc32Of(bytes, data_crc_);
   at_ += bytes.size();
 }

@@ -3,18 +3,18 @@
 #pragma once
 
 #include <cstdint>
-#include <fstream>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/mcap/mcap_records.hpp"
+#include "common/store/output_file.hpp"
 
 namespace tread::mcap {
 
 /// Writes an MCAP file: chunks packed by Zstandard, indexed, with a summary at the end.
-/** Throws std::runtime_error with one clear line if the file cannot be made or the disk is full. */
+/** Throws WriteError with one line if the file cannot be made or the disk is full. */
 class Writer {
  public:
   explicit Writer(const std::string& path);
@@ -27,7 +27,7 @@ class Writer {
   uint16_t addChannel(uint16_t schema, const std::string& topic, const std::string& encoding);
   /// Times [ns]: when it was recorded, and when it was published.
   void write(uint16_t channel, uint64_t log_time, uint64_t publish_time, const std::string& data);
-  /// Writes what is left and the summary. Without it the file has no end, and readers say so.
+  /// Writes what is left and the summary, and puts the file in its place.
   void close();
 
  private:
@@ -40,8 +40,7 @@ class Writer {
   void put(const std::string& bytes);
   void endChunk();
 
-  std::string path_;
-  std::ofstream file_;
+  OutputFile file_;
   uint64_t at_ = 0;                                 ///< bytes written
   uint32_t data_crc_ = 0;                           ///< of all bytes so far
   std::string schemas_, channels_, chunk_indexes_;  ///< records that the summary repeats

@@ -11,6 +11,7 @@
 
 #include "common/config/scalars.hpp"
 #include "common/pattern/pattern_file.hpp"
+#include "common/store/output_file.hpp"
 #include "common/store/store.hpp"
 
 namespace tread::recordings {
@@ -258,6 +259,8 @@ void writeRecordings(const std::string& folder, const PatternRecordings& recordi
   for (const SurfaceRecordings& surface : recordings.surfaces)
     writeText((fs::path(folder) / (surface.surface + ".csv")).string(),
               formatSurface(surface, recordings.patterns));
+} catch (const WriteError&) {
+  throw;
 } catch (const std::exception& error) {
   throw RecordingError(error.what());
 }

@@ -9,6 +9,7 @@
 #include <cairo.h>
 
 #include "common/report/text.hpp"
+#include "common/store/output_file.hpp"
 
 namespace tread::report {
 
@@ -64,10 +65,22 @@ Picture::Picture(int width, int height, const std::string& title)
 Picture::~Picture() = default;
 
 void Picture::save(const std::string& path) {
-  const cairo_status_t status = cairo_surface_write_to_png(surface_->surface, path.c_str());
-  if (status != CAIRO_STATUS_SUCCESS)
+  OutputFile file(path);
+  const cairo_status_t status = cairo_surface_write_to_png_stream(
+      surface_->surface,
+      [](void* to, const unsigned char* bytes, unsigned int size) {
+        try {
+          static_cast<OutputFile*>(to)->write(bytes, size);
+          return CAIRO_STATUS_SUCCESS;
+        } catch (const WriteError&) {
+          return CAIRO_STATUS_WRITE_ERROR;  // commit() throws it again
+        }
+      },
+      &file);
+  if (status != CAIRO_STATUS_SUCCESS && status != CAIRO_STATUS_WRITE_ERROR)
     throw std::runtime_error(path +
                              ": cannot write the picture: " + cairo_status_to_string(status));
+  file.commit();
 }
 
 void Picture::text(double x, double y, const std::string& line, double size, Colour colour,

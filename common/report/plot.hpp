@@ -58,7 +58,7 @@ class Picture {
   Picture(const Picture&) = delete;
   Picture& operator=(const Picture&) = delete;
 
-  /// Writes the PNG; throws std::runtime_error with one clear line if that fails.
+  /// Writes the PNG, as OutputFile does; throws WriteError with one line if that fails.
   void save(const std::string& path);
   /// Text with its left end at (x, y) [pixels].
   void text(double x, double y, const std::string& line, double size = 13.0, Colour colour = kBlack,

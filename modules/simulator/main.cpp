@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <fstream>
 #include <iostream>
+#include <optional>
 
 #include "common/bus/shell.hpp"
 #include "modules/simulator/model_vehicle.hpp"
@@ -12,13 +12,6 @@ namespace {
 
 using namespace tread;
 using namespace tread::sim;
-
-std::ofstream openRecord(const std::string& path) {
-  if (path == "none") return {};
-  std::ofstream file(path);
-  if (!file) throw std::runtime_error(path + ": the record of the truth cannot be written");
-  return file;
-}
 
 /// A line that cannot be offered: another simulator may be at its end. That nobody uses it yet is
 /// no fault.
@@ -44,10 +37,10 @@ ShellBody prepare(ConfigReader& reader) {
     for (const Link* line : {ins.get(), motor.get(), laser.get()}) mustOffer(*line);
     std::unique_ptr<Link> ground_laser;
     if (settings.robot.ground_laser) mustOffer(*(ground_laser = makeLink(config.ground_laser)));
-    std::ofstream file = openRecord(config.record);
-    TruthRecord record(file);
+    std::optional<TruthRecord> record;
+    if (config.record != "none") record.emplace(config.record);
     SimulatorNode node(devices, bus, DeviceLines{*ins, *motor, laser.get(), ground_laser.get()},
-                       file.is_open() ? &record : nullptr, [](const std::string& line) {
+                       record ? &*record : nullptr, [](const std::string& line) {
                          std::cerr << "tread-simulator: " << line << std::endl;
                        });
     bus.run(node, stop);

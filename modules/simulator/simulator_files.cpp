@@ -240,8 +240,9 @@ RobotSettings readSimulatedRobot(const std::string& folder) {
   return settings;
 }
 
-TruthRecord::TruthRecord(std::ostream& out) : out_(out) {
-  out_ << kHeader << "\n";
+TruthRecord::TruthRecord(const std::string& path)
+    : out_((moveAside(path), path), OutputFile::Kind::kGrowing) {
+  out_.write(std::string(kHeader) + "\n");
 }
 
 void TruthRecord::note(const RobotTruth& truth, const std::array<double, 2>& power) {
@@ -249,10 +250,10 @@ void TruthRecord::note(const RobotTruth& truth, const std::array<double, 2>& pow
   if (!due && power == power_) return;
   power_ = power;
   last_row_ = truth.utime;
-  out_ << formatted("%lld,%.4f,%.4f,%.5f,%.4f,%.3f,%.3f,%s,%zu,%.3f\n",
-                    static_cast<long long>(truth.utime), truth.T_map_body.x, truth.T_map_body.y,
-                    truth.T_map_body.yaw, truth.v_body.v_x, power[0], power[1],
-                    truth.surface.c_str(), truth.collisions.size(), truth.distance);
+  out_.write(formatted("%lld,%.4f,%.4f,%.5f,%.4f,%.3f,%.3f,%s,%zu,%.3f\n",
+                       static_cast<long long>(truth.utime), truth.T_map_body.x, truth.T_map_body.y,
+                       truth.T_map_body.yaw, truth.v_body.v_x, power[0], power[1],
+                       truth.surface.c_str(), truth.collisions.size(), truth.distance));
   if (last_flush_ != INT64_MIN && truth.utime - last_flush_ < kFlushEvery) return;
   last_flush_ = truth.utime;
   out_.flush();

@@ -4,11 +4,11 @@
 
 #include <array>
 #include <cstdint>
-#include <ostream>
 #include <string>
 #include <vector>
 
 #include "common/config/config_reader.hpp"
+#include "common/store/output_file.hpp"
 #include "modules/simulator/core/robot.hpp"
 #include "modules/simulator/core/world.hpp"
 
@@ -45,13 +45,16 @@ RobotSettings readSimulatedRobot(const std::string& folder);
  * is what the controller puts on the motors (-1..1). */
 class TruthRecord {
  public:
-  /// Writes the header; the stream is the owner's and outlives the record.
-  explicit TruthRecord(std::ostream& out);
+  /// Makes the file with its header; an earlier record becomes PATH.1 or the next free name. Throws
+  /// WriteError, as all do.
+  explicit TruthRecord(const std::string& path);
 
   void note(const RobotTruth& truth, const std::array<double, 2>& power);
+  /// Hands over the rows of the last moments, too.
+  void flush() { out_.flush(); }
 
  private:
-  std::ostream& out_;
+  OutputFile out_;
   std::array<double, 2> power_{0.0, 0.0};
   int64_t last_row_ = INT64_MIN;
   int64_t last_flush_ = INT64_MIN;

@@ -129,7 +129,16 @@ void SimulatorNode::advanceTo(int64_t utime) {
   for (int64_t t = devices_.robot().truth().utime; t < utime;) {
     t = std::min(t + period(), utime);
     devices_.advanceTo(t);
-    record_->note(devices_.robot().truth(), devices_.power(t));
+    if (record_ != nullptr) note(t);
+  }
+}
+
+void SimulatorNode::note(int64_t utime) {
+  try {
+    record_->note(devices_.robot().truth(), devices_.power(utime));
+  } catch (const WriteError& error) {
+    record_ = nullptr;
+    if (say_) say_(std::string(error.what()) + "; the simulation goes on without its record");
   }
 }
 

@@ -54,6 +54,7 @@ class SimulatorNode : public Node {
 
  private:
   void advanceTo(int64_t utime);
+  void note(int64_t utime);
   void tellHealth(int64_t utime);
   void serve(LaserEmulator& laser, Link& line, bool& connected, int64_t utime);
   std::string hear(Link& line, int64_t utime);

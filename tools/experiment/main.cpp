@@ -6,17 +6,20 @@
 #include <filesystem>
 #include <iostream>
 #include <string>
-#include <system_error>
 
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
 #include "common/config/config_reader.hpp"
+#include "common/config/outputs.hpp"
+#include "common/store/output_file.hpp"
 #include "tools/experiment/adaptation/adaptation.hpp"
 #include "tools/experiment/tables.hpp"
 
 namespace {
 
+using tread::OutputFolder;
+using tread::Outputs;
 using tread::experiment::Batch;
 using tread::experiment::Request;
 
@@ -86,16 +89,7 @@ void define(CLI::App& command, Arguments& arguments) {
                    "the ground changes in the middle of the first execution");
   command.add_flag("--extras", request.extras,
                    "also with twice as long patterns (world) and with changes inside a pattern");
-  command.add_option("--out", arguments.out, "folder for tables, pictures and report.html");
-}
-
-/// Before anything is computed: a folder that cannot be made should not cost the whole run.
-void makeFolder(const std::string& folder) {
-  if (folder.empty()) return;
-  std::error_code failure;
-  std::filesystem::create_directories(folder, failure);
-  if (failure || access(folder.c_str(), W_OK) != 0)
-    throw std::runtime_error(folder + ": cannot be made or written; check --out");
+  Outputs(command).folder("--out", arguments.out, "folder for tables, pictures and report.html");
 }
 
 /// The command adaptation.
@@ -130,11 +124,11 @@ void define(CLI::App& command, AdaptationArguments& arguments) {
   command.add_option("--seed", arguments.settings.seed, "of intervals and random features")
       ->capture_default_str();
   tread::addThreads(command, arguments.settings.threads);
-  command.add_option("--out", arguments.out, "folder for adaptation.html, picture and CSV files");
+  Outputs(command).folder("--out", arguments.out,
+                          "folder for adaptation.html, picture and CSV files");
 }
 
 void run(const AdaptationArguments& arguments) {
-  makeFolder(arguments.out);
   tread::adaptation::Report report;
   report.settings = arguments.settings;
   tread::ConfigReader reader = tread::ConfigReader::fromText("{}", "learner", arguments.overrides);
@@ -149,15 +143,22 @@ void run(const AdaptationArguments& arguments) {
   report.notes = std::move(read.notes);
   report.notes.insert(report.notes.end(), report.errors.notes.begin(), report.errors.notes.end());
   report.lines = summaryOf(report.errors, report.settings.rules, report.settings.seed);
-  if (!arguments.out.empty()) writeReport(arguments.out, report);
+  if (!arguments.out.empty()) {
+    OutputFolder folder(arguments.out);
+    writeReport(folder.path(), report);
+    folder.commit();
+  }
   std::cout << textOf(report) << std::flush;
 }
 
 void run(const Arguments& arguments) {
-  makeFolder(arguments.out);
   const Batch batch = tread::experiment::runBatch(arguments.request, showProgress);
   for (const std::string& note : batch.notes) std::cerr << note << '\n';
-  if (!arguments.out.empty()) tread::experiment::writeBatch(arguments.out, batch);
+  if (!arguments.out.empty()) {
+    OutputFolder folder(arguments.out);
+    tread::experiment::writeBatch(folder.path(), batch);
+    folder.commit();
+  }
   std::cout << textOfErrors(batch.tables, batch.setting) << '\n'
             << textOfReductions(batch.tables, batch.setting) << '\n'
             << textOfAgreement(batch.tables, batch.setting, batch.sets) << '\n'

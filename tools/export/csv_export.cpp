@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <stdexcept>
+#include <map>
 
 #include <nlohmann/json.hpp>
 
+#include "common/store/output_file.hpp"
 #include "tools/export/log_export.hpp"
 
 namespace tread::exporting {
@@ -77,39 +75,35 @@ void addCells(const MessageType& type, const Json& message, std::string& row) {
 /// The files of a folder, one a channel.
 class CsvExport {
  public:
-  explicit CsvExport(std::string folder) : folder_(std::move(folder)) {
-    std::error_code error;
-    std::filesystem::create_directories(folder_, error);
-    if (error) throw std::runtime_error(folder_ + ": cannot be made: " + error.message());
-  }
+  explicit CsvExport(const std::string& folder) : folder_(folder) {}
 
   void take(const LogEvent& event) {
     const auto message = countedJson(event, counts);
     if (!message) return;
     std::string row = std::to_string(event.utime);
     addCells(*message->type, Json::parse(message->json), row);
-    std::ofstream& file = fileOf(event.channel, *message->type);
-    file << row << "\n";
-    if (!file) throw std::runtime_error(folder_ + ": cannot be written; is the disk full?");
+    fileOf(event.channel, *message->type).write(row + "\n");
+  }
+  void close() {
+    for (auto& [channel, file] : files_) file.commit();
+    folder_.commit();
   }
 
   ExportCounts counts;
 
  private:
-  std::ofstream& fileOf(const std::string& channel, const MessageType& type) {
-    const auto [entry, first] = files_.try_emplace(channel);
+  OutputFile& fileOf(const std::string& channel, const MessageType& type) {
+    const auto [entry, first] =
+        files_.try_emplace(channel, folder_.path() + "/" + channel + ".csv");
     if (!first) return entry->second;
-    const std::string path = folder_ + "/" + channel + ".csv";
-    entry->second.open(path);
-    if (!entry->second) throw std::runtime_error(path + ": cannot be written");
     std::string names = "recorded";
     addNames(type, "", names);
-    entry->second << names << "\n";
+    entry->second.write(names + "\n");
     return entry->second;
   }
 
-  std::string folder_;
-  std::map<std::string, std::ofstream> files_;
+  OutputFolder folder_;
+  std::map<std::string, OutputFile> files_;
 };
 
 }  // namespace
@@ -119,6 +113,7 @@ ExportCounts exportCsv(const std::vector<std::string>& logs, const Selection& se
   CsvExport csv(folder);
   csv.counts.problem =
       SelectedEvents(logs, selection).forEach([&](const LogEvent& event) { csv.take(event); });
+  csv.close();
   return std::move(csv.counts);
 }
 

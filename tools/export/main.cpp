@@ -7,6 +7,7 @@
 
 #include "common/bus/channels.hpp"
 #include "common/config/command_line.hpp"
+#include "common/config/outputs.hpp"
 #include "tools/export/log_export.hpp"
 
 namespace {
@@ -56,8 +57,9 @@ int main(int argc, char** argv) {
   Arguments arguments;
   app.add_option("logs", arguments.logs, "LCM log; several are parts of one recording, in order")
       ->required();
-  app.add_option("-o,--output", arguments.output,
-                 "FILE.mcap, or a folder for CSV files, one a channel")
+  Outputs(app)
+      .fileOrFolder("-o,--output", arguments.output,
+                    "FILE.mcap, or a folder for CSV files, one a channel")
       ->required();
   app.add_option("--format", arguments.format, "default: by the output's name")
       ->check(CLI::IsMember({"mcap", "csv"}));

@@ -10,7 +10,9 @@
 
 #include "common/config/command_line.hpp"
 #include "common/config/config_reader.hpp"
+#include "common/config/outputs.hpp"
 #include "common/report/page.hpp"
+#include "common/store/output_file.hpp"
 #include "common/store/store.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "modules/identification/core/discovery.hpp"
@@ -113,12 +115,12 @@ GapTask taskOf(const FindOptions& options, std::vector<InputFile>& inputs) {
 }
 
 int find(const FindOptions& options) {
-  tryFolder(options.out);
   std::vector<InputFile> inputs;
   const GapTask task = taskOf(options, inputs);
-  makeFolder(options.out);
   const Finding finding = findGap(task, say);
-  writeFinding(options.out, finding, inputs);
+  OutputFolder folder(options.out);
+  writeFinding(folder.path(), finding, inputs);
+  folder.commit();
   for (const std::string& line : closingLines(finding)) say(line);
   sayWhere(options.out, finding);
   return static_cast<int>(finding.verdict);
@@ -130,31 +132,31 @@ constexpr int kSomethingMoved = 10;
 std::vector<std::string> dayFiles(const FindOptions& options) {
   std::vector<std::string> files;
   for (size_t i = 0; i < options.train.size(); ++i)
-    files.push_back(options.out + "/day" + std::to_string(i + 1) + "_" +
+    files.push_back("day" + std::to_string(i + 1) + "_" +
                     std::filesystem::path(options.train[i]).stem().string() + ".yaml");
   return files;
 }
 
 int repeat(const FindOptions& options) {
-  tryFolder(options.out);
   std::vector<InputFile> inputs;
   const GapTask task = taskOf(options, inputs);
-  makeFolder(options.out);
   const Repetition repetition = repeatLogs(task, say);
-  writeFinding(options.out, repetition.together, inputs);
+  OutputFolder folder(options.out);
+  writeFinding(folder.path(), repetition.together, inputs);
   const std::string text = textOf(repetition);
-  writeText(options.out + "/repeat.txt", text);
+  writeText(folder.path() + "/repeat.txt", text);
+  const bool cannot_tell = repetition.together.verdict == GapVerdict::kCannotTell;
+  const std::vector<std::string> files =
+      repetition.differs() && !cannot_tell ? dayFiles(options) : std::vector<std::string>{};
+  for (size_t i = 0; i < files.size(); ++i)
+    writeText(folder.path() + "/" + files[i], formatModelDocument(repetition.modelOf(i)));
+  folder.commit();
   std::cout << '\n' << text;
   sayWhere(options.out, repetition.together);
-  if (repetition.together.verdict == GapVerdict::kCannotTell)
-    return static_cast<int>(GapVerdict::kCannotTell);
-  if (!repetition.differs()) return 0;
-  const std::vector<std::string> files = dayFiles(options);
-  for (size_t i = 0; i < files.size(); ++i) {
-    writeText(files[i], formatModelDocument(repetition.modelOf(i)));
-    say("The same with what is that day's: " + files[i]);
-  }
-  return kSomethingMoved;
+  if (cannot_tell) return static_cast<int>(GapVerdict::kCannotTell);
+  for (const std::string& file : files)
+    say("The same with what is that day's: " + options.out + "/" + file);
+  return repetition.differs() ? kSomethingMoved : 0;
 }
 
 struct CompareOptions {
@@ -198,7 +200,8 @@ void addFind(CLI::App& app, int& status) {
                    "logs for the errors before and after only; without any, blocks of the training "
                    "logs are kept apart in turn")
       ->expected(-1);
-  command->add_option("--out", options->out, "folder for the four files; made if needed")
+  Outputs(*command)
+      .folder("--out", options->out, "folder for the four files; made if needed")
       ->required();
   command->add_flag("--calibrate", options->calibrate,
                     "fit lag, delay and gains of the nominal model, too: makes the model of a new "
@@ -230,7 +233,7 @@ void addRepeat(CLI::App& app, int& status) {
       "does, 15 all together cannot tell, 2 bad input.");
   command->add_option("LOGS", options->train, "two or more")->required()->expected(-1);
   command->add_option("--model", options->model, "model file (YAML)")->required();
-  command->add_option("--out", options->out, "folder; made if needed")->required();
+  Outputs(*command).folder("--out", options->out, "folder; made if needed")->required();
   command->add_flag("--calibrate", options->calibrate,
                     "fit lag, delay and gains of the nominal model, too");
   addSeedAndThreads(*command, *options);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/config/config_reader.hpp"
+#include "common/config/outputs.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/store/store.hpp"
 #include "common/vehicle/model_document.hpp"
@@ -288,7 +289,7 @@ void addPlan(CLI::App& app, int& status) {
       ->add_option("--speed", options->speed,
                    "m/s, largest track speed commanded; not for models that take powers")
       ->check(CLI::Range(0.01, 20.0));
-  command->add_option("--out", options->out, "pattern set to write (YAML)");
+  Outputs(*command).file("--out", options->out, "pattern set to write (YAML)");
   command->callback([options, &status] { status = plan(*options); });
 }
 
@@ -304,7 +305,7 @@ void addWhatIf(CLI::App& app) {
       "--set", options->change.set,
       "parameter=number: of the effect added, or effect.parameter, or lag, delay..");
   command->add_option("--log", options->log, "a log; its executions are simulated, too");
-  command->add_option("--out", options->out, "pictures: FILE.html or FILE.svg");
+  Outputs(*command).file("--out", options->out, "pictures: FILE.html or FILE.svg");
   addCircumstances(*command, *options);
   command->callback([options] { whatIf(*options); });
 }

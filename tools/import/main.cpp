@@ -10,6 +10,7 @@
 
 #include "common/config/command_line.hpp"
 #include "common/config/config_reader.hpp"
+#include "common/config/outputs.hpp"
 #include "common/mcap/mcap_log.hpp"
 #include "common/recordings/csv_table.hpp"
 #include "common/recordings/imported_log.hpp"
@@ -152,7 +153,7 @@ Reading readForeign(const Arguments& arguments, Session& session) {
 void takeMcap(const Arguments& arguments) {
   LogWriter writer(arguments.log);
   const mcap::LogCounts counts = mcap::writeLog(arguments.csv, writer);
-  writer.flush();
+  writer.close();
   for (const auto& [what, count] : counts.left_out)
     std::printf("left out: %lld of %s\n", static_cast<long long>(count), what.c_str());
   if (!counts.problem.empty()) std::printf("%s\n", counts.problem.c_str());
@@ -177,7 +178,7 @@ int run(const Arguments& arguments) {
   LogWriter writer(arguments.log);
   for (const LogEvent& event : events)
     writer.write(event.utime, event.channel, event.bytes.data(), event.bytes.size());
-  writer.flush();
+  writer.close();
   std::printf(
       "%s: %zu commands, %zu executions completed, %zu aborted, %zu INS, %zu MOTOR, %zu SCAN, "
       "%.0f s\n",
@@ -217,7 +218,7 @@ int parseAndRun(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--session", arguments.session, "row of sessions.csv; default: the file's name");
   app.add_option("csv", arguments.csv, "recording: a file, or a folder of tables")->required();
-  app.add_option("-o,--output", arguments.log, "LCM log to write")->required();
+  Outputs(app).file("-o,--output", arguments.log, "LCM log to write")->required();
   app.add_option("--offset", arguments.layout.offset,
                  "first execution this long after the command began [s]")
       ->check(CLI::Range(0.0, 60.0))

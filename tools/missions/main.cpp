@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <filesystem>
 #include <iostream>
 #include <optional>
 
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
+#include "common/config/outputs.hpp"
 #include "common/report/text.hpp"
-#include "common/store/store.hpp"
 #include "tools/missions/report.hpp"
 
 namespace {
 
 using namespace tread;
 using namespace tread::missions;
+
+constexpr const char* kPicture = "mission.png";
 
 struct Arguments {
   int missions = 1;
@@ -27,7 +28,7 @@ struct Arguments {
   int threads = 1;
   std::string json;
   std::optional<uint64_t> show;
-  std::string picture = "mission.png";
+  std::string picture;  ///< empty = kPicture
   std::string log;
   std::string simulator;  ///< configuration with the place to drive in; empty = drawn by the seed
   std::vector<double> goal;  ///< [m] in map, with simulator
@@ -71,12 +72,18 @@ void define(CLI::App& app, Arguments& arguments) {
   app.add_option("--faults", arguments.fault_file, "YAML file with faults of messages and nodes");
   app.add_option("--threads", arguments.threads, "missions at the same time")
       ->check(CLI::Range(1, 64));
-  app.add_option("--json", arguments.json, "write the report to this file");
+  Outputs outputs(app);
+  outputs.file("--json", arguments.json, "write the report to this file");
   app.add_option("--show", arguments.show,
                  "draw the mission with this seed; with --rules, how each drives it, side by side");
-  app.add_option("--picture", arguments.picture, "file of that picture (PNG)");
-  app.add_option("--log", arguments.log,
-                 "record the mission with seed --seed as an LCM log (first rule)");
+  outputs.file("--picture", arguments.picture,
+               std::string("file of that picture (PNG); default ") + kPicture);
+  outputs.derived([&arguments] {
+    const bool unnamed = arguments.show && arguments.picture.empty();
+    return std::vector<std::string>{unnamed ? kPicture : ""};
+  });
+  outputs.file("--log", arguments.log,
+               "record the mission with seed --seed as an LCM log (first rule)");
   CLI::Option* place =
       app.add_option("--simulator", arguments.simulator,
                      "one mission in the world of this configuration (config/simulators), from its "
@@ -89,8 +96,8 @@ void define(CLI::App& app, Arguments& arguments) {
                           ->expected(1)
                           ->needs(place);
   place->needs(goal);
-  app.add_option("--truth", arguments.truth,
-                 "record what really happened in the mission with seed --seed (CSV)");
+  outputs.file("--truth", arguments.truth,
+               "record what really happened in the mission with seed --seed (CSV)");
   app.add_option("--robot", arguments.robot, "folder with the robot's configuration files");
   app.add_option("--set", arguments.overrides,
                  "PROCESS.KEY=VALUE in the place of what that process's file says; "
@@ -207,19 +214,7 @@ void compareSpeeds(const Arguments& arguments, const RobotConfig& robot) {
   if (!arguments.json.empty()) writeSpeeds(arguments.json, comparison);
 }
 
-/// Batches take long: checks that the outputs can be written before driving.
-void protectInputs(const Arguments& arguments) {
-  std::vector<std::string> inputs{arguments.fault_file, arguments.simulator};
-  std::error_code failure;
-  for (const auto& file : std::filesystem::directory_iterator(arguments.robot, failure))
-    inputs.push_back(file.path().string());
-  checkOutputs(
-      {arguments.json, arguments.show ? arguments.picture : "", arguments.log, arguments.truth},
-      inputs);
-}
-
 void drive(const Arguments& arguments) {
-  protectInputs(arguments);
   if (!showsOneOfThem(arguments))
     throw std::invalid_argument("--show: the seed is not among those of --seed and --missions");
   RobotConfig robot = readRobot(arguments.robot, arguments.overrides);
@@ -245,6 +240,7 @@ int main(int argc, char** argv) {
     // --show alone means: that mission.
     if (arguments.show && app.count("--seed") == 0 && arguments.missions == 1)
       arguments.seed = *arguments.show;
+    if (arguments.picture.empty()) arguments.picture = kPicture;
     drive(arguments);
     return 0;
   });

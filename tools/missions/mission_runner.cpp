@@ -7,12 +7,10 @@
 #include <iostream>
 #include <map>
 #include <mutex>
-#include <sstream>
 
 #include "common/bus/virtual_bus.hpp"
 #include "common/parallel/parallel_for.hpp"
 #include "common/report/text.hpp"
-#include "common/store/store.hpp"
 #include "modules/simulator/simulator_files.hpp"
 #include "tools/missions/referee.hpp"
 #include "tools/missions/robot_system.hpp"
@@ -77,13 +75,12 @@ class BatchRun {
   MissionRun drive(uint64_t seed) {
     MissionOptions options = order_.options;
     std::optional<LogWriter> log;
-    std::ostringstream truth;
-    sim::TruthRecord record(truth);
+    std::optional<sim::TruthRecord> truth;
     if (!order_.log.empty() && seed == order_.seed) options.log = &log.emplace(order_.log);
-    if (!order_.truth.empty() && seed == order_.seed) options.truth = &record;
+    if (!order_.truth.empty() && seed == order_.seed) options.truth = &truth.emplace(order_.truth);
     MissionRun run = runMission(robot_, seed, options);
-    if (log) log->flush();
-    if (options.truth != nullptr) writeText(order_.truth, truth.str());
+    if (log) log->close();
+    if (truth) truth->flush();
     if (order_.show == seed) {
       const std::lock_guard<std::mutex> lock(mutex_);
       batch_.shown = driveSceneOf(run.result, run.scene);

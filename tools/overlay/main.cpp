@@ -5,6 +5,7 @@
 
 #include "common/config/command_line.hpp"
 #include "common/config/config_reader.hpp"
+#include "common/config/outputs.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "tools/overlay/drive_pieces.hpp"
 
@@ -31,7 +32,7 @@ void describe(CLI::App& app, Arguments& arguments) {
   app.add_option("--length", arguments.length, "s that are predicted from each measured pose")
       ->check(CLI::Range(1.0, 60.0))
       ->capture_default_str();
-  app.add_option("--picture", arguments.picture, "file of the picture (PNG)");
+  Outputs(app).file("--picture", arguments.picture, "file of the picture (PNG)");
   app.add_option("--title", arguments.title, "of the picture");
 }
 

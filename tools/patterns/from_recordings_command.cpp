@@ -7,11 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "common/config/outputs.hpp"
 #include "common/log/event_log.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/recordings/csv_table.hpp"
 #include "common/recordings/drive_recordings.hpp"
 #include "common/recordings/recordings.hpp"
+#include "common/store/output_file.hpp"
 #include "common/store/store.hpp"
 #include "tools/patterns/commands.hpp"
 
@@ -76,7 +78,7 @@ void writeLog(const Options& options, const DriveRecordings& drives, const Trans
   LogWriter writer(options.log);
   for (const LogEvent& event : events)
     writer.write(event.utime, event.channel, event.bytes.data(), event.bytes.size());
-  writer.flush();
+  writer.close();
   const std::string& known = drives.surfaces[from].surface;
   const std::string shipped = (fs::path(options.folder) / (known + ".yaml")).string();
   std::printf(
@@ -89,10 +91,12 @@ void writeLog(const Options& options, const DriveRecordings& drives, const Trans
 
 void writeFolder(const Options& options, const DriveRecordings& drives) {
   refuseOtherSurfaces(options.folder, drives);
-  recordings::writeRecordings(options.folder, drives.recordings);
+  OutputFolder folder(options.folder);
+  recordings::writeRecordings(folder.path(), drives.recordings);
   for (size_t i = 0; i < drives.surfaces.size(); ++i)
-    writeOutput((fs::path(options.folder) / (drives.surfaces[i].surface + ".yaml")).string(),
-                formatPatterns(recordings::averagedSet(drives, i)), {options.recipe});
+    writeText((fs::path(folder.path()) / (drives.surfaces[i].surface + ".yaml")).string(),
+              formatPatterns(recordings::averagedSet(drives, i)));
+  folder.commit();
 }
 
 void fromRecordings(const Options& options) {
@@ -114,9 +118,9 @@ void fromRecordings(const Options& options) {
   if (!options.log.empty()) writeLog(options, drives, transition);
 }
 
-void addLogOptions(CLI::App& command, Options& options) {
-  auto* log = command.add_option("--log", options.log,
-                                 "LCM log of executions on one surface, then on another");
+void addLogOptions(CLI::App& command, Outputs& outputs, Options& options) {
+  auto* log =
+      outputs.file("--log", options.log, "LCM log of executions on one surface, then on another");
   auto* from = command.add_option("--from", options.from, "surface that is known");
   auto* to = command.add_option("--to", options.to, "surface that is new");
   log->needs(from)->needs(to);
@@ -149,8 +153,9 @@ CLI::App* addFromRecordings(CLI::App& app) {
   command->add_option("--recipe", options->recipe,
                       "which patterns (YAML, see config/patterns/recipes/drive.yaml)");
   command->add_flag("--one-surface", options->one_surface, "a single surface will do");
-  command->add_option("-o,--output", options->folder, "folder of recordings to write")->required();
-  addLogOptions(*command, *options);
+  Outputs outputs(*command);
+  outputs.folder("-o,--output", options->folder, "folder of recordings to write")->required();
+  addLogOptions(*command, outputs, *options);
   command->callback([options] { fromRecordings(*options); });
   return command;
 }

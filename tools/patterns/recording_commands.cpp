@@ -2,20 +2,20 @@
 // Copyright (c) 2026 The Tread authors
 // record and average: what is done with recordings.
 #include <atomic>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "common/bus/key_option.hpp"
 #include "common/bus/shell.hpp"
 #include "common/config/config_reader.hpp"
+#include "common/config/outputs.hpp"
 #include "common/pattern/pattern.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/recordings/recordings.hpp"
 #include "common/seal/key_file.hpp"
+#include "common/store/output_file.hpp"
 #include "common/store/store.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "modules/pattern_recorder/recorder_node.hpp"
@@ -54,6 +54,7 @@ std::string keepPart(const std::string& path, const PatternSet& set,
   for (const auto& of_pattern : recorder.recorded()) executions += of_pattern.size();
   if (executions == 0) return "";
   try {
+    moveAside(path);
     writeText(path, recordings::formatSurface({"", recorder.recorded()}, set));
   } catch (const std::exception& error) {
     return std::string("; what was recorded until then is lost: ") + error.what();
@@ -86,6 +87,7 @@ struct RecordOptions {
   std::string surface;
   std::string model;
   bool live = false;
+  bool force = false;
   int executions = 30;
   ModelRecording how;
   pattern_recorder::RecordingConfig live_how;
@@ -106,6 +108,8 @@ constexpr const char* kFooter =
 void record(const RecordOptions& options) {
   const PatternSet set = readPatternFile(options.patterns);
   recordings::requireAddable(options.folder, set, options.surface);
+  checkOutputs({{options.folder + "/" + options.surface + ".csv"}},
+               {options.patterns, options.model}, options.force);
   recordings::SurfaceRecordings surface{options.surface, {}};
   const std::string part = options.folder + "/" + options.surface + ".csv.part";
   if (options.live) {
@@ -122,8 +126,6 @@ void record(const RecordOptions& options) {
     surface = recordModel(set, model, options.surface, how);
   }
   const bool replaced = recordings::addSurface(options.folder, set, surface);
-  std::error_code failure;
-  if (options.live) std::filesystem::remove(part, failure);
   std::cout << options.folder << "/" << options.surface << ".csv: " << options.executions
             << " executions of each of " << set.patterns().size() << " patterns"
             << (replaced ? ", in the place of what was there" : "") << std::endl;
@@ -212,8 +214,7 @@ void average(const AverageOptions& options) {
                                ? recorded.patterns.content().name + "_" + options.surface
                                : options.name;
   const PatternSet set = named(averaged, name);
-  writeOutput(options.output, formatPatterns(set),
-              {options.folder + "/patterns.yaml", options.folder + "/" + options.surface + ".csv"});
+  writeText(options.output, formatPatterns(set));
   for (const AverageNote& note : notes) std::cout << noteLine(note);
   std::cout << table(set);
 }
@@ -228,8 +229,8 @@ CLI::App* addRecord(CLI::App& app) {
   command->add_option("PATTERNS", options->patterns, "pattern file (YAML)")->required();
   command->add_option("--recordings", options->folder, "folder of recordings; made if needed")
       ->required();
-  command->add_option("--surface", options->surface, "name of the surface, replaced if recorded")
-      ->required();
+  command->add_option("--surface", options->surface, "name of the surface")->required();
+  command->add_flag("--force", options->force, "replace the surface if it is recorded already");
   CLI::Option_group* source = command->add_option_group("source", "who executes, one of");
   source->add_option("--model", options->model, "a vehicle model (YAML)");
   source->add_flag("--live", options->live, "the robot, or the simulated one, over LCM");
@@ -250,7 +251,7 @@ CLI::App* addAverage(CLI::App& app) {
   command->add_option("RECORDINGS", options->folder, "folder of recordings")->required();
   command->add_option("SURFACE", options->surface, "surface, a SURFACE.csv of the folder")
       ->required();
-  command->add_option("-o,--output", options->output, "pattern file to write")->required();
+  Outputs(*command).file("-o,--output", options->output, "pattern file to write")->required();
   command->add_option("--name", options->name, "name of the set (default: SET_SURFACE)");
   AverageLimits& limits = options->limits;
   command

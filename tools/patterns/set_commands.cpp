@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/config/config_reader.hpp"
+#include "common/config/outputs.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/store/store.hpp"
 #include "common/vehicle/model_document.hpp"
@@ -29,7 +30,7 @@ void make(const MakeOptions& options) {
   const ModelDocument model = readModelDocument(options.model);
   const PatternSet set = makeSet(ConfigReader::fromFile(options.recipe), model.vehicle);
   warnOutside(model, options.model, set);
-  writeOutput(options.output, formatPatterns(set), {options.recipe, options.model});
+  writeText(options.output, formatPatterns(set));
   std::cout << table(set);
 }
 
@@ -56,7 +57,7 @@ struct MirrorOptions {
 void mirror(const MirrorOptions& options) {
   std::vector<std::string> notes;
   const PatternSet set = withMirrors(readPatternFile(options.file), options.pattern, notes);
-  writeOutput(options.output, formatPatterns(set), {options.file});
+  writeText(options.output, formatPatterns(set));
   for (const std::string& note : notes) std::cout << note << '\n';
   if (notes.empty()) std::cout << "every pattern that turns has its mirror image already\n";
   std::cout << options.output << ": " << set.patterns().size() << " patterns\n";
@@ -84,9 +85,7 @@ void show(const ShowOptions& options) {
     std::cout << comparison(set, options.file, other, options.other);
     pictured.push_back({labelOf(options.other, options.file), other});
   }
-  if (options.picture.empty()) return;
-  refuseToReplace(options.picture, {options.file, options.other});
-  drawSets(pictured, options.picture);
+  if (!options.picture.empty()) drawSets(pictured, options.picture);
 }
 
 }  // namespace
@@ -96,7 +95,7 @@ CLI::App* addMake(CLI::App& app) {
   CLI::App* command = app.add_subcommand("make", "make a pattern file from a recipe");
   command->add_option("RECIPE", options->recipe, "recipe (YAML)")->required();
   command->add_option("--model", options->model, "model file that predicts")->required();
-  command->add_option("-o,--output", options->output, "pattern file to write")->required();
+  Outputs(*command).file("-o,--output", options->output, "pattern file to write")->required();
   command->callback([options] { make(*options); });
   return command;
 }
@@ -117,7 +116,7 @@ CLI::App* addMirror(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("mirror", "add the mirror image of every pattern that turns and has none");
   command->add_option("FILE", options->file, "pattern file (YAML)")->required();
-  command->add_option("-o,--output", options->output, "pattern file to write")->required();
+  Outputs(*command).file("-o,--output", options->output, "pattern file to write")->required();
   command->add_option("--pattern", options->pattern, "only this pattern");
   command->callback([options] { mirror(*options); });
   return command;
@@ -128,8 +127,8 @@ CLI::App* addShow(CLI::App& app) {
   CLI::App* command = app.add_subcommand("show", "print a pattern file as a table, or compare two");
   command->add_option("FILE", options->file, "pattern file (YAML)")->required();
   command->add_option("--compare", options->other, "another pattern file: how its ends differ");
-  command->add_option("--picture", options->picture,
-                      "PNG to write: all trajectories with the spread of their ends");
+  Outputs(*command).file("--picture", options->picture,
+                         "PNG to write: all trajectories with the spread of their ends");
   command->callback([options] { show(*options); });
   return command;
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "common/config/command_line.hpp"
+#include "common/config/outputs.hpp"
 #include "tools/plan/plan_report.hpp"
 #include "tools/plan/task_planner.hpp"
 
@@ -12,7 +13,7 @@ namespace {
 using namespace tread;
 using namespace tread::plan;
 
-void describeQuery(CLI::App& app, PlanOptions& options) {
+void describeQuery(CLI::App& app, Outputs& outputs, PlanOptions& options) {
   app.add_option("--start", options.start,
                  "x,y,yaw [m, m, rad] in the map's frame; else the .cfg's own");
   app.add_option("--goal", options.goal, "x,y,yaw, as the start");
@@ -29,7 +30,7 @@ void describeQuery(CLI::App& app, PlanOptions& options) {
   app.add_option("--apart", options.apart, "m that their start and goal are apart at least")
       ->check(CLI::Range(0.0, 1e5))
       ->capture_default_str();
-  app.add_option("--write-queries", options.write_queries, "file to write the random queries to");
+  outputs.file("--write-queries", options.write_queries, "file to write the random queries to");
 }
 
 void describeRobot(CLI::App& app, PlanOptions& options) {
@@ -55,12 +56,13 @@ void describe(CLI::App& app, PlanOptions& options) {
   app.add_flag("--mprim-exact", options.exact,
                "all of the .mprim, each from its own start angle, and SBPL's whole costs");
   describeRobot(app, options);
-  describeQuery(app, options);
+  Outputs outputs(app);
+  describeQuery(app, outputs, options);
   app.add_option("--deadline-ms", options.deadline_ms,
                  "ms after which the best so far is the answer; else 1000, --mprim-exact none")
       ->check(CLI::Range(1.0, 1e9));
-  app.add_option("--json", options.json, "file to write the answer to");
-  app.add_option("--picture", options.picture, "PNG of map, search tree and plan");
+  outputs.file("--json", options.json, "file to write the answer to");
+  outputs.file("--picture", options.picture, "PNG of map, search tree and plan");
 }
 
 /// What all queries share counts for the only one.

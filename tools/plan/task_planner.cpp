@@ -13,6 +13,7 @@
 #include "common/config/scalars.hpp"
 #include "common/grid/footprint.hpp"
 #include "common/pattern/pattern_file.hpp"
+#include "common/store/output_file.hpp"
 #include "common/store/store.hpp"
 
 namespace tread::plan {
@@ -126,12 +127,6 @@ void readWanted(const PlanOptions& options, PlanTask& task) {
   }
 }
 
-/// Nothing that is read may be written over.
-void protectInputs(const PlanOptions& options, const MapFile& map) {
-  checkOutputs({options.json, options.picture, options.write_queries},
-               {options.map, map.image, options.patterns, options.queries});
-}
-
 using Clock = std::chrono::steady_clock;
 
 /// A point still needs an outline: far smaller than a cell.
@@ -183,7 +178,8 @@ planner::SweepResolution sweepResolution(const PlanTask& task) {
 PlanTask loadTask(const PlanOptions& options) {
   PlanTask task;
   task.map = readMap(options.map);
-  protectInputs(options, task.map);
+  for (const std::string& output : {options.json, options.picture, options.write_queries})
+    refuseToReplace(output, {task.map.image});
   task.shape = readShape(options, task.map);
   task.grid = task.shape.isPoint() ? gridForPoint(task.map) : gridForFootprint(task.map);
   if (task.shape.radius > 0.0) task.grid = grownBy(task.grid, task.shape.radius);
@@ -200,8 +196,7 @@ PlanTask loadTask(const PlanOptions& options) {
   task.deadline_ms = options.deadline_ms;
   if (!task.deadline_ms && !task.exact) task.deadline_ms = kDeadline;
   readWanted(options, task);
-  if (!options.write_queries.empty())
-    writeOutput(options.write_queries, formatQueries(task.queries), {});
+  if (!options.write_queries.empty()) writeText(options.write_queries, formatQueries(task.queries));
   return task;
 }
 

@@ -28,7 +28,7 @@ class UnpackedLog {
     made_ = true;
     LogWriter log(path_);
     mcap::writeLog(path, log);
-    log.flush();
+    log.close();
   }
   ~UnpackedLog() {
     std::error_code error;

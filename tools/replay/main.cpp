@@ -8,6 +8,7 @@
 
 #include "common/config/command_line.hpp"
 #include "common/config/config_reader.hpp"
+#include "common/config/outputs.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/store/store.hpp"
 #include "common/vehicle/model_document.hpp"
@@ -29,9 +30,16 @@ struct Output {
   std::string picture;
 };
 
-void addOutput(CLI::App& command, Output& output) {
-  command.add_option("--report", output.report, "also write the report into this file");
-  command.add_option("--picture", output.picture, "also draw a picture (PNG)");
+Outputs addReport(CLI::App& command, Output& output) {
+  Outputs outputs(command);
+  outputs.file("--report", output.report, "also write the report into this file");
+  return outputs;
+}
+
+Outputs addOutput(CLI::App& command, Output& output) {
+  Outputs outputs = addReport(command, output);
+  outputs.file("--picture", output.picture, "also draw a picture (PNG)");
+  return outputs;
 }
 
 void say(const std::string& report, const Output& output) {
@@ -118,7 +126,7 @@ void addPlanner(CLI::App& app, Arguments& arguments) {
       "the log of a running robot through the planner; code 1 if different or not compared");
   command.add_option("log", arguments.log, "LCM log")->required();
   command.add_option("--config", arguments.config, "configuration of the planner; else the log's");
-  command.add_option("--report", arguments.output.report, "also write the report into this file");
+  addReport(command, arguments.output);
   command.callback([&arguments] { comparePlanner(arguments); });
 }
 
@@ -218,9 +226,9 @@ void addLearner(CLI::App& app, LearnerArguments& arguments) {
       ->check(CLI::IsMember({kIns.name, kScanMatching.name}))
       ->excludes(source->get_option("--model"))
       ->excludes(source->get_option("--patterns"));
-  command.add_option("--write-patterns", arguments.write_patterns,
-                     "write the set that learning begins with into a pattern file");
-  addOutput(command, arguments.output);
+  addOutput(command, arguments.output)
+      .file("--write-patterns", arguments.write_patterns,
+            "write the set that learning begins with into a pattern file");
   command.callback([&arguments] {
     if (arguments.poses != kIns.name) return compareLearnedPoses(arguments);
     if (arguments.model.empty() && arguments.patterns.empty()) return compareLearner(arguments);
@@ -248,7 +256,7 @@ void addCorpus(CLI::App& app, CorpusArguments& arguments) {
       ->expected(1)
       ->take_all();
   addThreads(command, arguments.threads);
-  command.add_option("--report", arguments.output.report, "also write the report into this file");
+  addReport(command, arguments.output);
   command.callback([&arguments] {
     const auto corpus =
         replay::replayCorpus(replay::corpusOf(arguments.folder), arguments.overrides,

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
+#include "common/config/outputs.hpp"
 #include "modules/simulator/simulator_files.hpp"
 #include "tools/report/drive_report.hpp"
 
@@ -58,7 +59,7 @@ int main(int argc, char** argv) {
                  "rules of learning that predict the drive's executions side by side, or none")
       ->delimiter(',')
       ->check(CLI::IsMember(names));
-  app.add_option("--picture", arguments.picture, "file of the picture (PNG)");
+  Outputs(app).file("--picture", arguments.picture, "file of the picture (PNG)");
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   return runProgram("tread-report", [&] { return run(arguments); });
 }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <fstream>
 #include <iostream>
 #include <optional>
 
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
+#include "common/config/outputs.hpp"
+#include "common/store/store.hpp"
 #include "tools/why/debrief.hpp"
 
 namespace {
@@ -22,13 +23,6 @@ struct Arguments {
   std::string json;
 };
 
-void write(const std::string& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw std::runtime_error(path + ": cannot be written");
-}
-
 int run(const Arguments& arguments) {
   const Debrief drive = debrief(readTimeline(arguments.logs));
   std::optional<Debrief> other;
@@ -36,8 +30,8 @@ int run(const Arguments& arguments) {
   const Debrief* const before = other ? &*other : nullptr;
   std::cout << textOf(drive, arguments.at);
   if (before != nullptr) std::cout << "\n" << textOfDifferences(*before, drive);
-  if (!arguments.html.empty()) write(arguments.html, htmlOf(drive, before));
-  if (!arguments.json.empty()) write(arguments.json, jsonOf(drive, before));
+  if (!arguments.html.empty()) writeText(arguments.html, htmlOf(drive, before));
+  if (!arguments.json.empty()) writeText(arguments.json, jsonOf(drive, before));
   return 0;
 }
 
@@ -55,8 +49,9 @@ int main(int argc, char** argv) {
       ->check(CLI::NonNegativeNumber);
   app.add_option("--against", arguments.against,
                  "another log: what is different, in the drive and in the configuration");
-  app.add_option("--html", arguments.html, "also write the page into this file");
-  app.add_option("--json", arguments.json, "also write everything into this file, for programs");
+  Outputs outputs(app);
+  outputs.file("--html", arguments.html, "also write the page into this file");
+  outputs.file("--json", arguments.json, "also write everything into this file, for programs");
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   return runProgram("tread-why", [&] { return run(arguments); });
 }

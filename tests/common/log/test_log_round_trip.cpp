@@ -131,9 +131,9 @@ TEST_CASE("an empty log is whole") {
   CHECK(problem.empty());
 }
 
-TEST_CASE("what was flushed is there while the writer lives") {
+TEST_CASE("what was flushed of a growing log is there while the writer lives") {
   const TemporaryFile file;
-  LogWriter writer(file.path);
+  LogWriter writer(file.path, OutputFile::Kind::kGrowing);
   const auto bytes = testing::messageOf(1);
   writer.write(1000, "CHANNEL", bytes.data(), bytes.size());
   writer.flush();
@@ -143,7 +143,7 @@ TEST_CASE("what was flushed is there while the writer lives") {
 
 TEST_CASE("a full disk, a folder that is not there and a bad channel are one clear line") {
   CHECK_THROWS_WITH(LogWriter("/tmp/no/such/folder/x.lcmlog"),
-                    "log /tmp/no/such/folder/x.lcmlog: cannot be made (No such file or directory); "
+                    "/tmp/no/such/folder/x.lcmlog: cannot be written (No such file or directory); "
                     "check space and permissions");
   LogWriter full("/dev/full");
   const std::vector<uint8_t> bytes(1000);
@@ -151,7 +151,7 @@ TEST_CASE("a full disk, a folder that is not there and a bad channel are one cle
     for (int i = 0; i < 1000; ++i) full.write(i, "X", bytes.data(), bytes.size());
   };
   CHECK_THROWS_WITH(fill(),
-                    "log /dev/full: cannot be written (No space left on device); check "
+                    "/dev/full: cannot be written (No space left on device); check "
                     "space and permissions");
   CHECK_THROWS_AS(full.flush(), std::runtime_error);
   CHECK_THROWS_AS(full.write(0, "", bytes.data(), 1), std::invalid_argument);

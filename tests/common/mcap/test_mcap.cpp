@@ -113,5 +113,5 @@ TEST_CASE("what is no MCAP file is one clear line") {
   file.write("what is this");
   CHECK_THROWS_WITH(mcap::Reader(file.path()), Catch::EndsWith("is no MCAP file"));
   CHECK_THROWS_WITH(mcap::Reader("/nowhere/drive.mcap"), Catch::EndsWith("cannot be opened"));
-  CHECK_THROWS_WITH(mcap::Writer("/nowhere/drive.mcap"), Catch::EndsWith("cannot be written"));
+  CHECK_THROWS_WITH(mcap::Writer("/nowhere/drive.mcap"), Catch::Contains("cannot be written"));
 }

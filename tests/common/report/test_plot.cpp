@@ -43,5 +43,5 @@ TEST_CASE("a picture with a map and a curve is a PNG of the asked size") {
 TEST_CASE("a picture that cannot be written is one clear line") {
   Picture picture(10, 10, "");
   REQUIRE_THROWS_WITH(picture.save("/nowhere/at/all.png"),
-                      Catch::Contains("/nowhere/at/all.png: cannot write the picture"));
+                      Catch::Contains("/nowhere/at/all.png: cannot be written"));
 }

@@ -97,10 +97,10 @@ TEST_CASE("a second process on the folder of another is refused in one line, unt
 TEST_CASE("leftovers of a crash are no entries and are cleaned at the next start") {
   const Folder folder;
   FileStore(folder.path).write("set", "whole");
-  std::ofstream(folder.path + "/.set.123.tmp") << "hal";
+  std::ofstream(folder.path + "/set.123.unfinished") << "hal";
   fs::create_directory(folder.path + "/subfolder");
   FileStore store(folder.path);
-  CHECK_FALSE(fs::exists(folder.path + "/.set.123.tmp"));
+  CHECK_FALSE(fs::exists(folder.path + "/set.123.unfinished"));
   CHECK(store.names() == std::vector<std::string>{"set"});
   CHECK(store.read("set") == std::string("whole"));
   CHECK_FALSE(store.read("subfolder"));
@@ -120,7 +120,7 @@ TEST_CASE("a full disk is one clear line and the old content stays") {
   ::setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
   REQUIRE(refused);
-  CHECK_THAT(*refused, Contains("cannot write " + folder.path + "/set (File too large)"));
+  CHECK_THAT(*refused, Contains(folder.path + "/set: cannot be written (File too large)"));
   CHECK(store.read("set") == std::string("old"));
   CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 1);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/store/output_file.hpp"
 #include "common/store/store.hpp"
 #include "tools/gap/report/report.hpp"
 
@@ -300,9 +301,10 @@ Page comparisonPage(const ComparisonReport& report) {
 }
 
 void writeComparison(const std::string& folder, const ComparisonReport& report) {
-  makeFolder(folder);
-  writeText(folder + "/comparison.md", markdownOf(comparisonPage(report)));
-  writeText(folder + "/comparison.json", comparisonJson(report).dump(2) + "\n");
+  OutputFolder files(folder);
+  writeText(files.path() + "/comparison.md", markdownOf(comparisonPage(report)));
+  writeText(files.path() + "/comparison.json", comparisonJson(report).dump(2) + "\n");
+  files.commit();
 }
 
 nlohmann::ordered_json comparisonJson(const ComparisonReport& report) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/config/command_line.hpp"
+#include "common/config/outputs.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "tests/study/models/comparison_output.hpp"
 #include "tools/gap/drive_log.hpp"
@@ -115,7 +116,6 @@ void compare(const Options& options) {
   task.seed = static_cast<uint64_t>(options.seed);
   task.parallel = onThreads(options.threads);
   requireRows(task);
-  makeFolder(options.out);
   tellLosses(task);
   ComparisonReport report;
   report.model = std::filesystem::path(options.model).filename().string();
@@ -139,8 +139,9 @@ int main(int argc, char** argv) {
     app.footer(tread::gap::kFooter);
     app.add_option("--log", options.logs, "logs of drives")->required()->expected(-1);
     app.add_option("--model", options.model, "the ideal model (YAML), without effects");
-    app.add_option("--out", options.out,
-                   "folder for comparison.json and comparison.md; made if needed")
+    tread::Outputs(app)
+        .folder("--out", options.out,
+                "folder for comparison.json and comparison.md; made if needed")
         ->required();
     app.add_flag("--pool", options.pool, "also judge each log by what all others teach");
     app.add_option("--seed", options.seed, "of the random draws of the tests")

@@ -116,7 +116,7 @@ class Runner {
 
   void find(const HiddenCase& one) {
     fs::create_directories(folder_ / "found" / one.name);
-    std::vector<std::string> command{program("tread-gap"), "find", "--threads", "1"};
+    std::vector<std::string> command{program("tread-gap"), "find", "--force", "--threads", "1"};
     if (!study_.rival.empty()) command = {program("tread-rival"), study_.rival};
     command.insert(command.end(), {"--model", models_.at(one.nominal), "--train",
                                    "blind/" + one.name + ".lcm", "--out", "found/" + one.name});

@@ -71,11 +71,12 @@ struct Plain {
 Json calibrate(const Study& study, const fs::path& folder, const Plain& plain,
                const std::string& model, int round) {
   const std::string out = "round" + std::to_string(round);
-  const Ended ended = run({{study.programs + "/tread-gap", "find", "--calibrate", "--keep-small",
-                            "--threads", "1", "--model", model, "--train", plain.log, "--out", out},
-                           folder.string(),
-                           out + ".log",
-                           kLimit});
+  const Ended ended =
+      run({{study.programs + "/tread-gap", "find", "--force", "--calibrate", "--keep-small",
+            "--threads", "1", "--model", model, "--train", plain.log, "--out", out},
+           folder.string(),
+           out + ".log",
+           kLimit});
   if (ended.status != 0 && (ended.status < kFound || ended.status >= kCannotTell))
     throw std::runtime_error("calibration ended with " + std::to_string(ended.status) + ": " +
                              lastLine((folder / (out + ".log")).string()));

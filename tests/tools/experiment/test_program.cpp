@@ -138,7 +138,7 @@ TEST_CASE("an option replaces keys of the learner's configuration") {
   const Folder folder;
   write(folder / "small.yaml", kSmallWorld);
   const std::string few = "--world " + (folder / "small.yaml") +
-                          " --rules multi_model,collective --repetitions 20 --threads 2 --out " +
+                          " --rules multi_model,collective --repetitions 20 --threads 2 --force --out " +
                           (folder / "out");
   const auto table = [&](const std::string& set) {
     const auto [code, printed] = run(few + set);

@@ -81,7 +81,7 @@ TEST_CASE("beside the messages stands what viewers draw, and --no-scene leaves i
   writeLog(folder.path("drive.lcmlog"));
   for (const bool scene : {true, false}) {
     REQUIRE(called("tread-export " + folder.path("drive.lcmlog") + " -o " + folder.path("d.mcap") +
-                   (scene ? "" : " --no-scene"))
+                   (scene ? "" : " --force --no-scene"))
                 .status == 0);
     mcap::Reader reader(folder.path("d.mcap"));
     mcap::Message message;

@@ -98,18 +98,17 @@ TEST_CASE("a folder that cannot be written is told before anything is read") {
   folder.write("file", "");
   std::filesystem::create_directories(folder.path("taken/model.yaml"));
   const std::string find = "find --model none.yaml --train none.lcmlog --out ";
-  const std::pair<std::string, std::string> kBad[] = {{"file", "is no folder"},
-                                                      {"file/out", "is no folder"},
-                                                      {"taken", "model.yaml in it is a folder"}};
+  const std::pair<std::string, std::string> kBad[] = {
+      {"file", "is no folder"}, {"file/out", "is no folder"}, {"taken", "is not empty"}};
   for (const auto& [out, words] : kBad) {
     const Run bad = run(find + folder.path(out));
     INFO(bad.printed);
     CHECK(bad.status == 2);
-    CHECK(bad.says(folder.path(out) + ": cannot be made or written ("));
+    CHECK(bad.says(folder.path(out) + ": "));
     CHECK(bad.says(words));
     CHECK(std::count(bad.printed.begin(), bad.printed.end(), '\n') == 1);
   }
-  CHECK(run(find + "''").says("(its name is empty)"));
+  CHECK(run(find + "''").says("its name is empty"));
 }
 
 TEST_CASE("a log that is too short cannot tell: status 15, the reason, and no model") {
@@ -131,8 +130,8 @@ TEST_CASE("a log that is too short cannot tell: status 15, the reason, and no mo
   CHECK(first.says("Report: " + folder.path("a/report.html")));
   SECTION("a model of an earlier run stays as it is, and is said to be one") {
     folder.write("a/model.yaml", "earlier");
-    CHECK(
-        run(find + " --out " + folder.path("a")).says("a/model.yaml is left from an earlier run"));
+    CHECK(run(find + " --force --out " + folder.path("a"))
+              .says("a/model.yaml is left from an earlier run"));
     CHECK(folder.text("a/model.yaml") == "earlier");
   }
   SECTION("the same files and seed give the same bytes, whatever the number of threads") {

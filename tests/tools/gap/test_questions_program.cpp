@@ -100,7 +100,7 @@ TEST_CASE("a plan stays within what the model was made from, unless a person ask
   INFO(check.printed);
   CHECK(check.says("ok, "));
   CHECK_FALSE(check.says("is asked for"));
-  const Run beyond = run(plan + " --speed 5");
+  const Run beyond = run(plan + " --force --speed 5");
   CHECK(beyond.status == 0);
   CHECK(beyond.says("is asked for, the model was made from up to"));
 }

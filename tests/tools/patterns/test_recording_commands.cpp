@@ -22,7 +22,10 @@ TEST_CASE("tread-patterns records surfaces into a folder and averages one into a
   INFO(first.printed);
   REQUIRE(first.status == 0);
   CHECK(first.says("recorded/grass.csv: 20 executions of each of 23 patterns\n"));
-  const Run again = record(folder, "--surface grass -n 20 --seed 2");
+  const Run refused = record(folder, "--surface grass -n 20 --seed 2");
+  CHECK(refused.status == 2);
+  CHECK(refused.says("recorded/grass.csv: is there already"));
+  const Run again = record(folder, "--surface grass -n 20 --seed 2 --force");
   CHECK(again.says("in the place of what was there"));
   CHECK(record(folder, "--surface lawn -n 3").status == 0);
   const Run averaged =
@@ -68,7 +71,7 @@ TEST_CASE("Recording and averaging refuse what makes no sense with one line") {
   const Run over = run("average " + folder.path("recorded") + " grass --min-executions 1 -o " +
                        folder.path("recorded/patterns.yaml"));
   CHECK(over.status == 2);
-  CHECK(over.says("this is the input"));
+  CHECK(over.says("lies in the input"));
   REQUIRE(run("make " + kConfigFolder + "patterns/recipes/teodor.yaml --model " + kGrass + " -o " +
               folder.path("same.yaml"))
               .status == 0);

@@ -97,7 +97,7 @@ TEST_CASE("tread-plan takes start, goal and pace from an SBPL environment") {
   CHECK(result.status == 0);
   CHECK_THAT(result.printed, Contains("cost 2322625"));
   CHECK(Json::parse(folder.text("a.json"))["patterns"] == Json({"0", "1"}));
-  const Run faster = run(arguments + " --turn-time 0.1 --speed 0.5");
+  const Run faster = run(arguments + " --force --turn-time 0.1 --speed 0.5");
   CHECK_THAT(faster.printed, Contains("2 patterns"));
   CHECK(Json::parse(folder.text("a.json"))["cost"].get<double>() < 2322625.0);
 }
@@ -153,7 +153,7 @@ TEST_CASE("tread-plan refuses bad input in one line that says what to do") {
   for (const char* const name : {"office.yaml", "office.pgm"})
     std::filesystem::copy_file(kSource + "/tests/data/planning/" + name, folder.path(name));
   const std::string own = "--map " + folder.path("office.yaml") + " " + kWithSet + kRobot + kTask;
-  checkRefused(own + "--picture " + folder.path("office.pgm"), "this is the input");
+  checkRefused(own + "--force --picture " + folder.path("office.pgm"), "this is the input");
   checkRefused(own + "--json " + folder.path("a") + " --picture " + folder.path("./a"),
                "two results cannot be written to one file");
   checkRefused(own + "--json never.json --picture ./never.json",

@@ -170,5 +170,5 @@ TEST_CASE("a plan's picture is a PNG in the shape of its map, or one clear line"
   drawPlan(folder.path("b.png"), scene);
   CHECK(folder.text("b.png").size() > 1000);
   CHECK_THROWS_WITH(drawPlan("/nowhere/a.png", scene),
-                    Contains("/nowhere/a.png: cannot write the picture"));
+                    Contains("/nowhere/a.png: cannot be written"));
 }

@@ -2,20 +2,12 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/gap/report/report.hpp"
 
-#include <unistd.h>
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
-#include <filesystem>
 #include <stdexcept>
-#include <system_error>
 
 #include "common/store/store.hpp"
 #include "common/vehicle/model_document.hpp"
-
-namespace fs = std::filesystem;
 
 namespace tread::gap {
 namespace {
@@ -144,11 +136,6 @@ void makeSymmetric(std::vector<std::vector<double>>& matrix) {
       matrix[i][j] = matrix[j][i] = 0.5 * (matrix[i][j] + matrix[j][i]);
 }
 
-[[noreturn]] void refuse(const std::string& folder, const std::string& why) {
-  throw std::runtime_error(folder + ": cannot be made or written (" + why +
-                           "); give another folder with --out");
-}
-
 }  // namespace
 
 std::vector<Decision> decisionsOf(const DecisionWords& words, const ModelDocument& model) {
@@ -214,33 +201,8 @@ bool hasNewModel(const Finding& finding) {
   return finding.verdict != GapVerdict::kCannotTell;
 }
 
-void tryFolder(const std::string& folder) {
-  if (folder.empty()) refuse("--out", "its name is empty");
-  fs::path there = fs::absolute(folder);
-  std::error_code failure;
-  while (!fs::exists(there, failure) && there.has_relative_path()) there = there.parent_path();
-  if (!fs::is_directory(there, failure)) refuse(folder, there.string() + " is no folder");
-  // Permissions alone do not tell: a file system may be full or read-only.
-  std::string trial = (there / "tread-gap-XXXXXX").string();
-  const int file = mkstemp(trial.data());
-  if (file < 0) refuse(folder, std::strerror(errno));
-  close(file);
-  unlink(trial.c_str());
-  for (const char* name : {"model.yaml", "report.md", "report.html", "verdict.json"})
-    if (fs::is_directory(fs::path(folder) / name, failure))
-      refuse(folder, std::string(name) + " in it is a folder");
-}
-
-void makeFolder(const std::string& folder) {
-  std::error_code failure;
-  fs::create_directories(folder, failure);
-  if (failure) refuse(folder, failure.message());
-  if (access(folder.c_str(), W_OK) != 0) refuse(folder, std::strerror(errno));
-}
-
 void writeFinding(const std::string& folder, const Finding& finding,
                   const std::vector<InputFile>& inputs) {
-  makeFolder(folder);
   const Page page = reportPage(finding, inputs);
   if (hasNewModel(finding)) {
     const std::string model = formatModelDocument(newModel(finding, inputs));

@@ -246,17 +246,9 @@ ModelDocument newModel(const Finding& finding, const std::vector<InputFile>& inp
 bool hasNewModel(const Finding& finding);
 
 /// Writes model.yaml (if there is a new model), report.md, report.html and, last, verdict.json into
-/// a folder.
-/** Each file is there whole or not at all; without a new model a model.yaml that is there stays as
- * it is. The folder is made if needed. Throws std::runtime_error with one clear line. */
+/// a folder that is there.
+/** Throws std::runtime_error with one clear line. */
 void writeFinding(const std::string& folder, const Finding& finding,
                   const std::vector<InputFile>& inputs);
-
-/// Tries whether files can be written into a folder that is there or could be made; leaves nothing
-/// behind. Throws std::runtime_error with one line if not.
-void tryFolder(const std::string& folder);
-
-/// Makes a folder if needed; throws std::runtime_error if it cannot be made or written.
-void makeFolder(const std::string& folder);
 
 }  // namespace tread::gap

@@ -24,6 +24,7 @@
 #include "common/bus/shell.hpp"
 #include "common/bus/tcp_relay.hpp"
 #include "common/config/command_line.hpp"
+#include "common/store/store.hpp"
 #include "tools/robot/launch/host.hpp"
 #include "tools/robot/launch/running_robots.hpp"
 #include "tools/robot/launch/stall_watch.hpp"
@@ -163,10 +164,8 @@ int start(const LaunchFile& launch, const Options& options) {
   std::optional<TcpRelay> relay;
   if (const auto address = parseLcmUrl(launch.lcm_url); address && address->provider == "tcpq")
     relay.emplace(address->port);
-  std::ofstream file(paths.config, std::ios::trunc);
-  file << supervisorConfig(launch.name, withCommands(launch, settings), paths, geteuid() == 0);
-  file.close();
-  if (!file) throw std::runtime_error(paths.config + ": cannot be written");
+  writeText(paths.config,
+            supervisorConfig(launch.name, withCommands(launch, settings), paths, geteuid() == 0));
   std::cout << launch.name << ": starting " << launch.processes.size() << " processes; logs in "
             << paths.logs << std::endl;
   const Announcement announcement({launch.name, launch.lcm_url, launch.key});

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/robot/launch/running_robots.hpp"
 
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -53,10 +54,9 @@ Announcement::Announcement(const RunningRobot& robot) {
   path_ = folder + "/" + std::to_string(::getpid());
   file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   if (file_ < 0 || ::flock(file_, LOCK_EX | LOCK_NB) != 0) return;
-  std::ofstream(path_) << network() << "\n"
-                       << robot.name << "\n"
-                       << robot.lcm_url << "\n"
-                       << robot.key << "\n";
+  // Into the file that is locked: another one in its place would not be.
+  ::dprintf(file_, "%s\n%s\n%s\n%s\n", network().c_str(), robot.name.c_str(), robot.lcm_url.c_str(),
+            robot.key.c_str());
 }
 
 Announcement::~Announcement() {

@@ -31,6 +31,8 @@
 
 #include "common/bus/life_sign.hpp"
 #include "common/report/text.hpp"
+#include "common/store/output_file.hpp"
+#include "common/store/store.hpp"
 #include "tools/robot/launch/launch_file.hpp"
 #include "tools/robot/launch/liveness.hpp"
 
@@ -321,10 +323,15 @@ void Run::end(const Liveness::Hung& hung) {
   auto& [times, line] = hung_[hung.process];
   ++times;
   line = utcNow() + ": " + hung.line;
-  std::ofstream file(paths_.hung, std::ios::trunc);
-  for (const auto& [process, what] : hung_)
-    file << process << " hung " << what.first << (what.first == 1 ? " time" : " times")
-         << " since the start, last " << what.second << "\n";
+  std::string text;
+  for (const auto& [name, what] : hung_)
+    text += name + " hung " + std::to_string(what.first) + (what.first == 1 ? " time" : " times") +
+            " since the start, last " + what.second + "\n";
+  try {
+    writeText(paths_.hung, text);
+  } catch (const WriteError& error) {
+    std::cerr << name_ << ": " << error.what() << std::endl;  // a full disk ends no watch
+  }
 }
 
 int Run::conclude() const {

@@ -81,7 +81,7 @@ Recorder::~Recorder() = default;
 void Recorder::begin() {
   makeRoomForLog(settings_.file, settings_.keep);
   if (settings_.quota > 0) keepWithin(settings_.file, settings_.quota - settings_.split);
-  writer_ = std::make_unique<LogWriter>(settings_.file + ".0");
+  writer_ = std::make_unique<LogWriter>(settings_.file + ".0", OutputFile::Kind::kGrowing);
   written_ = 0;
 }
 

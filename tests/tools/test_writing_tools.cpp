@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// Every command that writes a file, against what may go wrong with that file.
+#include <linux/capability.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "common/store/store.hpp"
+#include "tests/common/recordings/synthetic_drives.hpp"
+#include "tests/helpers.hpp"
+#include "tests/tools/called_program.hpp"
+#include "tests/tools/gap/arc_drive.hpp"
+#include "tests/tools/programs.hpp"
+
+namespace fs = std::filesystem;
+using namespace tread;
+using tread::samples::called;
+using tread::samples::CalledProgram;
+using tread::samples::OwnFolder;
+
+namespace {
+
+constexpr int kRefused = 2;
+constexpr int kNotWritten = 1;
+
+const std::string kConfig = std::string(TREAD_SOURCE_DIR) + "/config/";
+const std::string kData = std::string(TREAD_SOURCE_DIR) + "/tests/data/";
+
+/// A command that writes: IN and OUT stand for the paths of what it reads and writes, DIR for the
+/// folder of OUT, @ for that of Inputs.
+struct WritingCommand {
+  std::string words;
+  std::string input;  ///< a file or a folder of Inputs, or of the source
+  std::string output = "made";
+  bool folder = false;  ///< it writes one
+};
+
+const std::vector<WritingCommand>& commands() {
+  static const std::string kModel = kConfig + "models/warthog_nominal.yaml";
+  static const std::string kTeodor = kConfig + "models/teodor_grass.yaml";
+  static const std::string kSet = kConfig + "patterns/teodor.yaml";
+  static const std::string kPlan =
+      "tread-plan --patterns " + kSet + " --footprint 1.2,0.8 --map IN --deadline-ms 300 ";
+  static const std::string kTask = kPlan + "--start 5,9,0 --goal 12,9,0 ";
+  static const std::string kMission = "tread-missions --length 25 --seed 3 --faults IN ";
+  static const std::vector<WritingCommand> all{
+      {"tread-import --format mcap IN -o OUT", "drive.mcap"},
+      {"tread-export --format mcap IN -o OUT", "drive.lcmlog"},
+      {"tread-export --format csv IN -o OUT", "drive.lcmlog", "made", true},
+      {"tread-why IN --html OUT", "drive.lcmlog"},
+      {"tread-why IN --json OUT", "drive.lcmlog"},
+      {"tread-report IN --rules none --picture OUT", "drive.lcmlog"},
+      {"tread-overlay @/arcs.lcmlog --model IN --length 2 --picture OUT", kModel},
+      {kTask + "--json OUT", kData + "planning/office.yaml"},
+      {kTask + "--picture OUT", kData + "planning/office.yaml"},
+      {kPlan + "--random 2 --write-queries OUT", kData + "planning/office.yaml"},
+      {"tread-replay ins IN --report OUT", "track.nmea"},
+      {"tread-replay ins IN --picture OUT", "track.nmea"},
+      {"tread-replay mapping IN --report OUT", "drive.clf"},
+      {"tread-replay mapping IN --picture OUT", "drive.clf"},
+      {"tread-replay matching IN --report OUT", "drive.clf"},
+      {"tread-replay matching IN --picture OUT", "drive.clf"},
+      {"tread-replay planner IN --report OUT", "drive.lcmlog"},
+      {"tread-replay learner IN --report OUT", "drive.lcmlog"},
+      {"tread-replay learner @/drive.lcmlog --patterns IN --rule off --picture OUT", kSet},
+      {"tread-replay learner @/drive.lcmlog --patterns IN --rule off --write-patterns OUT", kSet},
+      {"tread-replay corpus IN --report OUT", "corpus"},
+      {kMission + "--json OUT", "faults.yaml"},
+      {kMission + "--log OUT", "faults.yaml"},
+      {kMission + "--show 3 --picture OUT", "faults.yaml"},
+      {"tread-gap find --model IN --train @/arcs.lcmlog --out OUT", kModel, "made", true},
+      {"tread-gap repeat @/arcs.lcmlog @/more.lcmlog --model IN --out OUT", kModel, "made", true},
+      {"tread-gap plan track_asymmetry yaw_pull --model IN --out OUT", kModel},
+      {"tread-gap what-if --model IN --add slip_ratio --out OUT", kModel, "made.html"},
+      {"tread-patterns make IN --model " + kTeodor + " -o OUT",
+       kConfig + "patterns/recipes/teodor.yaml"},
+      {"tread-patterns mirror IN -o OUT", kSet},
+      {"tread-patterns show IN --picture OUT", kSet},
+      {"tread-patterns average IN grass -o OUT", "recorded"},
+      {"tread-patterns record IN --recordings DIR --surface made -n 3 --model " + kTeodor, kSet,
+       "made.csv"},
+      {"tread-patterns from-recordings IN -o OUT", "drives", "made", true},
+      {"tread-experiment transitions --world IN --repetitions 40 --out OUT",
+       kConfig + "worlds/transitions_symmetric.yaml", "made", true},
+      {"tread-experiment adaptation --recordings IN --rules off --starts 3 --out OUT", "drives",
+       "made", true},
+      {"tread-compare-models --log IN --out OUT", "arcs.lcmlog", "made", true},
+      {"tread-key new OUT", ""},
+  };
+  return all;
+}
+
+/// What the commands read, made once.
+class Inputs {
+ public:
+  Inputs() : drives_("writing_tools") {
+    gap::samples::writeDrive(path("arcs.lcmlog"), 60.0);
+    gap::samples::writeDrive(path("more.lcmlog"), 61.0);
+    folder_.write("faults.yaml", "messages: []\n");
+    folder_.write("track.nmea", nmeaTrack());
+    folder_.write("drive.clf", carmenDrive());
+    run("tread-missions --length 25 --seed 3 --log " + path("drive.lcmlog"));
+    run("tread-export " + path("drive.lcmlog") + " -o " + path("drive.mcap"));
+    fs::create_directories(path("corpus"));
+    fs::copy_file(path("drive.lcmlog"), path("corpus/drive.lcmlog"));
+    run("tread-patterns record " + kConfig + "patterns/teodor.yaml --model " + kConfig +
+        "models/teodor_grass.yaml -n 4 --surface grass --recordings " + path("recorded"));
+    writeDrives(drives_, {{"one", "Rover", "hard", samples::linearGround(0.95, 0.50, -0.05)},
+                          {"two", "Rover", "soft", samples::linearGround(0.85, 0.43, -0.10)}});
+    fs::copy(drives_.file(""), path("drives"), fs::copy_options::recursive);
+  }
+
+  std::string path(const std::string& name) const { return folder_.path(name); }
+
+ private:
+  static void run(const std::string& words) {
+    const CalledProgram done = called(words);
+    INFO(words << "\n" << done.printed);
+    REQUIRE(done.status == 0);
+  }
+
+  /// A receiver that drives north.
+  static std::string nmeaTrack() {
+    std::string track;
+    for (int i = 0; i < 20; ++i) {
+      const int second = i;
+      char text[120];
+      std::snprintf(text, sizeof text,
+                    "GPRMC,1200%02d.00,A,4900.%04d,N,00800.0000,E,2.0,0.0,241126,,,A", second,
+                    10 * i);
+      unsigned sum = 0;
+      for (const char* c = text; *c != '\0'; ++c) sum ^= static_cast<unsigned char>(*c);
+      char ending[8];
+      std::snprintf(ending, sizeof ending, "*%02X\r\n", sum);
+      track += std::string("$") + text + ending;
+    }
+    return track;
+  }
+
+  /// A robot that drives towards a wall, with a range finder.
+  static std::string carmenDrive() {
+    std::string log = "PARAM robot_length 0.47 1 host 1\n";
+    for (int i = 0; i < 5; ++i) {
+      const std::string x = std::to_string(i);
+      log += "ODOM " + x + " 0 0 0 0 0 0 host 0\nFLASER 180";
+      for (int beam = 0; beam < 180; ++beam) log += " " + std::to_string(12 - i);
+      log += " " + x + " 0 0 " + x + " 0 0 0 host 0\n";
+    }
+    return log;
+  }
+
+  OwnFolder folder_;
+  samples::Folder drives_;
+};
+
+enum class Trouble { kNone, kUnwritable, kFullDisk, kKilled };
+
+struct Outcome {
+  int status = -1;
+  int signal = 0;
+  std::string complaint;  ///< what stood on stderr
+
+  bool isOneLine() const {
+    return !complaint.empty() && complaint.find('\n') == complaint.size() - 1;
+  }
+};
+
+/// In the child. A limit on file sizes fails in the middle of writing, as a full disk does; who
+/// does not ignore its signal is killed by it, there and then.
+void meet(Trouble trouble) {
+  // Root writes everywhere, but not without this capability.
+  if (trouble == Trouble::kUnwritable) ::prctl(PR_CAPBSET_DROP, CAP_DAC_OVERRIDE);
+  if (trouble != Trouble::kFullDisk && trouble != Trouble::kKilled) return;
+  const rlimit none{0, 0};
+  ::setrlimit(RLIMIT_CORE, &none);
+  const rlimit tight{20, 20};
+  ::setrlimit(RLIMIT_FSIZE, &tight);
+  std::signal(SIGXFSZ, trouble == Trouble::kFullDisk ? SIG_IGN : SIG_DFL);
+}
+
+Outcome runIn(const std::string& folder, const std::string& words, Trouble trouble) {
+  int ends[2];
+  REQUIRE(::pipe(ends) == 0);
+  const std::string line = "exec " + std::string(TREAD_BIN_DIR) + "/" + words + " >/dev/null";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::dup2(ends[1], STDERR_FILENO);
+    ::close(ends[0]);
+    meet(trouble);
+    if (::chdir(folder.c_str()) != 0) ::_exit(99);
+    ::execl("/bin/sh", "sh", "-c", line.c_str(), static_cast<char*>(nullptr));
+    ::_exit(99);
+  }
+  ::close(ends[1]);
+  Outcome outcome;
+  char piece[4096];
+  for (ssize_t got; (got = ::read(ends[0], piece, sizeof piece)) > 0;)
+    outcome.complaint.append(piece, static_cast<size_t>(got));
+  ::close(ends[0]);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  if (WIFSIGNALED(status)) outcome.signal = WTERMSIG(status);
+  if (WIFEXITED(status)) outcome.status = WEXITSTATUS(status);
+  return outcome;
+}
+
+using Content = std::map<std::string, std::string>;
+
+/// All files of a folder; without those whose name says that they are unfinished.
+Content contentOf(const std::string& folder, bool with_unfinished) {
+  Content content;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string name = fs::relative(entry.path(), folder).string();
+    if (!with_unfinished && name.find(".unfinished") != std::string::npos) continue;
+    content[name] = entry.is_directory() ? "a folder" : readText(entry.path().string());
+  }
+  return content;
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
+    text.replace(at, what.size(), by);
+  return text;
+}
+
+/// A command with a folder of its own in which its input lies.
+class Desk {
+ public:
+  Desk(const WritingCommand& command, const Inputs& inputs) : command_(command), inputs_(inputs) {
+    if (command.input.empty()) return;
+    const bool ours = command.input.front() != '/';
+    const fs::path from = ours ? inputs.path(command.input) : command.input;
+    in_ = folder_.path(from.filename().string());
+    fs::copy(from, in_, fs::copy_options::recursive);
+    // A map's picture lies beside it.
+    if (from.filename() == "office.yaml")
+      fs::copy_file(from.parent_path() / "office.pgm", folder_.path("office.pgm"));
+    fs::create_directories(folder_.path("closed"));
+  }
+  ~Desk() { fs::permissions(folder_.path("closed"), fs::perms::owner_all); }
+  Desk(const Desk&) = delete;
+  Desk& operator=(const Desk&) = delete;
+
+  std::string out() const { return folder_.path(command_.output); }
+  std::string in() const { return in_; }
+  std::string closed() const {
+    fs::permissions(folder_.path("closed"), fs::perms::owner_read | fs::perms::owner_exec);
+    return folder_.path("closed/" + command_.output);
+  }
+  Content content(bool with_unfinished = true) const {
+    return contentOf(folder_.path(""), with_unfinished);
+  }
+  Outcome run(const std::string& out, Trouble trouble, const std::string& more = "") const {
+    std::string words = replaced(command_.words, "@", fs::path(inputs_.path("x")).parent_path());
+    words = replaced(replaced(words, " IN", " " + in_), "OUT", out);
+    return runIn(folder_.path(""), replaced(words, "DIR", fs::path(out).parent_path()) + more,
+                 trouble);
+  }
+
+ private:
+  const WritingCommand& command_;
+  const Inputs& inputs_;
+  OwnFolder folder_;
+  std::string in_;
+};
+
+/// Runs a command that must be refused before it opens anything; what the table says of it.
+std::string refused(const Desk& desk, const std::string& out, const std::string& words,
+                    Trouble trouble, const std::string& more = "") {
+  const Content before = desk.content();
+  const Outcome outcome = desk.run(out, trouble, more);
+  INFO(outcome.complaint);
+  CHECK(outcome.status == kRefused);
+  CHECK(outcome.isOneLine());
+  CHECK_THAT(outcome.complaint, Catch::Contains(words));
+  CHECK((desk.content() == before));
+  return outcome.status == kRefused && desk.content() == before ? "refused" : "LOST";
+}
+
+/// A command that fails while it writes over what is there.
+std::string failed(const Desk& desk, Trouble trouble, const std::string& force) {
+  const Content before = desk.content();
+  const Outcome outcome = desk.run(desk.out(), trouble, force);
+  INFO(outcome.complaint);
+  const bool killed = trouble == Trouble::kKilled;
+  if (killed)
+    CHECK(outcome.signal == SIGXFSZ);
+  else
+    CHECK((outcome.status == kNotWritten && outcome.isOneLine()));
+  CHECK((desk.content(!killed) == before));
+  return desk.content(!killed) == before ? killed ? "old whole" : "told, old whole" : "LOST";
+}
+
+/// An output that is the input: by name, or a file in it, or the folder around it.
+std::string inputAsOutput(const WritingCommand& command, const std::string& in) {
+  if (command.folder) return fs::path(in).parent_path();
+  if (!fs::is_directory(in)) return in;
+  return fs::directory_iterator(in)->path();
+}
+
+using Row = std::vector<std::string>;
+
+Row rowOf(const WritingCommand& command, const Inputs& inputs) {
+  CAPTURE(command.words);
+  const bool never_replaces = command.words.rfind("tread-key", 0) == 0;
+  const bool names_output = command.words.find("OUT") != std::string::npos;
+  const std::string force = never_replaces ? "" : " --force";
+  const Desk desk(command, inputs);
+  Row row(5, "has none");
+  row[0] = desk.run(desk.out(), Trouble::kNone).complaint;
+  INFO(row[0]);
+  REQUIRE(fs::exists(desk.out()));
+  if (names_output && !command.input.empty())
+    for (const std::string more : {"", " --force"})
+      row[0] = refused(desk, inputAsOutput(command, desk.in()), "input", Trouble::kNone, more);
+  row[1] = refused(desk, desk.out(), never_replaces ? "File exists" : "--force", Trouble::kNone);
+  row[2] = refused(desk, desk.closed(), "ermission denied", Trouble::kUnwritable);
+  if (never_replaces) fs::remove(desk.out());
+  row[3] = failed(desk, Trouble::kFullDisk, force);
+  row[4] = failed(desk, Trouble::kKilled, force);
+  return row;
+}
+
+void print(const std::map<std::string, Row>& table) {
+  std::printf("%-52s %-10s %-10s %-12s %-16s %s\n", "writes", "the input", "existing", "no rights",
+              "full disk", "killed");
+  for (const auto& [words, row] : table)
+    std::printf("%-52.52s %-10s %-10s %-12s %-16s %s\n", words.c_str(), row[0].c_str(),
+                row[1].c_str(), row[2].c_str(), row[3].c_str(), row[4].c_str());
+}
+
+/// The command without its paths: "tread-why --html".
+std::string shortened(const std::string& words) {
+  std::string kept;
+  std::string option;
+  for (std::istringstream rest(words); rest >> option;) {
+    const bool path = option.find_first_of("/@.") != std::string::npos || option == "IN";
+    if (!path) kept += (kept.empty() ? "" : " ") + option;
+  }
+  return kept;
+}
+
+}  // namespace
+
+TEST_CASE("no command that writes loses anything: input, old output, no rights, full disk, kill") {
+  const Inputs inputs;
+  std::map<std::string, Row> table;
+  for (const WritingCommand& command : commands())
+    table[shortened(command.words)] = rowOf(command, inputs);
+  CHECK(table.size() == commands().size());
+  print(table);
+}
+
+TEST_CASE("the table has every command that takes --force") {
+  for (const samples::Command& command : samples::allCommands()) {
+    if (command.help.find("--force ") == std::string::npos) continue;
+    CAPTURE(command.words);
+    CHECK(std::any_of(commands().begin(), commands().end(), [&](const WritingCommand& row) {
+      return row.words.rfind(command.words + " ", 0) == 0;
+    }));
+  }
+}
