@@ -143,14 +143,15 @@ TEST_CASE("the heading's lag behind the gyro is found, and told by the fit alone
   REQUIRE(lineWith(makeDrive(made), "the heading is ahead of the gyro") != "");
 }
 
-TEST_CASE("motion against the commands is a flipped sign") {
+TEST_CASE("motion against the commands is named as what it is") {
   Made turned;
   turned.turn_sign = -1.0;
-  REQUIRE(fatal(makeDrive(turned)).find("flipped sign: the heading turns against the commands") ==
-          0);
+  REQUIRE_THAT(fatal(makeDrive(turned)), Catch::Contains("left and right are swapped"));
   Made backwards;
   backwards.forward_sign = -1.0;
-  REQUIRE(fatal(makeDrive(backwards)).find("flipped sign: the robot goes backwards") == 0);
+  REQUIRE_THAT(fatal(makeDrive(backwards)), Catch::Contains("the heading is turned half round"));
+  turned.forward_sign = -1.0;
+  REQUIRE_THAT(fatal(makeDrive(turned)), Catch::Contains("both commands have the other sign"));
 }
 
 TEST_CASE("commands that alternate evenly are not taken for a flipped sign") {
@@ -162,7 +163,7 @@ TEST_CASE("commands that alternate evenly are not taken for a flipped sign") {
 TEST_CASE("a mirrored map does not fit its headings") {
   Made mirrored;
   mirrored.mirror = -1.0;
-  REQUIRE(fatal(makeDrive(mirrored)).find("of the way is along the heading") != std::string::npos);
+  REQUIRE_THAT(fatal(makeDrive(mirrored)), Catch::Contains("y (or x) counts the other way"));
 }
 
 TEST_CASE("a clock of the INS that leaves that of MOTOR is found, and from when to when") {
@@ -310,7 +311,7 @@ TEST_CASE("checks look at motion and not at the place, the direction or the time
   REQUIRE(here.size() == there.size());
   for (size_t i = 0; i < here.size(); ++i) {
     CHECK(here[i].fatal == there[i].fatal);
-    CHECK(here[i].what.substr(0, 12) == there[i].what.substr(0, 12));
+    CHECK(here[i].what.substr(0, 5) == there[i].what.substr(0, 5));
   }
 }
 

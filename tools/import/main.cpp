@@ -14,6 +14,7 @@
 #include "common/mcap/mcap_log.hpp"
 #include "common/recordings/csv_table.hpp"
 #include "common/recordings/imported_log.hpp"
+#include "tools/gap/drive_log.hpp"
 #include "tools/import/csv_drive.hpp"
 #include "tools/import/foreign_log.hpp"
 #include "tools/import/rawlog.hpp"
@@ -118,6 +119,27 @@ int verdictOn(const std::vector<import::Loss>& losses, const Arguments& argument
   return 1;
 }
 
+/// Says how the motion follows the commands, as tread-gap will see it; 1 if they cannot explain it.
+int verdictOnMotion(const std::vector<LogEvent>& events, const Arguments& arguments) {
+  std::vector<LogEvent> driven;
+  for (const LogEvent& event : events)
+    if (event.channel != kScan.name) driven.push_back(event);
+  int verdict = 0;
+  for (const gap::LogNote& note :
+       gap::toDrive(toDriveLog(arguments.csv, std::move(driven))).notes) {
+    if (!note.of_commands) continue;
+    if (!note.fatal) {
+      std::printf("%s\n", note.what.c_str());
+      continue;
+    }
+    std::fflush(stdout);
+    std::fprintf(stderr, "tread-import: %s: the commands do not explain the motion: %s\n",
+                 arguments.csv.c_str(), note.what.c_str());
+    verdict = 1;
+  }
+  return verdict;
+}
+
 void tellHoles(const std::vector<CommandHole>& holes) {
   if (holes.empty()) return;
   double sum = 0.0, longest = 0.0;
@@ -185,7 +207,9 @@ int run(const Arguments& arguments) {
       arguments.log.c_str(), recording.runs.size(), counts.completed, counts.aborted, counts.ins,
       counts.motor, counts.scans, counts.duration);
   tellHoles(counts.holes);
-  return verdictOn(reading.losses, arguments);
+  const bool both = counts.motor > 0 && counts.ins > 0;
+  const int motion = both ? verdictOnMotion(events, arguments) : 0;
+  return std::max(motion, verdictOn(reading.losses, arguments));
 }
 
 int parseAndRun(int argc, char** argv) {

@@ -101,8 +101,9 @@ struct CurrentSample {
 /// One line about the state of a log.
 struct LogNote {
   std::string log;
-  std::string what;    ///< one clear line
-  bool fatal = false;  ///< nothing can be concluded from this log
+  std::string what;          ///< one clear line
+  bool fatal = false;        ///< nothing can be concluded from this log
+  bool of_commands = false;  ///< about commands beside the motion
 };
 
 /// What a log says of the recording that it was imported from.

@@ -14,21 +14,6 @@ constexpr double kGyroGap = 0.5;          // [s] over which the gyro is not inte
 constexpr double kEncoderGap = 0.5;       // [s] over which encoders and currents are held
 constexpr size_t kFewestIncrements = 12;  // increments of a match
 
-template <class Rate>
-RunningSums commandSums(const Drive& drive, Rate rate) {
-  RunningSums sums;
-  for (const Segment& segment : drive.segments) {
-    RunningSum sum;
-    for (size_t i = 0; i < segment.commands.size(); ++i) {
-      const bool last = i + 1 == segment.commands.size();
-      sum.add(segment.commands[i].time, last ? segment.end : segment.commands[i + 1].time,
-              rate(segment.commands[i].command));
-    }
-    sums.push_back(std::move(sum));
-  }
-  return sums;
-}
-
 /// Running sums of a reading of the motor controller, each held until the next one.
 template <class Sample, class Rate>
 RunningSums heldSums(const Drive& drive, const std::vector<Sample>& samples, const Rate& rate) {
@@ -59,8 +44,8 @@ std::vector<PoseIncrement> poseIncrements(const Drive& drive) {
       const double duration = from == nullptr ? 0.0 : sample.time - from->time;
       if (from != nullptr && duration < kShortest) continue;
       if (from != nullptr && duration <= kLongest)
-        increments.push_back(
-            {s, from->time, sample.time, between(from->T_map_body, sample.T_map_body)});
+        increments.push_back({s, from->time, sample.time,
+                              between(from->T_map_body, sample.T_map_body), from->T_map_body});
       from = &sample;
     }
   }
@@ -128,6 +113,21 @@ RunningSums encoderSums(const Drive& drive,
 RunningSums currentSums(const Drive& drive, double CurrentSample::*side) {
   return heldSums(drive, drive.currents,
                   [side](const CurrentSample& sample) { return sample.*side; });
+}
+
+RunningSums commandSums(const Drive& drive,
+                        const std::function<double(const TrackCommand&)>& rate) {
+  RunningSums sums;
+  for (const Segment& segment : drive.segments) {
+    RunningSum sum;
+    for (size_t i = 0; i < segment.commands.size(); ++i) {
+      const bool last = i + 1 == segment.commands.size();
+      sum.add(segment.commands[i].time, last ? segment.end : segment.commands[i + 1].time,
+              rate(segment.commands[i].command));
+    }
+    sums.push_back(std::move(sum));
+  }
+  return sums;
 }
 
 RunningSums turnCommandSums(const Drive& drive) {

@@ -6,20 +6,20 @@
 #include <cmath>
 #include <map>
 
+#include "modules/identification/core/command_check.hpp"
+
 namespace tread::gap {
 namespace {
 
-constexpr double kClear = 0.5;       // |correlation| from which a sign is certain
-constexpr double kClearer = 0.25;    // by which it is larger than that of the other sign
-constexpr double kEarlier = 0.3;     // [s] by which no motion precedes its command
-constexpr double kLongestLag = 2.0;  // [s] of a vehicle behind its commands
 constexpr double kPrecedes = 0.1;  // of correlation^2 that a motion before its command must explain
 constexpr double kLagStep = 0.6;   // [s] by which no vehicle's lag changes within a drive
 constexpr double kBetterSquare = 0.25;  // of correlation^2 that another lag must explain more
 constexpr double kLagGrid = 0.02;       // [s] between lags of the gyro that are tried
 constexpr const char* kFitted = "; how late the heading is, the fit says (INS latency)";
 constexpr const char* kAhead = "; the heading is ahead of the gyro: are both stamped by one clock?";
-constexpr double kPart = 60.0;  // [s] of increments
+constexpr double kPart = 60.0;       // [s] of increments
+constexpr double kLeastDrift = 0.3;  // [s] over a drive
+constexpr double kEvenly = 0.9;      // of the lags' differences that a drift explains
 
 double square(double value) {
   return value * value;
@@ -54,17 +54,6 @@ LagTable gyroTable(const Drive& drive, const std::vector<PoseIncrement>& increme
           lagGrid(-0.3, 0.8, kLagGrid)};
 }
 
-/// How far lags of commands can be looked for: a fifth of a typical segment, at most 10 s.
-double lagReach(const Drive& drive) {
-  std::vector<double> lengths;
-  for (const Segment& segment : drive.segments) lengths.push_back(segment.end - segment.begin());
-  std::sort(lengths.begin(), lengths.end());
-  double sum = 0.0;
-  for (const double length : lengths)
-    if ((sum += length) >= 0.5 * drive.driven()) return std::clamp(0.2 * length, 0.5, 10.0);
-  return 0.5;
-}
-
 /// Whether the heading turns enough to be compared.
 bool turns(const std::vector<PoseIncrement>& increments) {
   double sum = 0.0;
@@ -96,60 +85,87 @@ void checkFrozenGyro(const Drive& drive, Diagnostics& notes) {
   }
 }
 
-/// Whether one rate clearly goes against the other at every lag.
-/** Commands that alternate agree and disagree equally well, at different lags. */
-bool goesAgainst(const LagTable& table, double from, double to) {
-  const auto against = table.best(0, table.increments(), -1.0, from, to);
-  const auto with = table.best(0, table.increments(), 1.0, from, to);
-  if (!against || against->correlation > -kClear) return false;
-  return !with || with->correlation < -against->correlation - kClearer;
-}
-
-/// What follows a command, and how it is called.
-struct Follower {
-  const char* wrong;  ///< what it means if it does the opposite
-  LagTable table;
+/// A part of a drive and the lag by which it follows its commands.
+struct PartLag {
+  double begin = 0.0, end = 0.0;  ///< [s]
+  LagMatch match;
 };
 
-/// A clock that jumped: one part of the drive follows its commands with another lag.
-void checkParts(const Follower& follower, const std::vector<PoseIncrement>& increments,
-                const LagMatch& whole, Diagnostics& notes) {
-  size_t first = 0;
-  while (first < increments.size()) {
-    size_t last = first;
+/// The parts that follow their commands clearly.
+std::vector<PartLag> partLags(const LagTable& table, const std::vector<PoseIncrement>& increments) {
+  std::vector<PartLag> parts;
+  for (size_t first = 0, last = 0; first < increments.size(); first = last) {
     double sum = 0.0;
     while (last < increments.size() && sum < kPart) sum += increments[last++].duration();
-    const auto own = follower.table.best(first, last);
-    const auto as_whole = follower.table.near(whole.lag, first, last);
+    const auto own = table.best(first, last);
+    if (sum >= 0.5 * kPart && own && own->correlation > 0.6)
+      parts.push_back({increments[first].begin, increments[last - 1].end, *own});
+  }
+  return parts;
+}
+
+/// Clocks of which one is faster: the lag grows evenly.
+/** Only where a line tells the lags apart and explains nearly all of their differences. */
+bool clocksDrift(const std::vector<PartLag>& parts, Diagnostics& notes) {
+  const auto n = static_cast<double>(parts.size());
+  if (parts.size() < 5) return false;
+  double t = 0.0, lag = 0.0, tt = 0.0, tl = 0.0, ll = 0.0;
+  for (const PartLag& part : parts) {
+    t += 0.5 * (part.begin + part.end) / n;
+    lag += part.match.lag / n;
+  }
+  for (const PartLag& part : parts) {
+    const double at = 0.5 * (part.begin + part.end) - t;
+    tt += at * at;
+    tl += at * (part.match.lag - lag);
+    ll += square(part.match.lag - lag);
+  }
+  const double slope = tl / tt;
+  const double span = parts.back().end - parts.front().begin;
+  if (std::abs(slope) * span < kLeastDrift || tl * tl < kEvenly * tt * ll) return false;
+  notes.contradiction("the clocks of INS and MOTOR drift: the motion follows its commands by " +
+                      digits(lag + slope * (parts.front().begin - t), 2) + " s at " +
+                      digits(parts.front().begin, 0) + " s and by " +
+                      digits(lag + slope * (parts.back().end - t), 2) + " s at " +
+                      digits(parts.back().end, 0) + " s, " + digits(1e6 * slope, 0) +
+                      " us more each second; correct the times of one of them");
+  return true;
+}
+
+/// A clock that jumped: one part of the drive follows its commands with another lag.
+void checkParts(const LagTable& table, const std::vector<PartLag>& parts,
+                const std::vector<PoseIncrement>& increments, const LagMatch& whole,
+                Diagnostics& notes) {
+  const auto indexOf = [&](double time) {
+    return static_cast<size_t>(
+        std::lower_bound(increments.begin(), increments.end(), time,
+                         [](const PoseIncrement& one, double t) { return one.begin < t; }) -
+        increments.begin());
+  };
+  for (const PartLag& part : parts) {
+    const auto as_whole = table.near(whole.lag, indexOf(part.begin), indexOf(part.end));
     const double left = as_whole ? square(std::max(0.0, as_whole->correlation)) : 0.0;
-    if (sum >= 0.5 * kPart && own && own->correlation > 0.6 &&
-        std::abs(own->lag - whole.lag) > kLagStep &&
-        square(own->correlation) - left > kBetterSquare)
-      return notes.fatal(
-          "clock jump between INS and MOTOR: from " + digits(increments[first].begin) + " to " +
-          digits(increments[last - 1].end) + " s the motion follows the commands by " +
-          digits(own->lag) + " s, elsewhere by " + digits(whole.lag) + " s; cut the log there");
-    first = last;
+    if (std::abs(part.match.lag - whole.lag) > kLagStep &&
+        square(part.match.correlation) - left > kBetterSquare)
+      return notes.contradiction("clock jump between INS and MOTOR: from " + digits(part.begin) +
+                                 " to " + digits(part.end) +
+                                 " s the motion follows the commands by " + digits(part.match.lag) +
+                                 " s, elsewhere by " + digits(whole.lag) + " s; cut the log there");
   }
 }
 
-void checkFollower(const Follower& follower, const std::vector<PoseIncrement>& increments,
-                   Diagnostics& notes) {
-  const LagTable& table = follower.table;
-  if (goesAgainst(table, -kEarlier, kLongestLag)) {
-    const auto against = table.best(0, increments.size(), -1.0, -kEarlier, kLongestLag);
-    return notes.fatal(std::string(follower.wrong) + " (correlation " +
-                       digits(against->correlation, 2) + " over " + std::to_string(against->rows) +
-                       " intervals)");
-  }
+void checkLag(const LagTable& table, const std::vector<PoseIncrement>& increments,
+              Diagnostics& notes) {
   const auto best = table.best(0, increments.size());
+  const std::vector<PartLag> parts = partLags(table, increments);
+  if (clocksDrift(parts, notes)) return;
   if (!best || best->correlation < kClear) return;
   const auto usual = table.best(0, increments.size(), 1.0, -kEarlier, kLongestLag);
   const double left = usual ? square(std::max(0.0, usual->correlation)) : 0.0;
   if (best->lag < -kEarlier && square(best->correlation) - left > kPrecedes)
-    return notes.fatal("the motion precedes its commands by " + digits(-best->lag) +
-                       " s: INS and MOTOR are not on one clock");
-  checkParts(follower, increments, *best, notes);
+    return notes.contradiction("the motion precedes its commands by " + digits(-best->lag) +
+                               " s: INS and MOTOR are not on one clock");
+  checkParts(table, parts, increments, *best, notes);
 }
 
 constexpr size_t kFewest = 10;        // segments among which one stands out
@@ -241,20 +257,14 @@ void checkGyro(const Drive& drive, Diagnostics& notes) {
              " of the gyro; " + r + (isAhead(table, *match) ? kAhead : kFitted));
 }
 
-void checkCommands(const Drive& drive, const std::vector<PoseIncrement>& increments,
-                   Diagnostics& notes) {
+void checkLags(const Drive& drive, const std::vector<PoseIncrement>& increments,
+               Diagnostics& notes) {
   const double reach = lagReach(drive);
   const auto lags = lagGrid(-reach, reach, 0.1);
-  checkFollower(
-      {"flipped sign: the heading turns against the commands; are left and right, or the "
-       "INS's sense of turning, swapped?",
-       {increments, ratesOf(increments, &PoseIncrement::omega), turnCommandSums(drive), lags}},
-      increments, notes);
-  checkFollower(
-      {"flipped sign: the robot goes backwards when told forward; is the heading turned "
-       "half round, or are the commands negative?",
-       {increments, ratesOf(increments, &PoseIncrement::v), driveCommandSums(drive), lags}},
-      increments, notes);
+  checkLag({increments, ratesOf(increments, &PoseIncrement::omega), turnCommandSums(drive), lags},
+           increments, notes);
+  checkLag({increments, ratesOf(increments, &PoseIncrement::v), driveCommandSums(drive), lags},
+           increments, notes);
 }
 
 std::vector<LogNote> validateLog(const Drive& drive) {
@@ -266,8 +276,13 @@ std::vector<LogNote> validateLog(const Drive& drive) {
         "while MOTOR tells what the robot obeys");
     return notes.notes();
   }
+  const MotionCheck motion = checkMotion(drive, increments);
+  for (const std::string& line : motion.lines) notes.following(line);
+  for (const std::string& problem : motion.problems) notes.contradiction(problem);
+  // What is taken for something else says nothing of gyro and clocks.
+  if (!motion.problems.empty()) return notes.notes();
   checkGyro(drive, notes);
-  checkCommands(drive, increments, notes);
+  checkLags(drive, increments, notes);
   checkMidway(drive, increments, notes);
   checkPoses(drive, increments, notes);
   describeStandstill(drive, notes);

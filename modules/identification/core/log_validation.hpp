@@ -20,6 +20,7 @@ struct PoseIncrement {
   double begin = 0.0;   ///< [s]
   double end = 0.0;     ///< [s]
   Pose2 T_begin_end{};  ///< in the body frame of the begin
+  Pose2 from{};         ///< T_map_body of the begin
 
   double duration() const { return end - begin; }
   double v() const { return T_begin_end.x / duration(); }        ///< [m/s] along
@@ -59,6 +60,8 @@ RunningSums gyroSums(const Drive& drive);
 RunningSums encoderSums(const Drive& drive, const std::function<double(const TrackCommand&)>& rate);
 /// Of the motor currents, left or right [A s].
 RunningSums currentSums(const Drive& drive, double CurrentSample::*side);
+/// Of a rate of the commands.
+RunningSums commandSums(const Drive& drive, const std::function<double(const TrackCommand&)>& rate);
 /// Of right minus left command, and of their mean.
 RunningSums turnCommandSums(const Drive& drive);
 RunningSums driveCommandSums(const Drive& drive);
@@ -109,6 +112,9 @@ class Diagnostics {
   /// Nothing can be concluded from the log.
   void fatal(const std::string& what) { notes_.push_back({log_, what, true}); }
   void note(const std::string& what) { notes_.push_back({log_, what, false}); }
+  /// The same of commands beside the motion.
+  void contradiction(const std::string& what) { notes_.push_back({log_, what, true, true}); }
+  void following(const std::string& what) { notes_.push_back({log_, what, false, true}); }
   std::vector<LogNote> notes() { return std::move(notes_); }
 
  private:
@@ -131,9 +137,9 @@ inline std::string digits(double value, int decimals = 1) {
 }
 
 /// Whether a drive's measurements belong together, before anything is fitted:
-/// gyro against heading (sign, scale, offset of the clocks), motion against commands (sign, order
-/// in time, clocks that jump), what changes on the way (frozen, another sign), jumps, fixes, noise
-/// and bias at standstill, and what was driven.
+/// motion against commands (command_check.hpp; order in time, clocks that jump or drift), gyro
+/// against heading (sign, scale, offset of the clocks), what changes on the way (frozen, another
+/// sign), jumps, fixes, noise and bias at standstill, and what was driven.
 /** Fatal are only contradictions that no effect of the catalogue makes. The reader's own notes
  * (Drive::notes) are not repeated. */
 std::vector<LogNote> validateLog(const Drive& drive);
@@ -152,8 +158,9 @@ void removeSegments(const std::vector<size_t>& segments, Drive& drive);
 
 // Parts of validateLog().
 void checkGyro(const Drive& drive, Diagnostics& notes);
-void checkCommands(const Drive& drive, const std::vector<PoseIncrement>& increments,
-                   Diagnostics& notes);
+/// Whether the motion follows the commands by one lag, as a vehicle does.
+void checkLags(const Drive& drive, const std::vector<PoseIncrement>& increments,
+               Diagnostics& notes);
 /// What was sound and is not any more, or not yet: frozen, of another sign, turned.
 void checkMidway(const Drive& drive, const std::vector<PoseIncrement>& increments,
                  Diagnostics& notes);

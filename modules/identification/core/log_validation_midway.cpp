@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "modules/identification/core/log_validation.hpp"
+#include "modules/identification/core/command_check.hpp"
 
 namespace tread::gap {
 namespace {
@@ -13,15 +13,12 @@ constexpr double kWindow = 15.0;       // [s] of increments that are judged toge
 constexpr double kWindowClear = 0.5;   // |correlation| with which a window has a sign
 constexpr double kLeastSpread = 0.05;  // [rad/s] or [m/s] RMS of what follows: else it is noise
 constexpr double kAlike = 3.0;         // times the usual slope, or a part of it
-constexpr double kVeryClear = 0.8;     // with which it needs no second one
 constexpr double kFrozen = 2.0;        // [s] of the same numbers
 constexpr size_t kFrozenRows = 10;     // messages of the same numbers
 constexpr double kTenth = 0.1;         // of the largest command, RMS: else nothing is commanded
 constexpr double kDriving = 0.2;       // of the largest command: more than that moves the robot
 constexpr double kAlong = 0.8;         // share of the way along the heading, squared, that is sound
 constexpr double kAcross = 0.4;        // and one that is not
-constexpr double kLever = 0.8;   // [m] of the measured point from the centre of a turn, at most
-constexpr double kGentle = 0.8;  // [rad] of a turn whose way is nearly its chord
 
 /// Increments [first, last) and when they were.
 struct Window {

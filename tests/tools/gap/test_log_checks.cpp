@@ -50,7 +50,7 @@ bool noted(const std::vector<LogEvent>& events, const std::string& part) {
 TEST_CASE("a good log is not complained of") {
   const auto notes = toDrive(toDriveLog("a.lcmlog", goodLog().sorted())).notes;
   for (const LogNote& note : notes) REQUIRE_FALSE(note.fatal);
-  REQUIRE(notes.size() == 4);  // gyro, poses, standstill, driving
+  REQUIRE(notes.size() == 6);  // speed, turn, gyro, poses, standstill, driving
   REQUIRE(notes[0].log == "a.lcmlog");
 }
 
