@@ -30,6 +30,7 @@ struct Arguments {
   std::string csv;
   std::string log;
   bool keep_lag = false;
+  bool decimal_comma = false;
   Gyro gyro = Gyro::kAtFixes;
   ExecutionLayout layout;
   import::ForeignRobot robot;
@@ -93,6 +94,7 @@ Session foreignSession(const Arguments& arguments, const RecordedDrive& recordin
 void tell(const import::ForeignDrive& foreign) {
   for (const auto& [what, count] : foreign.left_out)
     std::printf("left out: %zu of %s\n", count, what.c_str());
+  for (const std::string& note : foreign.notes) std::printf("%s\n", note.c_str());
   if (!foreign.poses.empty()) std::printf("poses: %s\n", foreign.poses.c_str());
 }
 
@@ -106,7 +108,9 @@ RecordedDrive readForeign(const Arguments& arguments, Session& session) {
     return std::move(foreign.drive);
   }
   ConfigReader reader = ConfigReader::fromFile(arguments.mapping, arguments.overrides);
-  const import::CsvMapping mapping = import::readCsvMapping(reader);
+  import::CsvMapping mapping = import::readCsvMapping(reader);
+  for (import::CsvSource& source : mapping.sources)
+    source.layout.decimal_comma = source.layout.decimal_comma || arguments.decimal_comma;
   import::ForeignDrive foreign = import::readMappedCsv(arguments.csv, mapping);
   tell(foreign);
   session = foreignSession(arguments, foreign.drive);
@@ -169,6 +173,8 @@ int parseAndRun(int argc, char** argv) {
                  "csv: KEY=VALUE in the place of what the mapping says: wheel_radius=0.18")
       ->expected(1)
       ->take_all();
+  app.add_flag("--decimal-comma", arguments.decimal_comma,
+               "csv: numbers are 0,5 in all tables, as with decimal_comma: true in the mapping");
   app.add_option("--sessions", arguments.sessions,
                  "sessions.csv: radius, baseline, pose lag; not with lcm, rawlog and csv");
   app.add_option("--pose-channel", arguments.robot.pose_channel,
