@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/config/foreign_text.hpp"
 #include "common/config/scalars.hpp"
 
 namespace tread {
@@ -77,7 +78,8 @@ std::string formatRange(Range range, const std::string& unit) {
 std::shared_ptr<ConfigReader::Level> ConfigReader::Level::parse(
     std::string text, const std::string& name, const std::vector<std::string>& overrides) {
   // yaml-cpp takes a byte order mark off; without it, offsets in this copy agree with its marks.
-  if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) text.erase(0, 3);
+  if (const std::string problem = takeByteOrderMark(text); !problem.empty())
+    throw ConfigError(name + ": " + problem);
   const auto source = std::make_shared<ConfigSource>(name, std::move(text));
   YAML::Node root = loadOneDocument(source->text, name);
   for (const std::string& words : overrides) applyOverride(*source, words, root);

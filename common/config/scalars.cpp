@@ -32,10 +32,12 @@ bool skipWhole(const std::string& text, size_t& at) {
 
 bool isDecimal(const std::string& text) {
   size_t at = 0;
-  if (!skipWhole(text, at)) return false;
+  const bool whole = skipWhole(text, at);
+  const bool begun = at > 0 && isDigit(text[at - 1]);  // 01, which is no whole part
+  if (!whole && (begun || at == text.size() || text[at] != '.')) return false;
   if (at < text.size() && text[at] == '.') {
     ++at;
-    skipDigits(text, at);
+    if (!skipDigits(text, at) && !whole) return false;
   }
   if (at < text.size() && (text[at] == 'e' || text[at] == 'E')) {
     ++at;

@@ -144,6 +144,10 @@ void readHead(ConfigReader& reader, PatternSetContent& content) {
 }
 
 PatternSet readSet(ConfigReader& reader) {
+  if (reader.has("lattice_metadata"))
+    throw reader.error("lattice_metadata",
+                       "these are nav2's lattice primitives, no pattern set with commands; "
+                       "tread-plan reads them in a file FILE.json");
   PatternSetContent content;
   readHead(reader, content);
   const size_t channels = content.channels.size();

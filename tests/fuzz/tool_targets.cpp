@@ -31,11 +31,21 @@
 namespace tread::fuzz {
 namespace {
 
+/// With a header that is found, one that is the first line, and none.
 void csv(const uint8_t* bytes, size_t size) {
-  refusing([&] {
-    const recordings::CsvTable table(textOf(bytes, size), "table");
-    for (size_t row = 0; row < table.rows(); ++row) refusing([&] { table.number(row, "x"); });
-  });
+  recordings::CsvLayout asked;
+  asked.columns = {"t", "x"};
+  recordings::CsvLayout bare;
+  bare.header = false;
+  bare.decimal_comma = true;
+  for (const recordings::CsvLayout& layout : {asked, bare, recordings::CsvLayout{}})
+    refusing([&] {
+      const recordings::CsvTable table(textOf(bytes, size), "table", layout);
+      for (size_t row = 0; row < table.rows(); ++row)
+        for (const char* column : {"x", "1"})
+          refusing([&] { require(std::isfinite(table.number(row, column))); });
+      table.lastDigit("1");
+    });
 }
 
 void surfaceFile(const uint8_t* bytes, size_t size) {
@@ -132,6 +142,15 @@ void sbplMap(const uint8_t* bytes, size_t size) {
 void primitives(const uint8_t* bytes, size_t size) {
   refusing([&] {
     const plan::PrimitiveFile file = plan::parsePrimitives(textOf(bytes, size), "primitives");
+    plan::onLattice(file, {});
+    plan::headingFree(file, {});
+  });
+}
+
+void lattice(const uint8_t* bytes, size_t size) {
+  const MemoryFile memory(bytes, size);
+  refusing([&] {
+    const plan::PrimitiveFile file = plan::readLattice(memory.path());
     plan::onLattice(file, {});
     plan::headingFree(file, {});
   });
@@ -263,6 +282,7 @@ void addToolTargets(std::map<std::string, Target>& all) {
       {"drive_log", driveLog},
       {"gamepad", gamepad},
       {"keyboard", keyboard},
+      {"lattice", lattice},
       {"launch_file", launchFile},
       {"map_picture", mapPicture},
       {"mbot_log", mbotLog},

@@ -64,8 +64,15 @@ class Series {
   std::vector<Sample> samples_;
 };
 
-bool isMissing(const std::string& field) {
-  return field.empty() || field == "nan" || field == "NaN" || field == "NAN";
+/// A time or a place whose last digits are gone (1.76414E+12) is none.
+void requireDigits(const CsvTable& table, const std::string& column, double factor, double needed,
+                   const std::string& unit) {
+  const double last = std::abs(factor) * table.lastDigit(column);
+  if (last > 0.0 && last > needed)
+    throw table.error(0, "column " + column + " is " + table.text(0, column) +
+                             ": in all rows a spreadsheet or program has rounded it, to " +
+                             formatNumber(last) + " " + unit +
+                             "; export it as numbers with all their digits");
 }
 
 /// All quantities of a recording.
@@ -107,6 +114,9 @@ class CsvContent {
   void read(const std::string& file, const CsvSource& source) {
     const CsvTable table(file, source.layout);
     for (const auto& [quantity, column] : source.columns) files_[quantity] = file;
+    if (!table.units().empty())
+      result_.notes.push_back(file + ": below the header stand units, left out: " + table.units());
+    checkDigits(table, source);
     std::vector<Row> rows = rowsOf(table, source);
     sortByTime(rows, "rows of " + file, result_);
     for (const Row& row : rows)
@@ -147,9 +157,27 @@ class CsvContent {
     }
   }
 
+  /// Times are finer than the rows are apart, positions than 1 m.
+  static void checkDigits(const CsvTable& table, const CsvSource& source) {
+    const size_t last = table.rows() - 1;
+    if (!source.time.empty() && last > 0)
+      requireDigits(
+          table, source.time, source.time_unit,
+          (timeOf(table, last, source) - timeOf(table, 0, source)) / static_cast<double>(last),
+          "s");
+    for (const char* quantity : {"x", "y"})
+      if (const auto found = source.columns.find(quantity); found != source.columns.end())
+        requireDigits(table, found->second.column, found->second.factor, 1.0, "m");
+  }
+
+  static double timeOf(const CsvTable& table, size_t row, const CsvSource& source) {
+    if (source.time.empty()) return static_cast<double>(row) / source.rate;
+    return source.time_unit * table.number(row, source.time);
+  }
+
   void take(const CsvTable& table, size_t row, double time, const std::string& quantity,
             const CsvColumn& column, const std::string& file) {
-    if (isMissing(table.text(row, column.column))) {
+    if (table.missing(row, column.column)) {
       ++result_.left_out[file + ": no " + quantity];
       return;
     }

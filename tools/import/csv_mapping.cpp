@@ -123,11 +123,12 @@ class MappingReader {
     CsvSource source;
     table.text("file", source.file);
     static const std::map<std::string, char> kDelimiters{
-        {"comma", ','}, {"semicolon", ';'}, {"space", ' '}, {"tab", '\t'}};
-    std::string delimiter = "comma";
-    table.choice("delimiter", delimiter, {"comma", "semicolon", "space", "tab"});
+        {"auto", '\0'}, {"comma", ','}, {"semicolon", ';'}, {"space", ' '}, {"tab", '\t'}};
+    std::string delimiter = "auto";
+    table.choice("delimiter", delimiter, {"auto", "comma", "semicolon", "space", "tab"});
     source.layout.delimiter = kDelimiters.at(delimiter);
     table.flag("header", source.layout.header);
+    table.flag("decimal_comma", source.layout.decimal_comma);
     readTime(table.section("time", true), source);
     ConfigReader columns = table.section("columns", true);
     for (const std::string& quantity : columns.keys()) {
@@ -140,7 +141,17 @@ class MappingReader {
       source.columns[quantity] = readColumn(columns.section(quantity), quantity);
     }
     if (source.columns.empty()) throw table.error("columns", "names no column");
+    nameColumns(source);
     return source;
+  }
+
+  /// By these the header is found.
+  static void nameColumns(CsvSource& source) {
+    std::vector<std::string>& names = source.layout.columns;
+    if (!source.time.empty()) names.push_back(source.time);
+    for (const auto& [quantity, column] : source.columns) names.push_back(column.column);
+    const auto is_number = [](const std::string& name) { return parseInteger(name).has_value(); };
+    names.erase(std::remove_if(names.begin(), names.end(), is_number), names.end());
   }
 
   static void readTime(ConfigReader time, CsvSource& source) {

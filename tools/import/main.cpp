@@ -34,6 +34,7 @@ struct Arguments {
   std::string log;
   bool keep_lag = false;
   bool allow_loss = false;
+  bool decimal_comma = false;
   Gyro gyro = Gyro::kAtFixes;
   ExecutionLayout layout;
   import::ForeignRobot robot;
@@ -103,6 +104,7 @@ struct Reading {
 Reading taken(import::ForeignDrive foreign) {
   for (const auto& [what, count] : foreign.left_out)
     std::printf("left out: %zu of %s\n", count, what.c_str());
+  for (const std::string& note : foreign.notes) std::printf("%s\n", note.c_str());
   if (!foreign.poses.empty()) std::printf("poses: %s\n", foreign.poses.c_str());
   return {std::move(foreign.drive), std::move(foreign.losses)};
 }
@@ -162,7 +164,9 @@ Reading readForeign(const Arguments& arguments, Session& session) {
     return taken(std::move(foreign));
   }
   ConfigReader reader = ConfigReader::fromFile(arguments.mapping, arguments.overrides);
-  const import::CsvMapping mapping = import::readCsvMapping(reader);
+  import::CsvMapping mapping = import::readCsvMapping(reader);
+  for (import::CsvSource& source : mapping.sources)
+    source.layout.decimal_comma = source.layout.decimal_comma || arguments.decimal_comma;
   import::ForeignDrive foreign = import::readMappedCsv(arguments.csv, mapping);
   session = foreignSession(arguments, foreign.drive);
   session.robot = mapping.robot;
@@ -229,6 +233,8 @@ int parseAndRun(int argc, char** argv) {
                  "csv: KEY=VALUE in the place of what the mapping says: wheel_radius=0.18")
       ->expected(1)
       ->take_all();
+  app.add_flag("--decimal-comma", arguments.decimal_comma,
+               "csv: numbers are 0,5 in all tables, as with decimal_comma: true in the mapping");
   app.add_option("--sessions", arguments.sessions,
                  "sessions.csv: radius, baseline, pose lag; not with lcm, rawlog and csv");
   app.add_option("--pose-channel", arguments.robot.pose_channel,

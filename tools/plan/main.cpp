@@ -50,8 +50,10 @@ void describe(CLI::App& app, PlanOptions& options) {
   app.add_option("--map", options.map,
                  "nav2 or ROS map (.yaml with .pgm) or SBPL environment (.cfg)")
       ->required();
-  app.add_option("--patterns", options.patterns,
-                 "our pattern file (.yaml), or SBPL primitives (.mprim): those of start angle 0")
+  app.add_option(
+         "--patterns", options.patterns,
+         "our pattern file (.yaml), or the primitives of SBPL (.mprim) or nav2 (.json): those of "
+         "start angle 0")
       ->required();
   app.add_flag("--mprim-exact", options.exact,
                "all of the .mprim, each from its own start angle, and SBPL's whole costs");
@@ -101,6 +103,8 @@ int run(int argc, char** argv) {
   describe(app, options);
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   const PlanTask task = loadTask(options);
+  if (!task.map.note.empty())
+    std::fprintf(stderr, "tread-plan: %s: %s\n", options.map.c_str(), task.map.note.c_str());
   return task.many ? planMany(task, options) : planOne(task, options);
 }
 

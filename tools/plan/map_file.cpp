@@ -48,8 +48,8 @@ PixelRule readRule(ConfigReader& reader) {
   reader.choice("mode", mode, {"trinary", "scale", "raw"});
   if (mode != "trinary") rule.mode = mode == "scale" ? Mode::kScale : Mode::kRaw;
   std::string negate;
-  reader.choice("negate", negate, {"0", "1", "false", "true"}, true);
-  rule.negate = negate == "1" || negate == "true";
+  reader.choice("negate", negate, {"0", "1", "false", "true", "False", "True"}, true);
+  rule.negate = negate == "1" || negate == "true" || negate == "True";
   reader.number("occupied_thresh", rule.occupied, {0.0, 1.0}, "1", true);
   reader.number("free_thresh", rule.free, {0.0, 1.0}, "1", true);
   if (rule.free >= rule.occupied)
@@ -71,6 +71,17 @@ Grid gridOf(const GreyImage& image, double resolution, const PixelRule& rule) {
   return grid;
 }
 
+/// The grey by which map_saver writes the unknown; nav2's usual free_thresh of 0.25 makes it free.
+constexpr uint8_t kUnknownGrey = 205;
+
+std::string unknownAsFree(const GreyImage& image, const PixelRule& rule) {
+  const auto count = std::count(image.pixels.begin(), image.pixels.end(), kUnknownGrey);
+  if (count == 0 || image.white != 255 || cellOf(kUnknownGrey / 255.0, rule) != kFree) return {};
+  return std::to_string(count) + " cells of grey 205, by which map_saver writes the unknown, are " +
+         "free by free_thresh " + formatNumber(rule.free) +
+         ", as nav2 reads it; with free_thresh: 0.196 they are unknown";
+}
+
 /// Keys that we do not know are others' business and stay unread.
 MapFile readNav2(const std::string& path) {
   ConfigReader reader = ConfigReader::fromFile(path);
@@ -83,7 +94,9 @@ MapFile readNav2(const std::string& path) {
   const PixelRule rule = readRule(reader);
   map.name = path;
   map.T_map_grid = {origin[0], origin[1], origin[2]};
-  map.grid = gridOf(readPgm(map.image), resolution, rule);
+  const GreyImage image = readPgm(map.image);
+  map.note = unknownAsFree(image, rule);
+  map.grid = gridOf(image, resolution, rule);
   return map;
 }
 
@@ -114,15 +127,28 @@ GreyImage readHeader(Tokenizer& tokens) {
                      " pixels; it is truncated");
 }
 
-/// P5: one blank behind the header, then a byte a pixel.
+/// Why a P5 picture has more bytes than pixels, from what follows its header.
+std::string surplusReason(std::string_view rest) {
+  if (rest.substr(0, 2).find('#') != std::string_view::npos)
+    return "a comment stands behind the greatest grey value, where PGM allows none";
+  if (rest.substr(0, 2) == "\r\n")
+    return "CR LF stands behind the greatest grey value, where PGM allows one byte";
+  return "PGM allows nothing behind the pixels";
+}
+
+/// P5: one blank behind the header, then a byte a pixel and nothing else: whatever is inserted
+/// shifts the picture.
 void readBytes(Tokenizer& tokens, GreyImage& image) {
   const size_t count = pixelCount(image);
   const std::string_view rest = tokens.rest();
   const size_t there = rest.empty() ? 0 : rest.size() - 1;
   if (there < count) throwTruncated(tokens, there, count);
+  if (there > count || rest.front() == '#')
+    throw tokens.error("the file holds " + std::to_string(there) + " bytes for " +
+                       std::to_string(count) + " pixels; " + surplusReason(rest));
   image.pixels.resize(count);
-  std::transform(rest.begin() + 1, rest.begin() + 1 + static_cast<std::ptrdiff_t>(count),
-                 image.pixels.begin(), [](char c) { return static_cast<uint8_t>(c); });
+  std::transform(rest.begin() + 1, rest.end(), image.pixels.begin(),
+                 [](char c) { return static_cast<uint8_t>(c); });
 }
 
 void readNumbers(Tokenizer& tokens, GreyImage& image) {
@@ -132,6 +158,8 @@ void readNumbers(Tokenizer& tokens, GreyImage& image) {
   image.pixels.reserve(count);
   while (image.pixels.size() < count)
     image.pixels.push_back(static_cast<uint8_t>(tokens.integer("a pixel", 0, image.white)));
+  if (!tokens.atEnd())
+    throw tokens.error("more follows behind the last of " + std::to_string(count) + " pixels");
 }
 
 /// What stands before the cells.

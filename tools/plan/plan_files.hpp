@@ -26,8 +26,9 @@ struct GreyImage {
 inline constexpr int kLongestSide = 60'000;
 inline constexpr int64_t kMostCells = 64'000'000;
 
-/// Reads a PGM picture, P5 (bytes) or P2 (text), with comments; throws ConfigError "name:line:
-/// what" for anything else, 16 bits a pixel, missing pixels and sizes that no map has.
+/// Reads a PGM picture, P5 (bytes) or P2 (text), with comments in its header; throws ConfigError
+/// "name:line: what" for anything else, 16 bits a pixel, more or fewer bytes than pixels, and sizes
+/// that no map has.
 GreyImage readPgm(const std::string& path);
 
 /// The same from the file's bytes; `name` stands for the file in messages.
@@ -47,6 +48,7 @@ struct CostThresholds {
 struct MapFile {
   std::string name;   ///< the file that it was read from
   std::string image;  ///< and that of its pixels; empty if it has none
+  std::string note;   ///< what a person should know of how it was read; mostly empty
   Pose2 T_map_grid;
   Grid grid;                   ///< free, obstacle, unknown; of SBPL's costs what is lethal
   std::vector<uint8_t> costs;  ///< cell by cell as in the grid; empty unless SBPL's
@@ -135,6 +137,12 @@ PrimitiveFile readPrimitives(const std::string& path);
 
 /// The same from text; `name` stands for the file in messages.
 PrimitiveFile parsePrimitives(std::string text, const std::string& name);
+
+/// Reads nav2's lattice primitives (.json); what they are must hold for these, too.
+PrimitiveFile readLattice(const std::string& path);
+
+/// What is wrong with where a primitive begins and ends; empty if nothing is.
+std::string endsProblem(const Primitive& primitive, const PrimitiveFile& file);
 
 /// The bin whose heading is nearest to an angle [rad].
 int nearestBin(const std::vector<double>& headings, double yaw);

@@ -122,23 +122,6 @@ bool isNear(const Pose2& pose, double x, double y, double resolution) {
   return std::abs(pose.x - x) <= reach && std::abs(pose.y - y) <= reach;
 }
 
-void checkEnds(const Tokenizer& tokens, const Primitive& primitive, const PrimitiveFile& file) {
-  const auto refuse = [&](const std::string& what) {
-    throw tokens.error(what + " by more than half a cell or bin");
-  };
-  const Pose2& first = primitive.poses.front();
-  if (!isNear(first, 0.0, 0.0, file.resolution) ||
-      nearestBin(file.headings, first.yaw) != primitive.start_bin)
-    refuse("its first pose misses the start");
-  const Pose2& last = primitive.poses.back();
-  if (!isNear(last, primitive.dx * file.resolution, primitive.dy * file.resolution,
-              file.resolution) ||
-      nearestBin(file.headings, last.yaw) != primitive.end_bin)
-    refuse("its last pose misses endpose_c");
-  if (primitive.dx == 0 && primitive.dy == 0 && primitive.end_bin == primitive.start_bin)
-    throw tokens.error("it neither moves nor turns");
-}
-
 Primitive readPrimitive(Tokenizer& tokens, const PrimitiveFile& file) {
   const int bins = static_cast<int>(file.headings.size());
   Primitive primitive;
@@ -156,7 +139,8 @@ Primitive readPrimitive(Tokenizer& tokens, const PrimitiveFile& file) {
   const int poses = readInt(tokens, "intermediateposes", 2, kMostPoses);
   for (int i = 0; i < poses; ++i)
     primitive.poses.push_back(tokens.pose("a pose", kFarthestPose, kMostTurn));
-  checkEnds(tokens, primitive, file);
+  if (const std::string problem = endsProblem(primitive, file); !problem.empty())
+    throw tokens.error(problem);
   return primitive;
 }
 
@@ -205,6 +189,20 @@ std::vector<SearchPrimitive> onLattice(const PrimitiveFile& file, const Primitiv
     }
   }
   return primitives;
+}
+
+std::string endsProblem(const Primitive& primitive, const PrimitiveFile& file) {
+  const double cell = file.resolution;
+  const Pose2& first = primitive.poses.front();
+  if (!isNear(first, 0.0, 0.0, cell) || nearestBin(file.headings, first.yaw) != primitive.start_bin)
+    return "its first pose misses the start by more than half a cell or bin";
+  const Pose2& last = primitive.poses.back();
+  if (!isNear(last, primitive.dx * cell, primitive.dy * cell, cell) ||
+      nearestBin(file.headings, last.yaw) != primitive.end_bin)
+    return "its last pose misses its end by more than half a cell or bin";
+  if (primitive.dx == 0 && primitive.dy == 0 && primitive.end_bin == primitive.start_bin)
+    return "it neither moves nor turns";
+  return {};
 }
 
 int nearestBin(const std::vector<double>& headings, double yaw) {

@@ -86,6 +86,8 @@ void readPatterns(const PlanOptions& options, PlanTask& task) {
   const std::string extension = std::filesystem::path(options.patterns).extension().string();
   if (extension == ".mprim") {
     task.primitives = readPrimitives(options.patterns);
+  } else if (extension == ".json") {
+    task.primitives = readLattice(options.patterns);
   } else {
     task.patterns = readPatternFile(options.patterns);
   }

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "common/config/foreign_text.hpp"
 #include "common/config/scalars.hpp"
 
 namespace tread::plan {
@@ -26,7 +27,10 @@ std::string quoted(std::string_view word) {
 }  // namespace
 
 Tokenizer::Tokenizer(std::string text, std::string name, char comment)
-    : text_(std::move(text)), name_(std::move(name)), comment_(comment) {}
+    : text_(std::move(text)), name_(std::move(name)), comment_(comment) {
+  if (const std::string problem = takeByteOrderMark(text_); !problem.empty())
+    throw ConfigError(name_ + ": " + problem);
+}
 
 void Tokenizer::skipBlanks() {
   while (at_ < text_.size()) {
@@ -68,16 +72,17 @@ void Tokenizer::expect(const std::string& word) {
 
 int64_t Tokenizer::integer(const std::string& what, int64_t min, int64_t max) {
   const std::string_view word = next(what);
-  const auto value = parseInteger(std::string(word));
-  if (!value || *value < min || *value > max)
+  const bool whole = word.find_first_not_of("+-0123456789") == std::string_view::npos;
+  const auto value = whole ? parseForeignNumber(word) : std::nullopt;
+  if (!value || *value < static_cast<double>(min) || *value > static_cast<double>(max))
     throw error(what + " is " + quoted(word) + "; a whole number " + std::to_string(min) + ".." +
                 std::to_string(max) + " is needed");
-  return *value;
+  return static_cast<int64_t>(*value);
 }
 
 double Tokenizer::number(const std::string& what, Range range, const std::string& unit) {
   const std::string_view word = next(what);
-  const auto value = parseNumber(std::string(word));
+  const auto value = parseForeignNumber(word);
   if (!value || !(*value >= range.min && *value <= range.max))
     throw error(what + " is " + quoted(word) + "; a number " + formatNumber(range.min) + ".." +
                 formatNumber(range.max) + " " + unit + " is needed");

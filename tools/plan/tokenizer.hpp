@@ -12,7 +12,8 @@
 namespace tread::plan {
 
 /// The words of a text one after the other, for the formats of others that are no YAML.
-/** What is missing, no number or out of its range throws ConfigError with "name:line: what". */
+/** A byte order mark is passed over; UTF-16 throws. What is missing, no number or out of its range
+ * throws ConfigError with "name:line: what". */
 class Tokenizer {
  public:
   /// `name` stands for the file in messages; from `comment` on to the end of its line nothing

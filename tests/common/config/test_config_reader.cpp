@@ -165,6 +165,15 @@ TEST_CASE("CRLF, a byte order mark and a section without content are no errors")
   CHECK(b == "y");
 }
 
+TEST_CASE("UTF-16 text is named as what it is") {
+  for (const std::string& text : {std::string("\xFF\xFE"
+                                              "a\0:\0",
+                                              6),
+                                  std::string("a\0:\0", 4), std::string("\0a\0:", 4)})
+    CHECK_THROWS_WITH(ConfigReader::fromText(text, "f"),
+                      Catch::StartsWith("f: is UTF-16 text; save it as UTF-8"));
+}
+
 TEST_CASE("a relative path in a file is taken from that file's folder") {
   ConfigReader reader =
       ConfigReader::fromText("a: x.yaml\nb: /etc/y.yaml\nc: ../z\n", "config/r.yaml");

@@ -23,9 +23,10 @@ TEST_CASE("a formatted number parses to the same bits") {
 }
 
 TEST_CASE("decimal notation is a number, anything else is not") {
-  for (const char* good : {"0", "-0", "12", "0.5", "-3.25e-4", "1E5", "5.", "1e+3"})
+  for (const char* good : {"0", "-0", "12", "0.5", "-3.25e-4", "1E5", "5.", "1e+3", ".65", "-.5e2"})
     CHECK(parseNumber(good));
-  for (const char* bad : {"", "-", ".", ".5", "e5", "1e", "1e+", "00", "-01", "1 ", " 1", "1f"})
+  for (const char* bad :
+       {"", "-", ".", "-.", ".e1", "e5", "1e", "1e+", "00", "-01", "01.5", "1 ", " 1", "1f"})
     CHECK_FALSE(parseNumber(bad));
 }
 

@@ -4,6 +4,7 @@
 // written by the test, in the files and columns of the data set's own examples.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/config/config_reader.hpp"
@@ -110,7 +111,7 @@ TEST_CASE("columns by number, other delimiters, quaternions and a named origin")
 
 TEST_CASE("fields that are empty or nan are no measurements, but the rest of their row is") {
   const ForeignDrive read = readText(
-      "\xEF\xBB\xBFt,x,y,yaw\n0,1,2,0\n100,,,0\n200,nan,2,0\n200,7,7,7\n300,2,2,0\n", kPoses);
+      "\xEF\xBB\xBFt,x,y,yaw\n0,1,2,0\n100,,,0\n200,-nan,2,0\n200,7,7,7\n300,2,2,0\n", kPoses);
   REQUIRE(read.drive.fixes.size() == 2);
   CHECK(read.drive.fixes[1].T_map_body.x == 2.0);
   size_t of_x = 0;
@@ -121,6 +122,58 @@ TEST_CASE("fields that are empty or nan are no measurements, but the rest of the
   CHECK(read.losses[0].lost == 1.0);
   CHECK(read.losses[0].of == 5.0);
   CHECK(read.losses[0].what == "the same time as the one before");
+}
+
+TEST_CASE("a spreadsheet's table gives the drive that the plain one gives") {
+  const std::string mapping =
+      "tables:\n  - time: {column: t}\n"
+      "    columns: {left_command: {column: l, unit: m/s}, right_command: {column: r, unit: m/s},\n"
+      "              x: {column: x}, y: {column: y}, yaw: {column: yaw}}\n";
+  std::string rows;
+  for (int i = 0; i < 100; ++i)
+    rows += line("%.3f,0.600,0.500,%.4f,0.0000,0.00000\n", 0.05 * i, 0.03 * (i + 1));
+  std::string spreadsheet = "t,l,r,x,y,yaw\n" + rows;
+  std::replace(spreadsheet.begin(), spreadsheet.end(), ',', ';');
+  std::replace(spreadsheet.begin(), spreadsheet.end(), '.', ',');
+  std::string trailing = "t,l,r,x,y,yaw\n" + rows;
+  for (size_t at = trailing.find('\n', 14); at != std::string::npos;
+       at = trailing.find('\n', at + 2))
+    trailing.insert(at, ",");
+  for (const std::string& csv :
+       {"t,l,r,x,y,yaw\n" + rows, "\xEF\xBB\xBF" + spreadsheet, trailing,
+        "t,l,r,x,y,yaw\ns,m/s,m/s,m,m,rad\n" + rows, "My logger\n# t,l,r,x,y,yaw\n" + rows}) {
+    const ForeignDrive read = readText(csv, mapping);
+    CAPTURE(csv.substr(0, 60));
+    CHECK(read.left_out.empty());
+    REQUIRE(read.drive.fixes.size() == 100);
+    CHECK(read.drive.fixes.back().time == Approx(4.95));
+    CHECK(read.drive.fixes.back().T_map_body.x == Approx(3.0));
+    CHECK(read.drive.drive.at(50).command.left == Approx(0.6));
+    CHECK(read.drive.drive.at(50).command.right == Approx(0.5));
+    const bool units = csv.find("m/s") != std::string::npos;
+    CHECK(read.notes.size() == (units ? 1 : 0));
+    if (units)
+      CHECK_THAT(read.notes[0], Catch::EndsWith("drive.csv: below the header stand units, left "
+                                                "out: s, m/s, m/s, m, m, rad"));
+  }
+}
+
+TEST_CASE("times and places whose last digits a spreadsheet took away are named") {
+  CHECK(complaint("t,x,y,yaw\n1.76414E+12,1,2,0\n1.76414E+12,1.1,2,0\n", kPoses) ==
+        "drive.csv:2: column t is 1.76414E+12: in all rows a spreadsheet or program has rounded "
+        "it, to 10000 s; export it as numbers with all their digits");
+  // A step of 1e7 ms comes once in ten thousand seconds only.
+  CHECK_THAT(
+      complaint("t,x,y,yaw\n1.76414E+12,1,2,0\n1.76414E+12,1,2,0\n1.76415E+12,1,2,0\n", kPoses),
+      Catch::Contains("has rounded it, to 10000 s"));
+  CHECK_THAT(complaint("t,x,y,yaw\n0,1,5.24273E+06,0\n50,1,5.24273E+06,0\n",
+                       "origin: {first_fix: true}\n" + kPoses),
+             Catch::Contains("column y is 5.24273E+06: in all rows a spreadsheet or program has "
+                             "rounded it, to 10 m"));
+  CHECK(readText("t,x,y,yaw\n1.764140000000E+12,1,2,0\n1.764140000050E+12,1,2,0\n", kPoses)
+            .drive.fixes.size() == 2);
+  CHECK(readText("t,x,y,yaw\n1E+03,1E+00,2E-05,0\n2E+03,1E+00,2,0\n", kPoses).drive.fixes.size() ==
+        2);
 }
 
 TEST_CASE("refusals name file, line and column") {

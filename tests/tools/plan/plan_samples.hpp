@@ -98,4 +98,20 @@ inline const std::string kPrimitives =
     "0.0000 0.0000 -1.5708\n"
     "0.0000 0.5000 4.7124\n";
 
+/// The first two of them as nav2's generator of lattices writes them: without their start poses.
+inline const std::string kLattice =
+    "{\n\t\"version\": 1.0,\n\t\"date_generated\": \"2026-01-01\",\n\t\"lattice_metadata\": {\n"
+    "\t\t\"motion_model\": \"diff\",\n\t\t\"turning_radius\": 0.5,\n\t\t\"grid_resolution\": 0.5,\n"
+    "\t\t\"num_of_headings\": 4,\n\t\t\"heading_angles\": "
+    "[\n\t\t\t0.0,\n\t\t\t1.5707963267948966,\n"
+    "\t\t\t3.141592653589793,\n\t\t\t4.71238898038469\n\t\t],\n\t\t\"number_of_trajectories\": 2\n"
+    "\t},\n\t\"primitives\": [\n"
+    "\t\t{\"trajectory_id\": 0, \"start_angle_index\": 0, \"end_angle_index\": 0,\n"
+    "\t\t\"left_turn\": true, \"trajectory_radius\": 0.0, \"trajectory_length\": 0.5,\n"
+    "\t\t\"poses\": [\n\t\t\t[0.2, 0.0, 0.0],\n\t\t\t[0.5, 0.0, 0.0]\n\t\t]},\n"
+    "\t\t{\"trajectory_id\": 1, \"start_angle_index\": 0, \"end_angle_index\": 1,\n"
+    "\t\t\"left_turn\": true, \"trajectory_radius\": 0.5, \"trajectory_length\": 0.8,\n"
+    "\t\t\"poses\": [[0.3, 0.0, 0.5], [0.3, 0.4, 1.0], [0.5, 0.5, 1.5707963267948966]]}\n"
+    "\t]\n}\n";
+
 }  // namespace tread::plan::samples

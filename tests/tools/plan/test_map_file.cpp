@@ -108,6 +108,57 @@ TEST_CASE("a picture that is none or broken is one clear line") {
   CHECK_THROWS_WITH(parse("P5 1 1 15\n\x20"), Contains("a pixel is 32, more than"));
 }
 
+TEST_CASE(
+    "what stands between the greatest grey value and the pixels, or behind them, is refused") {
+  const auto parse = [](const std::string& text) { parsePgm(text, "a.pgm"); };
+  const std::string comment =
+      "a comment stands behind the greatest grey value, where PGM allows none";
+  CHECK_THROWS_WITH(parse("P5\n3 2\n255\n# by hand\n123456"),
+                    "a.pgm:3: the file holds 16 bytes for 6 pixels; " + comment);
+  CHECK_THROWS_WITH(parse("P5\n3 2\n255 # by hand\n123456"), Contains(comment));
+  CHECK_THROWS_WITH(parse("P5\n3 2\n255# by hand\n123456"), Contains(comment));
+  CHECK_THROWS_WITH(parse("P5\n3 2\n255#123456"), Contains(comment));
+  CHECK_THROWS_WITH(parse("P5\r\n3 2\r\n255\r\n123456"),
+                    "a.pgm:3: the file holds 7 bytes for 6 pixels; CR LF stands behind the "
+                    "greatest grey value, where PGM allows one byte");
+  CHECK_THROWS_WITH(parse("P5\n3 2\n255\n123456\n"), Contains("allows nothing behind the pixels"));
+  CHECK_THROWS_WITH(parse("P5 1 1 255\n1P5 1 1 255\n1"), Contains("nothing behind the pixels"));
+  CHECK_THROWS_WITH(parse("P2 2 1 255\n1 2 3\n"), Contains("more follows behind the last of 2"));
+  CHECK(parsePgm("P2 2 1 255\n1 002\n# end\n", "a.pgm").pixels == std::vector<uint8_t>{1, 2});
+  CHECK(parsePgm("\xEF\xBB\xBFP2\r\n# a\r\n2 1\r\n255\r\n1 2\r\n", "a.pgm").pixels.size() == 2);
+}
+
+TEST_CASE("a map's unknown that its free_thresh makes free is told") {
+  std::string text = yaml();
+  CHECK(nav2Map(text).note.empty());
+  text.replace(text.find("0.196"), 5, ".25");
+  CHECK(nav2Map(text).note ==
+        "1 cells of grey 205, by which map_saver writes the unknown, are free by free_thresh 0.25, "
+        "as nav2 reads it; with free_thresh: 0.196 they are unknown");
+  CHECK(nav2Map(text, "P2 2 1 255 254 0\n").note.empty());
+  CHECK(nav2Map(text, "P2 2 1 205 205 0\n").note.empty());
+  CHECK(nav2Map(text + "mode: raw\n").note.empty());
+  text.replace(text.find("negate: 0"), 9, "negate: True");
+  CHECK(nav2Map(text).note.empty());
+}
+
+TEST_CASE("maps in text may begin with a byte order mark and have lines of other systems") {
+  std::string lines = "\xEF\xBB\xBF" + yaml();
+  for (size_t at = 0; (at = lines.find('\n', at)) != std::string::npos; at += 2)
+    lines.replace(at, 1, "\r\n");
+  CHECK(nav2Map(lines).grid.width() == 3);
+  lines = "\xEF\xBB\xBF" + kEnvironment;
+  for (size_t at = 0; (at = lines.find('\n', at)) != std::string::npos; at += 2)
+    lines.replace(at, 1, "\r\n");
+  lines.replace(lines.find("0.8"), 3, "+.8");
+  CHECK(parseSbplEnvironment(lines, "a.cfg").nominal_speed == 0.8);
+  CHECK_THROWS_WITH(parseSbplEnvironment(std::string("\xFF\xFE"
+                                                     "d\0",
+                                                     4),
+                                         "a.cfg"),
+                    Contains("a.cfg: is UTF-16 text; save it as UTF-8"));
+}
+
 TEST_CASE("a nav2 map that cannot be used is one clear line with its file and line") {
   CHECK_THROWS_WITH(nav2Map("resolution: 0.05\n"), Contains("image"));
   std::string text = yaml();

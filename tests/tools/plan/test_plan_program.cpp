@@ -102,6 +102,31 @@ TEST_CASE("tread-plan takes start, goal and pace from an SBPL environment") {
   CHECK(Json::parse(folder.text("a.json"))["cost"].get<double>() < 2322625.0);
 }
 
+TEST_CASE("tread-plan drives nav2's lattice and says where a map's unknown is free") {
+  const Folder folder;
+  folder.write(
+      "a.pgm", "P2 8 4 255" + [] {
+        std::string pixels;
+        for (int i = 0; i < 32; ++i) pixels += i % 8 == 7 ? " 205" : " 254";
+        return pixels;
+      }());
+  const std::string map = folder.write(
+      "a.yaml",
+      "image: a.pgm\nresolution: 0.5\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: .65\n"
+      "free_thresh: .25\n");
+  const Run result =
+      run("--map " + map + " --patterns " + folder.write("a.json", kLattice) +
+          " --radius 0 --start 0.75,0.75,0 --goal 2.75,1.25,1.57 --tolerance 0.3,0.3");
+  CHECK(result.status == 0);
+  CHECK_THAT(result.printed, Contains("solved: "));
+  CHECK_THAT(result.printed, Contains("tread-plan: " + map +
+                                      ": 4 cells of grey 205, by which map_saver writes the "
+                                      "unknown, are free by free_thresh 0.25"));
+  CHECK_THAT(run(kOffice + "--patterns " + folder.write("b.yaml", kLattice) + " " + kRobot + kTask)
+                 .printed,
+             Contains("these are nav2's lattice primitives"));
+}
+
 TEST_CASE("tread-plan answers many queries and writes what they have in common") {
   const Folder folder;
   const std::string shared = kOffice + kWithSet + kRobot + "--deadline-ms 300 --json ";

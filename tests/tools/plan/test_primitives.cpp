@@ -46,6 +46,56 @@ TEST_CASE("primitives are read with their headings, cells and poses") {
   CHECK(file.primitives[2].end_bin == 3);  // stands as -1
 }
 
+TEST_CASE("primitives are read with a byte order mark and with lines of other systems") {
+  std::string text = "\xEF\xBB\xBF" + kPrimitives;
+  for (size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2)
+    text.replace(at, 1, "\r\n");
+  CHECK(parse(text).primitives.size() == 3);
+  CHECK_THROWS_WITH(parse(std::string("r\0e\0", 4)), Contains("a.mprim: is UTF-16 text"));
+}
+
+TEST_CASE("nav2's lattice gives the primitives that SBPL's file of the same set gives") {
+  const Folder folder;
+  const PrimitiveFile lattice = readLattice(folder.write("a.json", kLattice));
+  const PrimitiveFile sbpl = parse(kPrimitives);
+  CHECK(lattice.resolution == sbpl.resolution);
+  CHECK(lattice.headings[3] == Approx(sbpl.headings[3]));
+  REQUIRE(lattice.primitives.size() == 2);
+  for (size_t i = 0; i < 2; ++i) {
+    const Primitive& ours = lattice.primitives[i];
+    const Primitive& theirs = sbpl.primitives[i];
+    CHECK(ours.id == theirs.id);
+    CHECK(ours.start_bin == theirs.start_bin);
+    CHECK(ours.end_bin == theirs.end_bin);
+    CHECK(ours.dx == theirs.dx);
+    CHECK(ours.dy == theirs.dy);
+    REQUIRE(ours.poses.size() == theirs.poses.size());
+    for (size_t k = 0; k < ours.poses.size(); ++k) {
+      CHECK(ours.poses[k].x == Approx(theirs.poses[k].x));
+      CHECK(ours.poses[k].y == Approx(theirs.poses[k].y));
+      CHECK(ours.poses[k].yaw == Approx(theirs.poses[k].yaw).margin(1e-4));
+    }
+  }
+}
+
+TEST_CASE("a lattice that cannot be used is one clear line") {
+  const Folder folder;
+  const auto read = [&](const std::string& from, const std::string& to) {
+    std::string text = kLattice;
+    text.replace(text.find(from), from.size(), to);
+    readLattice(folder.write("a.json", text));
+  };
+  CHECK_THROWS_WITH(read("\"end_angle_index\": 1", "\"end_angle_index\": 2"),
+                    Contains("a.json:26: primitives[1].poses: its last pose misses its end"));
+  CHECK_THROWS_WITH(read("\"end_angle_index\": 1", "\"end_angle_index\": 4"), Contains("0..3"));
+  CHECK_THROWS_WITH(read("[0.3, 0.4, 1.0]", "[0.3, 0.4]"),
+                    Contains("a.json:26: primitives[1].poses"));
+  CHECK_THROWS_WITH(read("1.5707963267948966,\n", "0.0,\n"), Contains("must rise"));
+  CHECK_THROWS_WITH(read("[0.2, 0.0, 0.0],\n\t\t\t[0.5, 0.0, 0.0]", ""),
+                    Contains("none are there"));
+  CHECK_THROWS_WITH(read("\"grid_resolution\"", "\"resolution\""), Contains("grid_resolution"));
+}
+
 TEST_CASE("primitives may state uneven headings and their turning radius") {
   std::string text =
       replaced("numberofangles: 4\n",
@@ -82,13 +132,13 @@ TEST_CASE("primitives that are broken are one clear line with file, line and pri
   CHECK_THROWS_WITH(read("0.2000", "nan"),
                     Contains("a.mprim:10: primitive 1 of 3: a pose's x is \"nan\""));
   CHECK_THROWS_WITH(read("intermediateposes: 4", "intermediateposes: 2"),
-                    Contains("a.mprim:18: primitive 2 of 3: its last pose misses endpose_c"));
+                    Contains("a.mprim:18: primitive 2 of 3: its last pose misses its end"));
   CHECK_THROWS_WITH(read("endpose_c: 1 1 1", "endpose_c: 1 2 1"),
-                    Contains("its last pose misses endpose_c by more than half a cell or bin"));
-  CHECK_THROWS_WITH(read("endpose_c: 1 1 1", "endpose_c: 1 1 2"), Contains("misses endpose_c"));
+                    Contains("its last pose misses its end by more than half a cell or bin"));
+  CHECK_THROWS_WITH(read("endpose_c: 1 1 1", "endpose_c: 1 1 2"), Contains("misses its end"));
   CHECK_THROWS_WITH(read("0.0000 0.0000 -1.5708", "0.0000 0.0000 0.0000"),
                     Contains("primitive 3 of 3: its first pose misses the start"));
-  CHECK_THROWS_WITH(read("0 1 -1", "0 0 -1"), Contains("its last pose misses endpose_c"));
+  CHECK_THROWS_WITH(read("0 1 -1", "0 0 -1"), Contains("its last pose misses its end"));
   std::string still = replaced("0 1 -1", "0 0 -1");
   still.replace(still.find("0.0000 0.5000 4.7124"), 20, "0.0000 0.0000 4.7124");
   CHECK_THROWS_WITH(parse(still), Contains("primitive 3 of 3: it neither moves nor turns"));
