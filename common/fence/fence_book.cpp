@@ -74,6 +74,18 @@ const char* describe(FenceReceipt receipt) {
   return "unknown";
 }
 
+Fence lostFences() {
+  constexpr double kAll = Fence::kFarthest / 2.0;
+  return {"lost_fences", true, {{-kAll, -kAll}, {kAll, -kAll}, {kAll, kAll}, {-kAll, kAll}}};
+}
+
+std::string FenceBook::bar() const {
+  const std::string lost = lostFences().name;
+  const bool known = std::none_of(fences_.begin(), fences_.end(),
+                                  [&](const Fence& fence) { return fence.name == lost; });
+  return known ? "" : "kept fences are lost: set them anew, then tread-fence " + lost + " --remove";
+}
+
 bool FenceBook::fit(const std::vector<Fence>& fences) {
   size_t corners = 0;
   for (const Fence& fence : fences) corners += fence.corners.size();
@@ -98,7 +110,8 @@ FenceReceipt FenceBook::add(const Fence& fence, bool holds) {
   const auto strangers = place + 1;
   while (!fit(fences) && strangers < static_cast<std::ptrdiff_t>(fences.size()))
     fences.erase(fences.begin() + strangers);
-  if (!fit(fences)) return FenceReceipt::kFull;
+  // A full book, too, may have lost some.
+  if (!fit(fences) && !(fence == lostFences())) return FenceReceipt::kFull;
   fences_ = std::move(fences);
   if (holds) ++lasting_;
   ++revision_;

@@ -30,6 +30,10 @@ enum class FenceReceipt {
 /// In words, for counters: "of another operator than the one who holds the robot".
 const char* describe(FenceReceipt receipt);
 
+/// Stands in a book for fences that are not known any more: nothing drives while one of its name is
+/// there. Keeps out of everywhere.
+Fence lostFences();
+
 /// The fences in force: the robot's own, and what operators have added.
 /** One more fence only narrows, and is taken from everybody, as a stop is: fences of one name are
  * kept side by side. Removing widens: only the operator who holds the robot may do it, and the
@@ -53,6 +57,8 @@ class FenceBook {
   /// The robot's own first.
   const std::vector<Fence>& fences() const { return fences_; }
   size_t own() const { return own_; }
+  /// Why nothing may drive, and what to do; empty = the fences are known.
+  std::string bar() const;
   /// The robot's own and those of who held it: how many come before strangers'.
   size_t lasting() const { return lasting_; }
   /// Counts up with each change.

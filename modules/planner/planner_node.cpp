@@ -12,9 +12,6 @@
 namespace tread::planner {
 namespace {
 
-// In the store.
-constexpr const char* kHoldersFences = "fences_of_holders";
-constexpr const char* kOtherFences = "fences_of_others";
 constexpr int64_t kKeepEvery = 1'000'000;  // [us]
 
 /// What plans keep free is the robot's; logs from before robots were described in a file of their
@@ -236,15 +233,14 @@ void PlannerNode::subscribe() {
 
 void PlannerNode::recallFences() {
   if (store_ == nullptr) return;
-  int lost = 0;
-  for (const bool holders : {true, false}) {
-    const auto text = store_->read(holders ? kHoldersFences : kOtherFences);
-    for (const Fence& fence : fencesFrom(text.value_or(""), lost)) {
-      const FenceReceipt receipt = fences_.take({"", false, fence}, holders);
-      lost += receipt != FenceReceipt::kAdded && receipt != FenceReceipt::kKnown ? 1 : 0;
-    }
-  }
-  if (lost > 0) health_.addToCounter("fences of the last run that cannot be kept", lost);
+  KeptFences kept = readFences(*store_);
+  const auto take = [&](const Fence& fence, bool holders) {
+    const FenceReceipt receipt = fences_.take({"", false, fence}, holders);
+    kept.lost |= receipt != FenceReceipt::kAdded && receipt != FenceReceipt::kKnown;
+  };
+  for (const Fence& fence : kept.holders) take(fence, true);
+  for (const Fence& fence : kept.others) take(fence, false);
+  if (kept.lost) fences_.take({"", false, lostFences()}, true);
   supervisor_.map().setFences(fences_.fences());
   fences_kept_ = fences_.revision();
 }
@@ -253,13 +249,12 @@ void PlannerNode::recallFences() {
 void PlannerNode::keepFences(int64_t utime) {
   if (store_ == nullptr || fences_kept_ == fences_.revision() || utime < next_keep_) return;
   next_keep_ = utime + kKeepEvery;
-  fences_kept_ = fences_.revision();
   const std::vector<Fence>& all = fences_.fences();
   const auto holders = all.begin() + static_cast<std::ptrdiff_t>(fences_.own());
   const auto others = all.begin() + static_cast<std::ptrdiff_t>(fences_.lasting());
-  auto problem = store_->write(kHoldersFences, toText({holders, others}));
-  if (!problem) problem = store_->write(kOtherFences, toText({others, all.end()}));
-  if (problem) health_.addToCounter("fences not kept for the next start: " + *problem);
+  const auto problem = writeFences(*store_, {{holders, others}, {others, all.end()}});
+  unkept_ = problem ? "fences not kept for the next start: " + *problem : "";
+  if (!problem) fences_kept_ = fences_.revision();
 }
 
 void PlannerNode::take(const map_tile_t& message) {
@@ -359,6 +354,7 @@ void PlannerNode::step(int64_t utime) {
   if (robot_.timeJumped(utime) && inputs_.set_received != 0) inputs_.set_received = utime;
   static_cast<RobotReadings&>(inputs_) = robot_.readings(utime);
   watchGoal(utime);
+  inputs_.bar = fences_.bar();
   const int64_t started = bus_.now();
   const Decision decision = supervisor_.step(inputs_, [&](int expansions) {
     return stop_ ? stop_(expansions) : bus_.now() - started > config_.deadline;
@@ -408,7 +404,9 @@ void PlannerNode::publishTree(const PlanReport& report) {
 
 void PlannerNode::publishHealth(int64_t utime, const PlanReport& report) {
   const bool waits = report.status == PlanStatus::kWaiting;
-  std::string problem = waits ? report.reason : supervisor_.setRefusal();
+  std::string problem = fences_.bar();
+  if (problem.empty()) problem = waits ? report.reason : supervisor_.setRefusal();
+  if (problem.empty()) problem = unkept_;
   if (problem.empty()) problem = secondLearner(utime);
   if (problem.empty()) problem = way_back_.state();
   health_.setState(problem.empty() ? health_t::HEALTH_OK : health_t::HEALTH_DEGRADED, problem);

@@ -4,6 +4,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/config/config_reader.hpp"
+#include "common/fence/kept_fences.hpp"
 #include "common/messages/fence_messages.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "common/messages/robot_inputs.hpp"
@@ -68,6 +69,7 @@ class PlannerNode : public Node {
   FenceExchange fence_exchange_;
   int64_t fences_kept_ = 0;  ///< revision that is in the store
   int64_t next_keep_ = 0;    ///< [us]
+  std::string unkept_;       ///< why it is not, if it could not be written
   GoalWatch goal_;
   WayBack way_back_;
   double position_std_ = 0.0;  ///< [m] of the newest INS; NaN unknown

@@ -701,3 +701,28 @@ TEST_CASE("two stations of which each rests for the other move nothing") {
     REQUIRE(world.stands());
   }
 }
+
+TEST_CASE("while kept fences are lost neither hand nor planner drives, until they are removed") {
+  HandWorld world;
+  world.wish.hold = GENERATE(true, false);
+  if (world.wish.hold)
+    world.driveByHand();
+  else
+    world.BridgeWorld::drive();
+  REQUIRE_FALSE(world.stands());
+  world.bridge.receive(FenceRequest{"planner", false, lostFences()}, world.now);
+  world.step();
+  CHECK(world.stands());
+  CHECK_THAT(world.reason(), Catch::StartsWith("kept fences are lost: set them anew"));
+  world.stick(0.0, 0.0);
+  world.run(1'500'000);
+  world.arm();
+  world.run(100'000);
+  CHECK(world.state() == State::kDisarmed);
+  CHECK_THAT(world.reason(), Catch::Contains("ARM refused: kept fences are lost"));
+  world.bridge.receive(FenceRequest{"operator", true, lostFences()}, world.now);
+  world.run(1'500'000);
+  world.arm();
+  world.run(100'000);
+  CHECK(isArmed(world.state()));
+}

@@ -467,9 +467,69 @@ TEST_CASE("Operators' fences are kept over a restart of the planner, and removed
   CHECK_FALSE(inForce("first"));
   yard.store.failWith("disk full");
   send("third", false);
-  CHECK(std::any_of(yard.health.counters.begin(), yard.health.counters.end(), [](const auto& one) {
-    return one.counter_name == "fences not kept for the next start: disk full";
-  }));
+  CHECK(yard.health.health_state == health_t::HEALTH_DEGRADED);
+  CHECK(yard.health.health_reason == "fences not kept for the next start: disk full");
+  yard.store.failWith("");
+  yard.run(1.5);
+  yard.bus.kill("planner");
+  yard.bus.restart("planner");
+  yard.run(1.5);
+  CHECK(inForce("third"));
+}
+
+TEST_CASE(
+    "Kept fences that are missing, empty or damaged: nothing drives before a person has looked") {
+  Yard yard;
+  const auto say = [&](bool removes, const Fence& fence) {
+    yard.bus.outside().publish(kFence, toMessage(FenceRequest{"test", removes, fence}));
+    yard.run(1.2);
+  };
+  const Fence pond{"pond", true, {{4, -60}, {5, -60}, {5, 60}, {4, 60}}};
+  yard.run(1.5);
+  say(false, pond);
+  const std::string entry = "fences_of_holders", text = *yard.store.read(entry);
+  yard.bus.kill("planner");
+  SECTION("missing") {
+    yard.store.remove(entry);
+  }
+  SECTION("empty") {
+    yard.store.write(entry, "");
+  }
+  SECTION("truncated") {
+    yard.store.write(entry, text.substr(0, text.size() - 4));
+  }
+  SECTION("a digit is another one") {
+    std::string other = text;
+    other[text.find("60")] = '5';
+    yard.store.write(entry, other);
+  }
+  yard.bus.restart("planner");
+  const std::string line =
+      "kept fences are lost: set them anew, then tread-fence lost_fences --remove";
+  for (int restarts = 0; restarts < 2; ++restarts) {
+    yard.run(1.5);
+    yard.sendGoal(2.0);
+    yard.armAndGo();
+    yard.run(4.0);
+    CHECK(std::abs(yard.robot().pose().x) < 0.01);
+    CHECK(yard.plan.reason == line);
+    CHECK(yard.health.health_state == health_t::HEALTH_DEGRADED);
+    CHECK(yard.health.health_reason == line);
+    // Not all of them: a new fence does not say that no other is missing.
+    say(false, pond);
+    yard.bus.kill("planner");
+    yard.bus.restart("planner");
+  }
+  yard.run(1.5);
+  say(true, lostFences());
+  yard.bus.kill("planner");
+  yard.bus.restart("planner");
+  yard.run(1.5);
+  yard.sendGoal(2.0);
+  yard.armAndGo();
+  yard.run(6.0);
+  CHECK(yard.robot().pose().x > 1.4);
+  CHECK(yard.health.health_state == health_t::HEALTH_OK);
 }
 
 TEST_CASE("A goal out of a log moves nothing, and takes nothing from the goal of today") {

@@ -122,6 +122,8 @@ std::string FenceWatch::blindness(int64_t now) {
 std::string FenceWatch::fault(int64_t now) {
   const std::vector<Fence>& fences = book_.fences();
   if (fences.empty()) return "";
+  const std::string bar = book_.bar();
+  if (!bar.empty()) return bar;
   const std::string blind = blindness(now);
   if (!blind.empty() || !std::isfinite(ins_.x + ins_.y + ins_.yaw)) return blind;
   if (best_revision_ != book_.revision() || best_.size() != fences.size()) {

@@ -248,3 +248,21 @@ TEST_CASE("each answer to a request for a fence has words of its own") {
     words.insert(describe(receipt));
   CHECK(words.size() == 8);
 }
+
+TEST_CASE(
+    "lost fences bar everything until who holds the robot removes them, in a full book, too") {
+  FenceBook book{{square("site", 50)}};
+  CHECK(book.bar().empty());
+  for (int i = 0;
+       book.take({"ada", false, square("p" + std::to_string(i), 1)}, true) == FenceReceipt::kAdded;
+       ++i)
+    REQUIRE(i < 40);
+  CHECK(book.take({"planner", false, lostFences()}, false) == FenceReceipt::kAdded);
+  CHECK(book.take({"planner", false, lostFences()}, false) == FenceReceipt::kKnown);
+  CHECK(book.bar() == "kept fences are lost: set them anew, then tread-fence lost_fences --remove");
+  CHECK(book.take(removal("lost_fences"), false) == FenceReceipt::kForbidden);
+  CHECK_FALSE(book.bar().empty());
+  CHECK(book.take(removal("lost_fences"), true) == FenceReceipt::kRemoved);
+  CHECK(book.bar().empty());
+  CHECK(faultOf(lostFences()).empty());
+}

@@ -22,6 +22,7 @@ Preconditions waiting(Level level, const std::string& reason) {
 /// What empties the program at once, except what the bridge and the operator say.
 Preconditions checkSensors(const PlannerInputs& s, const MapAndSet& supplies,
                            const AgeLimits& limits) {
+  if (!s.bar.empty()) return waiting(Level::kStop, s.bar);
   if (!s.pose) return waiting(Level::kStop, "no usable INS yet");
   if (s.now - s.pose->utime > limits.pose)
     return waiting(Level::kStop, oldAs("INS", s.now - s.pose->utime));

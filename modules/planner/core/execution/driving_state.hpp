@@ -24,6 +24,7 @@ namespace tread::planner {
 struct PlannerInputs : RobotReadings {
   std::optional<Goal> goal;
   std::string goal_lost;     ///< why the last goal has ended; empty if its operator took it back
+  std::string bar;           ///< why nothing may drive before a person has looked; empty = nothing
   int64_t set_received = 0;  ///< [us] when a part of a pattern set came last; 0 = never
 };
 
