@@ -136,8 +136,18 @@ bool CsvTable::takeUnits(const CsvLine& line, const std::vector<std::string>& na
     if (isNumeric(field) || isNoMeasurement(field)) return false;
     words = true;
   }
-  if (words) units_ += (units_.empty() ? "" : "; ") + joinWords(line.fields);
+  if (words) units_ = line.fields;
   return words;
+}
+
+std::string CsvTable::unit(std::string_view column) const {
+  const size_t index = indexOf(column);
+  if (index >= units_.size()) return {};
+  std::string unit = units_[index];
+  for (const char bracket : {'[', ']', '(', ')'})
+    unit.erase(std::remove(unit.begin(), unit.end(), bracket), unit.end());
+  if (unit == "\xC2\xB0") return "deg";
+  return unit == "%" ? "percent" : unit;
 }
 
 /// A comma is decimal where it cannot be one of thousands, and no number has a point.

@@ -49,9 +49,13 @@ class CsvTable {
   /// where not all of them are written as 1.76414E+12.
   double lastDigit(std::string_view column) const;
   /// The words below the header that were left out as its units; empty if there are none.
-  const std::string& units() const { return units_; }
+  const std::vector<std::string>& units() const { return units_; }
+  /// That of a column, as "deg" also where [deg] or a sign of degrees stands there; or empty.
+  std::string unit(std::string_view column) const;
   /// "file:line: problem" for a row; behind the last one, for the last line.
   RecordingError error(size_t row, const std::string& problem) const;
+  /// The same for the line of the header.
+  RecordingError headerError(const std::string& problem) const;
 
  private:
   static constexpr size_t kTwice = static_cast<size_t>(-1);
@@ -64,7 +68,6 @@ class CsvTable {
   std::optional<double> parsed(const std::string& field) const;
   std::string columnNames() const;
   size_t indexOf(std::string_view column) const;
-  RecordingError headerError(const std::string& problem) const;
 
   std::string path_;
   char delimiter_ = ',';
@@ -72,7 +75,7 @@ class CsvTable {
   CsvLine header_;
   std::map<std::string, size_t, std::less<>> columns_;  ///< kTwice for a name that is there twice
   size_t width_ = 0;
-  std::string units_;
+  std::vector<std::string> units_;
   std::vector<std::vector<std::string>> rows_;
   std::vector<size_t> lines_;  ///< of the rows, from 1
 };

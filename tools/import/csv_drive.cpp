@@ -75,6 +75,16 @@ void requireDigits(const CsvTable& table, const std::string& column, double fact
                              "; export it as numbers with all their digits");
 }
 
+/// What the row below the header says of a column goes before a wrong word in the mapping.
+void requireUnit(const CsvTable& table, const std::string& column,
+                 const std::vector<std::string>& others) {
+  const std::string unit = table.unit(column);
+  if (std::find(others.begin(), others.end(), unit) != others.end())
+    throw table.headerError("column " + column + " is in " + unit +
+                            " by the row below the header, " +
+                            "but not by the mapping; correct the unit of the column there");
+}
+
 /// All quantities of a recording.
 class CsvContent {
  public:
@@ -114,8 +124,7 @@ class CsvContent {
   void read(const std::string& file, const CsvSource& source) {
     const CsvTable table(file, source.layout);
     for (const auto& [quantity, column] : source.columns) files_[quantity] = file;
-    if (!table.units().empty())
-      result_.notes.push_back(file + ": below the header stand units, left out: " + table.units());
+    checkUnits(table, source, file);
     checkDigits(table, source);
     std::vector<Row> rows = rowsOf(table, source);
     sortByTime(rows, "rows of " + file, result_);
@@ -155,6 +164,15 @@ class CsvContent {
                                        " s; are these two drives? cut the file there");
       newest = std::max(newest, row.time);
     }
+  }
+
+  void checkUnits(const CsvTable& table, const CsvSource& source, const std::string& file) {
+    if (table.units().empty()) return;
+    result_.notes.push_back(
+        file + ": below the header stand units, left out: " + joinWords(table.units()));
+    if (!source.time.empty()) requireUnit(table, source.time, source.other_time_units);
+    for (const auto& [quantity, column] : source.columns)
+      requireUnit(table, column.column, column.other_units);
   }
 
   /// Times are finer than the rows are apart, positions than 1 m.

@@ -69,6 +69,12 @@ double factorOf(const std::vector<Unit>& units, const std::string& name) {
       ->factor;
 }
 
+std::vector<std::string> otherUnits(const std::vector<Unit>& units, const std::string& name) {
+  std::vector<std::string> others = namesOf(units);
+  others.erase(std::remove(others.begin(), others.end(), name), others.end());
+  return others;
+}
+
 bool turnsWheels(const std::string& unit) {
   return unit == "rad/s" || unit == "rpm";
 }
@@ -160,6 +166,7 @@ class MappingReader {
     std::string unit = "s";
     time.choice("unit", unit, namesOf(kUnits));
     source.time_unit = factorOf(kUnits, unit);
+    source.other_time_units = otherUnits(kUnits, unit);
     time.number("rate", source.rate, {0.01, 10'000.0}, "Hz");
     if (source.time.empty() == (source.rate == 0.0))
       throw time.error("column", "a time is either a column with its unit, or a rate; give one");
@@ -175,6 +182,7 @@ class MappingReader {
     section.number("scale", scale, {-1e6, 1e6}, "1");
     column.factor = scale * factorOf(quantity.units, unit);
     column.limit = quantity.limit;
+    if (scale == 1.0) column.other_units = otherUnits(quantity.units, unit);
     const bool wheels = turnsWheels(unit) && name != "yaw_rate";
     if (wheels && wheel_radius_ == 0.0)
       throw section.error("unit", "needs wheel_radius, the metres from axle to rim");

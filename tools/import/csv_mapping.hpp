@@ -20,14 +20,16 @@ struct CsvColumn {
   std::string column;   ///< name, or number from 1
   double factor = 1.0;  ///< from the column's number to m, rad, s, m/s, V, A, or power -1..1
   double limit = 0.0;   ///< larger magnitudes are refused, after the factor
+  std::vector<std::string> other_units;  ///< it might be in, but is not by the mapping
 };
 
 /// A CSV file of a recording.
 struct CsvSource {
   std::string file;  ///< relative to the recording's folder; empty: the recording is this file
   recordings::CsvLayout layout;
-  std::string time;                          ///< column of the time; empty: rows come at `rate`
-  double time_unit = 1.0;                    ///< [s]
+  std::string time;        ///< column of the time; empty: rows come at `rate`
+  double time_unit = 1.0;  ///< [s]
+  std::vector<std::string> other_time_units;
   double rate = 0.0;                         ///< [Hz]
   std::map<std::string, CsvColumn> columns;  ///< by quantity, see csv_mapping.cpp
 };

@@ -105,7 +105,11 @@ TEST_CASE("a row of units below the header is told and is no row") {
     CHECK_FALSE(read.units().empty());
     CHECK(read.number(1, "x") == -2.25);
   }
-  CHECK(table("t,x\ns,m\n0,1\n", layout).units() == "s, m");
+  const CsvTable read = table("t,x,yaw,cmd\n[ms],m,\xC2\xB0,(%)\n0,1,2,3\n", layout);
+  CHECK(read.units() == std::vector<std::string>{"[ms]", "m", "\xC2\xB0", "(%)"});
+  CHECK(read.unit("t") == "ms");
+  CHECK(read.unit("yaw") == "deg");
+  CHECK(read.unit("4") == "percent");
   CHECK(table("t,x\n0,nan\n1,2\n", layout).units().empty());
   CHECK(complaint("t,x\n0,1\ns,m\n", layout) ==
         "a.csv:3: column t is 's'; a finite number is needed");

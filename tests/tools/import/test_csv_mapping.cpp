@@ -158,6 +158,18 @@ TEST_CASE("a spreadsheet's table gives the drive that the plain one gives") {
   }
 }
 
+TEST_CASE("a unit below the header that is not the mapping's is named") {
+  CHECK(complaint("t,x,y,yaw\nms,m,m,deg\n0,1,2,90\n", kPoses) ==
+        "drive.csv:1: column yaw is in deg by the row below the header, but not by the mapping; "
+        "correct the unit of the column there");
+  CHECK_THAT(complaint("t,x,y,yaw\n[s],m,m,rad\n0,1,2,1\n", kPoses),
+             Catch::Contains("column t is in s by the row"));
+  std::string scaled = kPoses;
+  scaled.replace(scaled.find("{column: yaw}"), 13, "{column: yaw, scale: 0.0174532925}");
+  const ForeignDrive read = readText("t,x,y,yaw\nms,m,m,deg\n0,1,2,90\n", scaled);
+  CHECK(read.drive.fixes.at(0).T_map_body.yaw == Approx(kPi / 2.0));
+}
+
 TEST_CASE("times and places whose last digits a spreadsheet took away are named") {
   CHECK(complaint("t,x,y,yaw\n1.76414E+12,1,2,0\n1.76414E+12,1.1,2,0\n", kPoses) ==
         "drive.csv:2: column t is 1.76414E+12: in all rows a spreadsheet or program has rounded "
