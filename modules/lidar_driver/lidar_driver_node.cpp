@@ -60,12 +60,14 @@ void LidarDriverNode::step(int64_t utime) {
   for (const RangeScan& raw : source_.take(utime)) {
     Finder& finder = raw.ground ? finders_.back() : finders_.front();
     const auto scan = finder.check.accept(raw);
-    finder.last_refusal = finder.check.refusal();
     if (scan) {
       finder.last_scan = utime;
+      finder.reasons.clear();
       publish(*scan, finder.mounting);
     } else {
-      health_.addToCounter("refused: " + finder.last_refusal);
+      const std::string refusal = "refused: " + finder.check.refusal();
+      health_.addToCounter(refusal);
+      finder.reasons.note(Rank::kRefused, refusal, utime);
     }
   }
   reportHealth(utime);
@@ -96,40 +98,38 @@ void LidarDriverNode::publish(const RangeScan& scan, const Mounting& mounting) {
 }
 
 void LidarDriverNode::reportHealth(int64_t utime) {
-  std::string problem;
+  Reason problem;
   for (const Finder& finder : finders_)
-    if (problem.empty()) problem = silenceOf(finder, utime);
-  health_.setState(problem.empty() ? health_t::HEALTH_OK : health_t::HEALTH_FAILED, problem);
+    if (problem.rank == Rank::kNone) problem = silenceOf(finder, utime);
+  health_.setState(problem.rank == Rank::kNone ? health_t::HEALTH_OK : health_t::HEALTH_FAILED,
+                   problem.words);
   sayOnce(problem);
   if (utime < next_counters_) return;
   next_counters_ = utime + kCounterPeriodUs;
   for (const auto& [name, number] : source_.counters()) health_.setCounter(name, number);
 }
 
-/// The line of a problem grows older by the second: only its begin and its end are said.
-void LidarDriverNode::sayOnce(const std::string& problem) {
-  if (problem.empty() == said_.empty()) return;
-  if (say_) say_(problem.empty() ? "scans again after: " + said_ : problem);
+/// The line of a problem grows older by the second: it is said when it begins, when its reason
+/// tells more than before, and when it ends.
+void LidarDriverNode::sayOnce(const Reason& problem) {
+  const bool ended = problem.rank == Rank::kNone && said_.rank != Rank::kNone;
+  if (!ended && problem.rank <= said_.rank) return;
+  if (say_) say_(ended ? "scans again after: " + said_.words : problem.words);
   said_ = problem;
 }
 
-/// Why nothing comes from a range finder, in one line; empty if it does.
-std::string LidarDriverNode::silenceOf(const Finder& finder, int64_t utime) const {
+/// Why nothing comes from a range finder, in one line; kNone if it does.
+Reason LidarDriverNode::silenceOf(const Finder& finder, int64_t utime) const {
   const double silent = static_cast<double>(utime - finder.last_scan) * 1e-6;
-  if (silent < config_.silence) return "";
+  if (silent < config_.silence) return {};
+  Reason reason = source_.reason(utime, &finder != &finders_.front());
+  const Reason refused = finder.reasons.best(utime);
+  if (refused.rank > reason.rank) reason = refused;
+  if (reason.rank == Rank::kNone) reason = {Rank::kSilent, "is the device powered and scanning?"};
   std::ostringstream line;
-  const bool refused = !finder.last_refusal.empty();
-  line << finder.address << ": no " << (refused ? "good " : "") << "scan for "
-       << static_cast<int64_t>(silent) << " s";
-  const std::string problem = source_.problem();
-  if (!problem.empty()) {
-    line << "; " << problem;
-  } else if (refused) {
-    line << "; the last one was refused: " << finder.last_refusal;
-  } else {
-    line << "; is the device powered and scanning?";
-  }
-  return line.str();
+  line << finder.address << ": no " << (reason.rank == Rank::kRefused ? "good " : "") << "scan for "
+       << static_cast<int64_t>(silent) << " s; " << reason.words;
+  return {reason.rank, line.str()};
 }
 
 }  // namespace tread::lidar

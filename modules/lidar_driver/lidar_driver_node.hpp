@@ -32,7 +32,7 @@ LidarDriverConfig readLidarDriverConfig(ConfigReader& reader);
 
 /// Publishes SCAN from a source of scans, and HEALTH with every refusal and its reason.
 /** What the device cannot promise is a counter in HEALTH and, once, a line for `say`; so is each
- * change between scanning and not. */
+ * change between scanning and not, and each reason that tells more than the one before. */
 class LidarDriverNode : public Node {
  public:
   using Say = std::function<void(const std::string& line)>;
@@ -47,20 +47,20 @@ class LidarDriverNode : public Node {
     std::string address;
     Mounting mounting;
     ScanCheck check;
-    int64_t last_scan;              ///< [us] when the last good one came
-    std::string last_refusal = {};  ///< of a scan since then; empty if there was none
+    int64_t last_scan;  ///< [us] when the last good one came
+    Reasons reasons{};  ///< why scans of the device were refused since then
   };
 
   void publish(const RangeScan& scan, const Mounting& mounting);
   void reportHealth(int64_t utime);
-  void sayOnce(const std::string& problem);
-  std::string silenceOf(const Finder& finder, int64_t utime) const;
+  void sayOnce(const Reason& problem);
+  Reason silenceOf(const Finder& finder, int64_t utime) const;
 
   LidarDriverConfig config_;
   Bus& bus_;
   ScanSource& source_;
   Say say_;
-  std::string said_;  ///< the problem that was said last; empty: it scans
+  Reason said_;  ///< the problem that was said last; kNone: it scans
   HealthReporter health_;
   std::vector<Finder> finders_;  ///< the second one looks at the ground, if there is one
   int64_t seq_ = 0;

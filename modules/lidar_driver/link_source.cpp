@@ -36,6 +36,7 @@ bool LinkSource::keepOpen(int64_t utime) {
     device_->open(utime);
   }
   was_open_ = open;
+  if (open) last_open_ = utime;
   return open;
 }
 
@@ -49,14 +50,23 @@ void LinkSource::read(int64_t utime) {
   }
 }
 
-std::string LinkSource::problem() const {
-  // A device that was lost tells more than the line that is being opened anew.
-  if (was_open_ || link_->problem().empty()) return device_->problem();
-  // Whoever asks has the address already.
+/// Whoever asks has the address already.
+std::string LinkSource::linkProblem() const {
   const std::string problem = link_->problem();
   const std::string address = link_->address() + ": ";
   return problem.compare(0, address.size(), address) == 0 ? problem.substr(address.size())
                                                           : problem;
+}
+
+Reason LinkSource::reason(int64_t utime, bool /*ground*/) const {
+  // What a file held does not grow old: nothing more comes of it.
+  const bool file = link_->address().rfind("file:", 0) == 0;
+  Reason reason = device_->reason(file && !was_open_ ? last_open_ : utime);
+  const std::string problem = was_open_ ? "" : linkProblem();
+  if (problem.empty()) return reason;
+  if (reason.rank <= Rank::kSilent) return {Rank::kSilent, problem};
+  reason.words += "; " + problem;
+  return reason;
 }
 
 std::map<std::string, int64_t> LinkSource::counters() const {

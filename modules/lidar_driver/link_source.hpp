@@ -20,12 +20,13 @@ class LinkSource : public ScanSource {
       : make_link_(std::move(make_link)), device_(std::move(device)), link_(make_link_()) {}
 
   std::vector<RangeScan> take(int64_t utime) override;
-  std::string problem() const override;
+  Reason reason(int64_t utime, bool ground) const override;
   std::string shortcomings() const override { return device_->shortcomings(); }
   std::map<std::string, int64_t> counters() const override;
   const Link& link() const { return *link_; }
 
  private:
+  std::string linkProblem() const;
   bool keepOpen(int64_t utime);
   void read(int64_t utime);
 
@@ -33,6 +34,7 @@ class LinkSource : public ScanSource {
   std::unique_ptr<ScanDevice> device_;
   std::unique_ptr<Link> link_;
   bool was_open_ = false;
+  int64_t last_open_ = 0;
   int64_t connections_ = 0;
 };
 

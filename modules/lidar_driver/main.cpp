@@ -32,7 +32,9 @@ class GuardedSource : public ScanSource {
     }
     return source_->take(utime);
   }
-  std::string problem() const override { return source_->problem(); }
+  Reason reason(int64_t utime, bool ground) const override {
+    return source_->reason(utime, ground);
+  }
   std::string shortcomings() const override { return source_->shortcomings(); }
   std::map<std::string, int64_t> counters() const override { return source_->counters(); }
 
@@ -54,9 +56,8 @@ class TwoSources : public ScanSource {
     }
     return scans;
   }
-  std::string problem() const override {
-    const std::string around = around_->problem();
-    return around.empty() ? ground_->problem() : around;
+  Reason reason(int64_t utime, bool ground) const override {
+    return (ground ? ground_ : around_)->reason(utime, ground);
   }
   /// Both are of one kind.
   std::string shortcomings() const override { return around_->shortcomings(); }

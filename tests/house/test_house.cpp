@@ -80,7 +80,8 @@ std::vector<std::string> pureFolders() {
     for (const auto& entry : fs::recursive_directory_iterator(fs::path(TREAD_SOURCE_DIR) / top))
       if (entry.is_directory() && entry.path().filename() == "core")
         folders.push_back(fs::relative(entry.path(), TREAD_SOURCE_DIR).string());
-  for (const std::string module : {"modules/motor_bridge", "modules/ins_driver", "modules/lidar_driver"})
+  for (const std::string module :
+       {"modules/motor_bridge", "modules/ins_driver", "modules/lidar_driver"})
     for (const std::string& device : foldersOf(module))
       if (device != "core" && device != "hokuyo") folders.push_back(module + "/" + device);
   return folders;
@@ -128,9 +129,9 @@ TEST_CASE(
   size_t cores = 0;
   for (const std::string& core : pureFolders()) {
     const bool is_core = core.rfind("/core") == core.size() - 5;
-    std::set<std::string> concepts{"common/execution", "common/fence",  "common/geometry",
-                                   "common/grid",      "common/ground", "common/parallel",
-                                   "common/pattern",   "common/vehicle"};
+    std::set<std::string> concepts{"common/capture",  "common/execution", "common/fence",
+                                   "common/geometry", "common/grid",      "common/ground",
+                                   "common/parallel", "common/pattern",   "common/vehicle"};
     // A device's folder reads its own section of the configuration.
     if (!is_core) concepts.insert("common/config");
     for (const Include& include : includesUnder(core)) {
@@ -160,8 +161,8 @@ TEST_CASE(
 
 TEST_CASE("concepts link no bus and include no message type") {
   for (const char* folder :
-       {"common/execution", "common/fence", "common/geometry", "common/grid", "common/ground",
-        "common/parallel", "common/pattern", "common/vehicle"})
+       {"common/capture", "common/execution", "common/fence", "common/geometry", "common/grid",
+        "common/ground", "common/parallel", "common/pattern", "common/vehicle"})
     for (const Include& include : includesUnder(folder)) {
       CAPTURE(include.file, include.target);
       CHECK_FALSE(startsWith(include.target, "lcm/"));
@@ -238,7 +239,8 @@ TEST_CASE("only the catalogue names effects") {
     }
 }
 
-TEST_CASE("only lidar_driver knows mrpt-hwdrivers, and only it and the reader of rawlogs mrpt-obs") {
+TEST_CASE(
+    "only lidar_driver knows mrpt-hwdrivers, and only it and the reader of rawlogs mrpt-obs") {
   for (const char* folder : {"common", "modules", "tools"})
     for (const Include& include : includesUnder(folder)) {
       CAPTURE(include.file, include.target);

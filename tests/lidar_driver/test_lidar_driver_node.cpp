@@ -19,7 +19,9 @@ const std::string kHere = TREAD_SOURCE_DIR "/config/robots/teodor/lidar.yaml";
 class ScriptedSource : public ScanSource {
  public:
   std::vector<RangeScan> take(int64_t /*utime*/) override { return std::move(next); }
-  std::string problem() const override { return trouble; }
+  Reason reason(int64_t, bool ground) const override {
+    return trouble.empty() || ground ? Reason{} : Reason{Rank::kSilent, trouble};
+  }
   std::vector<RangeScan> next;
   std::string trouble;
 };
@@ -94,7 +96,7 @@ TEST_CASE("a range finder whose every scan is refused is not well, and the reaso
   }
   REQUIRE(health.back().health_state == health_t::HEALTH_FAILED);
   REQUIRE(health.back().health_reason ==
-          "tcp:192.168.0.10:10940: no good scan for 2 s; the last one was refused: too many beams");
+          "tcp:192.168.0.10:10940: no good scan for 2 s; refused: too many beams (20)");
 }
 
 TEST_CASE("ranges that leave nothing between them are refused in one line") {

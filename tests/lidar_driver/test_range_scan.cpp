@@ -10,6 +10,24 @@
 
 using namespace tread::lidar;
 
+TEST_CASE("of all reasons the one that tells most is given, with its count, for 5 s") {
+  Reasons reasons;
+  CHECK(reasons.best(0).rank == Rank::kNone);
+  reasons.note(Rank::kStarting, "starting up", 0);
+  CHECK(reasons.best(60'000'000).words == "starting up");
+  reasons.note(Rank::kUnreadable, "bytes outside of frames", 1'000'000, 3667, "check baud rate");
+  reasons.note(Rank::kRefused, "wrong checksums", 1'000'000, 2);
+  reasons.note(Rank::kRefused, "another product", 1'000'000, 3, "take another");
+  reasons.note(Rank::kSilent, "no answer", 2'000'000);
+  reasons.note(Rank::kStarting, "starting up", 2'000'000);
+  CHECK(reasons.best(6'000'000).words == "another product (3); take another");
+  CHECK(reasons.best(6'000'001).words == "no answer");
+  reasons.note(Rank::kUnreadable, "bytes outside of frames", 6'500'000, 1, "check baud rate");
+  CHECK(reasons.best(7'000'000).words == "bytes outside of frames (3668); check baud rate");
+  reasons.clear();
+  CHECK(reasons.best(7'000'000).rank == Rank::kNone);
+}
+
 namespace {
 
 RangeScan goodScan(int64_t utime) {

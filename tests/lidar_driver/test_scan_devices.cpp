@@ -92,7 +92,7 @@ TEST_CASE(
     // Sent 1 ms after its last beam; the fixed way of 10.25 ms to the arrival cannot be known.
     CHECK(scan.utime == Approx(bench.now - 1000 - 18'750).margin(20));
     CHECK(bench.session.identity().find("LMS10x") != std::string::npos);
-    CHECK(bench.session.problem().empty());
+    CHECK(bench.session.reason(bench.now).rank == Rank::kNone);
   }
 }
 
@@ -173,10 +173,11 @@ TEST_CASE(
   silent.silent = true;
   bench.device.setFaults(silent);
   CHECK(bench.steps(12).empty());
-  CHECK(bench.session.problem() == "no good scan for 1 s; starting it up again");
+  CHECK(bench.session.reason(bench.now).words == "no good scan for 1 s; starting it up again");
   CHECK(bench.steps(20).empty());
   CHECK(bench.session.lost());
-  CHECK(bench.session.problem().find("no answer to LMDscandata") != std::string::npos);
+  CHECK(bench.session.reason(bench.now).words.find("no answer to LMDscandata") !=
+        std::string::npos);
 }
 
 TEST_CASE("over a link a device is started up after each reconnect") {
@@ -207,7 +208,7 @@ TEST_CASE("over a link a device is started up after each reconnect") {
   CHECK(scansIn(1000) >= 17);
   setPipeConnected(*pipe, false);
   CHECK(scansIn(1000) == 0);
-  CHECK(source.problem().find("unplugged") != std::string::npos);
+  CHECK(source.reason(now, false).words.find("unplugged") != std::string::npos);
   setPipeConnected(*pipe, true);
   CHECK(scansIn(1000) >= 17);
   CHECK(source.counters().at("connections") == 2);
@@ -243,6 +244,37 @@ TEST_CASE("a million random and mutated bytes give no scan that CoLa cannot vouc
     if (dialect == ColaDialect::kB) CHECK(scans < 20);
     CHECK(bench.session.counters().size() < 40);
   }
+}
+
+TEST_CASE(
+    "a SICK that speaks the other dialect is named with the key to set, for as long as it lasts") {
+  // One that streams as it was left and hears nothing, and one that only answers.
+  for (const ColaDialect configured : {ColaDialect::kA, ColaDialect::kB})
+    for (const bool streams : {false, true}) {
+      const bool text = configured == ColaDialect::kA;
+      const ColaDialect spoken = text ? ColaDialect::kB : ColaDialect::kA;
+      ColaSession session(Bench::configOf(configured));
+      ColaFramer heard(spoken);
+      int64_t now = 5'000'000;
+      session.open(now);
+      for (int i = 0; i < 1200; ++i, now += 10'000) {
+        const bool asked = !heard.push(session.poll(now)).empty();
+        if (asked && !streams) session.receive(colaFrame(spoken, "sEA LMDscandata 0"), now);
+        if (streams && i % 20 == 0)
+          session.receive(colaFrame(spoken, "sSN LMDscandata 1 1 8D4C04 0 0 45FF"), now);
+        if (session.lost()) {
+          session.close();
+          session.open(now);
+        }
+        CHECK(session.take(now).empty());
+        if (i < 300) continue;
+        const Reason reason = session.reason(now);
+        REQUIRE(reason.rank == Rank::kRefused);
+        REQUIRE(reason.words.find(text ? "CoLa B" : "CoLa A") != std::string::npos);
+        REQUIRE(reason.words.find(text ? "telegrams: binary" : "telegrams: ascii") !=
+                std::string::npos);
+      }
+    }
 }
 
 TEST_CASE("a device at an address where it cannot be is one line that says how to write it") {

@@ -3,11 +3,17 @@
 // The driver of a Velodyne against its emulator, written apart, and against a recorded VLP-16.
 #include <catch2/catch.hpp>
 
+#include <unistd.h>
+
 #include <cmath>
+#include <cstdio>
+#include <fstream>
 #include <random>
 
+#include "modules/lidar_driver/link_source.hpp"
 #include "modules/lidar_driver/velodyne/velodyne_session.hpp"
 #include "modules/simulator/emulators/velodyne/velodyne_emulator.hpp"
+#include "tests/common/capture/capture_file.hpp"
 #include "tests/helpers.hpp"
 
 using namespace tread;
@@ -57,31 +63,11 @@ bool isReturn(const std::array<float, 3>& point) {
   return std::isfinite(point[0]);
 }
 
-/// A capture file as libpcap writes it: a record for each datagram, after an Ethernet header.
-std::string captureOf(const std::vector<std::pair<int64_t, std::string>>& datagrams, bool swapped,
-                      bool nanoseconds) {
-  std::string file;
-  const auto number = [&](uint32_t value) {
-    for (int i = 0; i < 4; ++i)
-      file += static_cast<char>(value >> 8 * (swapped ? 3 - i : i) & 0xffU);
-  };
-  number(nanoseconds ? 0xA1B23C4D : 0xA1B2C3D4);
-  for (const uint32_t value : {0x40002U, 0U, 0U, 65535U, 1U}) number(value);
-  for (const auto& [time, payload] : datagrams) {
-    const auto length = static_cast<unsigned>(payload.size());
-    std::string frame(12, '\x11');
-    frame += std::string("\x08\x00\x45\x00\x00\x00\x00\x00\x00\x00\x40\x11", 12) +
-             std::string(10, '\0') + std::string("\x09\x40\x09\x40", 4);
-    frame += static_cast<char>((length + 8) >> 8);
-    frame += static_cast<char>((length + 8) & 0xffU);
-    frame += std::string(2, '\0') + payload;
-    number(static_cast<uint32_t>(time / 1'000'000));
-    number(static_cast<uint32_t>(time % 1'000'000 * (nanoseconds ? 1000 : 1)));
-    number(static_cast<uint32_t>(frame.size()));
-    number(static_cast<uint32_t>(frame.size()));
-    file += frame;
-  }
-  return file;
+std::string captureOf(const std::vector<std::pair<int64_t, std::string>>& datagrams,
+                      const CaptureForm& form = {}) {
+  CaptureFile file(form);
+  for (const auto& [time, payload] : datagrams) file.add(time, payload);
+  return file.bytes();
 }
 
 std::vector<std::pair<int64_t, std::string>> packetsOf(int count) {
@@ -139,7 +125,7 @@ TEST_CASE("slices of a VLP-16 hold points in equal steps of time, NaN where noth
       ++(is_left ? left : right);
     }
   CHECK(left == Approx(right).epsilon(0.05));
-  CHECK(line.session.problem().empty());
+  CHECK(line.session.reason(line.now).rank == Rank::kNone);
   CHECK(line.counted("slices cut short: packets lost or clock moved") == 0);
 }
 
@@ -183,8 +169,8 @@ TEST_CASE("faults of a Velodyne's line cost the packets that they touch, and are
               true},
         Fault{&sim::VelodyneFaults::half_packet, "bytes outside of packets", false},
         Fault{&sim::VelodyneFaults::wrong_flag, "bytes outside of packets", false},
-        Fault{&sim::VelodyneFaults::other_product,
-              "refused: packets of another product than VLP-16 and Puck Hi-Res", false}}) {
+        Fault{&sim::VelodyneFaults::other_product, "refused: packets of another product, HDL-32E",
+              false}}) {
     VelodyneLine line;
     REQUIRE(line.run(500).size() > 10);
     sim::VelodyneFaults faults;
@@ -209,12 +195,12 @@ TEST_CASE("a Velodyne that falls silent is named, one that reboots is taken up a
   faults.silent = true;
   line.device.setFaults(faults);
   line.run(1500);
-  CHECK(line.session.problem().find("no packets; is this host's address") == 0);
+  CHECK(line.session.reason(line.now).words.find("no packets; is this host's address") == 0);
   line.device.setFaults({});
   line.device.reboot(line.now);
   CHECK(line.run(1000).size() > 30);
   CHECK(line.counted("restarts of the device's clock") == 1);
-  CHECK(line.session.problem().empty());
+  CHECK(line.session.reason(line.now).rank == Rank::kNone);
 }
 
 TEST_CASE("the full hour of the device's clock, at which it begins anew, loses nothing") {
@@ -243,30 +229,63 @@ TEST_CASE("datagrams need not come one by one, nor whole") {
   CHECK(session.counters().at("bytes outside of packets") == 7);
 }
 
-TEST_CASE("a capture is played once, at the pace of its own times, in either byte order") {
+TEST_CASE("a capture is played once, at the pace of its own times, whatever its form") {
   const auto packets = packetsOf(76);
-  for (const bool swapped : {false, true})
-    for (const bool nanoseconds : {false, true}) {
-      VelodyneSession session({});
-      const auto scans = play(session, captureOf(packets, swapped, nanoseconds), 300'000);
-      REQUIRE(scans.size() == 4);
-      CHECK(scans[3].utime - scans[2].utime == Approx(25'215).margin(150));
-      CHECK(session.counters().at("packets") == 76);
-    }
+  for (const CaptureForm& form : {CaptureForm{}, CaptureForm{1, 0, false, true, true},
+                                  CaptureForm{1, 2}, CaptureForm{276}, CaptureForm{113, 1, true}}) {
+    VelodyneSession session({});
+    const auto scans = play(session, captureOf(packets, form), 300'000);
+    CAPTURE(form.link_type);
+    REQUIRE(scans.size() == 4);
+    CHECK(scans[3].utime - scans[2].utime == Approx(25'215).margin(150));
+    CHECK(session.counters().at("packets") == 76);
+  }
 }
 
 TEST_CASE("captures that cannot be played say why") {
-  VelodyneSession newer({});
-  play(newer, std::string("\x0A\x0D\x0D\x0A", 4) + std::string(60, '\0'), 10'000);
-  newer.open(0);
-  newer.receive(std::string("\x0A\x0D\x0D\x0A", 4) + std::string(60, '\0'), 0);
-  CHECK(newer.problem().find("editcap") != std::string::npos);
-  std::string damaged = captureOf(packetsOf(2), false, false);
+  std::string damaged = captureOf(packetsOf(2));
   damaged[24 + 8 + 3] = '\x7F';
   VelodyneSession session({});
   session.open(0);
   session.receive(damaged, 0);
-  CHECK(session.problem().find("the capture is damaged") == 0);
+  CHECK(session.reason(0).words.find("the capture is damaged") == 0);
+  VelodyneSession gzipped({});
+  gzipped.open(0);
+  gzipped.receive("\x1F\x8B\x08 and more than the 24 bytes of a header", 0);
+  CHECK(gzipped.reason(0).words == "the capture is gzipped (1); unpack it with gunzip");
+  VelodyneSession infrared({});
+  infrared.open(0);
+  infrared.receive(captureOf(packetsOf(2), CaptureForm{147}), 0);
+  CHECK(infrared.reason(0).words.find("link layer 147") != std::string::npos);
+}
+
+TEST_CASE("packets of another sensor are named with what is read, also after the capture's end") {
+  struct Other {
+    const char* name;
+    char product;
+    char flag;
+  };
+  for (const Other& other : {Other{"VLP-32C", '\x28', '\xEE'}, Other{"HDL-32E", '\x21', '\xEE'},
+                             Other{"HDL-64E", '\x12', '\xDD'}, Other{"VLS-128", '\xA1', '\xBB'}}) {
+    auto packets = packetsOf(20);
+    for (auto& [time, packet] : packets) {
+      packet[1205] = other.product;
+      packet[101] = other.flag;
+    }
+    const std::string path = "velodyne_" + std::to_string(getpid()) + ".pcap";
+    std::ofstream(path, std::ios::binary) << captureOf(packets);
+    LinkSource source([&] { return makeLink("file:" + path); },
+                      std::make_unique<VelodyneSession>(VelodyneConfig{}));
+    int64_t now = 5'000'000;
+    for (; now < 20'000'000; now += 5'000) REQUIRE(source.take(now).empty());
+    std::remove(path.c_str());
+    CAPTURE(other.name);
+    const Reason reason = source.reason(now, false);
+    CHECK(reason.rank == Rank::kRefused);
+    CHECK(reason.words == "refused: packets of another product, " + std::string(other.name) +
+                              " (20); this driver reads VLP-16, Puck LITE and Puck Hi-Res, in "
+                              "return modes strongest, last and dual; the file is at its end");
+  }
 }
 
 TEST_CASE("slices too large for a message are refused by the configuration") {

@@ -143,7 +143,7 @@ class RobotSystem::SimulatedScans : public lidar::ScanSource {
     }
     return scans;
   }
-  std::string problem() const override { return {}; }
+  lidar::Reason reason(int64_t, bool) const override { return {}; }
 
  private:
   sim::SimulatedDevices& devices_;

@@ -13,6 +13,8 @@ namespace {
 constexpr size_t kMostBeams = 4000;
 constexpr size_t kLongestLine = 100'000;
 constexpr double kLongestPause = 5.0;  // [s]
+constexpr const char* kWhichFile =
+    "is this a CARMEN log? Its scans are lines of FLASER or ROBOTLASER1";
 
 /// Ranges behind their number; false if one is missing or no number.
 bool readRanges(std::istream& words, std::vector<float>& ranges) {
@@ -109,6 +111,7 @@ void CarmenPlayer::open(int64_t now) {
   waiting_.clear();
   logged_.reset();
   due_ = now;
+  reasons().note(Rank::kStarting, "no scan read yet", now);
 }
 
 void CarmenPlayer::receive(std::string_view bytes, int64_t now) {
@@ -116,9 +119,9 @@ void CarmenPlayer::receive(std::string_view bytes, int64_t now) {
   for (const char byte : bytes) {
     if (byte == '\n') {
       if (overlong_)
-        ++counters_["overlong lines"];
+        skipUnreadable("overlong lines", now, kWhichFile, 1);
       else
-        takeLine(line_);
+        takeLine(line_, now);
       line_.clear();
       overlong_ = false;
     } else if (line_.size() < kLongestLine) {
@@ -129,26 +132,26 @@ void CarmenPlayer::receive(std::string_view bytes, int64_t now) {
   }
 }
 
-void CarmenPlayer::takeLine(const std::string& line) {
+void CarmenPlayer::takeLine(const std::string& line, int64_t now) {
   if (line.empty()) return;
   std::string problem;
   CarmenScan read = parseCarmenLine(line, problem);
   if (!problem.empty()) {
-    ++counters_[problem];
-    return;
+    if (problem == kOtherCarmenLine) return skipUnreadable(problem, now, kWhichFile, 1);
+    return refuse(problem, now, "was the log cut, or edited?");
   }
   double pause = 1.0 / config_.rate;
   if (logged_ && read.logged && *read.logged > *logged_)
     pause = std::min(*read.logged - *logged_, kLongestPause);
   else
-    ++counters_["scans without a time of their own"];
+    count("scans without a time of their own");
   logged_ = read.logged;
   due_ += std::max<int64_t>(1000, std::llround(1e6 * pause));
   read.scan.utime = due_;
   if (read.scan.range_max <= 0.0) read.scan.range_max = config_.range_max;
   waiting_.push_back(std::move(read.scan));
-  ++counters_["scans read"];
-  problem_.clear();
+  count("scans read");
+  reasons().clear();
 }
 
 std::vector<RangeScan> CarmenPlayer::take(int64_t now) {

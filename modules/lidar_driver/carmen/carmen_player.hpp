@@ -52,17 +52,15 @@ class CarmenPlayer final : public ScanDevice {
   void receive(std::string_view bytes, int64_t now) override;
   std::string poll(int64_t /*now*/) override { return {}; }
   std::vector<RangeScan> take(int64_t now) override;
-  std::string problem() const override { return problem_; }
   bool hungry() const override { return waiting_.size() < kAhead; }
   std::string shortcomings() const override {
     return "carmen: beam times (a log holds one a scan), checksums; a log is played once";
   }
-  const std::map<std::string, int64_t>& counters() const override { return counters_; }
 
  private:
   static constexpr size_t kAhead = 20;
 
-  void takeLine(const std::string& line);
+  void takeLine(const std::string& line, int64_t now);
 
   CarmenConfig config_;
   std::string line_;
@@ -70,8 +68,6 @@ class CarmenPlayer final : public ScanDevice {
   std::deque<RangeScan> waiting_;  ///< with the times at which they are due
   int64_t due_ = 0;                ///< of the newest one
   std::optional<double> logged_;   ///< of the newest one
-  std::string problem_ = "no scan read yet";
-  std::map<std::string, int64_t> counters_;
 };
 
 }  // namespace tread::lidar

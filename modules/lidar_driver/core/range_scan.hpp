@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "modules/lidar_driver/core/reasons.hpp"
+
 namespace tread::lidar {
 
 /// Of a slice: what one message of at most 60 kB holds.
@@ -64,8 +66,8 @@ class ScanSource {
   virtual ~ScanSource() = default;
   /// Scans that were completed since the last call, oldest first. Never blocks.
   virtual std::vector<RangeScan> take(int64_t utime) = 0;
-  /// What is wrong with the device, in one line; empty if nothing is known to be.
-  virtual std::string problem() const = 0;
+  /// Why no scan comes of the device that looks around, or of the one that looks at the ground.
+  virtual Reason reason(int64_t utime, bool ground) const = 0;
   /// What the device cannot promise, in one line: its clock, checksums, field of view.
   virtual std::string shortcomings() const { return {}; }
   /// What was counted, by its name in words.

@@ -20,7 +20,7 @@ void StartedDevice::open(int64_t now) {
   lost_ = false;
   starts_without_scan_ = 0;
   scans_.clear();
-  problem_ = "starting up";
+  reasons().note(Rank::kStarting, "starting up", now);
   begin(now);
 }
 
@@ -39,7 +39,7 @@ void StartedDevice::begin(int64_t now) {
 }
 
 void StartedDevice::restart(const std::string& reason, int64_t now) {
-  problem_ = reason + "; starting it up again";
+  reasons().note(Rank::kSilent, reason + "; starting it up again", now);
   count("restarts: " + reason);
   if (++starts_without_scan_ >= kStartsWithoutScan) lost_ = true;
   begin(now);
@@ -57,10 +57,13 @@ void StartedDevice::answered(int64_t now) {
 }
 
 void StartedDevice::refused(const std::string& words, int64_t now) {
-  count("refused by the device: " + words);
-  if (awaited().optional) return answered(now);
+  const std::string what = "refused by the device: " + words;
+  if (awaited().optional) {
+    count(what);
+    return answered(now);
+  }
   // It is asked again after the patience: at once would be without end.
-  problem_ = "the device refuses " + words;
+  refuse(what, now);
 }
 
 std::string StartedDevice::poll(int64_t now) {
@@ -76,21 +79,21 @@ std::string StartedDevice::poll(int64_t now) {
     return poll(now);
   }
   if (tries_ == kTries) {
-    if (problem_.find("refuses") == std::string::npos)
-      problem_ = "connected, but no answer to " + step.name + "; is this the range finder's line?";
+    reasons().note(Rank::kSilent, "connected, but no answer to " + step.name, now, 1,
+                   "is this the range finder's line?");
     count("start-ups without an answer");
     lost_ = true;
     return {};
   }
   ++tries_;
   asked_at_ = now;
-  return step.bytes;
+  return tries_ == kTries ? step.bytes + step.otherwise : step.bytes;
 }
 
 void StartedDevice::deliver(RangeScan scan, int64_t now) {
   last_scan_ = now;
   starts_without_scan_ = 0;
-  problem_.clear();
+  reasons().clear();
   if (scans_.size() < kMostScans)
     scans_.push_back(std::move(scan));
   else

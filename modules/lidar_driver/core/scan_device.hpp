@@ -27,8 +27,8 @@ class ScanDevice {
   virtual std::string poll(int64_t now) = 0;
   /// Scans that were completed since the last call, oldest first.
   virtual std::vector<RangeScan> take(int64_t now) = 0;
-  /// What is wrong, in one line; empty if nothing is known to be.
-  virtual std::string problem() const = 0;
+  /// Why no good scan comes.
+  Reason reason(int64_t now) const { return reasons_.best(now); }
   /// True if only a new connection can help.
   virtual bool lost() const { return false; }
   /// False while it has enough bytes to work on.
@@ -36,15 +36,37 @@ class ScanDevice {
   /// What it cannot promise, as one line: clock, checksums, field of view.
   virtual std::string shortcomings() const = 0;
   /// What was counted, by its name in words.
-  virtual const std::map<std::string, int64_t>& counters() const = 0;
+  const std::map<std::string, int64_t>& counters() const { return counters_; }
+
+ protected:
+  void count(const std::string& what, int64_t times = 1) { counters_[what] += times; }
+  /// Counts what was not used, and keeps it with its remedy as the reason why no scan comes.
+  void refuse(const std::string& what, int64_t now, const std::string& remedy = {},
+              int64_t times = 1) {
+    count(what, times);
+    reasons_.note(Rank::kRefused, what, now, times, remedy);
+  }
+  /// The same of bytes that are no telegrams.
+  void skipUnreadable(const std::string& what, int64_t now, const std::string& remedy,
+                      int64_t times) {
+    if (times == 0) return;
+    count(what, times);
+    reasons_.note(Rank::kUnreadable, what, now, times, remedy);
+  }
+  Reasons& reasons() { return reasons_; }
+
+ private:
+  Reasons reasons_;
+  std::map<std::string, int64_t> counters_;
 };
 
 /// One request of a start-up.
 struct StartUpStep {
-  std::string name;         ///< for messages
-  std::string bytes;        ///< what the device gets
-  bool optional = false;    ///< a device that refuses it or does not know it may still scan
-  bool unanswered = false;  ///< it has no answer: the next one follows after the patience
+  std::string name;            ///< for messages
+  std::string bytes;           ///< what the device gets
+  bool optional = false;       ///< a device that refuses it or does not know it may still scan
+  bool unanswered = false;     ///< it has no answer: the next one follows after the patience
+  std::string otherwise = {};  ///< sent with the last try: the same in words of a like device
 };
 
 /// A device that is asked step by step to scan, and again when it falls silent.
@@ -56,9 +78,7 @@ class StartedDevice : public ScanDevice {
   void close() final;
   std::string poll(int64_t now) final;
   std::vector<RangeScan> take(int64_t now) final;
-  std::string problem() const final { return problem_; }
   bool lost() const final { return lost_; }
-  const std::map<std::string, int64_t>& counters() const final { return counters_; }
 
  protected:
   /// `patience_us`: how long an answer may take.
@@ -74,7 +94,6 @@ class StartedDevice : public ScanDevice {
   void answered(int64_t now);
   void refused(const std::string& words, int64_t now);
   void deliver(RangeScan scan, int64_t now);
-  void count(const std::string& what, int64_t times = 1) { counters_[what] += times; }
   /// Starts it up anew for this reason.
   void restart(const std::string& reason, int64_t now);
 
@@ -90,9 +109,7 @@ class StartedDevice : public ScanDevice {
   int starts_without_scan_ = 0;
   int64_t asked_at_ = 0;
   int64_t last_scan_ = 0;
-  std::string problem_ = "not opened yet";
   std::vector<RangeScan> scans_;
-  std::map<std::string, int64_t> counters_;
 };
 
 }  // namespace tread::lidar

@@ -15,6 +15,8 @@
 namespace tread::lidar {
 namespace {
 
+constexpr const char* kWhichPort = "is this the range finder's port?";
+
 void pause(int milliseconds) {
   std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
 }
@@ -86,9 +88,9 @@ class HokuyoSource::Worker {
     const std::lock_guard<std::mutex> lock(mutex_);
     return std::move(scans_);
   }
-  std::string problem() const {
+  Reason reason(int64_t now) const {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return problem_;
+    return reasons_.best(now);
   }
   double secondsSinceAlive() const { return static_cast<double>(hostNow() - alive_) * 1e-6; }
 
@@ -119,9 +121,13 @@ class HokuyoSource::Worker {
       heard.append(reinterpret_cast<const char*>(buffer), *size);
       if (heard.find("QT\n") != std::string::npos) return true;
     }
-    setProblem(
-        !asked ? "cannot connect: " + link->problem()
-               : "connected, but it does not answer SCIP 2.0; is this the range finder's port?");
+    if (!asked)
+      note(Rank::kSilent, "cannot connect: " + link->problem());
+    else if (heard.empty())
+      note(Rank::kSilent, "connected, but it does not answer SCIP 2.0", kWhichPort);
+    else
+      note(Rank::kUnreadable, "connected, but it does not answer SCIP 2.0: answers of another kind",
+           kWhichPort);
     return false;
   }
 
@@ -131,17 +137,16 @@ class HokuyoSource::Worker {
       // Private in the class itself, public in its base.
       static_cast<mrpt::hwdrivers::CGenericSensor&>(device).initialize();
       const ScipGeometry geometry = device.geometry();
-      if (const auto wrong = geometry.problem()) return setProblem(*wrong);
-      setProblem("");
+      if (const auto wrong = geometry.problem()) return note(Rank::kRefused, *wrong);
       last_scan_ = hostNow();  // silence counts from here, whatever was before
       while (!stop_) {
         alive_ = hostNow();
         if (!device.isConnected() || !readScan(device, geometry))
-          return setProblem("the device stopped answering; connecting again");
+          return note(Rank::kSilent, "the device stopped answering; connecting again");
       }
-    } catch (const std::exception& error) {
-      const std::string words = error.what();
-      setProblem("the library gave up: " + words.substr(0, words.find('\n')));
+    } catch (const std::exception&) {
+      // Its words are for programmers.
+      note(Rank::kSilent, "the library gave up the connection; connecting again");
     }
   }
 
@@ -162,19 +167,21 @@ class HokuyoSource::Worker {
     scan.range_max = device.rangeMax();
     const size_t beams = observation.getScanSize();
     if (beams != static_cast<size_t>(geometry.last_step - geometry.first_step + 1)) {
-      setProblem("a scan has " + std::to_string(beams) + " beams, not what AMIN and AMAX say");
+      note(Rank::kRefused,
+           "a scan has " + std::to_string(beams) + " beams, not what AMIN and AMAX say");
       return true;
     }
     for (size_t i = 0; i < beams; ++i) scan.ranges.push_back(observation.getScanRange(i));
     const std::lock_guard<std::mutex> lock(mutex_);
     // A node that does not fetch must not fill the memory.
     if (scans_.size() < 100) scans_.push_back(std::move(scan));
+    reasons_.clear();
     return true;
   }
 
-  void setProblem(const std::string& problem) {
+  void note(Rank rank, const std::string& what, const std::string& remedy = {}) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    problem_ = problem;
+    reasons_.note(rank, what, hostNow(), 1, remedy);
   }
 
   LinkAddress address_;
@@ -185,7 +192,7 @@ class HokuyoSource::Worker {
   std::atomic<bool> ended_{false};
   mutable std::mutex mutex_;
   std::vector<RangeScan> scans_;
-  std::string problem_;
+  Reasons reasons_;
   std::thread thread_;
 };
 
@@ -200,8 +207,8 @@ bool HokuyoSource::end() {
 std::vector<RangeScan> HokuyoSource::take(int64_t /*utime*/) {
   return worker_->take();
 }
-std::string HokuyoSource::problem() const {
-  return worker_->problem();
+Reason HokuyoSource::reason(int64_t utime, bool /*ground*/) const {
+  return worker_->reason(utime);
 }
 double HokuyoSource::stuckFor() const {
   return worker_->secondsSinceAlive();

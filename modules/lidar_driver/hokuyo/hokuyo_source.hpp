@@ -60,7 +60,7 @@ class HokuyoSource : public ScanSource {
   ~HokuyoSource() override;
   bool end() override;  ///< waits for the library to come back, but not for ever
   std::vector<RangeScan> take(int64_t utime) override;
-  std::string problem() const override;
+  Reason reason(int64_t utime, bool ground) const override;
   std::string shortcomings() const override {
     return "hokuyo: beam times (stamped on arrival), checksums (the library reads none); "
            "intensities are not read";

@@ -10,13 +10,18 @@ namespace tread::lidar {
 namespace {
 
 constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
-constexpr int64_t kPatience = 200'000;   // [us]
-constexpr double kRangeMin = 0.15;       // [m]
-constexpr double kCover = 350.0;         // [deg] that a turn has at least
-constexpr double kBackwards = 3.0;       // [deg] that an angle may fall behind the one before
+constexpr int64_t kPatience = 200'000;  // [us]
+constexpr double kRangeMin = 0.15;      // [m]
+constexpr double kCover = 350.0;        // [deg] that a turn has at least
+/// [deg] that an angle may fall behind the largest before. Source: Slamtec's public SDK corrects
+/// the angles of its express modes by -8 degrees at far ranges, by 1 degree at the nearest; those
+/// without echo not at all.
+constexpr double kBackwards = 12.0;
 constexpr double kMostAhead = 15.0;      // [deg] from sample to sample
 constexpr size_t kMostSamples = 10'000;  // of a turn
 constexpr size_t kDescriptor = 7;
+constexpr const char* kWhichLine = "check baud rate and line; is this an RPLIDAR?";
+constexpr const char* kTurns = "check that it turns freely, its supply, cable and baud rate";
 constexpr size_t kSample = 5;
 
 std::vector<StartUpStep> startUp() {
@@ -70,7 +75,7 @@ bool RplidarSession::takeAnswer(int64_t now) {
   const size_t length = std::min(buffer_.size(), kDescriptor);
   if (!waits || buffer_.compare(0, length, expected, 0, length) != 0) {
     buffer_.erase(0, 1);
-    count("bytes outside of answers");
+    skipUnreadable("bytes outside of answers", now, kWhichLine, 1);
     return !buffer_.empty();
   }
   const size_t whole = name == "health" ? kDescriptor + 3 : kDescriptor;
@@ -90,8 +95,8 @@ bool RplidarSession::takeSample(int64_t now) {
   const unsigned angle = byteAt(buffer_, 1) >> 1 | byteAt(buffer_, 2) << 7;
   const bool start = (head & 1) != 0;
   const bool inverse = (head & 2) != 0;
-  if (start == inverse || (byteAt(buffer_, 1) & 1) == 0 || angle >= 360 * 64) {
-    spoilTurn("samples with wrong check bits");
+  if (start == inverse || (byteAt(buffer_, 1) & 1) == 0 || angle >= (360 + kBackwards) * 64) {
+    spoilTurn("samples with wrong check bits", now);
     buffer_.erase(0, 1);
     return true;
   }
@@ -105,46 +110,60 @@ void RplidarSession::add(const Sample& sample, int64_t now) {
   if (sample.start) {
     if (in_turn_) finishTurn(now);
     if (sample.angle > kMostAhead && sample.angle < 360.0 - kBackwards)
-      return count("start flags away from ahead");
+      return refuse("refused: start flags away from ahead", now, kTurns);
     in_turn_ = true;
     turn_began_ = now;
     samples_ = 0;
     // A turn may begin just before ahead.
     last_angle_ = sample.angle > 180.0 ? sample.angle - 360.0 : sample.angle;
-    beams_.assign(static_cast<size_t>(std::lround(360.0 / config_.step)),
-                  std::numeric_limits<float>::quiet_NaN());
+    echoes_.clear();
   }
   if (!in_turn_) return;
   const double angle = sample.angle - 360.0 * std::round((sample.angle - last_angle_) / 360.0);
   if (angle < last_angle_ - kBackwards || angle > last_angle_ + kMostAhead ||
       ++samples_ > kMostSamples)
-    return spoilTurn("turns whose angles do not run on");
+    return spoilTurn("turns whose angles do not run on", now);
   last_angle_ = std::max(last_angle_, angle);
-  if (sample.range <= 0.0) return;
-  const auto beam = std::lround(sample.angle / config_.step);
-  float& nearest = beams_[static_cast<size_t>(beam) % beams_.size()];
-  const auto range = static_cast<float>(sample.range);
-  if (!(nearest <= range)) nearest = range;
+  if (sample.range > 0.0) echoes_.push_back({false, angle, sample.range});
+}
+
+/// Sorts the echoes into beams from the first one's angle on, so that a beam's index tells its
+/// time.
+void RplidarSession::sortEchoes(RangeScan& scan) const {
+  const auto beams = std::lround(360.0 / config_.step);
+  const auto stepOf = [&](const Sample& echo) { return std::lround(echo.angle / config_.step); };
+  long first = 0;
+  for (const Sample& echo : echoes_) first = std::min(first, stepOf(echo));
+  scan.ranges.assign(static_cast<size_t>(beams), std::numeric_limits<float>::quiet_NaN());
+  for (const Sample& echo : echoes_) {
+    float& nearest = scan.ranges[static_cast<size_t>((stepOf(echo) - first) % beams)];
+    const auto range = static_cast<float>(echo.range);
+    if (!(nearest <= range)) nearest = range;
+  }
+  // Clockwise; the last beam is one step before the first.
+  scan.angle_first = -static_cast<double>(first) * config_.step * kRadPerDeg;
+  scan.angle_step = -config_.step * kRadPerDeg;
 }
 
 void RplidarSession::finishTurn(int64_t now) {
   const int64_t duration = now - turn_began_;
-  if (last_angle_ < kCover) return spoilTurn("turns that are not whole");
-  if (duration > 1'000'000) return spoilTurn("turns of more than 1 s");
+  if (last_angle_ < kCover) return spoilTurn("turns that are not whole", now);
+  if (duration > 1'000'000) return spoilTurn("turns of more than 1 s", now);
   RangeScan scan;
-  // Clockwise; the last beam is one step before the first.
-  scan.angle_step = -config_.step * kRadPerDeg;
+  sortEchoes(scan);
   scan.duration_us = std::llround(static_cast<double>(duration) * (1.0 - config_.step / 360.0));
   scan.utime = turn_began_ - std::llround(1e6 * config_.latency);
   scan.range_min = kRangeMin;
   scan.range_max = config_.range_max;
-  scan.ranges = beams_;
   count("turns");
   deliver(std::move(scan), now);
 }
 
-void RplidarSession::spoilTurn(const std::string& why) {
-  count(in_turn_ ? "refused: " + why : "bytes outside of turns");
+void RplidarSession::spoilTurn(const std::string& why, int64_t now) {
+  if (in_turn_)
+    refuse("refused: " + why, now, kTurns);
+  else
+    skipUnreadable("bytes outside of turns", now, kWhichLine, 1);
   in_turn_ = false;
 }
 

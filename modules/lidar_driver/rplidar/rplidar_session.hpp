@@ -26,7 +26,10 @@ RplidarConfig readRplidarConfig(ConfigReader& reader);
 /** Start-up: stop, health, motor on, scan. Five bytes a sample, with two check bits; a turn ends
  * with the next start flag. A turn counts if each of its samples is sound, their angles run on, and
  * they cover 350 degrees. Angles are not equidistant: the nearest range in each step is the beam's.
- * It keeps no clock: a turn lasts from the arrival of its first sample to that of the next turn. */
+ * A told angle is corrected by the range that was measured at it, by up to 8 degrees; that of a
+ * sample without echo is not, so that it lies ahead of its neighbours'. Such a sample's angle is
+ * used for nothing but the check that they run on. It keeps no clock: a turn lasts from the arrival
+ * of its first sample to that of the next turn. */
 class RplidarSession final : public StartedDevice {
  public:
   explicit RplidarSession(const RplidarConfig& config);
@@ -50,15 +53,16 @@ class RplidarSession final : public StartedDevice {
   bool takeSample(int64_t now);
   void add(const Sample& sample, int64_t now);
   void finishTurn(int64_t now);
-  void spoilTurn(const std::string& why);
+  void sortEchoes(RangeScan& scan) const;
+  void spoilTurn(const std::string& why, int64_t now);
 
   RplidarConfig config_;
   std::string buffer_;
   bool in_turn_ = false;
   int64_t turn_began_ = 0;
-  double last_angle_ = 0.0;
+  double last_angle_ = 0.0;  ///< [deg] the largest of the turn, unwrapped
   size_t samples_ = 0;
-  std::vector<float> beams_;
+  std::vector<Sample> echoes_;  ///< of the turn, with unwrapped angles
 };
 
 }  // namespace tread::lidar

@@ -30,7 +30,13 @@ std::vector<StartUpStep> startUp(ColaDialect dialect) {
     return StartUpStep{name, request(dialect, std::string(kind) + " " + name, text, bytes),
                        optional};
   };
-  return {step("sEN", kStream, "0", off),
+  StartUpStep first = step("sEN", kStream, "0", off);
+  // A device that is set to the other dialect answers in that only.
+  if (dialect == ColaDialect::kA)
+    first.otherwise = request(ColaDialect::kB, "sEN LMDscandata", "", off);
+  else
+    first.otherwise = request(ColaDialect::kA, "sEN LMDscandata", "0");
+  return {first,
           step("sRN", "DeviceIdent"),
           step("sMN", "SetAccessMode", "03 F4724744", "\x03\xF4\x72\x47\x44", true),
           step("sMN", "LMCstartmeas", "", "", true),
@@ -40,6 +46,12 @@ std::vector<StartUpStep> startUp(ColaDialect dialect) {
 
 bool begins(std::string_view text, std::string_view with) {
   return text.substr(0, with.size()) == with;
+}
+
+/// All telegrams begin with a small s and two capitals: sSN, sRA, sFA.
+bool isCola(std::string_view telegram) {
+  const auto capital = [&](size_t at) { return telegram[at] >= 'A' && telegram[at] <= 'Z'; };
+  return telegram.size() >= 3 && telegram[0] == 's' && capital(1) && capital(2);
 }
 
 }  // namespace
@@ -55,7 +67,10 @@ ColaConfig readColaConfig(ConfigReader& reader) {
 }
 
 ColaSession::ColaSession(const ColaConfig& config)
-    : StartedDevice(startUp(config.dialect), kPatience), config_(config), framer_(config.dialect) {}
+    : StartedDevice(startUp(config.dialect), kPatience),
+      config_(config),
+      framer_(config.dialect),
+      other_framer_(config.dialect == ColaDialect::kA ? ColaDialect::kB : ColaDialect::kA) {}
 
 std::string ColaSession::shortcomings() const {
   const std::string sum = config_.dialect == ColaDialect::kA
@@ -66,6 +81,8 @@ std::string ColaSession::shortcomings() const {
 
 void ColaSession::forget() {
   framer_.clear();
+  other_framer_.clear();
+  understood_ = false;
   clock_.forget();
   last_telegram_.reset();
 }
@@ -74,12 +91,25 @@ void ColaSession::receive(std::string_view bytes, int64_t now) {
   const int64_t stray = framer_.strayBytes();
   const int64_t bad = framer_.badChecksums();
   for (const std::string& telegram : framer_.push(bytes)) takeTelegram(telegram, now);
-  if (framer_.strayBytes() > stray)
-    count("bytes outside of telegrams", framer_.strayBytes() - stray);
-  if (framer_.badChecksums() > bad) count("wrong checksums", framer_.badChecksums() - bad);
+  skipUnreadable("bytes outside of telegrams", now,
+                 "is this a SICK scanner's port for CoLa telegrams (2111 or 2112)?",
+                 framer_.strayBytes() - stray);
+  if (framer_.badChecksums() > bad)
+    refuse("wrong checksums", now, "check cable and switch", framer_.badChecksums() - bad);
+  if (!understood_) nameDialect(bytes, now);
+}
+
+void ColaSession::nameDialect(std::string_view bytes, int64_t now) {
+  const bool text = config_.dialect == ColaDialect::kA;
+  for (const std::string& telegram : other_framer_.push(bytes))
+    if (isCola(telegram))
+      refuse(text ? "refused: telegrams in the binary dialect, CoLa B"
+                  : "refused: telegrams in the text dialect, CoLa A",
+             now, text ? "set sick_cola: telegrams: binary" : "set sick_cola: telegrams: ascii");
 }
 
 void ColaSession::takeTelegram(const std::string& telegram, int64_t now) {
+  understood_ = understood_ || isCola(telegram);
   const std::string scan = std::string("sSN ") + kStream + " ";
   if (!begins(telegram, scan)) return takeAnswer(telegram, now);
   // One of a stream that is being switched off is not known to be new.
@@ -108,7 +138,7 @@ void ColaSession::takeScan(std::string_view fields, int64_t now) {
   std::string problem;
   const ColaScan scan = parseColaScan(config_.dialect, fields, problem);
   if (problem.empty()) problem = doubt(scan, now);
-  if (!problem.empty()) return count("refused: " + problem);
+  if (!problem.empty()) return refuse("refused: " + problem, now);
   count("telegrams");
   if (scan.device_status & 6) count("scans through a dirty window");
   deliver(convert(scan, now), now);

@@ -40,6 +40,7 @@ class ColaSession final : public StartedDevice {
 
  private:
   void forget() override;
+  void nameDialect(std::string_view bytes, int64_t now);
   void takeTelegram(const std::string& telegram, int64_t now);
   void takeAnswer(const std::string& telegram, int64_t now);
   void takeScan(std::string_view fields, int64_t now);
@@ -49,6 +50,8 @@ class ColaSession final : public StartedDevice {
 
   ColaConfig config_;
   ColaFramer framer_;
+  ColaFramer other_framer_;  ///< in the other dialect, to name it
+  bool understood_ = false;  ///< a telegram came in the configured dialect
   DeviceClock clock_;
   std::string identity_;
   std::optional<uint16_t> last_telegram_;

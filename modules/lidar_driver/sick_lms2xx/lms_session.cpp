@@ -129,7 +129,7 @@ bool LmsSession::cutFrame(std::string& payload, int64_t now) {
         buffer_.erase(0, length + 6);
         return true;
       }
-      count("wrong checksums");
+      refuse("wrong checksums", now, "check the line and its ground");
     }
     skip(1, now);
   }
@@ -138,7 +138,8 @@ bool LmsSession::cutFrame(std::string& payload, int64_t now) {
 /// What follows bytes that were no frame began to come now, or not long before.
 void LmsSession::skip(size_t bytes, int64_t now) {
   if (bytes == 0) return;
-  count("bytes outside of frames", static_cast<int64_t>(bytes));
+  skipUnreadable("bytes outside of frames", now,
+                 "check baud rate and line; is this a SICK LMS 2xx?", static_cast<int64_t>(bytes));
   buffer_.erase(0, bytes);
   frame_began_ = now;
 }
@@ -159,7 +160,7 @@ void LmsSession::takeFrame(std::string_view payload, int64_t now) {
 }
 
 void LmsSession::takeConfiguration(std::string_view payload, int64_t now) {
-  if (payload.size() < 8) return count("configurations cut short");
+  if (payload.size() < 8) return refuse("refused: configurations cut short", now);
   const unsigned mode = byteAt(payload, 5);
   if (mode <= 2) range_bits_ = 13;
   if (mode == 3 || mode == 4) range_bits_ = 14;
@@ -172,7 +173,7 @@ void LmsSession::takeConfiguration(std::string_view payload, int64_t now) {
 void LmsSession::takeScan(std::string_view payload, int64_t now) {
   RangeScan scan;
   const std::string problem = convert(payload, scan);
-  if (!problem.empty()) return count("refused: " + problem);
+  if (!problem.empty()) return refuse("refused: " + problem, now);
   count("telegrams");
   scan.utime = frame_began_ - std::llround(1e6 * config_.latency) - scan.duration_us;
   deliver(std::move(scan), now);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace tread::lidar {
 namespace {
@@ -65,6 +66,21 @@ constexpr Lasers kHiRes = {{{-10.0, 7.4},
                             {-0.67, 0.9},
                             {10.0, -7.4}}};
 
+/// Names by the factory bytes; the old HDL-64E has others there.
+std::string nameOf(unsigned product) {
+  static const std::map<unsigned, std::string> kNames{
+      {0x21, "HDL-32E"}, {0x23, "VLP-32A or B"}, {0x28, "VLP-32C"}, {0x31, "Velarray"},
+      {0x63, "VLS-128"}, {0xA0, "HDL-64E"},      {0xA1, "VLS-128"}};
+  const auto found = kNames.find(product);
+  return found != kNames.end() ? found->second : "of a number that is not known";
+}
+
+bool hasMoreLasers(std::string_view bytes) {
+  for (size_t block = 0; block < kBlocks; ++block)
+    if (wordAt(bytes, kBlock * block) != 0xEEFF) return true;
+  return false;
+}
+
 const Lasers* lasersOf(unsigned product) {
   if (product == 0x22) return &kVlp16;
   if (product == 0x24) return &kHiRes;
@@ -104,19 +120,25 @@ VelodyneFiring firingOf(std::string_view bytes, size_t at, double azimuth, doubl
 
 bool isVelodynePacket(std::string_view bytes) {
   if (bytes.size() != kVelodynePacket) return false;
-  for (size_t block = 0; block < kBlocks; ++block)
-    if (wordAt(bytes, kBlock * block) != 0xEEFF) return false;
+  for (size_t block = 0; block < kBlocks; ++block) {
+    const uint32_t flag = wordAt(bytes, kBlock * block);
+    if (flag != 0xEEFF && flag != 0xDDFF && flag != 0xCCFF && flag != 0xBBFF) return false;
+  }
   return true;
 }
 
 std::optional<VelodynePacket> parseVelodynePacket(std::string_view bytes, std::string& problem) {
-  const auto refuse = [&](const char* why) {
+  const auto refuse = [&](const std::string& why) {
     problem = why;
     return std::nullopt;
   };
   if (!isVelodynePacket(bytes)) return refuse("bytes that are no packet");
-  const Lasers* const lasers = lasersOf(byteAt(bytes, 1205));
-  if (lasers == nullptr) return refuse("packets of another product than VLP-16 and Puck Hi-Res");
+  const unsigned product = byteAt(bytes, 1205);
+  const Lasers* const lasers = lasersOf(product);
+  if (hasMoreLasers(bytes))
+    return refuse("packets of another product, " +
+                  nameOf(product == 0xA1 || product == 0x63 ? product : 0xA0));
+  if (lasers == nullptr) return refuse("packets of another product, " + nameOf(product));
   const unsigned mode = byteAt(bytes, 1204);
   if (mode < 0x37 || mode > kDualReturn) return refuse("packets of an unknown return mode");
   VelodynePacket packet;

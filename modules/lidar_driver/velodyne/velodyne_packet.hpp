@@ -29,7 +29,8 @@ struct VelodynePacket {
 /// From one firing to the next [us].
 inline constexpr double kVelodyneFiringPeriod = 55.296;
 
-/// True if bytes of a packet's length are built like one: the flag FF EE each 100 bytes.
+/// True if bytes of a packet's length are built like a Velodyne's: each 100 bytes a flag, FF EE, or
+/// of sensors with more lasers FF DD, FF CC, FF BB.
 bool isVelodynePacket(std::string_view bytes);
 
 /// Takes a packet apart; nothing, and why in words, for one that cannot be vouched for.

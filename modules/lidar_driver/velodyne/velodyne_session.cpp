@@ -16,6 +16,9 @@ constexpr int64_t kSilence = 1'000'000;       // [us]
 constexpr int64_t kLongestPause = 1'000'000;  // [us] in a capture
 constexpr size_t kMostScans = 100;            // for a node that does not fetch them
 constexpr int64_t kFirings = 24;              // of a packet
+constexpr const char* kWhichCapture = "is this a capture of a Velodyne's UDP packets?";
+constexpr const char* kWhatIsRead =
+    "this driver reads VLP-16, Puck LITE and Puck Hi-Res, in return modes strongest, last and dual";
 
 }  // namespace
 
@@ -37,6 +40,7 @@ void VelodyneSession::open(int64_t now) {
   open_ = true;
   opened_at_ = now;
   last_packet_ = 0;
+  reasons().note(Rank::kStarting, "no packet yet", now);
 }
 
 void VelodyneSession::close() {
@@ -75,7 +79,9 @@ void VelodyneSession::receiveLive(std::string_view bytes, int64_t now) {
       const auto packet = std::string_view(buffer_).substr(at, kVelodynePacket);
       const bool whole = isVelodynePacket(packet);
       if (whole) takePacket(packet, now);
-      if (!whole) ++counters_["bytes outside of packets"];
+      if (!whole)
+        skipUnreadable("bytes outside of packets", now,
+                       "is this a Velodyne's data (port 2368), or a capture of it?", 1);
       at += whole ? kVelodynePacket : 1;
     }
     buffer_.erase(0, at);
@@ -85,8 +91,8 @@ void VelodyneSession::receiveLive(std::string_view bytes, int64_t now) {
 void VelodyneSession::receiveCapture(std::string_view bytes, int64_t now) {
   capture_->push(bytes);
   while (auto datagram = capture_->next()) {
-    if (datagram->payload.size() != kVelodynePacket) {
-      ++counters_["captured datagrams of another length"];
+    if (datagram->tcp || datagram->bytes.size() != kVelodynePacket) {
+      skipUnreadable("captured datagrams of another length", now, kWhichCapture, 1);
       continue;
     }
     int64_t due = datagram->time + capture_offset_.value_or(now - datagram->time);
@@ -97,24 +103,29 @@ void VelodyneSession::receiveCapture(std::string_view bytes, int64_t now) {
     datagram->time = std::max(due, waiting_.empty() ? due : waiting_.back().time);
     waiting_.push_back(std::move(*datagram));
   }
+  refuseOfCapture(now);
+}
+
+void VelodyneSession::refuseOfCapture(int64_t now) {
+  for (const auto& [what, times] : capture_->takeLeftOut())
+    skipUnreadable(what, now, kWhichCapture, times);
+  if (capture_->problem().empty() || capture_refused_) return;
+  capture_refused_ = true;
+  const std::string& problem = capture_->problem();
+  const size_t end = problem.find("; ");
+  refuse(problem.substr(0, end), now, end == std::string::npos ? "" : problem.substr(end + 2));
 }
 
 std::string VelodyneSession::poll(int64_t now) {
-  silent_ = open_ && now - std::max(last_packet_, opened_at_) > kSilence;
+  if (open_ && !capture_ && now - std::max(last_packet_, opened_at_) > kSilence)
+    reasons().note(Rank::kSilent, "no packets", now, 1,
+                   "is this host's address the sensor's destination, and the port the same?");
   return {};
-}
-
-std::string VelodyneSession::problem() const {
-  if (!open_) return "not opened yet";
-  if (capture_ && !capture_->problem().empty()) return capture_->problem();
-  if (silent_ && !capture_)
-    return "no packets; is this host's address the sensor's destination, and the port the same?";
-  return last_packet_ == 0 ? "no packet yet" : "";
 }
 
 std::vector<RangeScan> VelodyneSession::take(int64_t now) {
   for (; !waiting_.empty() && waiting_.front().time <= now; waiting_.pop_front())
-    takePacket(waiting_.front().payload, waiting_.front().time);
+    takePacket(waiting_.front().bytes, waiting_.front().time);
   if (!open_ && waiting_.empty()) finishSlice();
   return std::exchange(scans_, {});
 }
@@ -122,18 +133,15 @@ std::vector<RangeScan> VelodyneSession::take(int64_t now) {
 void VelodyneSession::takePacket(std::string_view bytes, int64_t arrival) {
   std::string problem;
   const auto packet = parseVelodynePacket(bytes, problem);
-  if (!packet) {
-    ++counters_["refused: " + problem];
-    return;
-  }
-  ++counters_["packets"];
+  if (!packet) return refuse("refused: " + problem, arrival, kWhatIsRead);
+  count("packets");
   last_packet_ = arrival;
   const int64_t duration =
       std::llround(kVelodyneFiringPeriod * static_cast<double>(packet->firings.size()));
   const int64_t begin = hostTime(packet->past_hour, arrival) - duration;
   // The next packet begins where this one ends; a lost one leaves a gap.
   if (packets_ > 0 && std::abs(begin - end_) > duration / 2) {
-    ++counters_["slices cut short: packets lost or clock moved"];
+    count("slices cut short: packets lost or clock moved");
     finishSlice();
   }
   if (packets_ == 0) slice_.utime = begin;
@@ -147,7 +155,7 @@ int64_t VelodyneSession::hostTime(uint32_t past_hour, int64_t arrival) {
   const int64_t back = int64_t{last_past_hour_.value_or(past_hour)} - past_hour;
   if (back > kHour / 2) hours_ += kHour;
   last_past_hour_ = past_hour;
-  if (!clock_.observe(hours_ + past_hour, arrival)) ++counters_["restarts of the device's clock"];
+  if (!clock_.observe(hours_ + past_hour, arrival)) count("restarts of the device's clock");
   return clock_.hostTime() - std::llround(1e6 * config_.latency);
 }
 
@@ -167,11 +175,12 @@ void VelodyneSession::finishSlice() {
       std::llround((firings - 1.0) * static_cast<double>(config_.every) * kVelodyneFiringPeriod);
   slice.range_min = kRangeMin;
   slice.range_max = kRangeMax;
-  ++counters_["slices"];
+  count("slices");
+  reasons().clear();
   if (scans_.size() < kMostScans)
     scans_.push_back(std::move(slice));
   else
-    ++counters_["slices dropped: nobody took them"];
+    count("slices dropped: nobody took them");
 }
 
 }  // namespace tread::lidar

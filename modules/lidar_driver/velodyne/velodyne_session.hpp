@@ -10,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
+#include "common/capture/pcap_stream.hpp"
 #include "common/config/config_reader.hpp"
 #include "modules/lidar_driver/core/device_clock.hpp"
 #include "modules/lidar_driver/core/scan_device.hpp"
-#include "modules/lidar_driver/velodyne/pcap_stream.hpp"
 #include "modules/lidar_driver/velodyne/velodyne_packet.hpp"
 
 namespace tread::lidar {
@@ -45,14 +45,12 @@ class VelodyneSession final : public ScanDevice {
   void receive(std::string_view bytes, int64_t now) override;
   std::string poll(int64_t now) override;
   std::vector<RangeScan> take(int64_t now) override;
-  std::string problem() const override;
   bool hungry() const override { return waiting_.size() < kAhead; }
   std::string shortcomings() const override {
     return "Velodyne: checksums (a packet has none), free space (what comes back from nowhere "
            "marks "
            "nothing); reflectivity, first and strongest of two returns are not read";
   }
-  const std::map<std::string, int64_t>& counters() const override { return counters_; }
 
  private:
   static constexpr size_t kAhead = 50;
@@ -60,6 +58,7 @@ class VelodyneSession final : public ScanDevice {
   /// Cuts packets out of the bytes of a network line, whose datagrams need not come one by one.
   void receiveLive(std::string_view bytes, int64_t now);
   void receiveCapture(std::string_view bytes, int64_t now);
+  void refuseOfCapture(int64_t now);
   void takePacket(std::string_view bytes, int64_t arrival);
   /// Host time [us] of a device's time that arrived now.
   int64_t hostTime(uint32_t past_hour, int64_t arrival);
@@ -70,7 +69,8 @@ class VelodyneSession final : public ScanDevice {
   VelodyneConfig config_;
   std::string buffer_;
   std::optional<PcapStream> capture_;
-  std::deque<CapturedDatagram> waiting_;   ///< of a capture, with the times at which they are due
+  bool capture_refused_ = false;
+  std::deque<CapturedPayload> waiting_;    ///< of a capture, with the times at which they are due
   std::optional<int64_t> capture_offset_;  ///< [us] from the capture's clock to the host's
   DeviceClock clock_;
   std::optional<uint32_t> last_past_hour_;  ///< [us]
@@ -82,9 +82,7 @@ class VelodyneSession final : public ScanDevice {
   int64_t last_packet_ = 0;  ///< [us] when a good one came
   int64_t opened_at_ = 0;
   bool open_ = false;
-  bool silent_ = false;
   std::vector<RangeScan> scans_;
-  std::map<std::string, int64_t> counters_;
 };
 
 }  // namespace tread::lidar

@@ -76,12 +76,15 @@ void RplidarEmulator::add(const LaserScan& scan) {
   const double step = laser_.field_of_view / (laser_.beams - 1);
   const int64_t finished = scan.utime + laser_.sweep_us;
   for (int i = 0; i < (faults_.half_turn ? kSamples / 2 : kSamples); ++i) {
-    const double degrees = i + 0.3 * std::sin(i);
-    const double angle = -std::remainder(std::max(degrees, 0.0) * kPi / 180.0, 2.0 * kPi);
+    const double uncorrected = std::max(0.0, i + 0.3 * std::sin(i));
+    const double degrees = uncorrected - faults_.correction;
+    const double angle = -std::remainder(degrees * kPi / 180.0, 2.0 * kPi);
     const long beam = std::lround((angle + laser_.field_of_view / 2.0) / step);
     const bool seen = beam >= 0 && beam < static_cast<long>(scan.ranges.size());
     const float range = seen ? scan.ranges[static_cast<size_t>(beam)] : NAN;
-    std::string sample = sampleOf(i == 0, std::max(degrees, 0.0), range);
+    const bool echo = std::isfinite(range) && range < 16.0F;
+    std::string sample =
+        sampleOf(i == 0, std::fmod((echo ? degrees : uncorrected) + 360.0, 360.0), range);
     if (faults_.bad_check && i == 100) sample[0] = static_cast<char>(sample[0] ^ 1);
     if (faults_.dropped_byte && i == 100) sample.erase(3, 1);
     samples_.emplace_back(finished + laser_.period_us * i / kSamples, sample);

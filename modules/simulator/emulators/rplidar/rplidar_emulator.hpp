@@ -18,6 +18,7 @@ struct RplidarFaults {
   bool dropped_byte = false;  ///< one byte of each turn is missing
   bool half_turn = false;     ///< the second half of each turn is missing
   bool ill = false;           ///< its health is error
+  double correction = 0.0;    ///< [deg] by which samples with an echo are told behind those without
 };
 
 /// An RPLIDAR in SCAN mode: STOP, RESET, SCAN, GET_INFO, GET_HEALTH, motor (LR001, protocol v2.8).
