@@ -140,18 +140,38 @@ void writeNewKey(const std::string& path) {
   char digits[2 * sizeof key.bytes + 1];
   sodium_bin2hex(digits, sizeof digits, key.bytes.data(), key.bytes.size());
   const std::string text = kComment + std::string(digits) + "\n";
+  // Under its own name it is there whole or not at all: somebody else may be waiting for it.
+  const std::string draft = path + ".new-" + std::to_string(::getpid());
   const Descriptor file(
-      ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600));
-  const int failure = errno;
+      ::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600));
+  int failure = errno;
   if (file.get() < 0)
+    refuse(path, "cannot be made (" + reason(failure) + ")", "check the path and the rights");
+  const bool written =
+      ::write(file.get(), text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
+      ::fsync(file.get()) == 0;
+  const bool linked = written && ::link(draft.c_str(), path.c_str()) == 0;
+  failure = errno;
+  ::unlink(draft.c_str());
+  if (!written) refuse(path, "cannot be written (" + reason(failure) + ")", "check the disk");
+  if (!linked)
     refuse(path, "cannot be made (" + reason(failure) + ")",
            failure == EEXIST ? "an existing file is never overwritten: name another one"
                              : "check the path and the rights");
-  if (::write(file.get(), text.data(), text.size()) != static_cast<ssize_t>(text.size()) ||
-      ::fsync(file.get()) != 0) {
-    const int error = errno;
-    ::unlink(path.c_str());
-    refuse(path, "cannot be written (" + reason(error) + ")", "check the disk");
+}
+
+bool ensureKey(const std::string& path) {
+  const auto isThere = [&path] {
+    struct stat entry {};
+    return ::lstat(path.c_str(), &entry) == 0;
+  };
+  if (isThere()) return false;
+  try {
+    writeNewKey(path);
+    return true;
+  } catch (const std::runtime_error&) {
+    if (isThere()) return false;
+    throw;
   }
 }
 

@@ -13,10 +13,8 @@
 #include "common/bus/lcm_listener.hpp"
 #include "common/bus/shell.hpp"
 #include "common/config/command_line.hpp"
-#include "common/seal/key_file.hpp"
-#include "tools/robot/launch/running_robots.hpp"
 #include "tools/robot/operator/command.hpp"
-#include "tools/robot/operator/console.hpp"
+#include "tools/robot/operator/live_console.hpp"
 #include "tools/view/view_server.hpp"
 
 namespace {
@@ -62,19 +60,9 @@ void sayWhere(const ViewServer& server, const ServerSettings& settings) {
   std::fflush(stdout);
 }
 
-/// What the page operates with.
-struct Operating {
-  Operating(const launch::RunningRobot& robot, const std::string& name)
-      : bus(BusAccess{robot.lcm_url, robot.here ? hostSealer(robot.key) : stationSealer(robot.key)},
-            TimeSource::kHost),
-        console(bus, name, "by the page of tread-view") {}
-  LcmBus bus;
-  operators::OperatorConsole console;
-};
-
 void live(const Arguments& arguments, const std::atomic<bool>& stop) {
   const launch::RunningRobot robot = launch::findRobot(arguments.lcm_url, arguments.key);
-  auto operating = std::make_unique<Operating>(robot, arguments.operator_name);
+  operators::LiveConsole console(robot, arguments.operator_name, "by the page of tread-view");
   ServerSettings settings = arguments.server;
   settings.may_command = !arguments.look_only;
   // The key keeps strangers out: whoever may use this machine must not come in by the page.
@@ -83,33 +71,32 @@ void live(const Arguments& arguments, const std::atomic<bool>& stop) {
   ViewServer server(
       settings,
       [&](const std::string& json, uint64_t page) {
-        return operating->console.take(json, page, operating->bus.now());
+        return console->take(json, page, console.now());
       },
-      [&](uint64_t page) { operating->console.leave(page, operating->bus.now()); });
+      [&](uint64_t page) { console->leave(page, console.now()); });
 
-  LcmListener listener(robot.lcm_url, [&](const std::string& channel, const uint8_t* bytes,
-                                          size_t size, int64_t now) {
-    server.feed().take({now, channel, {bytes, bytes + sizeWithoutSeal(bytes, size)}});
-  });
+  LcmListener listener(
+      operators::accessTo(robot),
+      [&](const std::string& channel, const uint8_t* bytes, size_t size, int64_t now) {
+        server.feed().take({now, channel, {bytes, bytes + size}});
+      });
   sayWhere(server, settings);
   std::string told;
   double told_at = 0.0;
   for (double last = secondsNow(); !stop;) {
     listener.handle(kWaitMs);
-    operating->bus.handle(0);
-    operating->console.step(operating->bus.now());
-    if (operating->console.worn())
-      operating = std::make_unique<Operating>(robot, arguments.operator_name);
-
+    console.step();
     const double now = secondsNow();
     server.step(now - last);
     last = now;
     // A goal's progress changes with every look, and nobody reads that fast.
-    const std::string words = operating->console.words();
-    if (words == told || now - told_at < kConsolePeriod) continue;
-    server.tell(0, "console: " + words);
-    told = words;
+    if (now - told_at < kConsolePeriod) continue;
     told_at = now;
+    server.feed().setDoubt(listener.doubt());
+    const std::string words = console->words();
+    if (words == told) continue;
+    server.tell("console: " + words);
+    told = words;
   }
 }
 

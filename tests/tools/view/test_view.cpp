@@ -4,12 +4,14 @@
 // the format's checker.
 #include <catch2/catch.hpp>
 
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
 #include "tests/helpers.hpp"
 #include "tests/system/process.hpp"
 #include "tests/system/robot_run.hpp"
+#include "tests/system/stall_watch.hpp"
 #include "tests/system/worlds.hpp"
 #include "tests/tools/called_program.hpp"
 #include "tests/tools/missions/shipped_robot.hpp"
@@ -64,6 +66,13 @@ class View {
   std::unique_ptr<Process> process_;
   std::string url_;
 };
+
+/// The most memory that a process has had so far [bytes].
+int64_t peakMemory(pid_t pid) {
+  const std::string status = contentOf("/proc/" + std::to_string(pid) + "/status");
+  const size_t at = status.find("VmHWM:");
+  return at == std::string::npos ? 0 : 1024 * std::atoll(status.c_str() + at + 6);
+}
 
 /// Runs a script of node; `during` is called every 50 ms with what it has printed.
 template <class During>
@@ -130,7 +139,9 @@ TEST_CASE(
   run.startAll();
   REQUIRE(run.until(20.0, [&] { return run.plan().any() && run.ins().any(); }));
   View view(folder, {"--lcm-url", run.url(), "--operator", "page"});
-  runScript(folder, "origin.mjs", {view.url()});
+  const OwnFolder elsewhere;
+  const View asking(elsewhere, {"--lcm-url", run.url(), "--token", "secret"});
+  runScript(folder, "origin.mjs", {view.url(), asking.url()});
   bool killed = false;
   runScript(folder, "page.mjs", {view.url(), "live", folder.path("live.png")},
             [&](const std::string& printed) {
@@ -139,6 +150,41 @@ TEST_CASE(
               killed = true;
             });
   CHECK(killed);
+}
+
+TEST_CASE("viewers without end cost neither memory nor the robot's drive") {
+  // For longer: TREAD_FLOOD_SECONDS=60.
+  const char* const asked = std::getenv("TREAD_FLOOD_SECONDS");
+  const double seconds = asked != nullptr ? std::atof(asked) : 5.0;
+  const OwnFolder folder;
+  RobotRun run(kField, "[-20, 0, 0]");
+  run.startAll();
+  REQUIRE(run.until(20.0, [&] { return run.plan().any() && run.ins().any(); }));
+  View view(folder, {"--lcm-url", run.url(), "--operator", "page"});
+  const std::string output = folder.path("operator.txt");
+  Process page("/usr/bin/env",
+               {"node", kScripts + "operator.mjs", TREAD_PAGE_MODULES, view.url(),
+                std::to_string(seconds + 5.0)},
+               output);
+  for (int i = 0; i < 400 && contentOf(output).find("armed") == std::string::npos; ++i)
+    run.wait(0.05);
+  int64_t memory = 0;
+  const StallWatch watch;
+  runScript(folder, "flood.mjs", {view.url(), std::to_string(seconds)},
+            [&](const std::string&) { memory = std::max(memory, peakMemory(view.process().pid())); });
+  REQUIRE(page.waitFor(20.0));
+  INFO("machine held up for " << watch.longest() << " s at most");
+  INFO(contentOf(output) << contentOf(folder.path("flood.mjs.txt")));
+  std::printf("%s%stread-view used %.0f MB at most; machine held up for %.3f s at most\n",
+              contentOf(output).c_str(), contentOf(folder.path("flood.mjs.txt")).c_str(),
+              static_cast<double>(memory) * 1e-6, watch.longest());
+  CHECK(page.exitCode() == 0);
+  CHECK(contentOf(output).find("armed") != std::string::npos);
+  CHECK(memory > 1'000'000);
+  CHECK(memory < 200'000'000);
+  // A machine that stalls disarms the robot by itself; the page's own lease is what viewers could
+  // take from it.
+  if (watch.longest() < 0.1) CHECK_THAT(contentOf(output), Catch::Contains("disarmed 0 times"));
 }
 
 TEST_CASE("viewers from elsewhere need the token, strangers' pages may not talk to the robot") {
