@@ -13,8 +13,10 @@
 #include "common/bus/lcm_listener.hpp"
 #include "common/bus/shell.hpp"
 #include "common/config/command_line.hpp"
+#include "tools/robot/launch/host.hpp"
 #include "tools/robot/operator/command.hpp"
 #include "tools/robot/operator/live_console.hpp"
+#include "tools/view/certificate.hpp"
 #include "tools/view/view_server.hpp"
 
 namespace {
@@ -31,6 +33,7 @@ struct Arguments {
   std::string lcm_url;
   std::string key;
   std::string operator_name = operatorName();
+  std::string state;  ///< folder of the certificate; empty = the usual one
   bool look_only = false;
 };
 
@@ -51,13 +54,44 @@ bool isLoopback(const std::string& address) {
   return address.rfind("127.", 0) == 0 || address == "::1" || address == "localhost";
 }
 
+/// Takes "https://host:8443/robot/" apart; returns what is wrong with it, for CLI11.
+std::string addOrigin(const std::string& url, ServerSettings& settings) {
+  const size_t scheme = url.find("://");
+  const std::string name = url.substr(0, scheme);
+  const size_t host = scheme == std::string::npos ? url.size() : scheme + 3;
+  const size_t path = std::min(url.find_first_of("/?#", host), url.size());
+  if ((name != "http" && name != "https") || path == host ||
+      url.find_first_of("?#@ ", host) != std::string::npos)
+    return "'" + url + "' is no address of a page: https://HOST[:PORT][/PATH/] is needed";
+  settings.origins.push_back(url.substr(0, path));
+  if (path + 1 < url.size()) settings.paths.insert(url.substr(path));
+  return "";
+}
+
 void sayWhere(const ViewServer& server, const ServerSettings& settings) {
   const std::string token = settings.token.empty() ? "" : "?token=" + settings.token;
-  std::printf("tread-view: open http://%s:%d/%s\n", settings.address.c_str(), server.port(),
-              token.c_str());
-  std::printf("tread-view: Foxglove, Lichtblick: ws://%s:%d/%s\n", settings.address.c_str(),
-              server.port(), token.c_str());
+  const std::string place = settings.address + ":" + std::to_string(server.port()) + "/" + token;
+  const char* const secure = settings.certificate.empty() ? "" : "s";
+  std::printf("tread-view: open http%s://%s\n", secure, place.c_str());
+  std::printf("tread-view: Foxglove, Lichtblick: ws%s://%s\n", secure, place.c_str());
+  if (!settings.origins.empty())
+    std::printf("tread-view: by the proxy: its address with %s\n", token.c_str());
   std::fflush(stdout);
+}
+
+/// Who listens to others must not tell them the token in clear.
+void protect(Arguments& arguments) {
+  ServerSettings& server = arguments.server;
+  const bool local = isLoopback(server.address);
+  // Whoever comes by a proxy seems to be at this machine.
+  if (server.token.empty() && (!local || !server.origins.empty())) server.token = newToken();
+  if (local) return;
+  const std::string folder =
+      arguments.state.empty() ? launch::defaultRunFolder("view") : arguments.state;
+  const Certificate certificate = ownCertificate(folder);
+  server.certificate = certificate.path;
+  std::printf("tread-view: certificate of its own%s, the browser asks once; SHA-256 %s\n",
+              certificate.made ? ", made now" : "", certificate.fingerprint.c_str());
 }
 
 void live(const Arguments& arguments, const std::atomic<bool>& stop) {
@@ -115,7 +149,8 @@ void replay(const Arguments& arguments, const std::atomic<bool>& stop) {
   }
 }
 
-int run(const Arguments& arguments) {
+int run(Arguments& arguments) {
+  protect(arguments);
   const std::atomic<bool>& stop = stopRequest(0);
   arguments.logs.empty() ? live(arguments, stop) : replay(arguments, stop);
   return 0;
@@ -140,15 +175,25 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option(
       "--token", arguments.server.token,
-      "asked of every viewer; default: none on this machine, unless the robot has a key; else "
-      "a new one");
+      "asked of every viewer; default: none on this machine, unless the robot has a key or a proxy "
+      "is named; else a new one");
+  app.add_option_function<std::vector<std::string>>(
+         "--origin",
+         [&](const std::vector<std::string>& urls) {
+           for (const std::string& url : urls)
+             if (const std::string wrong = addOrigin(url, arguments.server); !wrong.empty())
+               throw CLI::ValidationError("--origin", wrong);
+         },
+         "address of the page as a browser sees it behind a proxy; from there it operates, too")
+      ->expected(1)
+      ->take_all();
+  app.add_option("--state", arguments.state,
+                 "folder of the certificate for other machines; default ~/.local/state/tread/view");
   app.add_flag("--look-only", arguments.look_only, "no page operates the robot");
   app.add_option("--operator", arguments.operator_name, operators::kOperatorHelp)
       ->capture_default_str();
   app.add_option("--lcm-url", arguments.lcm_url, operators::kUrlHelp);
   addKeyOption(app, arguments.key);
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
-  if (arguments.server.token.empty() && !isLoopback(arguments.server.address))
-    arguments.server.token = newToken();
   return runProgram("tread-view", [&] { return run(arguments); });
 }

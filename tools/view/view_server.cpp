@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
-#include <deque>
 #include <list>
 #include <map>
-#include <set>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
+
+#include "tools/view/feed/frame_queue.hpp"
 
 namespace tread::view {
 namespace {
@@ -22,8 +22,8 @@ using Json = nlohmann::json;
 
 // What viewers may cost. One that wants more waits, gets the newest only, or is closed.
 constexpr size_t kMostClients = 32;
-constexpr size_t kMostPages = 40;           // clients and, beside them, pages of our own
-constexpr double kAcceptRate = 100.0;       // [1/s] new connections
+constexpr size_t kMostPages = 40;      // clients and, beside them, pages of our own
+constexpr double kAcceptRate = 100.0;  // [1/s] new connections
 constexpr double kAcceptBurst = 200.0;
 constexpr size_t kLargestRequest = 1 << 16;  // [bytes] of a client
 constexpr double kRequestRate = 32'000.0;    // [bytes/s] of a client
@@ -31,8 +31,6 @@ constexpr double kRequestBurst = 128'000.0;  // [bytes]
 constexpr size_t kLeastRequest = 200;        // [bytes] that each request counts at least
 constexpr size_t kMostTopics = 16;           // of a client's own
 constexpr size_t kLongestTopic = 64;         // [bytes]
-constexpr size_t kCrowded = 64;              // frames that wait, from which on the newest suffices
-constexpr size_t kCrowdedBytes = 1'000'000;  // the same [bytes]
 constexpr double kSendRate = 12e6;           // [bytes/s] to all but who operates the robot
 constexpr double kSendBurst = 1e6;           // [bytes]
 constexpr size_t kPiece = 65'536;            // [bytes] for a client in its turn
@@ -46,18 +44,6 @@ constexpr uint32_t kWords = UINT32_MAX - 2;
 
 constexpr const char* kCommandTopic = "view/command";
 constexpr const char* kControlTopic = "view/control";
-
-/// Something that comes again with time, as long as it is not used up.
-class Allowance {
- public:
-  Allowance(double rate, double most) : rate_(rate), most_(most), left_(most) {}
-  void wait(double elapsed) { left_ = std::min(most_, left_ + rate_ * elapsed); }
-  void use(double amount) { left_ -= amount; }
-  double left() const { return left_; }
-
- private:
-  double rate_, most_, left_;
-};
 
 std::string headerOf(lws* socket, lws_token_indexes token) {
   std::string text(static_cast<size_t>(lws_hdr_total_length(socket, token)) + 1, '\0');
@@ -105,13 +91,6 @@ bool isLoopbackName(const std::string& host) {
 
 /// One WebSocket of a viewer.
 struct ViewServer::Client {
-  using Part = std::pair<uint32_t, uint64_t>;  ///< channel and part
-  struct Frame {
-    Part part;
-    int64_t time = 0;
-    std::shared_ptr<const std::string> payload;  ///< null: what is newest at its turn
-    bool is_news = false;
-  };
   lws* socket = nullptr;
   uint64_t number = 0;
   bool may_command = false;
@@ -119,50 +98,14 @@ struct ViewServer::Client {
   bool asked = false;                          ///< libwebsockets says when the line takes more
   std::map<uint32_t, uint32_t> subscriptions;  ///< by channel
   std::map<uint32_t, std::string> topics;      ///< its own channels
-  std::deque<Frame> frames;
-  std::set<Part> newest;  ///< those that wait without a payload
-  size_t bytes = 0;       ///< of the payloads that wait
+  FrameQueue frames;
   std::string received;
   Allowance requests{kRequestRate, kRequestBurst};
 
-  /// Frames give way where the line is slower than the robot: each part waits once, and its newest
-  /// is sent.
-  void push(Frame frame) {
-    if (newest.count(frame.part) > 0) return;
-    if (frame.payload && (frames.size() >= kCrowded || bytes >= kCrowdedBytes)) {
-      if (frame.part.first == kText) return;
-      frame.payload = nullptr;
-      // What was news is in the whole.
-      if (frame.is_news) drop(frame.part.first);
-    }
-    if (frame.payload)
-      bytes += frame.payload->size();
-    else
-      newest.insert(frame.part);
-    frames.push_back(std::move(frame));
-  }
-  void pushNewest(uint32_t channel, uint64_t part) { push({{channel, part}, 0, nullptr, false}); }
+  /// One that is behind has other worries.
   void pushText(std::string text) {
-    push({{kText, 0}, 0, std::make_shared<const std::string>(std::move(text)), false});
-  }
-  Frame pop() {
-    Frame frame = std::move(frames.front());
-    frames.pop_front();
-    if (frame.payload)
-      bytes -= frame.payload->size();
-    else
-      newest.erase(frame.part);
-    return frame;
-  }
-
- private:
-  void drop(uint32_t channel) {
-    const auto gone = [&](const Frame& frame) {
-      if (frame.part.first != channel || !frame.payload) return false;
-      bytes -= frame.payload->size();
-      return true;
-    };
-    frames.erase(std::remove_if(frames.begin(), frames.end(), gone), frames.end());
+    if (!frames.isCrowded())
+      frames.push({{kText, 0}, 0, std::make_shared<const std::string>(std::move(text)), false});
   }
 };
 
@@ -231,7 +174,8 @@ struct ViewServer::Sockets {
   int http(lws* socket, size_t* sent) const {
     const bool ours = allowed(socket);
     const std::string path = headerOf(socket, WSI_TOKEN_GET_URI);
-    if (!ours || (path != "/" && path != "/index.html" && server.settings_.paths.count(path) == 0)) {
+    if (!ours ||
+        (path != "/" && path != "/index.html" && server.settings_.paths.count(path) == 0)) {
       lws_return_http_status(socket, ours ? HTTP_STATUS_NOT_FOUND : HTTP_STATUS_FORBIDDEN,
                              ours ? "only the page is here"
                                   : "the address must end with ?token=..., as tread-view said");
@@ -284,8 +228,8 @@ struct ViewServer::Sockets {
     client.may_command = server.settings_.may_command && isOurs(socket);
     client.pushText(serverInfo("tread-view", client.may_command || server.feed_.hasLog(),
                                server.feed_.hasLog(), server.session_));
-    client.push({{kText, 0}, 0, server.advertisement_, false});
-    if (!server.words_.empty()) client.pushNewest(kWords, 0);
+    client.frames.push({{kText, 0}, 0, server.advertisement_, false});
+    if (!server.words_.empty()) client.frames.pushNewest({kWords, 0});
   }
 
   void close(lws* socket) {
@@ -336,7 +280,7 @@ struct ViewServer::Sockets {
   }
 
   /// What goes over the line for a frame that waited; empty = nothing any more.
-  std::string bytesOf(const Client& client, const Client::Frame& frame) {
+  std::string bytesOf(const Client& client, const Frame& frame) {
     const auto& [channel, part] = frame.part;
     if (channel == kText) return *frame.payload;
     if (channel == kWords) return statusMessage(0, server.words_);
@@ -353,7 +297,7 @@ struct ViewServer::Sockets {
     if (client == nullptr) return 0;
     client->asked = false;
     for (size_t sent = 0; !client->frames.empty() && sent < kPiece;) {
-      const Client::Frame frame = client->pop();
+      const Frame frame = client->frames.pop();
       const std::string bytes = bytesOf(*client, frame);
       if (bytes.empty()) continue;
       const bool text = frame.part.first == kText || frame.part.first == kWords;
@@ -401,6 +345,10 @@ ViewServer::ViewServer(const ServerSettings& settings, Command command, Leave le
   info.user = sockets_.get();
   info.gid = info.uid = static_cast<decltype(info.gid)>(-1);
   info.options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS;
+  if (!settings_.certificate.empty()) {
+    info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
+    info.ssl_cert_filepath = info.ssl_private_key_filepath = settings_.certificate.c_str();
+  }
   sockets_->context = lws_create_context(&info);
   lws_vhost* const host =
       sockets_->context == nullptr ? nullptr : lws_create_vhost(sockets_->context, &info);
@@ -420,7 +368,7 @@ void ViewServer::step(double elapsed) {
   feed_.step(elapsed);
   if (feed_.hasLog() && feed_.now() != told_time_) {
     told_time_ = feed_.now();
-    for (Client& client : sockets_->clients) client.pushNewest(kTime, 0);
+    for (Client& client : sockets_->clients) client.frames.pushNewest({kTime, 0});
   }
   sockets_->accepts.wait(elapsed);
   sockets_->sends.wait(elapsed);
@@ -432,7 +380,7 @@ void ViewServer::step(double elapsed) {
 
 void ViewServer::tell(const std::string& words) {
   words_ = words;
-  for (Client& client : sockets_->clients) client.pushNewest(kWords, 0);
+  for (Client& client : sockets_->clients) client.frames.pushNewest({kWords, 0});
 }
 
 bool ViewServer::wanted(uint32_t channel) const {
@@ -445,7 +393,7 @@ void ViewServer::send(const FeedMessage& message) {
   if (sockets_ == nullptr) return;
   for (Client& client : sockets_->clients)
     if (client.subscriptions.count(message.channel) > 0)
-      client.push(
+      client.frames.push(
           {{message.channel, message.part}, message.time, message.payload, message.is_news});
 }
 
@@ -469,7 +417,7 @@ void ViewServer::serve(Client& client, const ClientRequest& request) {
     const bool first = client.subscriptions.count(channel) == 0;
     client.subscriptions[channel] = subscription;
     if (!first) continue;
-    for (const uint64_t part : feed_.partsOf(channel)) client.pushNewest(channel, part);
+    for (const uint64_t part : feed_.partsOf(channel)) client.frames.pushNewest({channel, part});
   }
   for (const uint32_t subscription : request.unsubscribe)
     for (auto entry = client.subscriptions.begin(); entry != client.subscriptions.end();)

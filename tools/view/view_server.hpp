@@ -28,6 +28,8 @@ struct ServerSettings {
   /// them.
   std::vector<std::string> origins;
   std::set<std::string> paths;
+  std::string
+      certificate;  ///< PEM file with its key; empty = not encrypted, for this machine alone
 };
 
 /// Serves the page by HTTP and the feed by WebSocket (the Foxglove protocol), with libwebsockets.

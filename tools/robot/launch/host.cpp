@@ -206,9 +206,8 @@ std::string provideKey(const LaunchFile& launch) {
   char host[256] = {};
   gethostname(host, sizeof host - 1);
   return launch.name + ": key " + launch.key + (made ? " (made now)" : "") + ", fingerprint " +
-         fingerprint(readKey(launch.key)) +
-         "; this user's programs find it; at a station: scp " + host + ":" + launch.key +
-         " tread.key && export TREAD_KEY=$PWD/tread.key";
+         fingerprint(readKey(launch.key)) + "; this user's programs find it; at a station: scp " +
+         host + ":" + launch.key + " tread.key && export TREAD_KEY=$PWD/tread.key";
 }
 
 RunLock::RunLock(const std::string& path)
@@ -289,7 +288,8 @@ std::string defaultRunFolder(const std::string& name) {
     return std::string(state) + "/tread/" + name;
   if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
     return std::string(home) + "/.local/state/tread/" + name;
-  throw std::runtime_error("there is no HOME for the run folder; name one with --run DIR");
+  throw std::runtime_error(
+      "there is no HOME for the folder of states; name one with --run DIR, or --state DIR");
 }
 
 std::string findProgram(const std::string& word, const std::string& bin) {

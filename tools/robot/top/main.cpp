@@ -44,8 +44,10 @@ class Watch {
  public:
   Watch(BusAccess access, Monitor& monitor)
       : monitor_(monitor),
-        listener_(std::move(access), [&](const std::string& channel, const uint8_t* bytes, size_t size,
-                           int64_t now) { monitor_.take(channel, bytes, size, now); }) {}
+        listener_(std::move(access),
+                  [&](const std::string& channel, const uint8_t* bytes, size_t size, int64_t now) {
+                    monitor_.take(channel, bytes, size, now);
+                  }) {}
   void handle(int milliseconds) {
     listener_.handle(milliseconds);
     std::ifstream file("/proc/net/snmp");

@@ -18,7 +18,7 @@ constexpr double kWayStep = 0.15;            // [m] at the beginning
 constexpr double kWayPoints = 5000.0;        // after which the points lie farther apart
 constexpr int64_t kBatteryStep = 2'000'000;  // [us]
 
-constexpr size_t kMostWords = 400;           // [bytes] of an event
+constexpr size_t kMostWords = 400;  // [bytes] of an event
 
 template <class List>
 void keepNewest(List& list, size_t most, size_t& told) {

@@ -91,7 +91,8 @@ TEST_CASE("the key goes to every process of ours and to no other, and a bad one 
   CHECK(launched.pidOf(key) == launched.pidOf("p0.txt"));
 }
 
-TEST_CASE("a robot makes its key at its first start, keeps it, and drives without one only if told") {
+TEST_CASE(
+    "a robot makes its key at its first start, keeps it, and drives without one only if told") {
   const Launched robot({"good"}, TREAD_STAND_IN, "");
   const std::string key = (robot.run() / "key").string();
   // Where the host refuses the robot's network, nothing starts and there is nothing to see here.

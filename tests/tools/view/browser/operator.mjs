@@ -34,12 +34,12 @@ client.on("serverInfo", () => {
   const say = (message) => client.sendMessage(channel, new TextEncoder().encode(JSON.stringify({ ...message, seen })));
   let asked = -1e9;
   setInterval(() => {
-    if (motor === null) return;
     if (performance.now() > end) {
       console.log(`${heard} MOTOR, longest pause ${longest.toFixed(0)} ms, disarmed ${disarmed} times: ${[...reasons].join(" | ")}`);
       console.log("1 passed, 0 failed");
       process.exit(0);
     }
+    if (motor === null) return;
     say({ op: "alive" });
     if (performance.now() - asked < 4000) return;
     if (motor.bridge_state === 0 || motor.bridge_state === 4) { asked = performance.now(); say({ op: "arm" }); }
