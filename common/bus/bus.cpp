@@ -43,9 +43,8 @@ std::string remedyFor(SealVerdict verdict) {
 }  // namespace
 
 void Bus::setSealer(std::optional<Sealer> sealer) {
-  sealer_ = std::move(sealer);
-  foreign_ = sealer_ && !sealer_->session();
-  if (sealer_ && !foreign_) sealer_->refuseBefore(sealClock());
+  sealer_.reset();
+  if (sealer) sealer_.emplace(std::move(*sealer), sealClock());
 }
 
 std::vector<std::string> Bus::heard() const {
@@ -78,27 +77,8 @@ void Bus::receiveBeside(const std::string& channel, const uint8_t* bytes, size_t
     deliver(handler, channel, bytes, message);
 }
 
-OpenedSeal Bus::open(const std::string& channel, const uint8_t* bytes, size_t size) {
-  OpenedSeal opened = sealer_->open(channel, bytes, size, sealTime());
-  if (!foreign_ || opened.sent == 0) return opened;
-  const int64_t now = sealClock();
-  if (opened.verdict == SealVerdict::kOtherSession) {
-    other_heard_ = now;
-    if (now - session_heard_ < kSessionSilence) return opened;
-    // The robot was started again, or what was heard first was a recording that is over.
-    sealer_->forgetSession();
-    seal_clock_ = RobotClock();
-    other_heard_.reset();
-    opened = sealer_->open(channel, bytes, size, now);
-  }
-  session_heard_ = now;
-  // Whoever repeats old seals of a session cannot move its clock: the newest time counts.
-  seal_clock_.observe(opened.sent, now);
-  return opened;
-}
-
 bool Bus::hearsTwoSessions() const {
-  return other_heard_ && sealClock() - *other_heard_ < kSessionSilence;
+  return sealer_ && sealer_->hearsTwoSessions(sealClock());
 }
 
 std::optional<size_t> Bus::unseal(const std::string& channel, const Subscribed& subscribed,
@@ -119,7 +99,7 @@ std::optional<size_t> Bus::unseal(const std::string& channel, const Subscribed& 
     statistics_.sealed_unread |= without != size;
     return without;
   }
-  const OpenedSeal opened = open(channel, bytes, size);
+  const OpenedSeal opened = sealer_->open(channel, bytes, size, sealClock());
   if (opened.verdict == SealVerdict::kGood) return opened.size;
   trusted_ = false;
   if (subscribed.stops != nullptr && subscribed.stops(bytes, opened.size)) return opened.size;

@@ -11,8 +11,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "common/bus/bus_sealer.hpp"
 #include "common/bus/channels.hpp"
-#include "common/bus/robot_clock.hpp"
 #include "common/seal/seal.hpp"
 
 namespace tread {
@@ -79,7 +79,7 @@ class Bus {
     if (size < 0 || size > channel.max_bytes) return refuseOversized(channel, size);
     buffer_.resize(static_cast<size_t>(size));
     if (message.encode(buffer_.data(), 0, size) != size) return refuseOversized(channel, size);
-    if (sealer_) sealer_->seal(channel.name, buffer_, sealTime());
+    if (sealer_) sealer_->seal(channel.name, buffer_, sealClock());
     return send(channel.name, buffer_.data(), buffer_.size());
   }
 
@@ -157,17 +157,12 @@ class Bus {
     Message message{};
     return decodes(bytes, size, message) && stops(message);
   }
-  /// [us] after which a session that is silent is given up for another one.
-  static constexpr int64_t kSessionSilence = 1'000'000;
   struct Subscribed {
     std::deque<RawHandler> handlers;  ///< not moved when one subscribes while it runs
     bool (*stops)(const uint8_t* bytes, size_t size) = nullptr;  ///< null: nothing here stops
     size_t most = 0;  ///< [bytes] of the channel's largest message and its seal
   };
 
-  /// What the others' seals say now [us].
-  int64_t sealTime() const { return sealClock() + seal_clock_.offset().value_or(0); }
-  OpenedSeal open(const std::string& channel, const uint8_t* bytes, size_t size);
   void receiveBeside(const std::string& channel, const uint8_t* bytes, size_t size);
   void refuse(const std::string& channel, const std::string& why, const std::string& remedy);
   /// The message's size without its seal, or nothing if it is not taken.
@@ -200,11 +195,7 @@ class Bus {
 
   std::map<std::string, Subscribed> subscribed_;
   std::map<std::string, Subscribed> overheard_;
-  std::optional<Sealer> sealer_;
-  bool foreign_ = false;       ///< the sealer came without a session: from another host, perhaps
-  RobotClock seal_clock_;      ///< how far their seals are ahead of ours, where foreign
-  int64_t session_heard_ = 0;  ///< [us] of sealClock(), where foreign
-  std::optional<int64_t> other_heard_;  ///< [us] the same, of another session
+  std::optional<BusSealer> sealer_;
   bool trusted_ = true;  ///< whether the message that is handled was sealed, where it must be
   BusStatistics statistics_;
   int64_t stations_ = 0;

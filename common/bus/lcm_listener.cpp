@@ -12,15 +12,22 @@
 namespace tread {
 namespace {
 
-constexpr int kQueue = 2000;      // messages
+constexpr int kQueue = 500;       // messages, of up to 60 kB each
 constexpr int kMostAtOnce = 500;  // after which its owner has other things to do
+
+/// By it each program tries the bus at its start; nobody means anything by it.
+constexpr const char* kSelfTest = "LCM_SELF_TEST";
+
+/// [bytes] of any message of Tread and its seal.
+constexpr size_t kLargest = 65'000;
 
 }  // namespace
 
-LcmListener::LcmListener(const std::string& url, Take take)
-    : take_(std::move(take)), lcm_(std::make_unique<lcm::LCM>(url)) {
-  if (!openForMulticastOnly(*lcm_, url))
-    throw std::runtime_error("LCM cannot be used at '" + url + "'");
+LcmListener::LcmListener(BusAccess access, Take take)
+    : take_(std::move(take)), lcm_(std::make_unique<lcm::LCM>(access.url)) {
+  if (!openForMulticastOnly(*lcm_, access.url))
+    throw std::runtime_error("LCM cannot be used at '" + access.url + "'");
+  if (access.sealer) sealer_.emplace(std::move(*access.sealer), hostNow());
   lcm_->subscribe(".*", &LcmListener::hear, this)->setQueueCapacity(kQueue);
 }
 
@@ -32,7 +39,30 @@ void LcmListener::handle(int timeout_ms) {
 }
 
 void LcmListener::hear(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
-  take_(channel, static_cast<const uint8_t*>(buffer->data), buffer->data_size, hostNow());
+  const auto* const bytes = static_cast<const uint8_t*>(buffer->data);
+  const int64_t now = hostNow();
+  if (channel == kSelfTest) return;
+  if (buffer->data_size > kLargest) return refuse("too large");
+  size_t size = sizeWithoutSeal(bytes, buffer->data_size);
+  if (sealer_) {
+    const OpenedSeal opened = sealer_->open(channel, bytes, buffer->data_size, now);
+    if (opened.verdict != SealVerdict::kGood) return refuse(toWords(opened.verdict));
+    size = opened.size;
+  } else {
+    sealed_unread_ |= size != buffer->data_size;
+  }
+  take_(channel, bytes, size, now);
+}
+
+std::string LcmListener::doubt() const {
+  if (sealed_unread_)
+    return "the robot has a key and this program none, so nothing here is proven: --key FILE";
+  if (sealer_ && sealer_->hearsTwoSessions(hostNow()))
+    return "the robot is heard twice; one of the two is a recording: stop it";
+  std::string words;
+  for (const auto& [why, count] : refused_)
+    words += (words.empty() ? "" : ", ") + std::to_string(count) + " " + why;
+  return words.empty() ? "" : "messages not shown: " + words;
 }
 
 }  // namespace tread

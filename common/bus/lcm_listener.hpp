@@ -4,17 +4,21 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "common/bus/lcm_bus.hpp"
+
 namespace lcm {
-class LCM;
 struct ReceiveBuffer;
-}  // namespace lcm
+}
 
 namespace tread {
 
-/// Hears every message of an LCM bus as it is, sealed or not: for programs that only look.
+/// Hears every message of an LCM bus, without its seal: for programs that only look. With a key it
+/// passes on only what is sealed by it, and counts the rest.
 class LcmListener {
  public:
   /// `now`: CLOCK_MONOTONIC of this host at the receipt [us].
@@ -22,7 +26,7 @@ class LcmListener {
                                   int64_t now)>;
 
   /// Throws std::runtime_error with one clear line if LCM cannot be used.
-  LcmListener(const std::string& url, Take take);
+  LcmListener(BusAccess access, Take take);
   ~LcmListener();
   LcmListener(const LcmListener&) = delete;
   LcmListener& operator=(const LcmListener&) = delete;
@@ -30,11 +34,20 @@ class LcmListener {
   /// Waits for a message up to the timeout [ms] and takes it and those behind it.
   void handle(int timeout_ms);
 
+  /// Messages that were not passed on, by why: "unsealed", "replayed", "too large".
+  const std::map<std::string, int64_t>& refused() const { return refused_; }
+  /// What a person must know of how far to trust what is shown, in one line; empty = nothing.
+  std::string doubt() const;
+
  private:
   void hear(const lcm::ReceiveBuffer* buffer, const std::string& channel);
+  void refuse(const std::string& why) { ++refused_[why]; }
 
   Take take_;
   std::unique_ptr<lcm::LCM> lcm_;
+  std::optional<BusSealer> sealer_;
+  bool sealed_unread_ = false;  ///< without a key: others have one
+  std::map<std::string, int64_t> refused_;
 };
 
 }  // namespace tread

@@ -10,6 +10,10 @@
 namespace tread {
 namespace {
 
+/// Whoever sends messages can make up names without end; a robot has a few dozen.
+constexpr size_t kMostNames = 500;
+constexpr size_t kMostAborted = 10'000;  // executions
+
 struct StateWords {
   int16_t state;
   const char* words;
@@ -58,6 +62,9 @@ std::string withReason(const std::string& words, const std::string& reason) {
 std::vector<Event> EventTeller::take(const LogEvent& event) {
   now_ = event.utime;
   told_.clear();
+  if (states_.size() > kMostNames) states_.clear();
+  if (boots_.size() > kMostNames) boots_.clear();
+  if (aborted_.size() > kMostAborted) aborted_.erase(aborted_.begin());
   dispatch(
       event, [this](const auto& message) { hear(message); }, kMotor, kPlan, kHealth, kLearning,
       kExecution, kArm, kEstop, kGoal, kFence, kMark, kIns);

@@ -2,79 +2,22 @@
 // Copyright (c) 2026 The Tread authors
 #include "common/seal/key_file.hpp"
 
-#include <fcntl.h>
 #include <sodium.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
-#include <system_error>
+
+#include "common/seal/private_file.hpp"
 
 namespace tread {
 namespace {
 
 constexpr const char* kComment =
     "# A key of Tread: who reads this file can drive the robot. Made by tread-key new.\n";
-constexpr size_t kLargestFile = 4096;  // [bytes]
 
-[[noreturn]] void refuse(const std::string& path, const std::string& what,
-                         const std::string& remedy) {
-  throw std::runtime_error("key " + path + ": " + what + "; " + remedy);
-}
-
-std::string reason(int error) {
-  return std::generic_category().message(error);
-}
-
-/// A file that closes itself.
-class Descriptor {
- public:
-  explicit Descriptor(int descriptor) : descriptor_(descriptor) {}
-  ~Descriptor() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return descriptor_; }
-
- private:
-  int descriptor_;
-};
-
-std::string octal(mode_t mode) {
-  std::ostringstream text;
-  text << '0' << std::oct << (mode & 07777);
-  return text.str();
-}
-
-void requirePrivate(const std::string& path, const struct stat& entry) {
-  if (!S_ISREG(entry.st_mode)) refuse(path, "is no file", "name the file that tread-key new made");
-  if (entry.st_uid != ::geteuid())
-    refuse(path,
-           "belongs to user " + std::to_string(entry.st_uid) + ", not to user " +
-               std::to_string(::geteuid()) + " who starts this",
-           "chown it, or make another one with tread-key new");
-  if ((entry.st_mode & 077) != 0)
-    refuse(path, "others than its owner may use it (mode " + octal(entry.st_mode) + ")",
-           "chmod 600 " + path + ", and make a new one if somebody else may have read it");
-}
-
-/// Opened first and asked afterwards, so that it is the file that was looked at.
-std::string privateContent(const std::string& path) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
-  struct stat entry {};
-  if (file.get() < 0 || ::fstat(file.get(), &entry) != 0)
-    refuse(path, "cannot be read (" + reason(errno) + ")",
-           "check the path, or make one with tread-key new");
-  requirePrivate(path, entry);
-  std::string content(kLargestFile, '\0');
-  const ssize_t size = ::read(file.get(), content.data(), content.size());
-  if (size < 0) refuse(path, "cannot be read (" + reason(errno) + ")", "check the disk");
-  content.resize(static_cast<size_t>(size));
-  return content;
+PrivateFile keyFile(const std::string& path) {
+  return {"key", path, "make one with tread-key new"};
 }
 
 /// Whether the line is a key, which it reads then.
@@ -89,6 +32,15 @@ bool isKey(const std::string& line, SealKey& key) {
 
 void requireSodium() {
   if (sodium_init() < 0) throw std::runtime_error("libsodium cannot be used");
+}
+
+std::string newKeyText() {
+  requireSodium();
+  SealKey key;
+  randombytes_buf(key.bytes.data(), key.bytes.size());
+  char digits[2 * sizeof key.bytes + 1];
+  sodium_bin2hex(digits, sizeof digits, key.bytes.data(), key.bytes.size());
+  return kComment + std::string(digits) + "\n";
 }
 
 /// A hash of 64 bits.
@@ -121,7 +73,7 @@ uint64_t newSender() {
 
 SealKey readKey(const std::string& path) {
   requireSodium();
-  std::istringstream lines(privateContent(path));
+  std::istringstream lines(keyFile(path).read());
   SealKey key;
   int keys = 0;
   for (std::string line; std::getline(lines, line);) {
@@ -129,30 +81,17 @@ SealKey readKey(const std::string& path) {
     if (++keys > 1 || !isKey(line, key)) keys = 2;
   }
   if (keys != 1)
-    refuse(path, "holds no key (one line of 64 hexadecimal digits)", "make one with tread-key new");
+    keyFile(path).refuse("holds no key (one line of 64 hexadecimal digits)",
+                         "make one with tread-key new");
   return key;
 }
 
 void writeNewKey(const std::string& path) {
-  requireSodium();
-  SealKey key;
-  randombytes_buf(key.bytes.data(), key.bytes.size());
-  char digits[2 * sizeof key.bytes + 1];
-  sodium_bin2hex(digits, sizeof digits, key.bytes.data(), key.bytes.size());
-  const std::string text = kComment + std::string(digits) + "\n";
-  const Descriptor file(
-      ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600));
-  const int failure = errno;
-  if (file.get() < 0)
-    refuse(path, "cannot be made (" + reason(failure) + ")",
-           failure == EEXIST ? "an existing file is never overwritten: name another one"
-                             : "check the path and the rights");
-  if (::write(file.get(), text.data(), text.size()) != static_cast<ssize_t>(text.size()) ||
-      ::fsync(file.get()) != 0) {
-    const int error = errno;
-    ::unlink(path.c_str());
-    refuse(path, "cannot be written (" + reason(error) + ")", "check the disk");
-  }
+  keyFile(path).make(newKeyText());
+}
+
+bool ensureKey(const std::string& path) {
+  return keyFile(path).ensure(newKeyText());
 }
 
 std::string fingerprint(const SealKey& key) {

@@ -18,6 +18,10 @@ SealKey readKey(const std::string& path);
 /// where it cannot be written.
 void writeNewKey(const std::string& path);
 
+/// The same where there is no file yet, whoever else does so at the same time. True if this made
+/// it.
+bool ensureKey(const std::string& path);
+
 /// Tells keys apart without telling the key: "3f2a-90bc-17de-55a1".
 std::string fingerprint(const SealKey& key);
 

@@ -13,10 +13,10 @@
 #include "common/bus/lcm_listener.hpp"
 #include "common/bus/shell.hpp"
 #include "common/config/command_line.hpp"
-#include "common/seal/key_file.hpp"
-#include "tools/robot/launch/running_robots.hpp"
+#include "tools/robot/launch/host.hpp"
 #include "tools/robot/operator/command.hpp"
-#include "tools/robot/operator/console.hpp"
+#include "tools/robot/operator/live_console.hpp"
+#include "tools/view/certificate.hpp"
 #include "tools/view/view_server.hpp"
 
 namespace {
@@ -33,6 +33,7 @@ struct Arguments {
   std::string lcm_url;
   std::string key;
   std::string operator_name = operatorName();
+  std::string state;  ///< folder of the certificate; empty = the usual one
   bool look_only = false;
 };
 
@@ -53,28 +54,49 @@ bool isLoopback(const std::string& address) {
   return address.rfind("127.", 0) == 0 || address == "::1" || address == "localhost";
 }
 
+/// Takes "https://host:8443/robot/" apart; returns what is wrong with it, for CLI11.
+std::string addOrigin(const std::string& url, ServerSettings& settings) {
+  const size_t scheme = url.find("://");
+  const std::string name = url.substr(0, scheme);
+  const size_t host = scheme == std::string::npos ? url.size() : scheme + 3;
+  const size_t path = std::min(url.find_first_of("/?#", host), url.size());
+  if ((name != "http" && name != "https") || path == host ||
+      url.find_first_of("?#@ ", host) != std::string::npos)
+    return "'" + url + "' is no address of a page: https://HOST[:PORT][/PATH/] is needed";
+  settings.origins.push_back(url.substr(0, path));
+  if (path + 1 < url.size()) settings.paths.insert(url.substr(path));
+  return "";
+}
+
 void sayWhere(const ViewServer& server, const ServerSettings& settings) {
   const std::string token = settings.token.empty() ? "" : "?token=" + settings.token;
-  std::printf("tread-view: open http://%s:%d/%s\n", settings.address.c_str(), server.port(),
-              token.c_str());
-  std::printf("tread-view: Foxglove, Lichtblick: ws://%s:%d/%s\n", settings.address.c_str(),
-              server.port(), token.c_str());
+  const std::string place = settings.address + ":" + std::to_string(server.port()) + "/" + token;
+  const char* const secure = settings.certificate.empty() ? "" : "s";
+  std::printf("tread-view: open http%s://%s\n", secure, place.c_str());
+  std::printf("tread-view: Foxglove, Lichtblick: ws%s://%s\n", secure, place.c_str());
+  if (!settings.origins.empty())
+    std::printf("tread-view: by the proxy: its address with %s\n", token.c_str());
   std::fflush(stdout);
 }
 
-/// What the page operates with.
-struct Operating {
-  Operating(const launch::RunningRobot& robot, const std::string& name)
-      : bus(BusAccess{robot.lcm_url, robot.here ? hostSealer(robot.key) : stationSealer(robot.key)},
-            TimeSource::kHost),
-        console(bus, name, "by the page of tread-view") {}
-  LcmBus bus;
-  operators::OperatorConsole console;
-};
+/// Who listens to others must not tell them the token in clear.
+void protect(Arguments& arguments) {
+  ServerSettings& server = arguments.server;
+  const bool local = isLoopback(server.address);
+  // Whoever comes by a proxy seems to be at this machine.
+  if (server.token.empty() && (!local || !server.origins.empty())) server.token = newToken();
+  if (local) return;
+  const std::string folder =
+      arguments.state.empty() ? launch::defaultRunFolder("view") : arguments.state;
+  const Certificate certificate = ownCertificate(folder);
+  server.certificate = certificate.path;
+  std::printf("tread-view: certificate of its own%s, the browser asks once; SHA-256 %s\n",
+              certificate.made ? ", made now" : "", certificate.fingerprint.c_str());
+}
 
 void live(const Arguments& arguments, const std::atomic<bool>& stop) {
   const launch::RunningRobot robot = launch::findRobot(arguments.lcm_url, arguments.key);
-  auto operating = std::make_unique<Operating>(robot, arguments.operator_name);
+  operators::LiveConsole console(robot, arguments.operator_name, "by the page of tread-view");
   ServerSettings settings = arguments.server;
   settings.may_command = !arguments.look_only;
   // The key keeps strangers out: whoever may use this machine must not come in by the page.
@@ -83,33 +105,32 @@ void live(const Arguments& arguments, const std::atomic<bool>& stop) {
   ViewServer server(
       settings,
       [&](const std::string& json, uint64_t page) {
-        return operating->console.take(json, page, operating->bus.now());
+        return console->take(json, page, console.now());
       },
-      [&](uint64_t page) { operating->console.leave(page, operating->bus.now()); });
+      [&](uint64_t page) { console->leave(page, console.now()); });
 
-  LcmListener listener(robot.lcm_url, [&](const std::string& channel, const uint8_t* bytes,
-                                          size_t size, int64_t now) {
-    server.feed().take({now, channel, {bytes, bytes + sizeWithoutSeal(bytes, size)}});
-  });
+  LcmListener listener(
+      operators::accessTo(robot),
+      [&](const std::string& channel, const uint8_t* bytes, size_t size, int64_t now) {
+        server.feed().take({now, channel, {bytes, bytes + size}});
+      });
   sayWhere(server, settings);
   std::string told;
   double told_at = 0.0;
   for (double last = secondsNow(); !stop;) {
     listener.handle(kWaitMs);
-    operating->bus.handle(0);
-    operating->console.step(operating->bus.now());
-    if (operating->console.worn())
-      operating = std::make_unique<Operating>(robot, arguments.operator_name);
-
+    console.step();
     const double now = secondsNow();
     server.step(now - last);
     last = now;
     // A goal's progress changes with every look, and nobody reads that fast.
-    const std::string words = operating->console.words();
-    if (words == told || now - told_at < kConsolePeriod) continue;
-    server.tell(0, "console: " + words);
-    told = words;
+    if (now - told_at < kConsolePeriod) continue;
     told_at = now;
+    server.feed().setDoubt(listener.doubt());
+    const std::string words = console->words();
+    if (words == told) continue;
+    server.tell("console: " + words);
+    told = words;
   }
 }
 
@@ -128,7 +149,8 @@ void replay(const Arguments& arguments, const std::atomic<bool>& stop) {
   }
 }
 
-int run(const Arguments& arguments) {
+int run(Arguments& arguments) {
+  protect(arguments);
   const std::atomic<bool>& stop = stopRequest(0);
   arguments.logs.empty() ? live(arguments, stop) : replay(arguments, stop);
   return 0;
@@ -153,15 +175,25 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option(
       "--token", arguments.server.token,
-      "asked of every viewer; default: none on this machine, unless the robot has a key; else "
-      "a new one");
+      "asked of every viewer; default: none on this machine, unless the robot has a key or a proxy "
+      "is named; else a new one");
+  app.add_option_function<std::vector<std::string>>(
+         "--origin",
+         [&](const std::vector<std::string>& urls) {
+           for (const std::string& url : urls)
+             if (const std::string wrong = addOrigin(url, arguments.server); !wrong.empty())
+               throw CLI::ValidationError("--origin", wrong);
+         },
+         "address of the page as a browser sees it behind a proxy; from there it operates, too")
+      ->expected(1)
+      ->take_all();
+  app.add_option("--state", arguments.state,
+                 "folder of the certificate for other machines; default ~/.local/state/tread/view");
   app.add_flag("--look-only", arguments.look_only, "no page operates the robot");
   app.add_option("--operator", arguments.operator_name, operators::kOperatorHelp)
       ->capture_default_str();
   app.add_option("--lcm-url", arguments.lcm_url, operators::kUrlHelp);
   addKeyOption(app, arguments.key);
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
-  if (arguments.server.token.empty() && !isLoopback(arguments.server.address))
-    arguments.server.token = newToken();
   return runProgram("tread-view", [&] { return run(arguments); });
 }

@@ -7,23 +7,41 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
-#include <deque>
 #include <list>
 #include <map>
-#include <set>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
+
+#include "tools/view/feed/frame_queue.hpp"
 
 namespace tread::view {
 namespace {
 
 using Json = nlohmann::json;
 
+// What viewers may cost. One that wants more waits, gets the newest only, or is closed.
+constexpr size_t kMostClients = 32;
+constexpr size_t kMostPages = 40;      // clients and, beside them, pages of our own
+constexpr double kAcceptRate = 100.0;  // [1/s] new connections
+constexpr double kAcceptBurst = 200.0;
 constexpr size_t kLargestRequest = 1 << 16;  // [bytes] of a client
-constexpr size_t kCrowded = 64;              // frames that wait, from which on older ones give way
+constexpr double kRequestRate = 32'000.0;    // [bytes/s] of a client
+constexpr double kRequestBurst = 128'000.0;  // [bytes]
+constexpr size_t kLeastRequest = 200;        // [bytes] that each request counts at least
+constexpr size_t kMostTopics = 16;           // of a client's own
+constexpr size_t kLongestTopic = 64;         // [bytes]
+constexpr double kSendRate = 12e6;           // [bytes/s] to all but who operates the robot
+constexpr double kSendBurst = 1e6;           // [bytes]
+constexpr size_t kPiece = 65'536;            // [bytes] for a client in its turn
+constexpr size_t kReceiveBuffer = 4096;      // [bytes]
 constexpr size_t kHttpPiece = 16384;         // [bytes]
-constexpr uint32_t kTimePart = UINT32_MAX;   // no channel has this number
+
+// No channels have these numbers: a text for one client, and what is newest for all.
+constexpr uint32_t kText = UINT32_MAX;
+constexpr uint32_t kTime = UINT32_MAX - 1;
+constexpr uint32_t kWords = UINT32_MAX - 2;
+
 constexpr const char* kCommandTopic = "view/command";
 constexpr const char* kControlTopic = "view/control";
 
@@ -73,31 +91,21 @@ bool isLoopbackName(const std::string& host) {
 
 /// One WebSocket of a viewer.
 struct ViewServer::Client {
-  struct Frame {
-    std::string bytes;
-    bool binary = false;
-    std::pair<uint32_t, uint64_t> part{0, 0};  ///< channel and part; 0 = may not be left out
-  };
   lws* socket = nullptr;
   uint64_t number = 0;
   bool may_command = false;
+  bool operates = false;                       ///< has taken the robot: it does not wait for others
+  bool asked = false;                          ///< libwebsockets says when the line takes more
   std::map<uint32_t, uint32_t> subscriptions;  ///< by channel
   std::map<uint32_t, std::string> topics;      ///< its own channels
-  std::deque<Frame> frames;
+  FrameQueue frames;
   std::string received;
+  Allowance requests{kRequestRate, kRequestBurst};
 
-  void push(Frame frame) {
-    if (frames.size() >= kCrowded && frame.part.first != 0) {
-      const auto older = std::find_if(frames.begin() + 1, frames.end(), [&](const Frame& waiting) {
-        return waiting.part == frame.part;
-      });
-      if (older != frames.end()) {
-        *older = std::move(frame);
-        return;
-      }
-    }
-    frames.push_back(std::move(frame));
-    lws_callback_on_writable(socket);
+  /// One that is behind has other worries.
+  void pushText(std::string text) {
+    if (!frames.isCrowded())
+      frames.push({{kText, 0}, 0, std::make_shared<const std::string>(std::move(text)), false});
   }
 };
 
@@ -117,12 +125,15 @@ struct ViewServer::Sockets {
 
   int handle(lws* socket, lws_callback_reasons reason, void* user, void* in, size_t size) {
     switch (reason) {
+      case LWS_CALLBACK_FILTER_NETWORK_CONNECTION:
+        accepts.use(1.0);
+        return accepts.left() < 0.0 ? -1 : 0;
       case LWS_CALLBACK_HTTP:
         return http(socket, static_cast<size_t*>(user));
       case LWS_CALLBACK_HTTP_WRITEABLE:
         return httpBody(socket, static_cast<size_t*>(user));
       case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
-        return allowed(socket) ? 0 : -1;
+        return allowed(socket) && hasRoom(socket) ? 0 : -1;
       case LWS_CALLBACK_ESTABLISHED:
         open(socket);
         return 0;
@@ -138,18 +149,33 @@ struct ViewServer::Sockets {
     }
   }
 
-  /// A stranger's page in the same browser must not talk to the robot: without a token only those
-  /// who name this machine are let in.
+  /// A stranger's page in the same browser must not even listen: without a token only those who
+  /// name this machine are let in, and only pages that came from here.
   bool allowed(lws* socket) const {
     const ServerSettings& settings = server.settings_;
     if (!settings.token.empty()) return sameText(argumentOf(socket, "token"), settings.token);
-    return isLoopbackName(headerOf(socket, WSI_TOKEN_HOST));
+    return isLoopbackName(headerOf(socket, WSI_TOKEN_HOST)) && isOurs(socket);
+  }
+
+  /// Whether no page asks, or one that was fetched from here.
+  bool isOurs(lws* socket) const {
+    const std::string origin = headerOf(socket, WSI_TOKEN_ORIGIN);
+    const std::vector<std::string>& named = server.settings_.origins;
+    return origin.empty() || hostOf(origin) == headerOf(socket, WSI_TOKEN_HOST) ||
+           std::find(named.begin(), named.end(), origin) != named.end();
+  }
+
+  /// Programs that fill all places must not keep the operator's page out.
+  bool hasRoom(lws* socket) const {
+    const bool page = isOurs(socket) && !headerOf(socket, WSI_TOKEN_ORIGIN).empty();
+    return clients.size() < (page ? kMostPages : kMostClients);
   }
 
   int http(lws* socket, size_t* sent) const {
     const bool ours = allowed(socket);
     const std::string path = headerOf(socket, WSI_TOKEN_GET_URI);
-    if (!ours || (path != "/" && path != "/index.html")) {
+    if (!ours ||
+        (path != "/" && path != "/index.html" && server.settings_.paths.count(path) == 0)) {
       lws_return_http_status(socket, ours ? HTTP_STATUS_NOT_FOUND : HTTP_STATUS_FORBIDDEN,
                              ours ? "only the page is here"
                                   : "the address must end with ?token=..., as tread-view said");
@@ -198,15 +224,12 @@ struct ViewServer::Sockets {
     Client& client = clients.back();
     client.socket = socket;
     client.number = ++numbers;
-    // Only our own page operates the robot; another site's may look.
-    const std::string origin = headerOf(socket, WSI_TOKEN_ORIGIN);
-    const bool same = origin.empty() || hostOf(origin) == headerOf(socket, WSI_TOKEN_HOST);
-    client.may_command = server.settings_.may_command && same;
-    client.push({serverInfo("tread-view", client.may_command || server.feed_.hasLog(),
-                            server.feed_.hasLog(), server.session_),
-                 false,
-                 {}});
-    client.push({advertisement(server.feed_.channels()), false, {}});
+    // Only our own page operates the robot; another site's, with the token, may look.
+    client.may_command = server.settings_.may_command && isOurs(socket);
+    client.pushText(serverInfo("tread-view", client.may_command || server.feed_.hasLog(),
+                               server.feed_.hasLog(), server.session_));
+    client.frames.push({{kText, 0}, 0, server.advertisement_, false});
+    if (!server.words_.empty()) client.frames.pushNewest({kWords, 0});
   }
 
   void close(lws* socket) {
@@ -226,25 +249,67 @@ struct ViewServer::Sockets {
     if (lws_is_final_fragment(socket) == 0 || lws_remaining_packet_payload(socket) > 0) return 0;
     const std::string text = std::move(client->received);
     client->received.clear();
+    client->requests.use(static_cast<double>(std::max(kLeastRequest, text.size())));
+    if (client->requests.left() < 0.0) return refuse(socket, "too many requests");
     server.receive(*client, text, lws_frame_is_binary(socket) != 0);
     return 0;
+  }
+
+  static int refuse(lws* socket, std::string why) {
+    lws_close_reason(socket, LWS_CLOSE_STATUS_POLICY_VIOLATION,
+                     reinterpret_cast<unsigned char*>(why.data()), why.size());
+    return -1;
+  }
+
+  /// Says whose turn it is: who operates the robot, and of the others as many as the line and the
+  /// processor have room for, one after the other.
+  void giveTurns() {
+    double left = sends.left();
+    const size_t count = clients.size();
+    auto client = clients.begin();
+    for (size_t i = 0; i < count; ++i) {
+      const auto next = std::next(client);
+      if (!client->asked && !client->frames.empty() && (client->operates || left > 0.0)) {
+        client->asked = true;
+        lws_callback_on_writable(client->socket);
+        if (!client->operates) left -= kPiece;
+        clients.splice(clients.end(), clients, client);
+      }
+      client = next;
+    }
+  }
+
+  /// What goes over the line for a frame that waited; empty = nothing any more.
+  std::string bytesOf(const Client& client, const Frame& frame) {
+    const auto& [channel, part] = frame.part;
+    if (channel == kText) return *frame.payload;
+    if (channel == kWords) return statusMessage(0, server.words_);
+    if (channel == kTime) return timeFrame(server.feed_.now());
+    const auto subscription = client.subscriptions.find(channel);
+    if (subscription == client.subscriptions.end()) return "";
+    if (frame.payload) return messageFrame(subscription->second, frame.time, *frame.payload);
+    const std::optional<FeedMessage> newest = server.feed_.newest(channel, part);
+    return newest ? messageFrame(subscription->second, newest->time, *newest->payload) : "";
   }
 
   int write(lws* socket) {
     Client* const client = find(socket);
     if (client == nullptr) return 0;
-    // As much as the line takes at once: a seek answers with a hundred frames.
-    while (!client->frames.empty()) {
-      const Client::Frame frame = std::move(client->frames.front());
-      client->frames.pop_front();
-      buffer.resize(LWS_PRE + frame.bytes.size());
-      std::memcpy(buffer.data() + LWS_PRE, frame.bytes.data(), frame.bytes.size());
-      const int written = lws_write(socket, buffer.data() + LWS_PRE, frame.bytes.size(),
-                                    frame.binary ? LWS_WRITE_BINARY : LWS_WRITE_TEXT);
-      if (written < static_cast<int>(frame.bytes.size())) return -1;
+    client->asked = false;
+    for (size_t sent = 0; !client->frames.empty() && sent < kPiece;) {
+      const Frame frame = client->frames.pop();
+      const std::string bytes = bytesOf(*client, frame);
+      if (bytes.empty()) continue;
+      const bool text = frame.part.first == kText || frame.part.first == kWords;
+      buffer.resize(LWS_PRE + bytes.size());
+      std::memcpy(buffer.data() + LWS_PRE, bytes.data(), bytes.size());
+      const int written = lws_write(socket, buffer.data() + LWS_PRE, bytes.size(),
+                                    text ? LWS_WRITE_TEXT : LWS_WRITE_BINARY);
+      if (written < static_cast<int>(bytes.size())) return -1;
+      sent += bytes.size();
+      if (!client->operates) sends.use(static_cast<double>(bytes.size()));
       if (lws_send_pipe_choked(socket) != 0) break;
     }
-    if (!client->frames.empty()) lws_callback_on_writable(socket);
     return 0;
   }
 
@@ -254,6 +319,8 @@ struct ViewServer::Sockets {
   std::list<Client> clients;
   uint64_t numbers = 0;
   std::vector<unsigned char> buffer;
+  Allowance accepts{kAcceptRate, kAcceptBurst};
+  Allowance sends{kSendRate, kSendBurst};
 };
 
 ViewServer::ViewServer(const ServerSettings& settings, Command command, Leave leave)
@@ -261,6 +328,7 @@ ViewServer::ViewServer(const ServerSettings& settings, Command command, Leave le
       command_(std::move(command)),
       leave_(std::move(leave)),
       session_(std::to_string(std::chrono::system_clock::now().time_since_epoch().count())),
+      advertisement_(std::make_shared<const std::string>(advertisement(OfferedChannels()))),
       feed_([this](uint32_t channel) { return wanted(channel); },
             [this](const FeedMessage& message) { send(message); }),
       sockets_(std::make_unique<Sockets>(*this)) {
@@ -268,7 +336,7 @@ ViewServer::ViewServer(const ServerSettings& settings, Command command, Leave le
   // Without a subprotocol it is a browser that asks for the page.
   sockets_->protocols.push_back({"http", &Sockets::called, sizeof(size_t), 0, 0, nullptr, 0});
   for (const char* name : kSubprotocols)
-    sockets_->protocols.push_back({name, &Sockets::called, 0, kLargestRequest, 0, nullptr, 0});
+    sockets_->protocols.push_back({name, &Sockets::called, 0, kReceiveBuffer, 0, nullptr, 0});
   sockets_->protocols.push_back({nullptr, nullptr, 0, 0, 0, nullptr, 0});
   lws_context_creation_info info{};
   info.port = settings_.port;
@@ -277,6 +345,10 @@ ViewServer::ViewServer(const ServerSettings& settings, Command command, Leave le
   info.user = sockets_.get();
   info.gid = info.uid = static_cast<decltype(info.gid)>(-1);
   info.options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS;
+  if (!settings_.certificate.empty()) {
+    info.options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
+    info.ssl_cert_filepath = info.ssl_private_key_filepath = settings_.certificate.c_str();
+  }
   sockets_->context = lws_create_context(&info);
   lws_vhost* const host =
       sockets_->context == nullptr ? nullptr : lws_create_vhost(sockets_->context, &info);
@@ -296,17 +368,19 @@ void ViewServer::step(double elapsed) {
   feed_.step(elapsed);
   if (feed_.hasLog() && feed_.now() != told_time_) {
     told_time_ = feed_.now();
-    for (Client& client : sockets_->clients)
-      client.push({timeFrame(told_time_), true, {kTimePart, 0}});
+    for (Client& client : sockets_->clients) client.frames.pushNewest({kTime, 0});
   }
-
-  // Negative: without waiting. Each call serves what is ready; several frames may be waiting.
-  for (int i = 0; i < 8; ++i) lws_service(sockets_->context, -1);
+  sockets_->accepts.wait(elapsed);
+  sockets_->sends.wait(elapsed);
+  for (Client& client : sockets_->clients) client.requests.wait(elapsed);
+  sockets_->giveTurns();
+  // Negative: without waiting. Each call serves what is ready; several requests may be waiting.
+  for (int i = 0; i < 4; ++i) lws_service(sockets_->context, -1);
 }
 
-void ViewServer::tell(int level, const std::string& words) {
-  const std::string text = statusMessage(level, words);
-  for (Client& client : sockets_->clients) client.push({text, false, {}});
+void ViewServer::tell(const std::string& words) {
+  words_ = words;
+  for (Client& client : sockets_->clients) client.frames.pushNewest({kWords, 0});
 }
 
 bool ViewServer::wanted(uint32_t channel) const {
@@ -317,15 +391,10 @@ bool ViewServer::wanted(uint32_t channel) const {
 
 void ViewServer::send(const FeedMessage& message) {
   if (sockets_ == nullptr) return;
-  for (Client& client : sockets_->clients) {
-    const auto subscription = client.subscriptions.find(message.channel);
-    if (subscription == client.subscriptions.end()) continue;
-
-    // What only tells news cannot be replaced by later news.
-    std::pair<uint32_t, uint64_t> part{message.channel, message.part};
-    if (message.is_news) part = {0, 0};
-    client.push({messageFrame(subscription->second, message.time, *message.payload), true, part});
-  }
+  for (Client& client : sockets_->clients)
+    if (client.subscriptions.count(message.channel) > 0)
+      client.frames.push(
+          {{message.channel, message.part}, message.time, message.payload, message.is_news});
 }
 
 void ViewServer::receive(Client& client, const std::string& text, bool binary) {
@@ -338,20 +407,24 @@ void ViewServer::receive(Client& client, const std::string& text, bool binary) {
 }
 
 void ViewServer::serve(Client& client, const ClientRequest& request) {
-  if (!request.problem.empty()) client.push({statusMessage(1, request.problem), false, {}});
+  if (!request.problem.empty()) client.pushText(statusMessage(1, request.problem));
   for (const auto& [subscription, channel] : request.subscribe) {
     if (channel == 0 || channel > feed_.channels().all().size()) {
-      client.push({statusMessage(1, "there is no channel " + std::to_string(channel)), false, {}});
+      client.pushText(statusMessage(1, "there is no channel " + std::to_string(channel)));
       continue;
     }
+    // Once more is the same subscription by another name.
+    const bool first = client.subscriptions.count(channel) == 0;
     client.subscriptions[channel] = subscription;
-    for (const FeedMessage& message : feed_.stateOf(channel))
-      client.push({messageFrame(subscription, message.time, *message.payload), true, {}});
+    if (!first) continue;
+    for (const uint64_t part : feed_.partsOf(channel)) client.frames.pushNewest({channel, part});
   }
   for (const uint32_t subscription : request.unsubscribe)
     for (auto entry = client.subscriptions.begin(); entry != client.subscriptions.end();)
       entry = entry->second == subscription ? client.subscriptions.erase(entry) : std::next(entry);
-  for (const auto& [id, topic] : request.advertise) client.topics[id] = topic;
+  for (const auto& [id, topic] : request.advertise)
+    if (client.topics.size() < kMostTopics || client.topics.count(id) > 0)
+      client.topics[id] = topic.substr(0, kLongestTopic);
   for (const uint32_t id : request.unadvertise) client.topics.erase(id);
 }
 
@@ -360,6 +433,7 @@ void ViewServer::control(Client& client, const std::string& topic, const std::st
   if (topic == kCommandTopic) {
     problem = client.may_command ? command_(payload, client.number)
                                  : "this page may look, but not operate the robot";
+    client.operates |= problem.empty();
   } else if (topic == kControlTopic) {
     try {
       const Json json = Json::parse(payload);
@@ -374,7 +448,7 @@ void ViewServer::control(Client& client, const std::string& topic, const std::st
   } else {
     problem = "nobody listens to " + topic + " here";
   }
-  if (!problem.empty()) client.push({statusMessage(1, problem), false, {}});
+  if (!problem.empty()) client.pushText(statusMessage(1, problem));
 }
 
 }  // namespace tread::view

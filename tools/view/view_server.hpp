@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "tools/view/feed/feed.hpp"
 #include "tools/view/feed/protocol.hpp"
@@ -22,11 +24,17 @@ struct ServerSettings {
   int port = 8765;          ///< 0 = any that is free
   std::string token;        ///< asked of everybody; empty = none, for this machine alone
   bool may_command = true;  ///< pages may operate the robot
+  /// Where else pages of ours come from ("https://host"), and under which paths a proxy asks for
+  /// them.
+  std::vector<std::string> origins;
+  std::set<std::string> paths;
+  std::string
+      certificate;  ///< PEM file with its key; empty = not encrypted, for this machine alone
 };
 
 /// Serves the page by HTTP and the feed by WebSocket (the Foxglove protocol), with libwebsockets.
 /** One thread: step() does all. A slow viewer gets the newest of each channel's parts, and never
- * holds up the others. */
+ * holds up the others. What viewers may cost together is limited: places, requests, bytes. */
 class ViewServer {
  public:
   /// `command`: of a page, with the page's number; returns what is wrong with it, empty = taken.
@@ -42,8 +50,8 @@ class ViewServer {
   Feed& feed() { return feed_; }
   /// Serves what is due without waiting. `elapsed` [s] since the last call.
   void step(double elapsed);
-  /// Tells all pages in a line how things are.
-  void tell(int level, const std::string& words);
+  /// Tells all pages in a line how things are; the newest counts.
+  void tell(const std::string& words);
   int port() const { return port_; }
 
  private:
@@ -61,6 +69,8 @@ class ViewServer {
   Leave leave_;
   std::string session_;
   int port_ = 0;
+  std::string words_;  ///< told last
+  std::shared_ptr<const std::string> advertisement_;
   int64_t told_time_ = 0;  ///< [us] of a log, told to viewers last
   Feed feed_;
   std::unique_ptr<Sockets> sockets_;

@@ -55,6 +55,14 @@ void writeLog(const std::string& path) {
   }
 }
 
+/// What a viewer of a channel gets at once.
+std::vector<FeedMessage> stateOf(Feed& feed, const char* topic) {
+  std::vector<FeedMessage> state;
+  const uint32_t channel = feed.channels().find(topic)->id;
+  for (const uint64_t part : feed.partsOf(channel)) state.push_back(*feed.newest(channel, part));
+  return state;
+}
+
 /// A viewer that subscribes to everything and keeps what came.
 struct Viewer {
   std::vector<FeedMessage> got;
@@ -122,12 +130,12 @@ TEST_CASE("who comes later gets the state at once, and the history from the begi
   viewer.feed.take(event);
   viewer.feed.take(eventOf(kMap, tileAt(2, 6, kFree)));
   viewer.feed.take(eventOf(kMap, tileAt(1, 7, kObstacle)));
-  CHECK(viewer.feed.stateOf(viewer.feed.channels().find("MAP")->id).size() == 2);
+  CHECK(stateOf(viewer.feed, "MAP").size() == 2);
   auto motor = blank<motor_t>();
   motor.bridge_state = motor_t::STATE_ESTOP;
   motor.state_reason = "a person in the way";
   viewer.feed.take(eventOf(kMotor, motor));
-  const auto history = viewer.feed.stateOf(viewer.feed.channels().find("view/history")->id);
+  const auto history = stateOf(viewer.feed, "view/history");
   REQUIRE(history.size() == 1);
   const Json told = Json::parse(*history[0].payload);
   REQUIRE(told["events"].size() == 1);
@@ -140,7 +148,7 @@ TEST_CASE("the history of a log holds what comes later, so that one can go there
   writeLog(folder.path("drive.lcmlog"));
   Viewer viewer;
   viewer.feed.openLogs({folder.path("drive.lcmlog")});
-  const auto history = viewer.feed.stateOf(viewer.feed.channels().find("view/history")->id);
+  const auto history = stateOf(viewer.feed, "view/history");
   const Json told = Json::parse(*history.at(0).payload);
   REQUIRE(told["events"].size() == 1);
   CHECK(told["events"][0][0] == 8'000'000);
@@ -159,14 +167,14 @@ TEST_CASE("who looks at the scene late, or goes back in time, gets all of it") {
   CHECK(got.size() <= 2);  // where the playback is
   looks = true;
   const uint32_t map = feed.channels().find("scene/map")->id;
-  CHECK(feed.stateOf(map).size() == 1);
-  CHECK(feed.stateOf(feed.channels().find("scene/tf")->id).size() == 1);
+  CHECK(stateOf(feed, "scene/map").size() == 1);
+  CHECK(stateOf(feed, "scene/tf").size() == 1);
   got.clear();
   feed.seek(3'050'000, 2);
   const auto drawn = std::count_if(
       got.begin(), got.end(), [&](const FeedMessage& message) { return message.channel == map; });
   CHECK(drawn >= 1);
-  const auto transform = feed.stateOf(feed.channels().find("scene/tf")->id);
+  const auto transform = stateOf(feed, "scene/tf");
   REQUIRE(transform.size() == 1);
   CHECK(Json::parse(*transform[0].payload)["translation"]["x"] == 2.0);
 }
@@ -178,11 +186,55 @@ TEST_CASE("two fences are two parts, and news replace no news") {
     fence.fence_name = name;
     viewer.feed.take(eventOf(kFence, fence));
   }
-  CHECK(viewer.feed.stateOf(viewer.feed.channels().find("FENCE")->id).size() == 2);
+  CHECK(stateOf(viewer.feed, "FENCE").size() == 2);
   viewer.feed.step(1.0);
   for (const FeedMessage& message : viewer.got)
     CHECK(message.is_news == (message.channel == viewer.feed.channels().find("view/history")->id ||
                               message.channel == viewer.feed.channels().find("scene/events")->id));
+}
+
+TEST_CASE("names, counters and channels that somebody makes up fill no memory") {
+  Viewer viewer;
+  auto health = blank<health_t>();
+  health.health_state = health_t::HEALTH_DEGRADED;
+  size_t largest = 0;
+  for (int i = 0; i < 30'000; ++i) {
+    health.utime = i;
+    health.process = "process " + std::to_string(i);
+    health.health_reason = std::to_string(i) + std::string(4000, 'x');
+    const LogEvent event = eventOf(kHealth, health);
+    viewer.feed.take(event);
+    viewer.feed.take({i, "CHANNEL_" + std::to_string(i), event.bytes});
+    viewer.got.clear();
+    if (i % 100 == 0)
+      largest =
+          std::max(largest, viewer.feed.partsOf(viewer.feed.channels().find("HEALTH")->id).size());
+  }
+  CHECK(largest * health.health_reason.size() < 5'000'000);
+  const auto history = stateOf(viewer.feed, "view/history");
+  CHECK(history.at(0).payload->size() < 2'500'000);
+  const Json told = Json::parse(*history.at(0).payload);
+  CHECK(told["events"].size() >= 2000);
+  CHECK(told["events"].size() <= 4000);
+  // The newest stay.
+  CHECK(told["events"].back()[2] == "process 29999");
+}
+
+TEST_CASE("news come once, also to those who ask for the whole meanwhile") {
+  Viewer viewer;
+  auto motor = blank<motor_t>();
+  for (int i = 0; i < 4100; ++i) {
+    motor.state_reason = std::to_string(i);
+    viewer.feed.take(eventOf(kMotor, motor));
+    if (i % 1000 == 0) viewer.feed.step(1.0);
+  }
+  stateOf(viewer.feed, "view/history");
+  viewer.feed.step(1.0);
+  size_t news = 0;
+  const uint32_t id = viewer.feed.channels().find("view/history")->id;
+  for (const FeedMessage& message : viewer.got)
+    if (message.channel == id) news += Json::parse(*message.payload)["events"].size();
+  CHECK(news == 4100);
 }
 
 TEST_CASE("nothing is turned into JSON that nobody wants") {

@@ -4,16 +4,25 @@
 // the format's checker.
 #include <catch2/catch.hpp>
 
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "common/messages/blank.hpp"
+#include "common/seal/key_file.hpp"
 #include "tests/helpers.hpp"
 #include "tests/system/process.hpp"
 #include "tests/system/robot_run.hpp"
+#include "tests/system/stall_watch.hpp"
 #include "tests/system/worlds.hpp"
 #include "tests/tools/called_program.hpp"
 #include "tests/tools/missions/shipped_robot.hpp"
 #include "tools/missions/report.hpp"
+#include "tools/view/certificate.hpp"
 
 using namespace tread;
 using namespace tread::testing;
@@ -49,7 +58,7 @@ class View {
     for (int i = 0; i < 2000 && url_.empty(); ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
       const std::string text = contentOf(output);
-      const size_t at = text.find("open http://"), end = text.find('\n', at);
+      const size_t at = text.find("open http"), end = text.find('\n', at);
       if (at != std::string::npos && end != std::string::npos)
         url_ = text.substr(at + 5, end - at - 5);
     }
@@ -64,6 +73,27 @@ class View {
   std::unique_ptr<Process> process_;
   std::string url_;
 };
+
+/// The most memory that a process has had so far [bytes].
+int64_t peakMemory(pid_t pid) {
+  const std::string status = contentOf("/proc/" + std::to_string(pid) + "/status");
+  const size_t at = status.find("VmHWM:");
+  return at == std::string::npos ? 0 : 1024 * std::atoll(status.c_str() + at + 6);
+}
+
+/// One that nobody listens at now.
+int freePort() {
+  const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in place{};
+  place.sin_family = AF_INET;
+  place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof place;
+  auto* const generic = reinterpret_cast<sockaddr*>(&place);
+  REQUIRE(::bind(socket, generic, size) == 0);
+  REQUIRE(::getsockname(socket, generic, &size) == 0);
+  ::close(socket);
+  return ntohs(place.sin_port);
+}
 
 /// Runs a script of node; `during` is called every 50 ms with what it has printed.
 template <class During>
@@ -130,7 +160,9 @@ TEST_CASE(
   run.startAll();
   REQUIRE(run.until(20.0, [&] { return run.plan().any() && run.ins().any(); }));
   View view(folder, {"--lcm-url", run.url(), "--operator", "page"});
-  runScript(folder, "origin.mjs", {view.url()});
+  const OwnFolder elsewhere;
+  const View asking(elsewhere, {"--lcm-url", run.url(), "--token", "secret"});
+  runScript(folder, "origin.mjs", {view.url(), asking.url()});
   bool killed = false;
   runScript(folder, "page.mjs", {view.url(), "live", folder.path("live.png")},
             [&](const std::string& printed) {
@@ -139,6 +171,69 @@ TEST_CASE(
               killed = true;
             });
   CHECK(killed);
+}
+
+TEST_CASE("of a robot with a key the page is shown what is sealed by it, and nothing else") {
+  const OwnFolder folder;
+  const std::string key = folder.path("key"), url = ownLcmUrl();
+  writeNewKey(key);
+  const View view(folder, {"--lcm-url", url, "--key", key});
+  LcmBus stranger(url, TimeSource::kHost);
+  LcmBus robot(BusAccess{url, hostSealer(key)}, TimeSource::kHost);
+  auto motor = blank<motor_t>();
+  motor.bridge_state = motor_t::STATE_DRIVING;
+  // The robot is heard at last only, so that a forged message could be the first.
+  for (LcmBus* const sender : {&stranger, &robot}) {
+    const std::string output = folder.path(sender == &robot ? "robot.txt" : "stranger.txt");
+    Process page("/usr/bin/env",
+                 {"node", kScripts + "operator.mjs", TREAD_PAGE_MODULES, view.url(), "4"}, output);
+    for (int i = 0; i < 120 || page.running(); ++i) {
+      motor.utime = sender->now();
+      ++motor.seq;
+      sender->publish(kMotor, motor);
+      page.waitFor(0.04);
+    }
+    CAPTURE(contentOf(output));
+    CHECK(page.exitCode() == 0);
+    CHECK((contentOf(output).find("\n0 MOTOR") == std::string::npos &&
+           contentOf(output).rfind("0 MOTOR", 0) == std::string::npos) == (sender == &robot));
+  }
+}
+
+TEST_CASE("viewers without end cost neither memory nor the robot's drive") {
+  // For longer: TREAD_FLOOD_SECONDS=60.
+  const char* const asked = std::getenv("TREAD_FLOOD_SECONDS");
+  const double seconds = asked != nullptr ? std::atof(asked) : 5.0;
+  const OwnFolder folder;
+  RobotRun run(kField, "[-20, 0, 0]");
+  run.startAll();
+  REQUIRE(run.until(20.0, [&] { return run.plan().any() && run.ins().any(); }));
+  View view(folder, {"--lcm-url", run.url(), "--operator", "page"});
+  const std::string output = folder.path("operator.txt");
+  Process page("/usr/bin/env",
+               {"node", kScripts + "operator.mjs", TREAD_PAGE_MODULES, view.url(),
+                std::to_string(seconds + 5.0)},
+               output);
+  for (int i = 0; i < 400 && contentOf(output).find("armed") == std::string::npos; ++i)
+    run.wait(0.05);
+  int64_t memory = 0;
+  const StallWatch watch;
+  runScript(folder, "flood.mjs", {view.url(), std::to_string(seconds)}, [&](const std::string&) {
+    memory = std::max(memory, peakMemory(view.process().pid()));
+  });
+  REQUIRE(page.waitFor(20.0));
+  INFO("machine held up for " << watch.longest() << " s at most");
+  INFO(contentOf(output) << contentOf(folder.path("flood.mjs.txt")));
+  std::printf("%s%stread-view used %.0f MB at most; machine held up for %.3f s at most\n",
+              contentOf(output).c_str(), contentOf(folder.path("flood.mjs.txt")).c_str(),
+              static_cast<double>(memory) * 1e-6, watch.longest());
+  CHECK(page.exitCode() == 0);
+  CHECK(contentOf(output).find("armed") != std::string::npos);
+  CHECK(memory > 1'000'000);
+  CHECK(memory < 200'000'000);
+  // A machine that stalls disarms the robot by itself; the page's own lease is what viewers could
+  // take from it.
+  if (watch.longest() < 0.1) CHECK_THAT(contentOf(output), Catch::Contains("disarmed 0 times"));
 }
 
 TEST_CASE("viewers from elsewhere need the token, strangers' pages may not talk to the robot") {
@@ -164,6 +259,55 @@ TEST_CASE("viewers from elsewhere need the token, strangers' pages may not talk 
   CHECK(fetch(asked.url(), "{}") == "200\n");
   CHECK(fetch(bare, "{}") == "403\n");
   CHECK(fetch(bare + "?token=wrong", "{}") == "403\n");
+}
+
+TEST_CASE("who listens to other machines shows them a certificate, and nothing in clear") {
+  const OwnFolder folder;
+  std::string before;
+  for (const bool again : {false, true}) {
+    const OwnFolder output;
+    const View view(output, {"--lcm-url", ownLcmUrl(), "--address", "0.0.0.0", "--state",
+                             folder.path("state")});
+    const std::string said = contentOf(output.path("view.txt"));
+    const std::string fingerprint = said.substr(said.rfind("SHA-256 ") + 8, 95);
+    CHECK((said.find("made now") != std::string::npos) == !again);
+    if (again) CHECK(fingerprint == before);
+    before = fingerprint;
+    const std::string& url = view.url();
+    REQUIRE(url.rfind("https://0.0.0.0:", 0) == 0);
+    const size_t port = url.rfind(':') + 1;
+    runScript(folder, "tls.mjs",
+              {url.substr(port, url.find('/', port) - port), url.substr(url.find("token=") + 6),
+               fingerprint});
+  }
+}
+
+TEST_CASE("the page works behind a proxy, under a path, and operates only from one that is named") {
+  const OwnFolder folder;
+  const std::string pem = view::ownCertificate(folder.path("proxy")).path;
+  const std::string port = std::to_string(freePort());
+  const std::string how = GENERATE("keep", "rewrite");
+  const bool named = GENERATE(true, false);
+  CAPTURE(how, named);
+  std::vector<std::string> words{"--lcm-url", ownLcmUrl(), "--token", "secret"};
+  if (named) words.insert(words.end(), {"--origin", "https://127.0.0.1:" + port + "/robot/"});
+  const View view(folder, words);
+  // A proxy that passes on name and path is a page of its own, and finds none under its path.
+  if (how == "keep" && !named) return;
+  runScript(folder, "proxy.mjs", {view.url(), port, pem, how, named ? "ours" : "foreign"});
+}
+
+TEST_CASE("a proxy that is named asks for a token, and an address that is none is refused") {
+  const OwnFolder folder;
+  const View view(folder, {"--lcm-url", ownLcmUrl(), "--origin", "https://robot.example"});
+  CHECK_THAT(view.url(), Catch::Contains("?token="));
+  for (const char* wrong : {"robot.example", "ftp://robot.example", "https://", "https:///x",
+                            "https://a/?token=b", "https://user@a/"}) {
+    const auto refused = called(std::string("tread-view --origin '") + wrong + "'");
+    CAPTURE(wrong, refused.printed);
+    CHECK(refused.status == 2);
+    CHECK(refused.says("https://HOST[:PORT][/PATH/] is needed"));
+  }
 }
 
 TEST_CASE("what tread-view cannot use is one clear line") {

@@ -62,7 +62,7 @@ HostFinding openToOthers(const LcmAddress& address, const std::string& device, b
           "LCM's port " + std::to_string(address.port) + " can be reached from outside by " +
               device + " (ttl is " + std::to_string(address.ttl) +
               "), and without a key everybody there can arm and drive the robot",
-          "tread-key new FILE, then key: FILE in the launch file; or for one host ttl=0 and " +
+          "leave key: none out of the launch file; or for one host ttl=0 and " +
               std::string(kRouteRemedy)};
 }
 

@@ -160,24 +160,20 @@ int64_t grantedBuffer(int64_t wanted) {
 }
 
 /// What is wrong with the robot's key; nothing if there is none.
-std::vector<HostFinding> checkKey(const std::string& path, bool simulated) {
-  if (path.empty() && !simulated)
+std::vector<HostFinding> checkKey(const LaunchFile& launch) {
+  if (launch.key.empty() && !launch.simulated)
     return {{false, "without a key every program of this host can arm and drive the robot",
-             "tread-key new FILE, then key: FILE in the launch file"}};
+             "leave key: none out of the launch file"}};
+  std::error_code none;
+  if (launch.makes_key && !fs::exists(fs::symlink_status(launch.key, none))) return {};
   try {
-    if (!path.empty()) readKey(path);
+    if (!launch.key.empty()) readKey(launch.key);
     return {};
   } catch (const std::runtime_error& error) {
     const std::string line = error.what();
     const size_t end = line.find("; ");
     return {{true, line.substr(0, end), end == std::string::npos ? "" : line.substr(end + 2)}};
   }
-}
-
-/// The processes take TREAD_KEY where the launch file names no key.
-std::string keyOf(const LaunchFile& launch) {
-  const char* const named = std::getenv("TREAD_KEY");
-  return launch.key.empty() && named != nullptr ? named : launch.key;
 }
 
 /// Asks this host about multicast; sends one datagram to the group, on a port of its own.
@@ -196,6 +192,23 @@ NetworkFacts networkFacts(const LcmAddress& address, bool sealed) {
 }
 
 }  // namespace
+
+void takeNamedKey(LaunchFile& launch) {
+  const char* const named = std::getenv("TREAD_KEY");
+  if (named == nullptr || *named == '\0' || (!launch.key.empty() && !launch.makes_key)) return;
+  launch.key = named;
+  launch.makes_key = false;
+}
+
+std::string provideKey(const LaunchFile& launch) {
+  if (launch.key.empty()) return "";
+  const bool made = launch.makes_key && ensureKey(launch.key);
+  char host[256] = {};
+  gethostname(host, sizeof host - 1);
+  return launch.name + ": key " + launch.key + (made ? " (made now)" : "") + ", fingerprint " +
+         fingerprint(readKey(launch.key)) + "; this user's programs find it; at a station: scp " +
+         host + ":" + launch.key + " tread.key && export TREAD_KEY=$PWD/tread.key";
+}
 
 RunLock::RunLock(const std::string& path)
     : descriptor_(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
@@ -275,7 +288,8 @@ std::string defaultRunFolder(const std::string& name) {
     return std::string(state) + "/tread/" + name;
   if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
     return std::string(home) + "/.local/state/tread/" + name;
-  throw std::runtime_error("there is no HOME for the run folder; name one with --run DIR");
+  throw std::runtime_error(
+      "there is no HOME for the folder of states; name one with --run DIR, or --state DIR");
 }
 
 std::string findProgram(const std::string& word, const std::string& bin) {
@@ -328,10 +342,9 @@ std::vector<HostFinding> checkHost(const LaunchFile& launch, const LaunchSetting
   if (findProgram("supervisord", "").empty())
     findings.push_back(missingTool("supervisord", "supervisor"));
   if (findProgram("setpriv", "").empty()) findings.push_back(missingTool("setpriv", "util-linux"));
-  const std::string key = keyOf(launch);
-  add(checkKey(key, launch.simulated));
+  add(checkKey(launch));
   if (const auto address = parseLcmUrl(launch.lcm_url))
-    add(checkNetwork(*address, networkFacts(*address, !key.empty()), launch.simulated));
+    add(checkNetwork(*address, networkFacts(*address, !launch.key.empty()), launch.simulated));
   else
     findings.push_back(
         {true, "LCM URL '" + launch.lcm_url + "' cannot be read", urlRemedy(launch.simulated)});

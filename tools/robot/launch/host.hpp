@@ -37,6 +37,12 @@ struct CommandOutcome {
 /// Runs a command to its end, at most so many seconds.
 CommandOutcome runCommand(const std::vector<std::string>& words, double seconds);
 
+/// The processes take TREAD_KEY where the launch file names no key.
+void takeNamedKey(LaunchFile& launch);
+/// Makes the key of a robot that has none yet, and says in a line where it is and how a station
+/// gets it; empty where the launch has none. Throws as readKey() does.
+std::string provideKey(const LaunchFile& launch);
+
 /// The lock of a run folder: held by tread-launch and by the supervisor that it starts.
 /** Two locks on one file. The one of flock(2) is passed on to the supervisor and is free only when
  * both have gone, also by SIGKILL; the one of fcntl(2) is tread-launch's own and tells its pid. */

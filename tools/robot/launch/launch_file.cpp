@@ -132,6 +132,7 @@ std::string keyPath(const ConfigReader& reader, const std::string& text,
                     const Placeholders& placeholders, const std::string& folder) {
   const std::string path = replaced(reader, "key", text, placeholders);
   if (path.empty()) throw reader.error("key", "is empty; name a file, or leave it out");
+  if (path == "none") return "";
   return absolutePath(path, folder);
 }
 
@@ -158,7 +159,9 @@ LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings) 
       {"run", settings.run}, {"bin", settings.bin}, {"here", folder}, {"lcm_url", launch.lcm_url}};
   readValues(reader, settings, folder, placeholders);
   reader.text("key", launch.key);
+  launch.makes_key = !reader.has("key") && !launch.simulated;
   if (reader.has("key")) launch.key = keyPath(reader, launch.key, placeholders, folder);
+  if (launch.makes_key) launch.key = settings.run + "/key";
   reader.text("pre_drive", launch.pre_drive);
   launch.pre_drive = replaced(reader, "pre_drive", launch.pre_drive, placeholders);
   if (!launch.pre_drive.empty()) launch.pre_drive = absolutePath(launch.pre_drive, folder);

@@ -32,6 +32,7 @@ struct LaunchFile {
   std::string name;
   std::string lcm_url;
   std::string key;         ///< absolute path of the robot's key; empty = messages are not sealed
+  bool makes_key = false;  ///< it is made at the first start
   bool simulated = false;  ///< no robot: what only a robot's network needs is an advice
   std::string
       pre_drive;  ///< folder of the robot whose wiring is tried before the start; empty: none
@@ -51,11 +52,13 @@ struct LaunchSettings {
 std::string readLaunchName(const std::string& file);
 
 /// Reads a launch file; throws ConfigError with file:line.
-/** Keys: name, lcm_url, key, simulated, pre_drive, values (further placeholders with their
- * defaults) and processes, a list of maps: name, program, config, arguments, external, stop_signal,
- * stop_time, start_time, watchdog. Placeholders in key, pre_drive, program, config and arguments:
- * {run}, {lcm_url}, {bin}, {here} (the file's folder) and those in `values`. Paths are relative to
- * the file's folder. A value that names a file or folder there becomes its absolute path. */
+/** Without a key the file is a robot's, whose key is made in its run folder, or a simulated one;
+ * `key: none` is a robot that takes messages from everybody. Keys: name, lcm_url, key, simulated,
+ * pre_drive, values (further placeholders with their defaults) and processes, a list of maps: name,
+ * program, config, arguments, external, stop_signal, stop_time, start_time, watchdog. Placeholders
+ * in key, pre_drive, program, config and arguments: {run}, {lcm_url}, {bin}, {here} (the file's
+ * folder) and those in `values`. Paths are relative to the file's folder. A value that names a file
+ * or folder there becomes its absolute path. */
 LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings);
 
 /// The words that start a process: ours get --config, --lcm-url, --with-parent and, where there is

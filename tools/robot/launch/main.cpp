@@ -24,6 +24,7 @@
 #include "common/bus/shell.hpp"
 #include "common/bus/tcp_relay.hpp"
 #include "common/config/command_line.hpp"
+#include "common/seal/key_file.hpp"
 #include "common/store/store.hpp"
 #include "tools/robot/launch/host.hpp"
 #include "tools/robot/launch/running_robots.hpp"
@@ -160,6 +161,7 @@ int start(const LaunchFile& launch, const Options& options) {
   const RunPaths paths(settings.run);
   std::filesystem::create_directories(paths.logs);
   const RunLock lock(paths.lock);
+  if (const std::string line = provideKey(launch); !line.empty()) std::cout << line << std::endl;
   if (!preDrivePasses(launch, options)) return 1;
   std::optional<TcpRelay> relay;
   if (const auto address = parseLcmUrl(launch.lcm_url); address && address->provider == "tcpq")
@@ -179,6 +181,7 @@ int only(const LaunchFile& launch, const Options& options) {
     if (program.empty()) throw std::runtime_error("there is no program " + process.program);
     std::filesystem::create_directories(RunPaths(options.settings.run).logs);
     std::filesystem::current_path(options.settings.run);
+    provideKey(launch);
     become(startCommand(process, program, launch.lcm_url, launch.key));
   }
   throw std::runtime_error(options.settings.file + ": has no process '" + options.only + "'");
@@ -186,11 +189,11 @@ int only(const LaunchFile& launch, const Options& options) {
 
 /// What the processes say of themselves in HEALTH within a little more than its period; those that
 /// are well say nothing.
-std::map<std::string, std::string> troubles(const std::string& lcm_url) {
+std::map<std::string, std::string> troubles(const LaunchFile& launch) {
   constexpr int64_t kListen = 1'200'000;  // [us]
   std::map<std::string, std::string> lines;
   try {
-    LcmBus bus(lcm_url, TimeSource::kHost);
+    LcmBus bus(BusAccess{launch.lcm_url, hostSealer(launch.key)}, TimeSource::kHost);
     bus.subscribe<health_t>(kHealth, [&](const health_t& health) {
       lines.erase(health.process);
       if (health.health_state != health_t::HEALTH_OK) lines[health.process] = " " + inWords(health);
@@ -249,7 +252,7 @@ int status(const LaunchFile& launch, const RunPaths& paths) {
     std::cout << launch.name << ": nothing runs in " << paths.folder << std::endl;
     return 3;  // as systemctl and supervisorctl do
   }
-  for (const auto& [process, trouble] : troubles(launch.lcm_url))
+  for (const auto& [process, trouble] : troubles(launch))
     std::cout << process << trouble << std::endl;
   std::ifstream hung(paths.hung);
   for (std::string line; std::getline(hung, line);) std::cout << line << std::endl;
@@ -263,7 +266,8 @@ int run(int argc, char** argv) {
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   complete(options);
   ConfigReader reader = ConfigReader::fromFile(options.settings.file);
-  const LaunchFile launch = readLaunchFile(reader, options.settings);
+  LaunchFile launch = readLaunchFile(reader, options.settings);
+  takeNamedKey(launch);
   const RunPaths paths(options.settings.run);
   if (options.timing) return timing(launch.name, options);
   if (options.stop) return stopRun(launch.name, paths);

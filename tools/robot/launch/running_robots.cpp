@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/robot/launch/running_robots.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -86,8 +87,13 @@ std::vector<RunningRobot> runningRobots() {
 }
 
 RunningRobot findRobot(const std::string& lcm_url, const std::string& key) {
-  if (!lcm_url.empty() || std::getenv("LCM_DEFAULT_URL") != nullptr) return {"", lcm_url, key};
+  const char* const usual = std::getenv("LCM_DEFAULT_URL");
+  const std::string url = lcm_url.empty() && usual != nullptr ? usual : lcm_url;
   std::vector<RunningRobot> robots = runningRobots();
+  if (!url.empty() || usual != nullptr)
+    robots.erase(std::remove_if(robots.begin(), robots.end(),
+                                [&](const RunningRobot& robot) { return robot.lcm_url != url; }),
+                 robots.end());
   if (robots.empty()) return {"", lcm_url, key};
   if (robots.size() == 1) {
     if (!key.empty()) robots.front().key = key;

@@ -32,9 +32,10 @@ class Announcement {
 /// The robots that were announced by this user in this network, and still run.
 std::vector<RunningRobot> runningRobots();
 
-/// The robot to speak to, and its key: what was given, else LCM_DEFAULT_URL and TREAD_KEY, else
-/// what the only robot that runs here was started with. An empty URL is LCM's own. Throws
-/// std::runtime_error if several robots run.
+/// The robot to speak to, and its key: at the URL that was given, else at LCM_DEFAULT_URL, else the
+/// only robot that runs here; with the key that was given, else what a robot that runs here at this
+/// URL was started with. An empty URL is LCM's own. Throws std::runtime_error if several robots
+/// run.
 RunningRobot findRobot(const std::string& lcm_url, const std::string& key);
 
 }  // namespace tread::launch

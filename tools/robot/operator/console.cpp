@@ -21,6 +21,8 @@ constexpr const char* kGoing = "goal";
 constexpr const char* kStopping = "E-stop";
 constexpr const char* kClearing = "clearing the E-stop";
 constexpr size_t kMostPast = 30;
+/// Calls, the ended ones with them, that a page may have made before it must let go once.
+constexpr size_t kMostCalls = 300;
 
 double finite(const Json& json, const char* key) {
   const double value = json.at(key).get<double>();
@@ -35,6 +37,13 @@ GoalRequest goalFrom(const Json& json) {
   request.T_map_goal.yaw = finite(json, "yaw");
   request.yaw_tolerance = 0.35;
   return request;
+}
+
+/// Whether a page's newest MOTOR is of the present: one that is still to come was never shown.
+bool isFresh(const Json& seen, int64_t utime, int64_t longest) {
+  if (!seen.is_number_integer()) return false;
+  const auto at = seen.get<int64_t>();
+  return at > 0 && at <= utime && utime - at <= longest;
 }
 
 FenceRequest fenceRequestFrom(const Json& json, const std::string& by) {
@@ -79,7 +88,7 @@ std::string OperatorConsole::take(const std::string& text, uint64_t page, int64_
     const auto op = json.at("op").get<std::string>();
     if (takeStop(op, utime)) return "";
     // A page that is behind shows a robot that was.
-    if (utime - json.at("seen").get<int64_t>() > kPageLease)
+    if (!isFresh(json.at("seen"), utime, kPageLease))
       return "the page has not seen the robot for too long: it cannot operate it";
     if (page_ != page && page_ != 0) {
       if (utime - alive_ <= kPageLease) return "another page holds the robot";
@@ -88,6 +97,8 @@ std::string OperatorConsole::take(const std::string& text, uint64_t page, int64_
     page_ = page;
     alive_ = utime;
     if (op == "alive") return "";
+    if (calls_.size() + past_.size() >= kMostCalls)
+      return "too many commands since this page took the robot: disarm it, then go on";
     if (op == "arm") {
       if (!runs(kArming))
         start(kArming,

@@ -94,7 +94,8 @@ class LaunchedRobot : public RunningRobot {
     settings.lcm_url = options.lcm_url;
     settings.values["robot"] = folder;
     ConfigReader reader = ConfigReader::fromFile(file);
-    const launch::LaunchFile launched = launch::readLaunchFile(reader, settings);
+    launch::LaunchFile launched = launch::readLaunchFile(reader, settings);
+    launch::takeNamedKey(launched);
     pid_ = fork();
     if (pid_ < 0) throw std::runtime_error("tread-launch cannot be started");
     if (pid_ == 0) {

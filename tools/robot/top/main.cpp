@@ -15,10 +15,8 @@
 #include "common/bus/lcm_listener.hpp"
 #include "common/bus/shell.hpp"
 #include "common/config/command_line.hpp"
-#include "common/seal/key_file.hpp"
-#include "tools/robot/launch/running_robots.hpp"
 #include "tools/robot/operator/command.hpp"
-#include "tools/robot/operator/console.hpp"
+#include "tools/robot/operator/live_console.hpp"
 #include "tools/robot/top/monitor.hpp"
 
 // ncurses has a macro of this name.
@@ -44,15 +42,18 @@ struct Arguments {
 /// The bus, and what the kernel has lost of it.
 class Watch {
  public:
-  Watch(const std::string& url, Monitor& monitor)
+  Watch(BusAccess access, Monitor& monitor)
       : monitor_(monitor),
-        listener_(url, [&](const std::string& channel, const uint8_t* bytes, size_t size,
-                           int64_t now) { monitor_.take(channel, bytes, size, now); }) {}
+        listener_(std::move(access),
+                  [&](const std::string& channel, const uint8_t* bytes, size_t size, int64_t now) {
+                    monitor_.take(channel, bytes, size, now);
+                  }) {}
   void handle(int milliseconds) {
     listener_.handle(milliseconds);
     std::ifstream file("/proc/net/snmp");
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     if (const auto counters = kernelCounters(text)) monitor_.take(*counters);
+    monitor_.setDoubt(listener_.doubt());
   }
 
  private:
@@ -148,7 +149,7 @@ int printOnce(Watch& listener, const Monitor& monitor, double seconds,
   return 0;
 }
 
-int watch(Watch& listener, const Monitor& monitor, LcmBus& bus, operators::OperatorConsole& console,
+int watch(Watch& listener, const Monitor& monitor, operators::LiveConsole& console,
           const std::atomic<bool>& stop) {
   const Screen screen;
   // Over ssh nobody notices that a terminal is gone: who holds the robot shows it by a key.
@@ -156,33 +157,34 @@ int watch(Watch& listener, const Monitor& monitor, LcmBus& bus, operators::Opera
 
   std::string refused;
   const auto say = [&](const std::string& json) {
-    refused = console.take(json, kTerminal, bus.now());
+    refused = console->take(json, kTerminal, console.now());
   };
   for (int64_t next = 0; !stop;) {
     listener.handle(kWaitMs);
-    bus.handle(0);
+    console.step();
     for (int key = getch(); key != ERR; key = getch()) {
       if (key == 'q') {
-        console.leave(kTerminal, bus.now());
+        console->leave(kTerminal, console.now());
         return 0;
       }
       if (key == ' ') say(R"({"op":"estop"})");
       if (key == 'c') say(R"({"op":"clear_estop"})");
-      if (key == 'a') say(withTime("arm", bus.now()));
+      if (key == 'a') say(withTime("arm", console.now()));
 
       if (key == 'd') say(R"({"op":"disarm"})");
       const bool held = hostNow() < held_until;
       if (key == 'a' || (held && key != 'd')) held_until = hostNow() + kHold;
       if (key == 'd' || key == ' ') held_until = 0;
     }
-    if (hostNow() < held_until) console.take(withTime("alive", bus.now()), kTerminal, bus.now());
-
-    console.step(bus.now());
+    if (hostNow() < held_until) {
+      const int64_t now = console.now();
+      console->take(withTime("alive", now), kTerminal, now);
+    }
     if (hostNow() < next) continue;
     next = hostNow() + kShow;
-    screen.show(monitor.lines(hostNow()), refused.empty() ? console.words() : refused);
+    screen.show(monitor.lines(hostNow()), refused.empty() ? console->words() : refused);
   }
-  console.leave(kTerminal, bus.now());
+  console->leave(kTerminal, console.now());
   return 0;
 }
 
@@ -190,13 +192,10 @@ int run(const Arguments& arguments) {
   const std::atomic<bool>& stop = stopRequest(0);
   const launch::RunningRobot robot = launch::findRobot(arguments.lcm_url, arguments.key);
   Monitor monitor;
-  Watch listener(robot.lcm_url, monitor);
+  Watch listener(operators::accessTo(robot), monitor);
   if (arguments.once > 0.0) return printOnce(listener, monitor, arguments.once, stop);
-  LcmBus bus(
-      BusAccess{robot.lcm_url, robot.here ? hostSealer(robot.key) : stationSealer(robot.key)},
-      TimeSource::kHost);
-  operators::OperatorConsole console(bus, arguments.operator_name, "at the terminal of tread-top");
-  return watch(listener, monitor, bus, console, stop);
+  operators::LiveConsole console(robot, arguments.operator_name, "at the terminal of tread-top");
+  return watch(listener, monitor, console, stop);
 }
 
 }  // namespace

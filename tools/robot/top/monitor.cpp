@@ -8,7 +8,6 @@
 #include "common/bus/bus.hpp"
 #include "common/log/event_log.hpp"
 #include "common/report/text.hpp"
-#include "common/seal/seal.hpp"
 
 namespace tread::top {
 namespace {
@@ -86,18 +85,22 @@ void Monitor::take(const KernelCounters& counters) {
 
 void Monitor::take(const std::string& channel, const uint8_t* bytes, size_t size, int64_t now) {
   if (begun_ == 0) begun_ = now;
+  if (specOf(channel) == nullptr && streams_.size() >= kMostNames && streams_.count(channel) == 0)
+    return;
   Stream& stream = streams_[channel];
   stream.recent.emplace_back(now, size);
   while (now - stream.recent.front().first > kWindow) stream.recent.pop_front();
   stream.last = now;
   stream.largest = std::max(stream.largest, size);
   ++stream.messages;
-  count(stream, channel, {bytes, bytes + sizeWithoutSeal(bytes, size)});
-  const LogEvent event{now, channel, {bytes, bytes + sizeWithoutSeal(bytes, size)}};
+  const LogEvent event{now, channel, {bytes, bytes + size}};
+  count(stream, channel, event.bytes);
   health_t health;
   motor_t motor;
   plan_t plan;
-  if (decode(event, kHealth, health)) processes_[health.process] = {now, health};
+  if (decode(event, kHealth, health) &&
+      (processes_.size() < kMostNames || processes_.count(health.process) > 0))
+    processes_[health.process] = {now, health};
   if (decode(event, kMotor, motor)) motor_ = motor;
   if (decode(event, kPlan, plan)) plan_ = plan;
 }
@@ -110,6 +113,7 @@ void Monitor::count(Stream& stream, const std::string& channel, const std::vecto
     return;
   }
   const int64_t seq = bigEndian(bytes.data() + kSeqAt);
+  if (stream.numbers.size() >= kMostNames) stream.numbers.clear();
   const auto [newest, first] = stream.numbers.try_emplace(senderOf(channel, bytes), seq);
   const int64_t missing = seq - newest->second - 1;
   if (!first && missing > 0 && missing < kMostMissing) stream.lost += missing;
@@ -204,6 +208,7 @@ std::vector<Line> Monitor::lines(int64_t now) const {
          formatted("kernel   %lld datagrams found no room in a buffer since this began%s",
                    static_cast<long long>(lost), lost > 0 ? ": config/sysctl/60-tread.conf" : "")});
   }
+  if (!doubt_.empty()) lines.push_back({Mood::kBad, "trust    " + doubt_});
   lines.push_back({Mood::kTitle, "CHANNEL           /s  table       age   bytes     kB/s   lost"});
   for (const ChannelSpec& spec : kChannels)
     if (const auto stream = streams_.find(spec.name); stream != streams_.end())

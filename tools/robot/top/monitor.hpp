@@ -33,15 +33,19 @@ std::optional<KernelCounters> kernelCounters(const std::string& snmp);
 /// Watches the bus: rates against the table, ages, sizes, losses, processes.
 class Monitor {
  public:
-  /// A message as it came, at a time [us] of the host.
+  /// A message as it came, without its seal, at a time [us] of the host.
   void take(const std::string& channel, const uint8_t* bytes, size_t size, int64_t now);
   void take(const KernelCounters& counters);
+  /// A line about how far to trust all this; empty = none.
+  void setDoubt(const std::string& words) { doubt_ = words; }
 
   /// What to show at a time [us]. Channels in the order of the table, foreign ones behind.
   std::vector<Line> lines(int64_t now) const;
 
  private:
   static constexpr int64_t kWindow = 3'000'000;  ///< [us] over which rates are counted
+  /// Names that whoever may send can make up: so many are listed, further ones passed over.
+  static constexpr size_t kMostNames = 64;
 
   struct Stream {
     std::deque<std::pair<int64_t, size_t>> recent;  ///< [us], [bytes]
@@ -66,6 +70,7 @@ class Monitor {
   std::optional<motor_t> motor_;
   std::optional<plan_t> plan_;
   std::optional<KernelCounters> kernel_begun_, kernel_;
+  std::string doubt_;
   int64_t begun_ = 0;  ///< [us] the first message
 };
 

@@ -41,11 +41,15 @@ class Feed {
   void openLogs(const std::vector<std::string>& logs);
   /// A message of the bus.
   void take(const LogEvent& event);
+  /// A line about how far to trust what is shown; empty = none.
+  void setDoubt(const std::string& words) { doubt_ = words; }
   /// Call it often. `elapsed` [s] of real time since the last call.
   void step(double elapsed);
 
-  /// What a viewer of a channel must know at once.
-  std::vector<FeedMessage> stateOf(uint32_t channel);
+  /// The parts of which a viewer of a channel must know the newest at once.
+  std::vector<uint64_t> partsOf(uint32_t channel);
+  /// The newest of such a part; nothing if there is none any more.
+  std::optional<FeedMessage> newest(uint32_t channel, uint64_t part);
 
   /// Control of a log's playback; without a log nothing.
   void seek(int64_t time, int64_t request);
@@ -62,20 +66,34 @@ class Feed {
   /// The scene anew, from the newest of all parts up to now: it was not drawn, or time went back.
   void redraw();
 
-  std::optional<FeedMessage> messageOf(const LogEvent& event) const;
+  /// The newest of a channel by part. Its JSON is shared while anybody still has it.
+  struct Kept {
+    LogEvent event;
+    std::weak_ptr<const std::string> json;
+  };
+  struct KeptChannel {
+    std::map<uint64_t, Kept> parts;
+    size_t bytes = 0;
+  };
+  void keep(const LogEvent& event);
+  std::optional<FeedMessage> messageOf(uint32_t channel, uint64_t part, Kept& kept) const;
+  void sendNews();
   FeedMessage ownMessage(const char* topic, std::string json) const;
   std::string playerJson() const;
 
   OfferedChannels channels_;
   std::function<bool(uint32_t)> wanted_;
   Send send_;
-  std::map<std::pair<std::string, uint64_t>, LogEvent> newest_by_part_;
-  std::map<std::pair<std::string, uint64_t>, FeedMessage> newest_scene_;  ///< by topic and part
+  std::map<uint32_t, KeptChannel> kept_;
+  std::map<std::pair<uint32_t, uint64_t>, FeedMessage> newest_scene_;  ///< by channel and part
 
   std::unique_ptr<SceneMaker> scene_;  ///< null: nobody looks
+  double since_scene_ = 0.0;           ///< [s] since somebody looked
 
-  History history_;  ///< of a bus
+  static constexpr size_t kMostHistory = 2000;
+  History history_{kMostHistory};  ///< of a bus
   std::unique_ptr<LogPlayer> player_;
+  std::string doubt_;
   int64_t newest_ = 0;
   bool playing_ = false;
   double speed_ = 1.0;

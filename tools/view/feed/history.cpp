@@ -18,6 +18,16 @@ constexpr double kWayStep = 0.15;            // [m] at the beginning
 constexpr double kWayPoints = 5000.0;        // after which the points lie farther apart
 constexpr int64_t kBatteryStep = 2'000'000;  // [us]
 
+constexpr size_t kMostWords = 400;  // [bytes] of an event
+
+template <class List>
+void keepNewest(List& list, size_t most, size_t& told) {
+  if (list.size() < 2 * most) return;
+  const size_t dropped = list.size() - most;
+  list.erase(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(dropped));
+  told -= std::min(told, dropped);
+}
+
 /// JSON has no number for what is not known.
 Json numberOr(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -25,8 +35,19 @@ Json numberOr(double value) {
 
 }  // namespace
 
+void History::forgetOldest() {
+  keepNewest(events_, most_, told_.events);
+  keepNewest(patterns_, most_, told_.patterns);
+  keepNewest(way_, most_, told_.way);
+  keepNewest(battery_, most_, told_.battery);
+}
+
 void History::take(const LogEvent& event) {
-  for (Event& told : teller_.take(event)) events_.push_back(std::move(told));
+  forgetOldest();
+  for (Event& told : teller_.take(event)) {
+    told.words.resize(std::min(told.words.size(), kMostWords));
+    events_.push_back(std::move(told));
+  }
   ins_t ins;
   motor_t motor;
   learning_t learning;

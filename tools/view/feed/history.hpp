@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,8 @@ namespace tread::view {
 /// the battery.
 class History {
  public:
+  /// Keeps at least the newest `most` of each list, and at most twice as many.
+  explicit History(size_t most = SIZE_MAX / 2) : most_(most) {}
   void take(const LogEvent& event);
   /// All of it as JSON.
   std::string whole() const;
@@ -39,9 +42,11 @@ class History {
              battery == other.battery;
     }
   };
+  void forgetOldest();
   Mark end() const { return {events_.size(), patterns_.size(), way_.size(), battery_.size()}; }
   std::string since(const Mark& mark, bool from_start) const;
 
+  size_t most_;
   EventTeller teller_;
   std::vector<Event> events_;
   std::vector<Pattern> patterns_;

@@ -111,8 +111,8 @@ TEST_CASE("a port that other hosts reach needs a key, or the route by the loopba
   facts.route_device = "wlan0";
   CHECK(oneLine(checkNetwork(address, facts, false)) ==
         "robot: LCM's port 7667 can be reached from outside by wlan0 (ttl is 1), and without a key "
-        "everybody there can arm and drive the robot; fix: tread-key new FILE, then key: FILE in "
-        "the launch file; or for one host ttl=0 and ip link set lo up multicast on; ip route "
+        "everybody there can arm and drive the robot; fix: leave key: none out of the launch "
+        "file; or for one host ttl=0 and ip link set lo up multicast on; ip route "
         "replace 224.0.0.0/4 dev lo  (as root)\n");
   CHECK_FALSE(anyCritical(checkNetwork(address, facts, true)));
   facts.sealed = true;

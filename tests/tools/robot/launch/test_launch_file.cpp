@@ -119,7 +119,13 @@ TEST_CASE("mistakes in a launch file are named with file and line") {
 
 TEST_CASE("the key of a launch file is a path from its folder, and never an empty one") {
   const std::string processes = "processes: [{name: p, program: p}]";
-  CHECK(read("name: r\n" + processes).key.empty());
+  CHECK(read("name: r\n" + processes).key == "/run/r/key");
+  CHECK(read("name: r\n" + processes).makes_key);
+  for (const char* without : {"simulated: true\n", "key: none\n"}) {
+    CHECK(read("name: r\n" + std::string(without) + processes).key.empty());
+    CHECK_FALSE(read("name: r\n" + std::string(without) + processes).makes_key);
+  }
+  CHECK_FALSE(read("name: r\nkey: ../robot.key\n" + processes).makes_key);
   CHECK(read("name: r\nkey: ../robot.key\n" + processes).key == "/etc/robots/robot.key");
   CHECK(read("name: r\nkey: \"{run}/key\"\n" + processes).key == "/run/r/key");
   CHECK_THAT(mistake("name: r\nkey: \"\"\n" + processes),

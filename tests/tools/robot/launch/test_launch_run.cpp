@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <memory>
+
 #include "common/seal/key_file.hpp"
 #include "tests/tools/robot/launch/launched.hpp"
 #include "tools/robot/launch/host.hpp"
@@ -91,6 +93,62 @@ TEST_CASE("the key goes to every process of ours and to no other, and a bad one 
     return contentOf(launched.run() / "log/p0.log").find("--key " + key) != std::string::npos;
   }));
   CHECK(launched.pidOf(key) == launched.pidOf("p0.txt"));
+}
+
+TEST_CASE(
+    "a robot makes its key at its first start, keeps it, and drives without one only if told") {
+  const Launched robot({"good"}, TREAD_STAND_IN, "");
+  const std::string key = (robot.run() / "key").string();
+  // Where the host refuses the robot's network, nothing starts and there is nothing to see here.
+  const CommandOutcome check = call(robot, {"--check"});
+  if (check.code != 0) {
+    CHECK_THAT(check.output, Contains("multicast"));
+    return;
+  }
+  CHECK_FALSE(std::filesystem::exists(key));
+  std::string first;
+  for (const bool again : {false, true}) {
+    Process launch("tread-launch", robot.arguments(), robot.output());
+    REQUIRE(robot.says(again ? "fingerprint" : "trial: key " + key + " (made now), fingerprint "));
+    REQUIRE(robot.says("trial: all 2 processes run after"));
+    CHECK(within(10, [&] {
+      return contentOf(robot.run() / "log/p0.log").find("--key " + key) != std::string::npos;
+    }));
+    CHECK_THAT(robot.said(), Contains(":" + key + " tread.key && export TREAD_KEY="));
+    const std::string fingerprint = tread::fingerprint(tread::readKey(key));
+    CHECK_THAT(robot.said(), Contains(fingerprint));
+    if (again) CHECK(fingerprint == first);
+    if (again) CHECK_THAT(robot.said(), !Contains("made now"));
+    first = fingerprint;
+    launch.signal(SIGINT);
+    REQUIRE(launch.waitFor(10));
+    std::filesystem::remove(robot.output());
+    std::filesystem::remove(robot.run() / "log/p0.log");
+  }
+  std::filesystem::permissions(key, std::filesystem::perms(0644));
+  CHECK_THAT(call(robot, {}).output, Contains("(mode 0644); fix: chmod 600 " + key));
+
+  const Launched open({"good"}, TREAD_STAND_IN, "key: none\n");
+  CHECK_THAT(call(open, {"--check"}).output,
+             Contains("trial: advice: without a key every program of this host can arm"));
+  CHECK_FALSE(std::filesystem::exists(open.run() / "key"));
+}
+
+TEST_CASE("processes that systemd starts at the same time make one key") {
+  const Launched robot({"good", "good", "good", "good"}, TREAD_STAND_IN, "");
+  const std::string key = (robot.run() / "key").string();
+  std::vector<std::unique_ptr<Process>> units;
+  for (int i = 0; i < 4; ++i)
+    units.push_back(std::make_unique<Process>(
+        "tread-launch", robot.arguments({"--only", "p" + std::to_string(i)}), robot.output()));
+  REQUIRE(within(10, [&] { return robot.pids().size() == 4; }));
+  REQUIRE(within(10, [&] {
+    const std::string said = robot.said();
+    size_t with_key = 0;
+    for (size_t at = 0; (at = said.find("--key " + key, at)) != std::string::npos; ++at) ++with_key;
+    return with_key == 4;
+  }));
+  CHECK(tread::fingerprint(tread::readKey(key)).size() == 19);
 }
 
 TEST_CASE("a second launch in the same folder is refused with one line, and the first goes on") {

@@ -50,6 +50,16 @@ TEST_CASE("the only robot that runs is found, and an address that is given goes 
   setenv("LCM_DEFAULT_URL", "memq://", 1);
   CHECK(findRobot("", "").lcm_url.empty());
   unsetenv("LCM_DEFAULT_URL");
+  // Who names the address of a robot that runs here need not name its key, too.
+  for (const bool by_variable : {false, true}) {
+    const std::string url = "udpm://239.255.76.67:7668?ttl=0";
+    if (by_variable) setenv("LCM_DEFAULT_URL", url.c_str(), 1);
+    const RunningRobot named = findRobot(by_variable ? "" : url, "");
+    CHECK(named.key == "/run/key");
+    CHECK(named.here);
+    CHECK(named.lcm_url == url);
+    unsetenv("LCM_DEFAULT_URL");
+  }
   robot.reset();
   CHECK(findRobot("", "").lcm_url.empty());
 }

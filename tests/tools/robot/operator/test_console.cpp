@@ -143,6 +143,43 @@ TEST_CASE("a page that is behind holds nothing, and may still stop") {
   CHECK(console.stops > 0);
 }
 
+TEST_CASE("what a page says to have seen in the future, or in no time at all, holds nothing") {
+  Console console;
+  const std::string seen = GENERATE("9223372036854775807", "18446744073709551615", "1e300", "-1",
+                                    "-9223372036854775808", "\"now\"", "null", "[]", "future");
+  CAPTURE(seen);
+  const auto saying = [&](const std::string& op) {
+    return R"({"op":)" + op + R"(,"seen":)" +
+           (seen == "future" ? std::to_string(console.bus.now() + 1) : seen) + "}";
+  };
+  CHECK_FALSE(console.take(saying(R"("arm")")).empty());
+  console.run(0.5, false);
+  CHECK(console.arms == 0);
+  // Nor does it keep a robot that was taken rightly.
+  REQUIRE(console.take(R"({"op":"goal","x":3,"y":4})").empty());
+  for (int i = 0; i < 10; ++i) {
+    CHECK_FALSE(console.take(saying(R"("alive")")).empty());
+    console.run(0.2, false);
+  }
+  CHECK(console.silentFor() > 1.0);
+}
+
+TEST_CASE("a page that sends commands without end is refused some, never a stop") {
+  Console console;
+  int taken = 0;
+  std::string refused;
+  for (int i = 0; i < 2000; ++i) {
+    const std::string words =
+        console.take(R"({"op":"fence","name":"f","corners":[[1,1],[2,1],[2,2]]})");
+    words.empty() ? void(++taken) : void(refused = words);
+  }
+  CHECK(taken == 300);
+  CHECK_THAT(refused, Catch::Contains("too many commands"));
+  CHECK(console.take(R"({"op":"estop"})").empty());
+  console.run(0.3, false);
+  CHECK(console.stops > 0);
+}
+
 TEST_CASE("an emergency stop ends what asked for its opposite") {
   Console console;
   REQUIRE(console.take(R"({"op":"clear_estop"})").empty());

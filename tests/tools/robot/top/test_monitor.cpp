@@ -115,3 +115,20 @@ TEST_CASE("the kernel's losses are counted from the beginning") {
   CHECK_THAT(watched.lineWith("kernel").text, Catch::Contains("4 datagrams"));
   CHECK(watched.lineWith("kernel").mood == Mood::kBad);
 }
+
+TEST_CASE("names that somebody makes up do not fill the screen, nor memory") {
+  Watched watched;
+  const uint8_t bytes[5] = {1, 2, 3, 4, 5};
+  for (int i = 0; i < 1000; ++i) {
+    watched.monitor.take("CHANNEL_" + std::to_string(i), bytes, 5, watched.now);
+    auto health = blank<health_t>();
+    health.process = "process_" + std::to_string(i);
+    watched.add(kHealth, health);
+  }
+  CHECK(watched.monitor.lines(watched.now).size() < 150);
+  watched.monitor.setDoubt("messages not shown: 120 unsealed");
+  const auto lines = watched.monitor.lines(watched.now);
+  CHECK(std::any_of(lines.begin(), lines.end(), [](const Line& line) {
+    return line.mood == Mood::kBad && line.text == "trust    messages not shown: 120 unsealed";
+  }));
+}

@@ -7,6 +7,7 @@
 
 #include "common/bus/lcm_bus.hpp"
 #include "common/messages/blank.hpp"
+#include "common/seal/key_file.hpp"
 #include "tests/system/process.hpp"
 #include "tests/tools/called_program.hpp"
 
@@ -18,7 +19,8 @@ namespace {
 /// A robot's end of the bus: MOTOR, and what it was asked.
 class Robot {
  public:
-  explicit Robot(const std::string& url) : bus_(url, TimeSource::kHost) {
+  explicit Robot(const std::string& url, const std::string& key = "")
+      : bus_(BusAccess{url, hostSealer(key)}, TimeSource::kHost) {
     bus_.subscribe<estop_t>(kEstop, [this](const estop_t& stop) { stopped = stop.engaged != 0; });
     bus_.subscribe<arm_t>(kArm, [this](const arm_t& arm) { armed = arm.armed != 0; });
   }
@@ -56,6 +58,30 @@ TEST_CASE("tread-top --once prints what it saw, without a terminal") {
   CHECK(top.exitCode() == 0);
   CHECK_THAT(folder.text("out.txt"), Catch::Contains("motors   disarmed: says the test"));
   CHECK_THAT(folder.text("out.txt"), Catch::Contains("MOTOR"));
+}
+
+TEST_CASE("of a robot with a key tread-top shows what is sealed by it, and tells of the rest") {
+  const std::string url = ownLcmUrl();
+  const samples::OwnFolder folder;
+  writeNewKey(folder.path("key"));
+  Robot stranger(url);
+  Process forged("tread-top", {"--once", "2", "--lcm-url", url, "--key", folder.path("key")},
+                 folder.path("forged.txt"));
+  while (forged.running()) stranger.run(0.1);
+  CAPTURE(folder.text("forged.txt"));
+  CHECK_THAT(folder.text("forged.txt"), Catch::Contains("motors   no MOTOR message") &&
+                                            Catch::Contains("trust    messages not shown: ") &&
+                                            Catch::Contains(" unsealed"));
+  Robot robot(url, folder.path("key"));
+  Process sealed("tread-top", {"--once", "2", "--lcm-url", url, "--key", folder.path("key")},
+                 folder.path("sealed.txt"));
+  while (sealed.running()) robot.run(0.1);
+  CAPTURE(folder.text("sealed.txt"));
+  CHECK_THAT(folder.text("sealed.txt"),
+             Catch::Contains("motors   disarmed: says the test") && !Catch::Contains("trust"));
+  Process without("tread-top", {"--once", "2", "--lcm-url", url}, folder.path("without.txt"));
+  while (without.running()) robot.run(0.1);
+  CHECK_THAT(folder.text("without.txt"), Catch::Contains("nothing here is proven: --key FILE"));
 }
 
 TEST_CASE("in a terminal a key arms, another one stops, and q gives the terminal back") {

@@ -104,6 +104,8 @@ export function showHealth(state, clock) {
     const words = old ? `silent for ${age.toFixed(0)} s` : entry.message.health_reason;
     return `<div class="process ${name}${old ? " old" : ""}"><span class="mark">${old ? "?" : sign}</span><span>${escape(process)}</span><small>${escape(words)}</small></div>`;
   });
+  const doubt = state.player?.doubt;
+  if (doubt) rows.unshift(`<div class="process failed"><span class="mark">!</span><span>tread-view</span><small>${escape(doubt)}</small></div>`);
   put("health", rows.join("") || "<div class=\"why\">none heard</div>");
 }
 

@@ -24,7 +24,10 @@ let drawn = 0; // [ms] when a picture was drawn last
 let shown = 0; // [us] when the newest MOTOR came that it shows, by the server's clock
 
 
-const connection = new Connection(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/${location.search}`, {
+// Beside the page, wherever a proxy has put it.
+const beside = new URL(`./${location.search}`, location.href);
+beside.protocol = location.protocol === "https:" ? "wss:" : "ws:";
+const connection = new Connection(beside.href, {
   onMessage(topic, message, time) {
     state.take(topic, message, time, performance.now());
     if (topic === "view/player") playerMoved();

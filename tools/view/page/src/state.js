@@ -12,6 +12,14 @@ export const motorWord = (state) => MOTOR[state] ?? "unknown";
 export const planWord = (state) => PLAN[state] ?? "unknown";
 export const mayDrive = (state) => [1, 2, 3, 6].includes(state);
 
+// Names and places that whoever may send can make up without end: the oldest go.
+const MOST = { processes: 64, tiles: 8192, patterns: 2048, fences: 256, history: 20000 };
+function keep(map, key, value, most) {
+  map.delete(key);
+  map.set(key, value);
+  if (map.size > most) map.delete(map.keys().next().value);
+}
+
 export class State {
   constructor() {
     this.latest = new Map(); // topic -> { message, time [us], arrived [ms] }
@@ -45,8 +53,8 @@ export class State {
       return;
     }
     const entry = { message, time, arrived };
-    if (topic === "HEALTH") this.health.set(message.process, entry);
-    else if (topic === "MAP") this.tiles.set(`${message.tile_x},${message.tile_y}`, { time, tile: message, image: null });
+    if (topic === "HEALTH") keep(this.health, message.process, entry, MOST.processes);
+    else if (topic === "MAP") keep(this.tiles, `${message.tile_x},${message.tile_y}`, { time, tile: message, image: null }, MOST.tiles);
     else if (topic === "PATTERN_SET") this.takePattern(message, time);
     else if (topic === "CONFIG") this.takeConfig(message);
         else if (topic === "FENCE") this.takeFence(message, time);
@@ -66,15 +74,15 @@ export class State {
 
   takeHistory(message) {
     if (message.from_start) this.history = { events: [], patterns: [], way: [], battery: [] };
-    for (const list of ["events", "patterns", "way", "battery"]) this.history[list] = this.history[list].concat(message[list]);
+    for (const list of ["events", "patterns", "way", "battery"]) this.history[list] = this.history[list].concat(message[list]).slice(this.live ? -MOST.history : 0);
   }
 
   takePattern(part, time) {
     const known = this.patterns.get(part.part);
     const pattern = { id: part.set_pattern_id, name: part.pattern_name, version: part.set_version, time,
       trajectory: part.trajectory, key: part.trajectory.join() };
-    if (known && known.name === pattern.name && known.key !== pattern.key) this.before.set(part.part, known);
-    if (!known || known.key !== pattern.key || known.name !== pattern.name || time < known.time) this.patterns.set(part.part, pattern);
+    if (known && known.name === pattern.name && known.key !== pattern.key) keep(this.before, part.part, known, MOST.patterns);
+    if (!known || known.key !== pattern.key || known.name !== pattern.name || time < known.time) keep(this.patterns, part.part, pattern, MOST.patterns);
   }
 
   takeConfig(config) {
@@ -86,7 +94,7 @@ export class State {
   }
 
     takeFence(fence, time) {
-    this.fences.set(fence.fence_name, { ...fence, time });
+    keep(this.fences, fence.fence_name, { ...fence, time }, MOST.fences);
   }
 
   // Those that stand at the time of what is shown.

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// What it costs the robot that 200 raw clients and a page of another origin ask for all they can get:
+// node flood.mjs MODULES HTTP-URL SECONDS
+import { createRequire } from "node:module";
+import { existsSync } from "node:fs";
+import http from "node:http";
+import os from "node:os";
+const require = createRequire(`${process.argv[2]}/x.js`);
+const { WebSocket } = require("ws");
+const { chromium } = require("playwright-core");
+const url = new URL(process.argv[3]);
+const ws = url.href.replace("http", "ws");
+const end = performance.now() + 1000 * Number(process.argv[4]);
+const fail = (words) => { console.error(words); process.exit(1); };
+// The strangers' own computing is not what is measured.
+os.setPriority(19);
+
+// A page of another origin: it opens sockets as fast as it can, and counts what gets through.
+const stranger = http.createServer((_, answer) => answer.end(`<script>
+  window.opened = 0; window.tried = 0;
+  const knock = () => { ++window.tried; const socket = new WebSocket("${ws}", ["foxglove.websocket.v1"]);
+    socket.onopen = () => ++window.opened; socket.onclose = () => setTimeout(knock, 20); };
+  for (let i = 0; i < 20; ++i) knock();
+  setInterval(() => fetch("${url.href}", { mode: "no-cors" }).catch(() => {}), 50);
+</script>`)).listen(0, "127.0.0.1");
+await new Promise((done) => stranger.on("listening", done));
+const executablePath = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(existsSync);
+const browser = await chromium.launch({ executablePath, args: ["--no-sandbox", "--disable-gpu"] });
+const page = await browser.newPage();
+await page.goto(`http://127.0.0.1:${stranger.address().port}/`);
+
+let opened = 0, closed = 0, requests = 0, bytes = 0;
+const all = (first) => JSON.stringify({ op: "subscribe", subscriptions: Array.from({ length: 30 }, (_, i) => ({ id: first + i, channelId: i + 1 })) });
+const none = (first) => JSON.stringify({ op: "unsubscribe", subscriptionIds: Array.from({ length: 30 }, (_, i) => first + i) });
+function knock(kind) {
+  if (performance.now() > end) return;
+  const socket = new WebSocket(ws, ["foxglove.websocket.v1"]);
+  let timer = null;
+  socket.on("error", () => {});
+  socket.on("message", (data) => { bytes += data.length; });
+  socket.on("open", () => {
+    ++opened;
+    let first = 1;
+    // Some never read what they ask for.
+    if (kind % 4 === 0) socket._socket.pause();
+    timer = setInterval(() => {
+      if (socket.readyState !== WebSocket.OPEN) return;
+      ++requests;
+      // The same again; the same after letting go; a large one; and as fast as it goes.
+      if (kind % 4 === 2) socket.send(none(first));
+      if (kind % 4 === 3 && requests % 50 === 0) socket.send("x".repeat(1 << 20));
+      socket.send(all(first += 30));
+    }, kind % 4 === 1 ? 1 : 20);
+  });
+  socket.on("close", () => { ++closed; clearInterval(timer); setTimeout(() => knock(kind), 50); });
+}
+for (let kind = 0; kind < 200; ++kind) knock(kind);
+await new Promise((done) => setTimeout(done, end - performance.now()));
+const [tried, through] = await page.evaluate(() => [window.tried, window.opened]);
+await browser.close();
+console.log(`page of another origin: ${tried} sockets tried, ${through} opened; raw clients: ${opened} opened, ${closed} closed, ${requests} requests, ${(bytes / 1e6).toFixed(0)} MB got`);
+if (through > 0 || tried < 20) fail("a page of another origin got through, or did not try");
+if (opened < 20 || requests < 50) fail("the raw clients did not get in: nothing was tried");
+console.log("1 passed, 0 failed");
+process.exit(0);

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+
+namespace tread::view {
+
+/// Something that comes again with time, as long as it is not used up.
+class Allowance {
+ public:
+  Allowance(double rate, double most) : rate_(rate), most_(most), left_(most) {}
+  void wait(double elapsed) { left_ = std::min(most_, left_ + rate_ * elapsed); }
+  void use(double amount) { left_ -= amount; }
+  double left() const { return left_; }
+
+ private:
+  double rate_, most_, left_;
+};
+
+/// What of a channel a frame tells: channel and part.
+using FramePart = std::pair<uint32_t, uint64_t>;
+
+/// A frame that waits for a viewer's line.
+struct Frame {
+  FramePart part;
+  int64_t time = 0;                            ///< [us]
+  std::shared_ptr<const std::string> payload;  ///< null: what is newest at its turn
+  bool is_news = false;  ///< part of a whole, which the newest without a payload is
+};
+
+/// The frames that wait for one viewer.
+/** Frames give way where the line is slower than the robot: then each part waits once, and its
+ * newest is sent. So a queue holds some payloads, and each part's name at most once more. */
+class FrameQueue {
+ public:
+  static constexpr size_t kCrowded = 64;              ///< frames, from which on the newest suffices
+  static constexpr size_t kCrowdedBytes = 1'000'000;  ///< the same [bytes]
+
+  bool empty() const { return frames_.empty(); }
+  size_t size() const { return frames_.size(); }
+  size_t bytes() const { return bytes_; }  ///< of the payloads
+
+  void push(Frame frame) {
+    if (newest_.count(frame.part) > 0) return;
+    if (frame.payload && isCrowded()) {
+      frame.payload = nullptr;
+      if (frame.is_news) drop(frame.part.first);
+    }
+    if (frame.payload)
+      bytes_ += frame.payload->size();
+    else
+      newest_.insert(frame.part);
+    frames_.push_back(std::move(frame));
+  }
+  void pushNewest(FramePart part) { push({part, 0, nullptr, false}); }
+  bool isCrowded() const { return frames_.size() >= kCrowded || bytes_ >= kCrowdedBytes; }
+
+  Frame pop() {
+    Frame frame = std::move(frames_.front());
+    frames_.pop_front();
+    if (frame.payload)
+      bytes_ -= frame.payload->size();
+    else
+      newest_.erase(frame.part);
+    return frame;
+  }
+
+ private:
+  void drop(uint32_t channel) {
+    const auto gone = [&](const Frame& frame) {
+      if (frame.part.first != channel || !frame.payload) return false;
+      bytes_ -= frame.payload->size();
+      return true;
+    };
+    frames_.erase(std::remove_if(frames_.begin(), frames_.end(), gone), frames_.end());
+  }
+
+  std::deque<Frame> frames_;
+  std::set<FramePart> newest_;  ///< those that wait without a payload
+  size_t bytes_ = 0;
+};
+
+}  // namespace tread::view
