@@ -209,9 +209,9 @@ std::map<std::string, std::string> troubles(const LaunchFile& launch) {
 class LateMessages {
  public:
   /// An empty URL: nobody is listened to.
-  explicit LateMessages(const std::string& lcm_url) {
+  LateMessages(const std::string& lcm_url, const std::string& key) {
     if (lcm_url.empty()) return;
-    bus_.emplace(lcm_url, TimeSource::kHost);
+    bus_.emplace(BusAccess{lcm_url, hostSealer(key)}, TimeSource::kHost);
     bus_->subscribe<health_t>(
         kHealth, [this](const health_t& health) { late_[health.process] = health.late > 0; });
   }
@@ -229,18 +229,18 @@ class LateMessages {
 };
 
 /// Whether this machine keeps real time: no process waits for long, and messages come in time.
-int timing(const std::string& name, const Options& options) {
+int timing(const LaunchFile& launch, const Options& options) {
   constexpr int64_t kMostLate = 1;
   constexpr int kLookMs = 20;
   const std::atomic<bool>& stop = stopRequest(0);
-  LateMessages late(options.settings.lcm_url);
+  LateMessages late(options.settings.lcm_url, launch.key);
   const StallWatch watch;
   const auto end =
       std::chrono::steady_clock::now() + std::chrono::duration<double>(*options.timing);
   while (!stop && std::chrono::steady_clock::now() < end) late.listenFor(kLookMs);
   const double wait_ms = 1e3 * watch.longest();
   const bool kept = wait_ms <= options.longest_ms && late.processes() <= kMostLate;
-  std::cout << name << ": this machine " << (kept ? "keeps" : "does not keep")
+  std::cout << launch.name << ": this machine " << (kept ? "keeps" : "does not keep")
             << " real time: a process waited for " << std::lround(wait_ms) << " ms (at most "
             << std::lround(options.longest_ms) << "), messages came late to " << late.processes()
             << " processes" << std::endl;
@@ -269,7 +269,7 @@ int run(int argc, char** argv) {
   LaunchFile launch = readLaunchFile(reader, options.settings);
   takeNamedKey(launch);
   const RunPaths paths(options.settings.run);
-  if (options.timing) return timing(launch.name, options);
+  if (options.timing) return timing(launch, options);
   if (options.stop) return stopRun(launch.name, paths);
   if (options.status) return status(launch, paths);
   if (!options.only.empty()) return only(launch, options);
