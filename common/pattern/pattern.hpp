@@ -83,6 +83,8 @@ class PatternSet {
    * classes only with patterns); version >= 1; period 5 ms..1 s; at most 1000 patterns of at most
    * 1000 samples, and 2000 numbers in their commands. */
   static std::optional<PatternSet> make(PatternSetContent content, std::string& why);
+  /// No learner gives a higher version: more than the robot's life in milliseconds.
+  static constexpr int64_t kHighestVersion = 1'000'000'000'000;
 
   const PatternSetContent& content() const { return *content_; }
   int64_t version() const { return content_->version; }

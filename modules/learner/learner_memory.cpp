@@ -18,8 +18,6 @@ constexpr int64_t kReserve = 100 * Learner::kVersions;
 constexpr int64_t kReserveLeft = 50 * Learner::kVersions;
 /// Above a state whose reserve is lost.
 constexpr int64_t kWithoutReserve = 1000 * Learner::kVersions;
-/// No version is higher: a larger number is not one of ours.
-constexpr int64_t kHighestReserve = 1'000'000'000'000;
 /// Robot time for one version where nothing is known [us].
 constexpr int64_t kTimePerVersionUs = 20'000;
 
@@ -41,7 +39,7 @@ std::optional<int64_t> LearnerMemory::storedReserve(std::string& problem) const 
   int64_t reserve = 0;
   // The whole entry must be the number: half a number would be a lower one.
   const bool whole = (in >> reserve) && (in >> std::ws).eof();
-  if (whole && reserve >= 1 && reserve <= kHighestReserve) return reserve;
+  if (whole && reserve >= 1 && reserve <= PatternSet::kHighestVersion) return reserve;
   append(problem, std::string(kVersions) + " is damaged: versions go on far above");
   return std::nullopt;
 }

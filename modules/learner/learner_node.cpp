@@ -35,8 +35,6 @@ void readGates(ConfigReader& reader, MeasurementLimits& limits) {
 /// A higher version than ours is believed when this many messages named it: one may be a broken
 /// one.
 constexpr int kBelievedAfter = 3;
-/// Nobody counts further than this [versions]: more than the robot's life in milliseconds.
-constexpr int64_t kHighestVersion = 1'000'000'000'000;
 /// How far above a higher version of a former life we go on.
 constexpr int64_t kAboveUnknown = 100;
 
@@ -264,7 +262,7 @@ void LearnerNode::hear(const execution_t& message) {
 
 /// Somebody named a version: ours goes above it, unless it is a broken one.
 void LearnerNode::noteVersion(int64_t version) {
-  if (version <= learner_.set().version() || version > kHighestVersion) return;
+  if (version <= learner_.set().version() || version > PatternSet::kHighestVersion) return;
   const bool believed = ++unknown_versions_[version] >= kBelievedAfter;
   // Broken messages may name any number; what was named once long ago is of no interest.
   if (unknown_versions_.size() > 16) unknown_versions_.clear();

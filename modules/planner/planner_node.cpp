@@ -76,11 +76,13 @@ constexpr double kFarthest = 1e6;  // [m] a goal can be from the origin of map
 constexpr int kMaxTileCells = 512;
 
 constexpr int64_t kMapForgotten = 3'000'000;    // [us] without a tile, until another map may come
-constexpr int64_t kOlderForgotten = 5'000'000;  // [us] without an older set
-constexpr int64_t kOlderLate = 1'000'000;       // [us] a message may be late
-constexpr int64_t kPlanRepeat = 200'000;        // [us]
-constexpr int64_t kTreeRepeat = 1'000'000;      // [us]
-constexpr size_t kTreeNodes = 600;              // drawn at most: 15 kB
+constexpr int64_t kOtherForgotten = 5'000'000;  // [us] without another set than the one in use
+constexpr int64_t kOtherLate = 1'000'000;       // [us] a message may be late
+/// So far a learner goes on at most while it lives, or comes back with its state [versions].
+constexpr int64_t kMostJump = 100'000;
+constexpr int64_t kPlanRepeat = 200'000;    // [us]
+constexpr int64_t kTreeRepeat = 1'000'000;  // [us]
+constexpr size_t kTreeNodes = 600;          // drawn at most: 15 kB
 
 /// Nothing for an invalid message, as the next.
 std::optional<Goal> goalFrom(const goal_t& message) {
@@ -321,11 +323,17 @@ void PlannerNode::watchLink(int64_t utime) {
 void PlannerNode::take(const pattern_set_part_t& message) {
   const int64_t refused = sets_.refused();
   const int64_t older = sets_.older();
+  if (outOfReach(message.set_version))
+    return noteOtherSet(message.set_version, "PATTERN_SET refused: far above the learner's");
   const std::optional<PatternSet> set = sets_.add(message);
   if (sets_.refused() > refused) return health_.addToCounter("PATTERN_SET refused");
   inputs_.set_received = bus_.now();
-  if (sets_.older() > older) return noteOlderSet(message.set_version);
+  if (sets_.older() > older)
+    return noteOtherSet(message.set_version, "PATTERN_SET ignored: older than the set in use");
+  // The first part of one far above does not say that the one in use goes on.
+  if (set || message.set_version <= set_version_ + kMostJump) set_heard_ = bus_.now();
   if (!set) return;
+  set_version_ = set->version();
   const int64_t started = bus_.now();
   const bool taken = supervisor_.takeSet(*set);
   if (!taken) health_.addToCounter("PATTERN_SET refused: it waits");
@@ -333,21 +341,31 @@ void PlannerNode::take(const pattern_set_part_t& message) {
   health_.setCounter("longest swap of a set [us]", longest_swap_);
 }
 
-/// One may be late; a learner that goes on with lower versions is a second one.
-void PlannerNode::noteOlderSet(int64_t version) {
+/// Whether no learner can have come to a version: once in use it would stay for ever, as a learner
+/// goes above what others name, but not above what it cannot believe.
+bool PlannerNode::outOfReach(int64_t version) const {
+  if (set_version_ == 0) return version > PatternSet::kHighestVersion;
+  // A learner that has lost its state may begin far above, and then goes on no more below.
+  const bool goes_on = bus_.now() - set_heard_ < kOtherForgotten;
+  const int64_t from = goes_on ? set_version_ : std::max(set_version_, PatternSet::kHighestVersion);
+  return version > from + kMostJump;
+}
+
+/// One may be late; a learner that goes on with other versions is a second one.
+void PlannerNode::noteOtherSet(int64_t version, const char* counter) {
   const int64_t now = bus_.now();
-  if (now - older_heard_ > kOlderForgotten) older_since_ = now;
-  older_heard_ = now;
-  older_version_ = version;
-  health_.addToCounter("PATTERN_SET ignored: older than the set in use");
+  if (now - other_heard_ > kOtherForgotten) other_since_ = now;
+  other_heard_ = now;
+  other_version_ = version;
+  health_.addToCounter(counter);
 }
 
 std::string PlannerNode::secondLearner(int64_t utime) const {
-  const bool goes_on = older_heard_ > 0 && utime - older_heard_ < kOlderForgotten &&
-                       older_heard_ - older_since_ > kOlderLate;
+  const bool goes_on = other_heard_ > 0 && utime - other_heard_ < kOtherForgotten &&
+                       other_heard_ - other_since_ > kOtherLate;
   if (!goes_on) return "";
-  return "PATTERN_SET of version " + std::to_string(older_version_) +
-         " is published beside the newer one in use: does a second learner run? end it";
+  return "PATTERN_SET of version " + std::to_string(other_version_) + " is published beside " +
+         std::to_string(set_version_) + ", which is in use: does a second learner run? end it";
 }
 
 void PlannerNode::step(int64_t utime) {

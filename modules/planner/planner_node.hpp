@@ -53,7 +53,8 @@ class PlannerNode : public Node {
   void take(const pattern_set_part_t& message);
   void watchGoal(int64_t utime);
   void watchLink(int64_t utime);
-  void noteOlderSet(int64_t version);
+  bool outOfReach(int64_t version) const;
+  void noteOtherSet(int64_t version, const char* counter);
   std::string secondLearner(int64_t utime) const;
   void publishProgram(int64_t utime, const ExecutionTracker& program);
   void publishPlan(int64_t utime, const Decision& decision, int64_t search_time);
@@ -78,9 +79,11 @@ class PlannerNode : public Node {
   PlannerInputs inputs_;
   double cell_size_ = 0.0;   ///< [m] of the map in use; 0 = none yet
   int64_t map_taken_ = 0;    ///< [us] the last tile of it
-  int64_t older_since_ = 0;  ///< [us] sets of older versions than the one in use come since then
-  int64_t older_heard_ = 0;  ///< [us]
-  int64_t older_version_ = 0;
+  int64_t set_version_ = 0;  ///< newest that came whole; 0 = none yet
+  int64_t set_heard_ = 0;    ///< [us] when a part of it or of a next one came last
+  int64_t other_since_ = 0;  ///< [us] sets of versions that are not taken come since then
+  int64_t other_heard_ = 0;  ///< [us]
+  int64_t other_version_ = 0;
   StopPredicate stop_;        ///< empty = the deadline
   int64_t longest_swap_ = 0;  ///< [us]
   int64_t next_plan_ = 0;

@@ -564,6 +564,60 @@ TEST_CASE("A goal out of a log moves nothing, and takes nothing from the goal of
   }
 }
 
+TEST_CASE("A version that no learner can have come to is refused, and the learner's goes on") {
+  Yard yard;
+  const auto forge = [&](int64_t version, int times) {
+    for (int i = 0; i < times; ++i, yard.run(0.05))
+      for (pattern_set_part_t& part : toMessages(samplePatterns(version)))
+        yard.bus.outside().publish(kPatternSet, part);
+  };
+  const int64_t version = GENERATE(1'000'000'000'000'000, 1'000'000'000'001, 500'000'000'000,
+                                   1'000'000, std::numeric_limits<int64_t>::max());
+  yard.run(0.01);
+  // Before the learner was heard a version that a learner may have is all that is known.
+  if (version > PatternSet::kHighestVersion) forge(version, 3);
+  yard.run(1.5);
+  yard.sendGoal(10.0);
+  yard.armAndGo();
+  yard.run(1.0);
+  CHECK(yard.plan.set_version == 1);
+  forge(version, 60);
+  CHECK(yard.plan.set_version == 1);
+  CHECK(yard.robot().speed() > 0.3);
+  CHECK(yard.health.health_state == health_t::HEALTH_DEGRADED);
+  CHECK_THAT(yard.health.health_reason,
+             Catch::Contains(std::to_string(version) + " is published beside 1, which is in use"));
+  yard.run(8.0);
+  CHECK(yard.health.health_state == health_t::HEALTH_OK);
+  CHECK(yard.plan.set_version == 1);
+}
+
+TEST_CASE(
+    "A learner that has lost its state and begins far above is followed once it goes on alone") {
+  Yard yard;
+  const auto tell = [&](int64_t version, double seconds) {
+    for (double t = 0.0; t < seconds; t += 0.5, yard.run(0.5))
+      for (pattern_set_part_t& part : toMessages(samplePatterns(version)))
+        yard.bus.outside().publish(kPatternSet, part);
+  };
+  yard.robot().learner_alive = false;
+  tell(7, 2.0);
+  CHECK(yard.plan.set_version == 7);
+  tell(7 + 100'000, 0.5);  // its reserve
+  CHECK(yard.plan.set_version == 7 + 100'000);
+  tell(90'000'000'000, 3.0);
+  CHECK(yard.plan.set_version == 7 + 100'000);
+  tell(90'000'000'000, 4.0);
+  CHECK(yard.plan.set_version == 90'000'000'000);
+  tell(1'000'000'100'000, 4.0);
+  CHECK(yard.plan.set_version == 90'000'000'000);
+  tell(1'000'000'100'000, 4.0);  // gone above what is believed at most
+  CHECK(yard.plan.set_version == 1'000'000'100'000);
+  yard.run(6.0);
+  tell(1'000'000'200'001, 0.5);
+  CHECK(yard.plan.set_version == 1'000'000'100'000);
+}
+
 TEST_CASE("A second learner is told: its older versions are ignored, and the planner drives on") {
   Yard yard;
   yard.run(1.5);
