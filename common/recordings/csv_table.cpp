@@ -88,13 +88,9 @@ void CsvTable::read(std::string text, CsvLayout layout) {
   readHeader(header_.fields);
   CsvLines lines(text, delimiter_);
   CsvLine line;
-  for (size_t units = 0; lines.next(line);)
-    if (!line.comment && line.number > header_.number) {
-      if (units < kMostLinesOfUnits && takeUnits(line, layout.columns))
-        ++units;
-      else
-        addRow(line);
-    }
+  while (lines.next(line))
+    if (!line.comment && line.number > header_.number && !takeUnits(line, layout.columns))
+      addRow(line);
   if (rows_.empty() && header_.number == 0)
     throw RecordingError(path_ + ": cannot be read or is empty; give a CSV file" +
                          (layout.header ? " with a header line" : ""));
@@ -126,7 +122,7 @@ void CsvTable::addRow(CsvLine& line) {
 /// Below the header, before the first row: words, where the columns that are asked for have
 /// numbers.
 bool CsvTable::takeUnits(const CsvLine& line, const std::vector<std::string>& names) {
-  if (!rows_.empty()) return false;
+  if (!rows_.empty() || units_.size() == kMostLinesOfUnits) return false;
   bool words = false;
   for (const std::string& name : names) {
     const auto column = columns_.find(name);
@@ -136,14 +132,20 @@ bool CsvTable::takeUnits(const CsvLine& line, const std::vector<std::string>& na
     if (isNumeric(field) || isNoMeasurement(field)) return false;
     words = true;
   }
-  if (words) units_ = line.fields;
+  if (words) units_.push_back(line.fields);
   return words;
+}
+
+std::vector<std::string> CsvTable::units() const {
+  std::vector<std::string> lines;
+  for (const auto& fields : units_) lines.push_back(joinWords(fields));
+  return lines;
 }
 
 std::string CsvTable::unit(std::string_view column) const {
   const size_t index = indexOf(column);
-  if (index >= units_.size()) return {};
-  std::string unit = units_[index];
+  if (units_.empty() || index >= units_.back().size()) return {};
+  std::string unit = units_.back()[index];
   for (const char bracket : {'[', ']', '(', ')'})
     unit.erase(std::remove(unit.begin(), unit.end(), bracket), unit.end());
   if (unit == "\xC2\xB0") return "deg";

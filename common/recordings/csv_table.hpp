@@ -48,8 +48,8 @@ class CsvTable {
   /// What the last digit of a column's numbers is worth, in the row where it is worth least; 0
   /// where not all of them are written as 1.76414E+12.
   double lastDigit(std::string_view column) const;
-  /// The words below the header that were left out as its units; empty if there are none.
-  const std::vector<std::string>& units() const { return units_; }
+  /// The lines below the header that were left out as its units, in words.
+  std::vector<std::string> units() const;
   /// That of a column, as "deg" also where [deg] or a sign of degrees stands there; or empty.
   std::string unit(std::string_view column) const;
   /// "file:line: problem" for a row; behind the last one, for the last line.
@@ -75,7 +75,7 @@ class CsvTable {
   CsvLine header_;
   std::map<std::string, size_t, std::less<>> columns_;  ///< kTwice for a name that is there twice
   size_t width_ = 0;
-  std::vector<std::string> units_;
+  std::vector<std::vector<std::string>> units_;
   std::vector<std::vector<std::string>> rows_;
   std::vector<size_t> lines_;  ///< of the rows, from 1
 };

@@ -11,6 +11,7 @@
 #include "common/geometry/degrees.hpp"
 #include "common/geometry/se3.hpp"
 #include "modules/ins_driver/core/ins_source.hpp"
+#include "tools/import/csv_check.hpp"
 
 namespace tread::import {
 namespace {
@@ -64,27 +65,6 @@ class Series {
   std::vector<Sample> samples_;
 };
 
-/// A time or a place whose last digits are gone (1.76414E+12) is none.
-void requireDigits(const CsvTable& table, const std::string& column, double factor, double needed,
-                   const std::string& unit) {
-  const double last = std::abs(factor) * table.lastDigit(column);
-  if (last > 0.0 && last > needed)
-    throw table.error(0, "column " + column + " is " + table.text(0, column) +
-                             ": in all rows a spreadsheet or program has rounded it, to " +
-                             formatNumber(last) + " " + unit +
-                             "; export it as numbers with all their digits");
-}
-
-/// What the row below the header says of a column goes before a wrong word in the mapping.
-void requireUnit(const CsvTable& table, const std::string& column,
-                 const std::vector<std::string>& others) {
-  const std::string unit = table.unit(column);
-  if (std::find(others.begin(), others.end(), unit) != others.end())
-    throw table.headerError("column " + column + " is in " + unit +
-                            " by the row below the header, " +
-                            "but not by the mapping; correct the unit of the column there");
-}
-
 /// All quantities of a recording.
 class CsvContent {
  public:
@@ -124,8 +104,9 @@ class CsvContent {
   void read(const std::string& file, const CsvSource& source) {
     const CsvTable table(file, source.layout);
     for (const auto& [quantity, column] : source.columns) files_[quantity] = file;
-    checkUnits(table, source, file);
-    checkDigits(table, source);
+    for (const std::string& words : table.units())
+      result_.notes.push_back(file + ": below the header stand units, left out: " + words);
+    checkTable(table, source);
     std::vector<Row> rows = rowsOf(table, source);
     sortByTime(rows, "rows of " + file, result_);
     for (const Row& row : rows)
@@ -139,13 +120,11 @@ class CsvContent {
     std::vector<Row> rows;
     std::vector<double> raw;
     for (size_t row = 0; row < table.rows(); ++row) {
-      raw.push_back(source.time.empty() ? static_cast<double>(row) / source.rate
-                                        : table.number(row, source.time));
-      rows.push_back({source.time_unit * raw.back(), row});
+      if (!source.time.empty()) raw.push_back(table.number(row, source.time));
+      rows.push_back({timeOf(table, row, source), row});
     }
-    if (!source.time.empty())
-      if (const auto problem = timeUnitProblem(raw, source.time_unit))
-        throw table.error(0, "column " + source.time + ": " + *problem);
+    if (const auto problem = timeUnitProblem(raw, source.time_unit))
+      throw table.error(0, "column " + source.time + ": " + *problem);
     checkTimes(table, source, rows);
     return rows;
   }
@@ -164,28 +143,6 @@ class CsvContent {
                                        " s; are these two drives? cut the file there");
       newest = std::max(newest, row.time);
     }
-  }
-
-  void checkUnits(const CsvTable& table, const CsvSource& source, const std::string& file) {
-    if (table.units().empty()) return;
-    result_.notes.push_back(
-        file + ": below the header stand units, left out: " + joinWords(table.units()));
-    if (!source.time.empty()) requireUnit(table, source.time, source.other_time_units);
-    for (const auto& [quantity, column] : source.columns)
-      requireUnit(table, column.column, column.other_units);
-  }
-
-  /// Times are finer than the rows are apart, positions than 1 m.
-  static void checkDigits(const CsvTable& table, const CsvSource& source) {
-    const size_t last = table.rows() - 1;
-    if (!source.time.empty() && last > 0)
-      requireDigits(
-          table, source.time, source.time_unit,
-          (timeOf(table, last, source) - timeOf(table, 0, source)) / static_cast<double>(last),
-          "s");
-    for (const char* quantity : {"x", "y"})
-      if (const auto found = source.columns.find(quantity); found != source.columns.end())
-        requireDigits(table, found->second.column, found->second.factor, 1.0, "m");
   }
 
   static double timeOf(const CsvTable& table, size_t row, const CsvSource& source) {

@@ -106,7 +106,7 @@ TEST_CASE("a row of units below the header is told and is no row") {
     CHECK(read.number(1, "x") == -2.25);
   }
   const CsvTable read = table("t,x,yaw,cmd\n[ms],m,\xC2\xB0,(%)\n0,1,2,3\n", layout);
-  CHECK(read.units() == std::vector<std::string>{"[ms]", "m", "\xC2\xB0", "(%)"});
+  CHECK(read.units() == std::vector<std::string>{"[ms], m, \xC2\xB0, (%)"});
   CHECK(read.unit("t") == "ms");
   CHECK(read.unit("yaw") == "deg");
   CHECK(read.unit("4") == "percent");
