@@ -54,20 +54,6 @@ bool isLoopback(const std::string& address) {
   return address.rfind("127.", 0) == 0 || address == "::1" || address == "localhost";
 }
 
-/// Takes "https://host:8443/robot/" apart; returns what is wrong with it, for CLI11.
-std::string addOrigin(const std::string& url, ServerSettings& settings) {
-  const size_t scheme = url.find("://");
-  const std::string name = url.substr(0, scheme);
-  const size_t host = scheme == std::string::npos ? url.size() : scheme + 3;
-  const size_t path = std::min(url.find_first_of("/?#", host), url.size());
-  if ((name != "http" && name != "https") || path == host ||
-      url.find_first_of("?#@ ", host) != std::string::npos)
-    return "'" + url + "' is no address of a page: https://HOST[:PORT][/PATH/] is needed";
-  settings.origins.push_back(url.substr(0, path));
-  if (path + 1 < url.size()) settings.paths.insert(url.substr(path));
-  return "";
-}
-
 void sayWhere(const ViewServer& server, const ServerSettings& settings) {
   const std::string token = settings.token.empty() ? "" : "?token=" + settings.token;
   const std::string place = settings.address + ":" + std::to_string(server.port()) + "/" + token;
@@ -120,6 +106,7 @@ void live(const Arguments& arguments, const std::atomic<bool>& stop) {
   for (double last = secondsNow(); !stop;) {
     listener.handle(kWaitMs);
     console.step();
+    server.setOperator(console->holder());
     const double now = secondsNow();
     server.step(now - last);
     last = now;

@@ -67,24 +67,9 @@ int addHeader(lws* socket, const char* name, const std::string& value, unsigned 
                                      static_cast<int>(value.size()), at, end);
 }
 
-/// As long for a wrong guess as for a right one.
-bool sameText(const std::string& a, const std::string& b) {
-  unsigned char different = a.size() == b.size() ? 0 : 1;
-  for (size_t i = 0; i < a.size(); ++i)
-    different = static_cast<unsigned char>(different | (a[i] ^ b[b.empty() ? 0 : i % b.size()]));
-  return different == 0;
-}
-
-/// Host of an address "http://host:port", without its scheme.
-std::string hostOf(const std::string& origin) {
-  const size_t scheme = origin.find("://");
-  return scheme == std::string::npos ? origin : origin.substr(scheme + 3);
-}
-
-bool isLoopbackName(const std::string& host) {
-  const std::string name = host.substr(0, host.rfind(':'));
-  return name == "localhost" || name == "127.0.0.1" || name == "[::1]" || host == "localhost" ||
-         host == "127.0.0.1";
+Visitor visitorOf(lws* socket) {
+  return {headerOf(socket, WSI_TOKEN_HOST), headerOf(socket, WSI_TOKEN_ORIGIN),
+          argumentOf(socket, "token")};
 }
 
 }  // namespace
@@ -94,7 +79,6 @@ struct ViewServer::Client {
   lws* socket = nullptr;
   uint64_t number = 0;
   bool may_command = false;
-  bool operates = false;                       ///< has taken the robot: it does not wait for others
   bool asked = false;                          ///< libwebsockets says when the line takes more
   std::map<uint32_t, uint32_t> subscriptions;  ///< by channel
   std::map<uint32_t, std::string> topics;      ///< its own channels
@@ -126,8 +110,7 @@ struct ViewServer::Sockets {
   int handle(lws* socket, lws_callback_reasons reason, void* user, void* in, size_t size) {
     switch (reason) {
       case LWS_CALLBACK_FILTER_NETWORK_CONNECTION:
-        accepts.use(1.0);
-        return accepts.left() < 0.0 ? -1 : 0;
+        return accepts.take() ? 0 : -1;
       case LWS_CALLBACK_HTTP:
         return http(socket, static_cast<size_t*>(user));
       case LWS_CALLBACK_HTTP_WRITEABLE:
@@ -149,25 +132,12 @@ struct ViewServer::Sockets {
     }
   }
 
-  /// A stranger's page in the same browser must not even listen: without a token only those who
-  /// name this machine are let in, and only pages that came from here.
-  bool allowed(lws* socket) const {
-    const ServerSettings& settings = server.settings_;
-    if (!settings.token.empty()) return sameText(argumentOf(socket, "token"), settings.token);
-    return isLoopbackName(headerOf(socket, WSI_TOKEN_HOST)) && isOurs(socket);
-  }
-
-  /// Whether no page asks, or one that was fetched from here.
-  bool isOurs(lws* socket) const {
-    const std::string origin = headerOf(socket, WSI_TOKEN_ORIGIN);
-    const std::vector<std::string>& named = server.settings_.origins;
-    return origin.empty() || hostOf(origin) == headerOf(socket, WSI_TOKEN_HOST) ||
-           std::find(named.begin(), named.end(), origin) != named.end();
-  }
+  bool allowed(lws* socket) const { return mayLook(visitorOf(socket), server.settings_); }
 
   /// Programs that fill all places must not keep the operator's page out.
   bool hasRoom(lws* socket) const {
-    const bool page = isOurs(socket) && !headerOf(socket, WSI_TOKEN_ORIGIN).empty();
+    const Visitor visitor = visitorOf(socket);
+    const bool page = isOurs(visitor, server.settings_) && !visitor.origin.empty();
     return clients.size() < (page ? kMostPages : kMostClients);
   }
 
@@ -225,7 +195,8 @@ struct ViewServer::Sockets {
     client.socket = socket;
     client.number = ++numbers;
     // Only our own page operates the robot; another site's, with the token, may look.
-    client.may_command = server.settings_.may_command && isOurs(socket);
+    client.may_command =
+        server.settings_.may_command && isOurs(visitorOf(socket), server.settings_);
     client.pushText(serverInfo("tread-view", client.may_command || server.feed_.hasLog(),
                                server.feed_.hasLog(), server.session_));
     client.frames.push({{kText, 0}, 0, server.advertisement_, false});
@@ -261,6 +232,9 @@ struct ViewServer::Sockets {
     return -1;
   }
 
+  /// It does not wait for others.
+  bool operates(const Client& client) const { return client.number == server.operator_; }
+
   /// Says whose turn it is: who operates the robot, and of the others as many as the line and the
   /// processor have room for, one after the other.
   void giveTurns() {
@@ -269,10 +243,10 @@ struct ViewServer::Sockets {
     auto client = clients.begin();
     for (size_t i = 0; i < count; ++i) {
       const auto next = std::next(client);
-      if (!client->asked && !client->frames.empty() && (client->operates || left > 0.0)) {
+      if (!client->asked && !client->frames.empty() && (operates(*client) || left > 0.0)) {
         client->asked = true;
         lws_callback_on_writable(client->socket);
-        if (!client->operates) left -= kPiece;
+        if (!operates(*client)) left -= kPiece;
         clients.splice(clients.end(), clients, client);
       }
       client = next;
@@ -307,7 +281,7 @@ struct ViewServer::Sockets {
                                     text ? LWS_WRITE_TEXT : LWS_WRITE_BINARY);
       if (written < static_cast<int>(bytes.size())) return -1;
       sent += bytes.size();
-      if (!client->operates) sends.use(static_cast<double>(bytes.size()));
+      if (!operates(*client)) sends.use(static_cast<double>(bytes.size()));
       if (lws_send_pipe_choked(socket) != 0) break;
     }
     return 0;
@@ -433,7 +407,6 @@ void ViewServer::control(Client& client, const std::string& topic, const std::st
   if (topic == kCommandTopic) {
     problem = client.may_command ? command_(payload, client.number)
                                  : "this page may look, but not operate the robot";
-    client.operates |= problem.empty();
   } else if (topic == kControlTopic) {
     try {
       const Json json = Json::parse(payload);

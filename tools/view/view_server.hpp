@@ -5,11 +5,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <set>
 #include <string>
 #include <string_view>
-#include <vector>
 
+#include "tools/view/admission.hpp"
 #include "tools/view/feed/feed.hpp"
 #include "tools/view/feed/protocol.hpp"
 
@@ -17,20 +16,6 @@ namespace tread::view {
 
 /// The page as one HTML file; made by the build.
 std::string_view pageText();
-
-/// Where viewers come in.
-struct ServerSettings {
-  std::string address = "127.0.0.1";
-  int port = 8765;          ///< 0 = any that is free
-  std::string token;        ///< asked of everybody; empty = none, for this machine alone
-  bool may_command = true;  ///< pages may operate the robot
-  /// Where else pages of ours come from ("https://host"), and under which paths a proxy asks for
-  /// them.
-  std::vector<std::string> origins;
-  std::set<std::string> paths;
-  std::string
-      certificate;  ///< PEM file with its key; empty = not encrypted, for this machine alone
-};
 
 /// Serves the page by HTTP and the feed by WebSocket (the Foxglove protocol), with libwebsockets.
 /** One thread: step() does all. A slow viewer gets the newest of each channel's parts, and never
@@ -52,6 +37,8 @@ class ViewServer {
   void step(double elapsed);
   /// Tells all pages in a line how things are; the newest counts.
   void tell(const std::string& words);
+  /// The page that holds the robot; 0 = none. It does not wait for others.
+  void setOperator(uint64_t page) { operator_ = page; }
   int port() const { return port_; }
 
  private:
@@ -70,6 +57,7 @@ class ViewServer {
   std::string session_;
   int port_ = 0;
   std::string words_;  ///< told last
+  uint64_t operator_ = 0;
   std::shared_ptr<const std::string> advertisement_;
   int64_t told_time_ = 0;  ///< [us] of a log, told to viewers last
   Feed feed_;

@@ -61,4 +61,10 @@ TEST_CASE("an allowance is used up, and comes again with time up to its most") {
   CHECK(allowance.left() == 1.0);
   allowance.wait(100.0);
   CHECK(allowance.left() == 5.0);
+  // Who is refused uses nothing: it is over when the flood is.
+  int taken = 0;
+  for (int i = 0; i < 1000; ++i) taken += allowance.take() ? 1 : 0;
+  CHECK(taken == 5);
+  allowance.wait(0.1);
+  CHECK(allowance.take());
 }

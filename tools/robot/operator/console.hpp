@@ -32,6 +32,8 @@ class OperatorConsole {
   /// Call each 20 ms or so.
   void step(int64_t utime);
 
+  /// The page that holds the robot; 0 = none.
+  uint64_t holder() const { return page_; }
   /// How the calls go, a line each, stops first and newest first: what the page shows.
   std::string words() const;
   /// Nothing runs, and so many calls are over that a new bus and console should take their place:

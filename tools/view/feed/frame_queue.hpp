@@ -18,6 +18,12 @@ class Allowance {
   Allowance(double rate, double most) : rate_(rate), most_(most), left_(most) {}
   void wait(double elapsed) { left_ = std::min(most_, left_ + rate_ * elapsed); }
   void use(double amount) { left_ -= amount; }
+  /// Uses one if there is one.
+  bool take() {
+    if (left_ < 1.0) return false;
+    left_ -= 1.0;
+    return true;
+  }
   double left() const { return left_; }
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // A page that drives the robot, without its pictures: node operator.mjs MODULES HTTP-URL SECONDS
-// Says "armed", and at the end how often the robot was disarmed and how long it heard nothing at most.
+// Says "is armed", and at the end how often the robot was disarmed and how long it heard nothing at most.
 import { createRequire } from "node:module";
 const require = createRequire(`${process.argv[2]}/x.js`);
 const { FoxgloveClient } = require("@foxglove/ws-protocol");
@@ -24,11 +24,14 @@ client.on("message", ({ timestamp, data }) => {
   const armed = [1, 2, 3].includes(motor.bridge_state);
   if (was) longest = Math.max(longest, now - last);
   if (was && !armed) { ++disarmed; reasons.add(motor.state_reason); }
-  if (armed && !was) console.log("armed");
+  if (armed && !was) console.log("is armed");
   was = armed;
   last = now;
   ++heard;
 });
+// What the console said last.
+let told = "";
+client.on("status", ({ message }) => { told = message; });
 client.on("serverInfo", () => {
   const channel = client.advertise({ topic: "view/command", encoding: "json", schemaName: "" });
   const say = (message) => client.sendMessage(channel, new TextEncoder().encode(JSON.stringify({ ...message, seen })));
@@ -36,6 +39,7 @@ client.on("serverInfo", () => {
   setInterval(() => {
     if (performance.now() > end) {
       console.log(`${heard} MOTOR, longest pause ${longest.toFixed(0)} ms, disarmed ${disarmed} times: ${[...reasons].join(" | ")}`);
+      console.log(`told last: ${told}; motors: ${motor?.state_reason}`);
       console.log("1 passed, 0 failed");
       process.exit(0);
     }
