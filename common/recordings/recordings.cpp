@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "common/config/problem_words.hpp"
 #include "common/config/scalars.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/store/store.hpp"
@@ -195,7 +196,7 @@ void requireSamePatterns(const std::string& path, const PatternSet& executed) tr
     throw RecordingError(path + ": these recordings are of another set (" + difference +
                          "); record into another folder");
 } catch (const std::exception& error) {
-  throw RecordingError(error.what());
+  throw RecordingError(wordsOf(error));
 }
 
 }  // namespace
@@ -244,7 +245,7 @@ PatternRecordings readRecordings(const std::string& folder) try {
                          "header " + kSurfaceHeader);
   return recordings;
 } catch (const std::exception& error) {
-  throw RecordingError(error.what());
+  throw RecordingError(wordsOf(error));
 }
 
 void writeRecordings(const std::string& folder, const PatternRecordings& recordings) try {
@@ -259,7 +260,7 @@ void writeRecordings(const std::string& folder, const PatternRecordings& recordi
     writeText((fs::path(folder) / (surface.surface + ".csv")).string(),
               formatSurface(surface, recordings.patterns));
 } catch (const std::exception& error) {
-  throw RecordingError(error.what());
+  throw RecordingError(wordsOf(error));
 }
 
 SurfaceRecordings parseSurface(const std::string& text, const std::string& path,

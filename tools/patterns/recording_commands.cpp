@@ -12,6 +12,7 @@
 #include "common/bus/key_option.hpp"
 #include "common/bus/shell.hpp"
 #include "common/config/config_reader.hpp"
+#include "common/config/problem_words.hpp"
 #include "common/pattern/pattern.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/recordings/recordings.hpp"
@@ -56,7 +57,7 @@ std::string keepPart(const std::string& path, const PatternSet& set,
   try {
     writeText(path, recordings::formatSurface({"", recorder.recorded()}, set));
   } catch (const std::exception& error) {
-    return std::string("; what was recorded until then is lost: ") + error.what();
+    return std::string("; what was recorded until then is lost: ") + wordsOf(error);
   }
   return "; the " + std::to_string(executions) + " executions until then are in " + path;
 }
