@@ -7,6 +7,7 @@
 #include <iomanip>
 #include <sstream>
 
+#include "common/config/problem_words.hpp"
 #include "common/messages/blank.hpp"
 
 namespace tread {
@@ -118,7 +119,7 @@ void Bus::deliver(const RawHandler& handler, const std::string& channel, const u
     handler(bytes, size);
   } catch (const std::exception& error) {
     ++statistics_.failed;
-    statistics_.last_refusal = channel + ": handler failed: " + error.what();
+    statistics_.last_refusal = channel + ": handler failed: " + wordsOf(error);
   }
 }
 

@@ -11,6 +11,7 @@
 
 #include "common/bus/key_option.hpp"
 #include "common/config/command_line.hpp"
+#include "common/config/problem_words.hpp"
 #include "common/seal/key_file.hpp"
 
 namespace tread {
@@ -85,7 +86,7 @@ int runShell(int argc, char** argv, const std::string& name, const std::string& 
       body(std::move(access), stop);
     }
   } catch (const std::exception& error) {
-    std::cerr << name << ": " << error.what() << std::endl;
+    std::cerr << name << ": " << wordsOf(error) << std::endl;
     return 1;
   }
   return 0;

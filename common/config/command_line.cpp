@@ -13,6 +13,7 @@
 
 #include <unistd.h>
 
+#include "common/config/problem_words.hpp"
 #include "common/config/scalars.hpp"
 #include "common/store/output_file.hpp"
 
@@ -62,6 +63,15 @@ std::string missingValue(const std::string& what) {
                                              : what;
 }
 
+/// "Could not convert: x = north" of CLI11.
+std::string wrongValue(const std::string& what) {
+  const size_t name = what.find(": ");
+  const size_t value = what.find(" = ", name);
+  if (name == std::string::npos || value == std::string::npos) return what;
+  return what.substr(name + 2, value - name - 2) + ": '" + what.substr(value + 3) +
+         "' is no value for it";
+}
+
 std::string whatIsWrong(const CLI::App& app, const CLI::App& part, const CLI::Error& error) {
   const std::vector<std::string> left = app.remaining(true);
   const std::vector<std::string> commands = commandsOf(part);
@@ -77,6 +87,7 @@ std::string whatIsWrong(const CLI::App& app, const CLI::App& part, const CLI::Er
   }
   if (is(error, CLI::ExitCodes::ExtrasError) && !left.empty())
     return "'" + left.front() + "' is one argument too many";
+  if (is(error, CLI::ExitCodes::ConversionError)) return wrongValue(error.what());
   return is(error, CLI::ExitCodes::ArgumentMismatch) ? missingValue(error.what()) : error.what();
 }
 
@@ -131,7 +142,7 @@ int runProgram(const char* name, const std::function<int()>& run) try {
   std::fprintf(stderr, "%s: %s\n", name, problem.what());
   return kNotWritten;
 } catch (const std::exception& problem) {
-  std::fprintf(stderr, "%s: %s\n", name, problem.what());
+  std::fprintf(stderr, "%s: %s\n", name, wordsOf(problem).c_str());
   return kBadInput;
 }
 

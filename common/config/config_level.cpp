@@ -174,7 +174,7 @@ ConfigError ConfigReader::Level::missing(const std::string& key) const {
   for (const Entry& entry : entries)
     if (!entry.asked) unasked.push_back(entry.key);
   const auto meant = nearestSpelling(key, unasked);
-  return errorAt(line, "required key " + path(key) + " is missing" +
+  return errorAt(line, "required key '" + path(key) + "' is missing" +
                            (meant ? "; is " + shown(*meant) + " meant?" : ""));
 }
 

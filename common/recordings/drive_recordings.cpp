@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "common/config/problem_words.hpp"
 #include "common/recordings/csv_table.hpp"
 #include "common/report/text.hpp"
 
@@ -224,7 +225,7 @@ DriveRecordings recordingsOf(const std::vector<SurfaceWindows>& windows,
     try {
       surfaces.push_back(summarised(surface, recipe));
     } catch (const RecordingError& error) {
-      notes.push_back("surface '" + surface.surface + "' left out: " + error.what());
+      notes.push_back("surface '" + surface.surface + "' left out: " + wordsOf(error));
     }
   }
   for (size_t i = 0; i < surfaces.size(); ++i)

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "common/config/problem_words.hpp"
 #include "common/config/scalars.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/store/output_file.hpp"
@@ -196,7 +197,7 @@ void requireSamePatterns(const std::string& path, const PatternSet& executed) tr
     throw RecordingError(path + ": these recordings are of another set (" + difference +
                          "); record into another folder");
 } catch (const std::exception& error) {
-  throw RecordingError(error.what());
+  throw RecordingError(wordsOf(error));
 }
 
 }  // namespace
@@ -245,7 +246,7 @@ PatternRecordings readRecordings(const std::string& folder) try {
                          "header " + kSurfaceHeader);
   return recordings;
 } catch (const std::exception& error) {
-  throw RecordingError(error.what());
+  throw RecordingError(wordsOf(error));
 }
 
 void writeRecordings(const std::string& folder, const PatternRecordings& recordings) try {
@@ -262,7 +263,7 @@ void writeRecordings(const std::string& folder, const PatternRecordings& recordi
 } catch (const WriteError&) {
   throw;
 } catch (const std::exception& error) {
-  throw RecordingError(error.what());
+  throw RecordingError(wordsOf(error));
 }
 
 SurfaceRecordings parseSurface(const std::string& text, const std::string& path,

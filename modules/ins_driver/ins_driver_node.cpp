@@ -235,6 +235,7 @@ void InsDriverNode::loseLink() {
 
 void InsDriverNode::publishFinished(int64_t utime) {
   while (std::optional<InsEstimate> estimate = source_->next(utime)) {
+    if (estimate->device_utc >= 0) device_utc_ = estimate->device_utc;
     if (!(estimate->status & kNoPosition)) {
       last_position_ = utime;
       too_far_before_ = source_->tooFar().first;
@@ -246,6 +247,7 @@ void InsDriverNode::publishFinished(int64_t utime) {
   if (fill_in_) {
     if (const auto estimate = fill_in_->next(utime)) publish(*estimate);
   }
+  slow_input_ = fill_in_ ? "" : source_->slowInput(utime);
   keepOrigin();
 }
 
@@ -293,6 +295,7 @@ std::string InsDriverNode::measurementProblem(int64_t utime) const {
     return "no position for " + inSeconds(utime - last_position_) + " (" + source_->refusals() +
            "); " + source_->advice().no_position;
   }
+  if (!slow_input_.empty()) return slow_input_;
   if (utime - last_heading_ > silence_us_) {
     return "no heading for " + inSeconds(utime - last_heading_) + " (" + source_->refusals() +
            "); " + source_->advice().no_heading;
@@ -302,7 +305,22 @@ std::string InsDriverNode::measurementProblem(int64_t utime) const {
            ", mapping cannot use them; where the device tells heights above the ellipsoid only, "
            "configure geoid_separation";
   }
-  return origin_problem_;
+  return origin_problem_.empty() ? dateProblem() : origin_problem_;
+}
+
+/// GPS counts weeks modulo 1024: an old receiver dates 19.6 years back.
+std::string InsDriverNode::dateProblem() const {
+  constexpr double kEra = 1024.0 * 7.0 * 86400e6;
+  constexpr double kDay = 86400e6;
+  if (device_utc_ < 0 || bus_.utc() < 0) return {};
+  const auto off = static_cast<double>(bus_.utc() - device_utc_);
+  const double eras = std::round(off / kEra);
+  if (eras == 0.0 || std::abs(off - eras * kEra) > kDay) return {};
+  return "the device's date is " + std::to_string(std::llround(std::abs(eras) * 1024.0)) +
+         " weeks " + (eras > 0.0 ? "behind" : "ahead of") +
+         " this host's: its GPS week number has rolled over; update its firmware (device_utc of "
+         "INS "
+         "is wrong, all else is right)";
 }
 
 std::string InsDriverNode::fillInProblem(int64_t utime) const {

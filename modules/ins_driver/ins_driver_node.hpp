@@ -63,6 +63,7 @@ class InsDriverNode : public Node {
   std::string fillInProblem(int64_t utime) const;
   std::string lineProblem(int64_t utime) const;
   std::string measurementProblem(int64_t utime) const;
+  std::string dateProblem() const;
   void reportCounters(int64_t utime);
 
   InsDriverConfig config_;
@@ -86,6 +87,8 @@ class InsDriverNode : public Node {
   int64_t last_heading_;
   int64_t last_height_;
   int64_t next_counters_ = 0;
+  std::string slow_input_;
+  int64_t device_utc_ = -1;  ///< [us] of the newest estimate
 };
 
 }  // namespace tread::ins

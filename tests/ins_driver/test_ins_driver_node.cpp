@@ -82,15 +82,21 @@ class HostBus : public Bus {
  public:
   int64_t now() const override { return time; }
   int64_t bootId() const override { return 1; }
+  int64_t utc() const override { return date; }
 
   int64_t time = 10 * kSecond;
+  int64_t date = -1;
   std::vector<ins_t> track;
+  std::string health;
 
  protected:
   bool send(const char* channel, const uint8_t* bytes, size_t size) override {
     ins_t message;
     if (std::string(channel) == "INS" && message.decode(bytes, 0, static_cast<int>(size)) > 0)
       track.push_back(message);
+    health_t told;
+    if (std::string(channel) == "HEALTH" && told.decode(bytes, 0, static_cast<int>(size)) > 0)
+      health = told.health_reason;
     return true;
   }
   void listen(const char* /*channel*/) override {}
@@ -482,4 +488,85 @@ TEST_CASE("without a fill_in section scan matching is not listened to") {
   rig.wait(2.0);
   CHECK(rig.track.size() <= before + 2);
   CHECK(rig.health.health_state == health_t::HEALTH_FAILED);
+}
+
+TEST_CASE(
+    "an input that comes too seldom for the poses is told with all rates and the key to set") {
+  struct Case {
+    int heading_every, velocity_every;  // of positions at 20 Hz; 0: never
+    const char* says;
+    const char* key;
+  };
+  for (const Case& with :
+       {Case{20, 1, "a heading in 10 of 100 poses; GGA 20.0 Hz, HDT 1.0 Hz",
+             "let the device send headings 20 times a second; attitude_hold, now 0.06 s"},
+        Case{5, 1, "GGA 20.0 Hz, HDT 4.0 Hz", "or set attitude_hold: 0.30"},
+        Case{1, 8, "a velocity in", "or set position_hold: 0.4"}, Case{1, 1, nullptr, nullptr},
+        Case{2, 1, nullptr, nullptr}, Case{1, 2, nullptr, nullptr}}) {
+    CAPTURE(with.heading_every, with.velocity_every);
+    Rig rig;
+    for (int i = 0; i < 300; ++i) {
+      const double seconds = static_cast<double>(rig.bus.now()) * 1e-6;
+      std::string bytes = gga(43200.0 + seconds, seconds);
+      if (i % with.velocity_every == 0) bytes += vtg(90.0, 3.6);
+      if (i % with.heading_every == 0) bytes += line("GNHDT,90.0,T");
+      rig.say(bytes);
+      rig.bus.runUntil(rig.bus.now() + 50'000);
+    }
+    INFO(rig.health.health_reason);
+    CHECK((rig.health.health_state == health_t::HEALTH_OK) == (with.says == nullptr));
+    if (with.says == nullptr) continue;
+    CHECK(rig.health.health_state == health_t::HEALTH_DEGRADED);
+    CHECK(rig.healthSays(with.says));
+    CHECK(rig.healthSays(with.key));
+  }
+}
+
+TEST_CASE("headings that stay away for a while are no slow input") {
+  Rig rig;
+  bool slow = false;
+  for (int i = 0; i < 400; ++i) {
+    const double seconds = static_cast<double>(rig.bus.now()) * 1e-6;
+    rig.say(gga(43200.0 + seconds, seconds) + vtg(90.0, 3.6) +
+            (i % 100 < 50 ? line("GNHDT,90.0,T") : ""));
+    rig.bus.runUntil(rig.bus.now() + 50'000);
+    slow = slow || rig.healthSays("a heading in");
+  }
+  CHECK_FALSE(slow);
+}
+
+TEST_CASE("positions too seldom for the attitudes between them are told") {
+  Rig rig;
+  for (int i = 0; i < 300; ++i) {
+    const double time_of_day = 43200.0 + static_cast<double>(rig.bus.now()) * 1e-6;
+    rig.say((i % 20 == 0 ? gga(time_of_day, time_of_day - 43200.0) + vtg(90.0, 3.6) : "") +
+            pashr(time_of_day, 90.0));
+    rig.bus.runUntil(rig.bus.now() + 50'000);
+  }
+  INFO(rig.health.health_reason);
+  CHECK(rig.healthSays("attitudes left out"));
+  CHECK(rig.healthSays("GGA 1.0 Hz, PASHR 20.0 Hz"));
+}
+
+TEST_CASE("a date that is 1024 weeks off this host's is told, another old one is not") {
+  constexpr int64_t kWeek = int64_t{7} * 86400 * kSecond;
+  for (const int64_t weeks : {0, 1000, 1024, 2048}) {
+    HostBus bus;
+    auto [device, robot] = makePipe();
+    MemoryStore store;
+    InsDriverNode node(configured(), bus, *robot, store);
+    // The device says 2026-11-26.
+    bus.date = int64_t{1'795'694'400} * kSecond + weeks * kWeek;
+    for (int i = 0; i < 120; ++i, bus.time += 20'000) {
+      const double seconds = static_cast<double>(bus.time) * 1e-6;
+      const std::string bytes = gga(43200.0 + seconds, seconds) + pashr(43200.0 + seconds, 90.0) +
+                                vtg(90.0, 3.6) +
+                                line("GNZDA," + hhmmss(43200.0 + seconds) + ",26,11,2026,00,00");
+      device->write(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size());
+      node.step(bus.time);
+    }
+    CAPTURE(weeks, bus.health);
+    CHECK((bus.health.find(std::to_string(weeks) + " weeks behind") != std::string::npos) ==
+          (weeks >= 1024));
+  }
 }

@@ -69,8 +69,7 @@ TEST_CASE("GGA without a real fix has no position, coordinates or not") {
 }
 
 TEST_CASE("GGA without its last field is read where both units stand in their places") {
-  const Gga gga =
-      good<Gga>("GPGGA,064929.00,1726.5842,N,07822.4470,E,1,38,0.4,649.70,M,-76.80,M,");
+  const Gga gga = good<Gga>("GPGGA,064929.00,1726.5842,N,07822.4470,E,1,38,0.4,649.70,M,-76.80,M,");
   CHECK(gga.altitude == 649.7);
   CHECK(gga.satellites == 38);
 }
@@ -129,6 +128,16 @@ TEST_CASE("headings become yaws counter-clockwise from east") {
   }
   CHECK_FALSE(good<Hdt>("GPHDT,,T").yaw);
   CHECK_FALSE(good<Hdt>("HEHDT,,").yaw);
+}
+
+TEST_CASE("THS is a heading where its mode says that it was measured") {
+  CHECK(*good<Ths>("GNTHS,271.0,A").yaw == Approx(179.0 * kDeg));
+  CHECK(*good<Ths>("GNTHS,90.0,E").yaw == Approx(0.0).margin(1e-12));
+  for (const char* body : {"GNTHS,271.0,V", "GNTHS,271.0,M", "GNTHS,271.0,S", "GNTHS,271.0,N",
+                           "GNTHS,271.0,", "GNTHS,,A", "GNTHS,,V"}) {
+    CAPTURE(body);
+    CHECK_FALSE(good<Ths>(body).yaw);
+  }
 }
 
 TEST_CASE("PASHR: roll right side down stays positive, pitch nose up becomes negative") {

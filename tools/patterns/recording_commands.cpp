@@ -11,6 +11,7 @@
 #include "common/bus/shell.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/config/outputs.hpp"
+#include "common/config/problem_words.hpp"
 #include "common/pattern/pattern.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/recordings/recordings.hpp"
@@ -57,7 +58,7 @@ std::string keepPart(const std::string& path, const PatternSet& set,
     moveAside(path);
     writeText(path, recordings::formatSurface({"", recorder.recorded()}, set));
   } catch (const std::exception& error) {
-    return std::string("; what was recorded until then is lost: ") + error.what();
+    return std::string("; what was recorded until then is lost: ") + wordsOf(error);
   }
   return "; the " + std::to_string(executions) + " executions until then are in " + path;
 }

@@ -8,6 +8,7 @@
 
 #include <unistd.h>
 
+#include "common/config/problem_words.hpp"
 #include "common/mcap/mcap_log.hpp"
 #include "common/parallel/parallel_for.hpp"
 #include "tools/replay/robot_replay.hpp"
@@ -76,7 +77,7 @@ CorpusEntry replayOne(const std::string& path, const std::vector<std::string>& o
       }
     } catch (const std::runtime_error& error) {
       entry.equal = false;
-      note(std::string("planner not compared: ") + error.what());
+      note(std::string("planner not compared: ") + wordsOf(error));
     }
     try {
       const LearnerCheck check = checkLearner(
@@ -90,10 +91,10 @@ CorpusEntry replayOne(const std::string& path, const std::vector<std::string>& o
       }
     } catch (const std::runtime_error& error) {
       entry.equal = false;
-      note(std::string("learner not compared: ") + error.what());
+      note(std::string("learner not compared: ") + wordsOf(error));
     }
   } catch (const std::runtime_error& error) {
-    note(error.what());
+    note(wordsOf(error));
   }
   entry.equal = entry.equal && entry.compared;
   return entry;

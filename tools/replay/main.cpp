@@ -68,9 +68,12 @@ void replayInsLog(const Arguments& arguments) {
 }
 
 void addIns(CLI::App& app, Arguments& arguments) {
-  CLI::App& command = *app.add_subcommand("ins", "an NMEA 0183 log through ins_driver");
-  command.add_option("log", arguments.log, "what a device said, as bytes")->required();
-  command.add_option("--config", arguments.config, "configuration of ins_driver");
+  CLI::App& command =
+      *app.add_subcommand("ins", "what an INS said, as bytes or as a capture, through ins_driver");
+  command.add_option("log", arguments.log, "bytes of the device, or a capture (pcap, pcapng)")
+      ->required();
+  command.add_option("--config", arguments.config,
+                     "configuration of ins_driver: its `source` names the instrument; else nmea");
   addOutput(command, arguments.output);
   command.callback([&arguments] { replayInsLog(arguments); });
 }

@@ -12,8 +12,8 @@
 
 #include "common/geometry/track.hpp"
 #include "common/grid/grid.hpp"
+#include "modules/ins_driver/core/ins_pipeline.hpp"
 #include "modules/ins_driver/ins_driver_node.hpp"
-#include "modules/ins_driver/nmea/nmea_ins.hpp"
 #include "modules/mapping/mapping_node.hpp"
 
 namespace tread {
@@ -62,7 +62,7 @@ void drawMap(const MappingReplay& replay, const std::string& path);
 
 /// The output of ins_driver for a recorded device log.
 struct InsReplay {
-  ins::NmeaCounts counts;
+  ins::InsTally tally;
   ins::AssemblerCounts epochs;
   std::optional<ins::GeoOrigin> origin;
   std::vector<ins_t> track;         ///< every INS message, in the order of publication
@@ -70,11 +70,13 @@ struct InsReplay {
   std::optional<ins_t> last_pose;   ///< last likewise
   int64_t poses = 0;                ///< messages with position and heading
   std::string health;               ///< last line of HEALTH; empty if all is well
+  std::string notes;                ///< what of the log was not played, and why; lines of text
 };
 
-/// Plays the bytes of an NMEA 0183 log to the real ins_driver node on the virtual bus, in the log's
-/// own time.
-/** Messages start at utime 1 s. The same log gives the same messages. */
+/// Plays the bytes of a device, or a capture (pcap, pcapng) of its datagrams or its TCP stream, to
+/// the real ins_driver node on the virtual bus, in the log's own time.
+/** Messages start at utime 1 s. The same log gives the same messages. Of a capture that stream is
+ * played in which the instrument speaks. */
 InsReplay replayIns(const std::string& log, ins::InsDriverConfig config);
 
 /// The same from a file; throws std::runtime_error with one clear line if it cannot be read.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "common/config/problem_words.hpp"
 #include "common/report/text.hpp"
 #include "tools/replay/robot_log.hpp"
 #include "tools/replay/robot_replay.hpp"
@@ -93,7 +94,7 @@ RuleErrors errorsByRule(const std::vector<std::string>& logs, const std::string&
     shadows.finish();
     errors.executions = shadows.executions();
   } catch (const std::exception& error) {
-    errors.problem = error.what();
+    errors.problem = wordsOf(error);
   }
   return errors;
 }

@@ -36,10 +36,8 @@ ReasonCounts BinaryIns::reasons() const {
   return all;
 }
 
-std::string BinaryIns::refusals() const {
-  const ReasonCounts all = reasons();
-  return "stray bytes " + std::to_string(framer_.strayBytes()) +
-         ", refused: " + (all.empty() ? "none" : listed(all));
+InsTally BinaryIns::tally() const {
+  return {framer_.bytes(), framer_.strayBytes(), frames_, decoded_, reasons()};
 }
 
 NamedCounts BinaryIns::counters() const {

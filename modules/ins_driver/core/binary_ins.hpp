@@ -19,20 +19,14 @@ struct Reading {
 };
 
 /// From the bytes of a device with binary messages to estimates; what differs is its protocol.
-class BinaryIns : public InsSource {
+class BinaryIns : public PipelineIns {
  public:
   void push(std::string_view bytes, int64_t arrival) override;
-  std::optional<InsEstimate> next(int64_t now) override { return pipeline_.next(now); }
   void interrupt() override;
-  std::optional<GeoOrigin> origin() const override { return assembler().origin(); }
   std::optional<int64_t> lastMessage() const override { return last_frame_; }
-  std::pair<int64_t, double> tooFar() const override {
-    return {assembler().counts().too_far, assembler().farDistance()};
-  }
-  std::string refusals() const override;
+  InsTally tally() const override;
   NamedCounts counters() const override;
 
-  const InsAssembler& assembler() const { return pipeline_.assembler(); }
   /// Frames that were decoded, by their name.
   const std::map<std::string, int64_t>& decoded() const { return decoded_; }
   /// Bytes that were refused and messages that were not used, by reason.
@@ -42,12 +36,10 @@ class BinaryIns : public InsSource {
 
  protected:
   BinaryIns(const InsConfig& config, LookForFrame look, int64_t cycle_us)
-      : config_(config), framer_(look), pipeline_(config, cycle_us) {}
+      : PipelineIns(config, cycle_us), framer_(look) {}
 
   /// Reads a frame with a good checksum and gives the pipeline what it says.
   virtual Reading read(std::string_view frame, int64_t arrival) = 0;
-
-  const InsConfig config_;
 
  private:
   void readFrames();
@@ -58,9 +50,6 @@ class BinaryIns : public InsSource {
   int64_t frames_ = 0;
   std::map<std::string, int64_t> decoded_;
   ReasonCounts unused_;
-
- protected:
-  InsPipeline pipeline_;
 };
 
 }  // namespace tread::ins

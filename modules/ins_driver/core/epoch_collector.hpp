@@ -32,6 +32,8 @@ class EpochCollector {
   /// Takes a message that tells only the date: it neither opens nor ends an epoch by its time,
   /// because some devices tell the time of the next second with it.
   void pushDate(int64_t utc, int64_t told, size_t kind);
+  /// The newest device time; nothing before the first.
+  const std::optional<int64_t>& newest() const { return clock_.newest(); }
   /// Device time of a told time.
   int64_t timeOf(int64_t told) const { return clock_.timeOf(told); }
   /// Says that bytes came at this time, be they a whole message or not.

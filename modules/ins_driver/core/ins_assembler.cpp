@@ -81,6 +81,12 @@ bool InsAssembler::isPublished(const DeviceEpoch& epoch, int64_t utime) {
   return true;
 }
 
+void InsAssembler::countInputs(const DeviceEpoch& epoch, int64_t utime) {
+  if (epoch.position) counts_.positions.add(utime, config_.position_hold_us);
+  if (epoch.velocity) counts_.velocities.add(utime, config_.position_hold_us);
+  if (epoch.headings[0] || epoch.headings[1]) counts_.headings.add(utime, config_.attitude_hold_us);
+}
+
 void InsAssembler::forget() {
   ++counts_.clock_steps;
   new_track_ = true;
@@ -96,6 +102,7 @@ std::optional<InsEstimate> InsAssembler::solve(const DeviceEpoch& epoch) {
   if (epoch.clock_was_set) forget();
   InsEstimate estimate;
   estimate.utime = measurementTime(epoch);
+  countInputs(epoch, estimate.utime);
   estimate.device_utc = epoch.device_utc;
   setRate(epoch, estimate);
   const double turn = estimate.rate_body.z();
@@ -122,6 +129,9 @@ std::optional<InsEstimate> InsAssembler::solve(const DeviceEpoch& epoch) {
   }
   watchTrack(estimate);
   ++counts_.published;
+  if (estimate.status & kNoHeading) ++counts_.without_heading;
+  // Without a heading a velocity has no direction in the body.
+  if ((estimate.status & (kNoVelocity | kNoHeading)) == kNoVelocity) ++counts_.without_velocity;
   return estimate;
 }
 

@@ -16,6 +16,20 @@
 
 namespace tread::ins {
 
+/// How often an input of a pose came, and how often so long after the one before that it had not
+/// been carried on until then.
+struct InputCount {
+  int64_t came = 0;
+  int64_t apart = 0;
+  std::optional<int64_t> last;  ///< [us]
+
+  void add(int64_t utime, int64_t hold_us) {
+    ++came;
+    if (last && utime - *last > hold_us) ++apart;
+    last = utime;
+  }
+};
+
 /// What became of the epochs.
 struct AssemblerCounts {
   int64_t epochs = 0;             ///< taken
@@ -29,6 +43,11 @@ struct AssemblerCounts {
   int64_t jumps = 0;
   int64_t doubted = 0;      ///< not published: far from the position before
   int64_t clock_steps = 0;  ///< the device's clock was set
+  InputCount positions;     ///< also where there is no fix
+  InputCount headings;
+  InputCount velocities;
+  int64_t without_heading = 0;   ///< published although no heading was measured near it
+  int64_t without_velocity = 0;  ///< likewise
 };
 
 /// Makes an estimate of the body in the map from what the device said about one instant.
@@ -58,6 +77,7 @@ class InsAssembler {
   int64_t measurementTime(const DeviceEpoch& epoch) const;
   bool positionsAreExpected(int64_t utime) const;
   bool isPublished(const DeviceEpoch& epoch, int64_t utime);
+  void countInputs(const DeviceEpoch& epoch, int64_t utime);
   void forget();
   void setRate(const DeviceEpoch& epoch, InsEstimate& estimate) const;
   void setOrientation(const std::optional<Attitude>& attitude, InsEstimate& estimate) const;

@@ -54,4 +54,10 @@ void InsPipeline::addCounters(NamedCounts& counters) const {
   }
 }
 
+std::string PipelineIns::refusals() const {
+  const InsTally line = tally();
+  return "stray bytes " + std::to_string(line.stray_bytes) +
+         ", refused: " + (line.refused.empty() ? "none" : listed(line.refused));
+}
+
 }  // namespace tread::ins

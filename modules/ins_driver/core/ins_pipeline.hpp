@@ -11,15 +11,13 @@
 #include <vector>
 
 #include "modules/ins_driver/core/epoch_collector.hpp"
+#include "modules/ins_driver/core/input_rates.hpp"
 #include "modules/ins_driver/core/ins_assembler.hpp"
 
 namespace tread::ins {
 
 /// What was counted, by its name in words.
 using NamedCounts = std::vector<std::pair<std::string, int64_t>>;
-
-/// How often each reason applied, by words such as "GGA: field count".
-using ReasonCounts = std::map<std::string, int64_t>;
 
 /// "GGA: field count 3, wrong checksum 12"; empty if there are none.
 std::string listed(const ReasonCounts& reasons);
@@ -32,6 +30,7 @@ class InsPipeline {
       : collector_(config.quiet_us, config.last_type, cycle_us), assembler_(config) {}
 
   EpochCollector& collector() { return collector_; }
+  const EpochCollector& collector() const { return collector_; }
   InsAssembler& assembler() { return assembler_; }
   const InsAssembler& assembler() const { return assembler_; }
 
@@ -47,6 +46,34 @@ class InsPipeline {
   InsAssembler assembler_;
   std::deque<DeviceEpoch> pending_;
   size_t observed_ = 0;  ///< how many of them the assembler has observed
+};
+
+/// What all devices' readers share: whatever follows from the pipeline.
+class PipelineIns : public InsSource {
+ public:
+  std::optional<InsEstimate> next(int64_t now) override { return pipeline_.next(now); }
+  std::optional<GeoOrigin> origin() const override { return assembler().origin(); }
+  std::pair<int64_t, double> tooFar() const override {
+    return {epochs().too_far, assembler().farDistance()};
+  }
+  std::optional<int64_t> deviceTime() const override { return pipeline_.collector().newest(); }
+  const AssemblerCounts& epochs() const override { return assembler().counts(); }
+  std::string refusals() const override;
+  std::string slowInput(int64_t now) override {
+    return rates_.slowInput(now, epochs(), [this] { return tally().decoded; });
+  }
+
+  const InsAssembler& assembler() const { return pipeline_.assembler(); }
+
+ protected:
+  PipelineIns(const InsConfig& config, int64_t cycle_us)
+      : config_(config), pipeline_(config, cycle_us), rates_(config) {}
+
+  const InsConfig config_;
+  InsPipeline pipeline_;
+
+ private:
+  InputRates rates_;
 };
 
 }  // namespace tread::ins

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -167,6 +168,20 @@ struct InsConfig {
   double imu_rate = 0.0;
 };
 
+/// How often each reason applied, by words such as "GGA: field count".
+using ReasonCounts = std::map<std::string, int64_t>;
+
+/// What came over the line.
+struct InsTally {
+  int64_t bytes = 0;
+  int64_t stray_bytes = 0;  ///< in no message
+  int64_t messages = 0;
+  ReasonCounts decoded;  ///< by the message's name
+  ReasonCounts refused;  ///< by the reason
+};
+
+struct AssemblerCounts;
+
 /// What to look at when a device is silent or says too little; parts of HEALTH's lines.
 struct InsAdvice {
   std::string silent;       ///< no bytes come
@@ -197,8 +212,15 @@ class InsSource {
   /// Positions refused so far because they are too far from the origin, and the last one's distance
   /// [m].
   virtual std::pair<int64_t, double> tooFar() const = 0;
+  /// The newest time that the device told [us], as it counts.
+  virtual std::optional<int64_t> deviceTime() const = 0;
+  virtual InsTally tally() const = 0;
+  virtual const AssemblerCounts& epochs() const = 0;
   /// Why bytes were not understood so far, in words.
   virtual std::string refusals() const = 0;
+  /// Which input of a pose came too seldom for the others, in words: of the last whole 5 s, which
+  /// end at `now` at the latest; empty if none did.
+  virtual std::string slowInput(int64_t now) = 0;
   virtual InsAdvice advice() const = 0;
   /// What was counted, by its name in words, in the order of HEALTH.
   virtual std::vector<std::pair<std::string, int64_t>> counters() const = 0;

@@ -63,6 +63,7 @@ class Translator {
     if (hdt.yaw) part.heading(HeadingSource::kDualAntenna) = Heading{*hdt.yaw};
     return part;
   }
+  DeviceEpoch operator()(const Ths& ths) const { return (*this)(Hdt{ths.yaw}); }
   DeviceEpoch operator()(const Pashr& pashr) const {
     DeviceEpoch part;
     if (pashr.yaw) {

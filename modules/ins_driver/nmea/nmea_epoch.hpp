@@ -25,7 +25,7 @@ Eigen::Vector3d positionStd(const Gga& gga);
 
 /// What a sentence says in the words that all devices share; ZDA says nothing but the date.
 /** GGA counts before RMC, VTG before RMC: it also tells km/h, which are finer than knots. A heading
-   alone (HDT) is one of two antennas or of whatever the device has; PASHR is inertial. */
+   alone (HDT, THS) is one of two antennas or of whatever the device has; PASHR is inertial. */
 DeviceEpoch partOf(const NmeaSentence& sentence, const InsConfig& config);
 
 }  // namespace tread::ins

@@ -20,6 +20,7 @@ bool isEmpty(const NmeaSentence& sentence) {
     bool operator()(const Pashr& s) const { return !s.yaw && !s.roll && !s.pitch; }
     bool operator()(const Rot& s) const { return !s.yaw_rate; }
     bool operator()(const Zda& s) const { return !s.date; }
+    bool operator()(const Ths& s) const { return !s.yaw; }
   };
   return std::visit(Visitor{}, sentence);
 }
@@ -91,16 +92,19 @@ NmeaCounts NmeaIns::counts() const {
   return counts;
 }
 
-std::string NmeaIns::refusals() const {
+InsTally NmeaIns::tally() const {
   const NmeaCounts line = counts();
-  return "stray bytes " + std::to_string(line.stray_bytes) +
-         ", refused: " + (line.reasons.empty() ? "none" : listed(line.reasons));
+  InsTally tally{line.bytes, line.stray_bytes, line.sentences, {}, line.reasons};
+  for (size_t i = 0; i < kSentenceTypes; ++i) {
+    if (line.of_type[i] > 0) tally.decoded[kSentenceNames[i]] = line.of_type[i];
+  }
+  return tally;
 }
 
 InsAdvice NmeaIns::advice() const {
   return {"is the device powered and set to send NMEA?", "no good sentence",
           "does the device have a fix, and does it send GGA or RMC?",
-          "does the device send HDT or PASHR?"};
+          "does the device send HDT, THS or PASHR?"};
 }
 
 std::vector<std::pair<std::string, int64_t>> NmeaIns::counters() const {

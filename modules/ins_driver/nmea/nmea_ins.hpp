@@ -29,33 +29,25 @@ struct NmeaCounts {
 };
 
 /// From the bytes of an NMEA 0183 device to estimates: framer, parser, epochs, assembler.
-class NmeaIns : public InsSource {
+class NmeaIns : public PipelineIns {
  public:
-  explicit NmeaIns(const InsConfig& config) : config_(config), pipeline_(config, kDayUs) {}
+  explicit NmeaIns(const InsConfig& config) : PipelineIns(config, kDayUs) {}
 
   void push(std::string_view bytes, int64_t arrival) override;
-  std::optional<InsEstimate> next(int64_t now) override { return pipeline_.next(now); }
   void interrupt() override;
-  std::optional<GeoOrigin> origin() const override { return assembler().origin(); }
   std::optional<int64_t> lastMessage() const override { return last_sentence_; }
-  std::pair<int64_t, double> tooFar() const override {
-    return {assembler().counts().too_far, assembler().farDistance()};
-  }
-  std::string refusals() const override;
+  InsTally tally() const override;
   InsAdvice advice() const override;
   std::vector<std::pair<std::string, int64_t>> counters() const override;
 
   NmeaCounts counts() const;
-  const InsAssembler& assembler() const { return pipeline_.assembler(); }
 
  private:
   void take(std::string_view body);
   bool collect(const NmeaSentence& sentence);
   void refuse(std::string_view type, SentenceRefusal reason);
 
-  InsConfig config_;
   NmeaFramer framer_;
-  InsPipeline pipeline_;
   int64_t sentence_start_ = 0;
   int64_t arrival_ = 0;
   std::optional<int64_t> last_sentence_;

@@ -111,6 +111,13 @@ NmeaSentence readHdt(NmeaFields& fields) {
   return Hdt{fields.yawFromHeading(1)};
 }
 
+/// A heading without a mode is not known to be measured.
+NmeaSentence readThs(NmeaFields& fields) {
+  const auto yaw = fields.yawFromHeading(1);
+  const char mode = fields.letter(2, "ADEFMNPRSV");
+  return mode != '\0' && mode != 'V' && usableMode(mode) ? Ths{yaw} : Ths{};
+}
+
 NmeaSentence readPashr(NmeaFields& fields) {
   Pashr pashr;
   pashr.time_of_day = fields.timeOfDay(1);
@@ -156,6 +163,7 @@ struct Reader {
 constexpr Reader kReaders[] = {
     {"GGA", 14, 14, readGga}, {"RMC", 11, 13, readRmc}, {"VTG", 8, 9, readVtg},
     {"HDT", 2, 2, readHdt},   {"ROT", 2, 2, readRot},   {"ZDA", 6, 6, readZda},
+    {"THS", 2, 2, readThs},
 };
 constexpr Reader kPashrReader = {"PASHR", 10, 11, readPashr};
 
@@ -330,7 +338,8 @@ std::optional<int64_t> timeOfDay(const NmeaSentence& sentence) {
       [](const auto& s) -> std::optional<int64_t> {
         using Type = std::decay_t<decltype(s)>;
         if constexpr (std::is_same_v<Type, Vtg> || std::is_same_v<Type, Hdt> ||
-                      std::is_same_v<Type, Rot> || std::is_same_v<Type, Zda>) {
+                      std::is_same_v<Type, Rot> || std::is_same_v<Type, Zda> ||
+                      std::is_same_v<Type, Ths>) {
           return std::nullopt;
         } else {
           return s.time_of_day;

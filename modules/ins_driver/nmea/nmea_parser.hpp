@@ -86,13 +86,18 @@ struct Zda {
   std::optional<CivilDate> date;
 };
 
-using NmeaSentence = std::variant<Gga, Rmc, Vtg, Hdt, Pashr, Rot, Zda>;
+/// True heading and how it was measured.
+struct Ths {
+  std::optional<double> yaw;  ///< [rad]; absent unless measured, autonomously or by dead reckoning
+};
+
+using NmeaSentence = std::variant<Gga, Rmc, Vtg, Hdt, Pashr, Rot, Zda, Ths>;
 
 inline constexpr size_t kSentenceTypes = std::variant_size_v<NmeaSentence>;
 
 /// Names in the order of NmeaSentence.
 inline constexpr const char* kSentenceNames[kSentenceTypes] = {"GGA",   "RMC", "VTG", "HDT",
-                                                               "PASHR", "ROT", "ZDA"};
+                                                               "PASHR", "ROT", "ZDA", "THS"};
 
 /// UTC time of day of the measurement in a sentence, where it tells one [us].
 /** Not of ZDA: it measures nothing, and some devices send it with the time of the next second. */
@@ -191,7 +196,7 @@ using ParseResult = std::variant<NmeaSentence, SentenceRefusal>;
 std::string_view typeOf(std::string_view body);
 
 /// Reads what stands between '$' and '*' (checksum already verified).
-/** GGA, RMC, VTG, HDT, ROT and ZDA of any two-letter talker, and PASHR (field lists: NMEA 0183
+/** GGA, RMC, VTG, HDT, THS, ROT and ZDA of any two-letter talker, and PASHR (field lists: NMEA 0183
    v4.11; PASHR: manuals of OxTS, NovAtel and Trimble). Empty fields are absent. One malformed or
    impossible field refuses the sentence. GGA may lack its last field, the reference station. */
 ParseResult parseNmea(std::string_view body);

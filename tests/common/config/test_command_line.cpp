@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <algorithm>
+#include <filesystem>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <typeinfo>
 #include <vector>
 
 #include <catch2/catch.hpp>
 
 #include "common/config/command_line.hpp"
+#include "common/config/problem_words.hpp"
 
 namespace tread {
 namespace {
@@ -103,6 +107,34 @@ TEST_CASE("a usage error is one line that says where, what, and what would be ri
     CHECK(words.find('\n') == std::string::npos);
   }
   CHECK(errorOf("find --model a --threads 2") == "");
+}
+
+TEST_CASE("a library's exception becomes a sentence, one of ours stays as it is") {
+  const auto words = [](const auto& problem) { return wordsOf(problem); };
+  const auto stoi = [] {
+    try {
+      return std::to_string(std::stoi("x"));
+    } catch (const std::exception& problem) {
+      return wordsOf(problem);
+    }
+  };
+  const auto remove = [] {
+    try {
+      std::filesystem::create_directories("/proc/version/below");
+      return std::string();
+    } catch (const std::exception& problem) {
+      return wordsOf(problem);
+    }
+  };
+  CHECK(words(std::runtime_error("x.yaml:3: no such key")) == "x.yaml:3: no such key");
+  CHECK(words(std::out_of_range("no effect 'x'")) == "no effect 'x'");
+  CHECK(remove() == "/proc/version/below: Not a directory");
+  CHECK(words(std::bad_alloc()).find("memory") != std::string::npos);
+  for (const std::string& text :
+       {words(std::bad_cast()), words(std::bad_optional_access()), stoi(),
+        words(std::out_of_range("vector::_M_range_check: __n (which is 3) >= this->size()")),
+        words(std::runtime_error("yaml-cpp: error at line 1, column 2: bad conversion"))})
+    CHECK(text.find("what it was given is damaged") == 0);
 }
 
 }  // namespace tread

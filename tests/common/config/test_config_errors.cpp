@@ -128,12 +128,12 @@ TEST_CASE("a required key that is missing is refused, with the mistyped one") {
     double value = 0;
     reader.section("gate").number("lease", value, {0, 1}, "s", true);
   };
-  CHECK(refusal("a: 1\ngate:\n  b: 2\n", read) == "r.yaml:2: required key gate.lease is missing");
+  CHECK(refusal("a: 1\ngate:\n  b: 2\n", read) == "r.yaml:2: required key 'gate.lease' is missing");
   CHECK(refusal("gate: {laese: 2}\n", read) ==
-        "r.yaml:1: required key gate.lease is missing; is laese meant?");
-  CHECK_THAT(refusal("", read), Contains("r.yaml:1: required key gate.lease is missing"));
+        "r.yaml:1: required key 'gate.lease' is missing; is laese meant?");
+  CHECK_THAT(refusal("", read), Contains("r.yaml:1: required key 'gate.lease' is missing"));
   CHECK_THAT(refusal("a: 1\n", [](ConfigReader& reader) { reader.sections("list", true); }),
-             Contains("required key list is missing"));
+             Contains("required key 'list' is missing"));
 }
 
 TEST_CASE("a duplicate key is refused with both lines") {
@@ -188,7 +188,7 @@ TEST_CASE("lists name the item that is wrong, by its own line") {
   CHECK_THAT(refusal("rows: 3\n", read), Contains("rows is not a list"));
   CHECK_THAT(refusal("names: [a, [b]]\n", read), Contains("names[1] is a list"));
   CHECK_THAT(refusal("regions:\n  - kind: a\n  - kin: b\n", read),
-             Contains("r.yaml:3: required key regions[1].kind is missing; is kin meant?"));
+             Contains("r.yaml:3: required key 'regions[1].kind' is missing; is kin meant?"));
   CHECK_THAT(refusal("regions: {a: 1}\n", read), Contains("regions is not a list"));
   CHECK_THAT(refusal("regions: [3]\n", read), Contains("regions[0] is a single value"));
 }

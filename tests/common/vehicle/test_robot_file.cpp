@@ -76,7 +76,7 @@ TEST_CASE("what is missing or wrong in a robot is told with its key and file") {
   CHECK_THAT(refusalOf("robot: none.yaml", "/nowhere/planner.yaml"),
              Contains("/nowhere/none.yaml: cannot be read"));
   CHECK_THAT(refusalOf(smallWith("gauge:", ""), "p.yaml"),
-             Contains("required key robot.gauge is missing"));
+             Contains("required key 'robot.gauge' is missing"));
   CHECK_THAT(refusalOf(smallWith("outline:", "outline: {front: 1, rear: 1}"), "p.yaml"),
              Contains("p.yaml:") && Contains("robot.outline.half_width"));
   CHECK_THAT(refusalOf(smallWith("footprint:",
@@ -130,7 +130,7 @@ TEST_CASE("half a limit of tilt, one in radians, or one below the planner's slop
   const auto refusal = [](const std::string& limits) {
     return refusalOf(smallWith("limits:", "limits: {speed: 8, " + limits + "}"), "p.yaml");
   };
-  CHECK_THAT(refusal("roll: 25"), Contains("required key robot.limits.pitch is missing"));
+  CHECK_THAT(refusal("roll: 25"), Contains("required key 'robot.limits.pitch' is missing"));
   CHECK_THAT(refusal("roll: 0.5, pitch: 0.5"), Contains("robot.limits.roll") && Contains("deg"));
   CHECK_THAT(refusal("roll: 25, pitch: 10, slope: 12"),
              Contains("slope") && Contains("must be below roll and pitch"));

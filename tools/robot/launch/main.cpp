@@ -24,6 +24,7 @@
 #include "common/bus/shell.hpp"
 #include "common/bus/tcp_relay.hpp"
 #include "common/config/command_line.hpp"
+#include "common/config/problem_words.hpp"
 #include "common/seal/key_file.hpp"
 #include "common/store/store.hpp"
 #include "tools/robot/launch/host.hpp"
@@ -200,7 +201,7 @@ std::map<std::string, std::string> troubles(const LaunchFile& launch) {
     });
     for (const int64_t end = hostNow() + kListen; hostNow() < end;) bus.handle(50);
   } catch (const std::exception& error) {
-    lines["HEALTH"] = std::string(" cannot be heard: ") + error.what();
+    lines["HEALTH"] = std::string(" cannot be heard: ") + wordsOf(error);
   }
   return lines;
 }
@@ -285,7 +286,7 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const std::exception& error) {
-    std::cerr << "tread-launch: " << error.what() << std::endl;
+    std::cerr << "tread-launch: " << wordsOf(error) << std::endl;
     return 1;
   }
 }

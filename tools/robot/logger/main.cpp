@@ -12,6 +12,7 @@
 
 #include "common/bus/shell.hpp"
 #include "common/config/command_line.hpp"
+#include "common/config/problem_words.hpp"
 #include "tools/robot/logger/recorder.hpp"
 
 namespace {
@@ -71,7 +72,7 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "tread-logger: %s\n", error.what());
+    std::fprintf(stderr, "tread-logger: %s\n", wordsOf(error).c_str());
     return 1;
   }
 }

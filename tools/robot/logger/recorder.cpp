@@ -10,6 +10,7 @@
 
 #include "common/bus/host_clock.hpp"
 #include "common/bus/multicast_only.hpp"
+#include "common/config/problem_words.hpp"
 
 namespace tread::launch {
 namespace {
@@ -130,7 +131,7 @@ void Recorder::record(const std::string& channel, const uint8_t* bytes, size_t s
     ++recorded_;
   } catch (const std::exception& error) {
     ++lost_;
-    giveUp(error.what());
+    giveUp(wordsOf(error));
   }
 }
 
@@ -148,7 +149,7 @@ void Recorder::maintain(int64_t now) {
                    static_cast<long long>(lost_));
     }
   } catch (const std::exception& error) {
-    giveUp(error.what());
+    giveUp(wordsOf(error));
   }
 }
 

@@ -12,6 +12,7 @@
 #include "common/bus/key_option.hpp"
 #include "common/bus/lcm_bus.hpp"
 #include "common/config/command_line.hpp"
+#include "common/config/problem_words.hpp"
 #include "common/seal/key_file.hpp"
 #include "tools/robot/launch/running_robots.hpp"
 
@@ -95,7 +96,7 @@ int runCall(const std::string& name, const CommandOptions& options,
                 << std::endl;
     return run(name, options, bus, *call, [&bus](int ms) { bus.handle(ms); });
   } catch (const std::exception& error) {
-    std::cerr << name << ": " << error.what() << std::endl;
+    std::cerr << name << ": " << wordsOf(error) << std::endl;
     return 1;
   }
 }

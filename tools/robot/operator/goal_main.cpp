@@ -6,6 +6,7 @@
 
 #include "common/bus/key_option.hpp"
 #include "common/config/command_line.hpp"
+#include "common/config/problem_words.hpp"
 #include "modules/simulator/simulator_files.hpp"
 #include "tools/robot/operator/calls.hpp"
 #include "tools/robot/operator/command.hpp"
@@ -60,7 +61,7 @@ int main(int argc, char** argv) {
   try {
     names = namesFrom(world);
   } catch (const std::exception& error) {
-    std::cerr << "tread-goal: " << error.what() << std::endl;
+    std::cerr << "tread-goal: " << wordsOf(error) << std::endl;
     return 1;
   }
   return runCall("tread-goal", options, [&](Bus& bus) {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "common/config/config_reader.hpp"
+#include "common/config/problem_words.hpp"
 #include "common/geometry/degrees.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/report/text.hpp"
@@ -53,7 +54,7 @@ class Setup {
       if (!result_.goal.arrived)
         result_.problem = "the goal was not reached: " + result_.goal.words;
     } catch (const std::exception& error) {
-      result_.problem = error.what();
+      result_.problem = wordsOf(error);
     }
     result_.minutes = 1e-6 * static_cast<double>(site_.now() - start_) / 60.0;
     if (!result_.folder.empty()) write("setup.html", reportOf(result_));
