@@ -197,7 +197,6 @@ bool LogReader::File::fits(uint64_t at, size_t& channel_size, size_t& message_si
   const auto message = getBigEndian<4>(header + 24);
   const uint64_t end = at + kLogHeaderSize + name + message;
   if (name == 0 || name > kLongestChannel || message > INT32_MAX || end > size) return false;
-  if (!isPossibleTime(static_cast<int64_t>(getBigEndian<8>(header + 12)))) return false;
   channel_size = static_cast<size_t>(name);
   message_size = static_cast<size_t>(message);
   // Else a length is damaged, and the message is not whole.

@@ -16,7 +16,8 @@ namespace tread {
 
 /// One event of an LCM log.
 struct LogEvent {
-  int64_t utime = 0;  ///< [us] when it was recorded
+  int64_t utime = 0;  ///< [us] when it was recorded, by the recorder's clock: any number; of a
+                      ///< DriveReader the robot's time
   std::string channel;
   std::vector<uint8_t> bytes;
   bool sealed =

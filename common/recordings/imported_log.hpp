@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/geometry/se2.hpp"
-#include "common/log/drive_log.hpp"
+#include "common/drive/drive_log.hpp"
 #include "common/pattern/pattern.hpp"
 #include "common/recordings/sessions.hpp"
 

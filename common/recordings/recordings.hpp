@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/log/drive_log.hpp"
+#include "common/drive/drive_log.hpp"
 #include "common/pattern/pattern.hpp"
 #include "common/recordings/csv_table.hpp"
 

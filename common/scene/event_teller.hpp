@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/log/drive_log.hpp"
+#include "common/drive/drive_log.hpp"
 
 namespace tread {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "common/log/drive_log.hpp"
+#include "common/drive/drive_log.hpp"
 #include "common/recordings/csv_table.hpp"
 #include "common/recordings/drive_recordings.hpp"
 #include "common/recordings/imported_log.hpp"

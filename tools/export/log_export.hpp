@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "common/log/event_log.hpp"
+#include "common/drive/drive_reader.hpp"
 #include "common/types/message_type.hpp"
 
 namespace tread::exporting {
@@ -26,7 +26,7 @@ struct Selection {
 struct ExportCounts {
   std::map<std::string, int64_t> written;   ///< messages by channel
   std::map<std::string, int64_t> left_out;  ///< by what they are: of another type, broken
-  std::string problem;  ///< one clear line if the log is damaged; what is whole was exported
+  std::string problem;  ///< one clear line of what is wrong with the log; the rest was exported
 };
 
 /// The event's message as JSON, counted; nothing, counted too, if it is none of Tread's.
@@ -42,19 +42,14 @@ class SelectedEvents {
   SelectedEvents(std::vector<std::string> logs, Selection selection)
       : logs_(std::move(logs)), selection_(std::move(selection)) {}
 
-  /// Calls `take` for each; returns the logs' problem, empty if they are whole. Throws
+  /// Calls `take` for each; returns the logs' problem, empty if nothing is wrong. Throws
   /// std::runtime_error with one clear line if a log cannot be read.
   template <class Take>
   std::string forEach(const Take& take) {
-    std::string problem;
-    for (const std::string& path : logs_) {
-      LogReader log(path);
-      LogEvent event;
-      while (log.next(event))
-        if (isWanted(event)) take(event);
-      if (problem.empty()) problem = log.problem();
-    }
-    return problem;
+    DriveReader log(logs_);
+    for (DriveEvent event; log.next(event);)
+      if (isWanted(event)) take(event);
+    return log.problem();
   }
 
  private:
@@ -62,7 +57,7 @@ class SelectedEvents {
 
   std::vector<std::string> logs_;
   Selection selection_;
-  int64_t begun_ = -1;  ///< [us] by the recorder
+  int64_t begun_ = -1;  ///< [us]
 };
 
 /// Writes an MCAP file: each channel as JSON with its type as JSON Schema, and beside them what
@@ -70,8 +65,8 @@ class SelectedEvents {
 ExportCounts exportMcap(const std::vector<std::string>& logs, const Selection& selection,
                         const std::string& path, bool scene);
 
-/// Writes a CSV file for each channel into a folder: a column for each number and text, an array of
-/// varying length as JSON in one column.
+/// Writes a CSV file for each channel into a folder: when it was recorded, by the robot's clock; a
+/// column for each number and text, an array of varying length as JSON in one column.
 ExportCounts exportCsv(const std::vector<std::string>& logs, const Selection& selection,
                        const std::string& folder);
 

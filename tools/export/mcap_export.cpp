@@ -8,9 +8,8 @@
 namespace tread::exporting {
 namespace {
 
-/// A viewer's times begin in 1970; a robot's clock may stand before that only in a broken log.
 uint64_t nanoseconds(int64_t utime) {
-  return utime > 0 ? static_cast<uint64_t>(utime) * 1000 : 0;
+  return static_cast<uint64_t>(utime) * 1000;
 }
 
 class McapExport {

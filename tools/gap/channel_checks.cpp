@@ -222,10 +222,6 @@ void checkChannels(const SortedLog& log, const std::vector<HeardSpan>& spans, Di
     notes.fatal("no MOTOR message" + of + ": the commands are unknown; record channel MOTOR");
   if (log.ins.empty())
     notes.fatal("no INS message" + of + ": the motion is unknown; record channel INS");
-  if (log.drive.invalid > 0)
-    notes.note(
-        std::to_string(log.drive.invalid) +
-        " events on our channels are of another type or time; left out (another version's log?)");
   if (!log.motor.empty() && spans.empty())
     notes.fatal("the bridge never drives or stands armed for a second: no command is known");
   checkKinds(log, notes);

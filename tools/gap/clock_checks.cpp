@@ -55,7 +55,6 @@ bool samePace(const std::vector<Stamp>& stamps) {
 void checkStamps(const std::string& channel, const std::vector<Stamp>& stamps, const SortedLog& log,
                  Diagnostics& notes) {
   size_t overtaken = 0;
-  bool recorder_told = false;
   const bool same_pace = samePace(stamps);
   for (size_t i = 1; i < stamps.size(); ++i) {
     const int64_t step = stamps[i].utime - stamps[i - 1].utime;
@@ -66,15 +65,12 @@ void checkStamps(const std::string& channel, const std::vector<Stamp>& stamps, c
                          digits(-1e-6 * static_cast<double>(step), 2) + " s" + place +
                          "; cut the log there");
     overtaken += step < 0 ? 1 : 0;
-    if (!same_pace || std::abs(logged - step) <= kClockStep || !clocksPart(stamps, i)) continue;
-    if (step > kClockStep)
+    const bool parts = same_pace && std::abs(logged - step) > kClockStep && clocksPart(stamps, i);
+    if (parts && step > kClockStep)
       return notes.fatal("clock jump: " + channel + " goes on by " +
                          digits(1e-6 * static_cast<double>(step), 2) + " s" + place +
                          ", the recorder by " + digits(1e-6 * static_cast<double>(logged), 2) +
                          " s; cut the log there");
-    if (!recorder_told)
-      notes.note("the recorder's clock jumped" + place + "; the robot's own times are used");
-    recorder_told = true;
   }
   if (overtaken > 0)
     notes.note(std::to_string(overtaken) + " messages of " + channel +

@@ -135,6 +135,7 @@ Drive toDrive(const DriveLog& messages) {
   drive.segments = segmentsOf(spans, drive.encoders);
   drive.executions = executionsOf(drive.segments, recordsOf(log));
   Diagnostics notes(drive.name);
+  for (const std::string& note : messages.notes) notes.note(note);
   checkPublishers(log, notes);
   checkClocks(log, notes);
   checkChannels(log, spans, notes);
@@ -149,15 +150,14 @@ Drive readDrive(const std::string& path) {
   const DriveLog log = readDriveLog({path});
   const std::vector<LogEvent>& events = log.events;
   if (events.empty())
-    throw std::runtime_error(log.problem.empty()
-                                 ? "log " + path + ": no event in it; is this an LCM log?"
-                                 : log.problem);
+    throw std::runtime_error(
+        log.damage.empty() ? "log " + path + ": no event in it; is this an LCM log?" : log.damage);
   Drive drive = toDrive(log);
   drive.sha256 = sha256(readText(path));
-  if (log.problem.empty()) return drive;
+  if (log.damage.empty()) return drive;
   // Whole events are as good as in a whole log; whether they are enough is judged later.
   const double span = 1e-6 * static_cast<double>(events.back().utime - events.front().utime);
-  drive.lost = log.problem + "; its " + std::to_string(events.size()) + " whole events, " +
+  drive.lost = log.damage + "; its " + std::to_string(events.size()) + " whole events, " +
                digits(span, 0) + " s, are used; copy the log again if the robot still has it";
   drive.notes.insert(drive.notes.begin(), LogNote{drive.name, drive.lost, false});
   return drive;

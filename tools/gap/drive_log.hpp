@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "common/log/drive_log.hpp"
+#include "common/drive/drive_log.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "modules/identification/core/drive.hpp"
 

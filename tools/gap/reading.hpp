@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/log/drive_log.hpp"
+#include "common/drive/drive_log.hpp"
 #include "modules/identification/core/drive.hpp"
 #include "modules/identification/core/log_validation.hpp"
 
@@ -103,7 +103,7 @@ std::vector<Execution> executionsOf(const std::vector<Segment>& segments,
 
 inline constexpr int64_t kOvertaking = 200'000;  ///< [us] by which messages may come out of order
 
-/// Missing channels, messages of another type, commands of two kinds, silences, jumps and frozen
+/// Missing channels, commands of two kinds, silences, jumps and frozen
 /// poses.
 void checkChannels(const SortedLog& log, const std::vector<HeardSpan>& spans, Diagnostics& notes);
 

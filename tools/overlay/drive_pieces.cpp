@@ -7,7 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "common/log/drive_log.hpp"
+#include "common/drive/drive_log.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "common/report/plot.hpp"
@@ -237,7 +237,7 @@ void drawErrors(Picture& page, Box box, const std::vector<Piece>& pieces,
 
 LoggedDrive readLoggedDrive(const std::vector<std::string>& logs) {
   const DriveLog log = readDriveLog(logs);
-  LoggedDrive drive{{}, commandsOf(log), trackOf(log)};
+  LoggedDrive drive{{}, commandsOf(log), trackOf(log), log.problem};
   for (const auto& [channel, empty] :
        {std::pair{"MOTOR", drive.commands.empty()}, std::pair{"INS", drive.track.empty()}})
     if (empty)

@@ -30,6 +30,7 @@ struct LoggedDrive {
   std::vector<CommandKind> kinds;  ///< of the channels of its commands
   std::vector<GivenCommand> commands;
   std::vector<MeasuredPose> track;
+  std::string problem;  ///< one clear line of what is wrong with the log; empty if nothing is
 };
 
 /// Reads MOTOR and INS of LCM logs that are parts of one recording, in order.

@@ -65,7 +65,8 @@ CorpusEntry replayOne(const std::string& path, const std::vector<std::string>& o
   const auto note = [&](const std::string& line) { entry.lines.push_back(line); };
   try {
     const UnpackedLog unpacked(path);
-    const RobotLog log = readRobotLog(unpacked.path());
+    const RobotLog log = readRobotLog({unpacked.path()});
+    if (!log.problem.empty()) note(log.problem);
     try {
       const PlannerCheck check =
           checkPlanner(log, plannerConfigOf(log, overridesOf(overrides, "planner")));

@@ -103,12 +103,8 @@ class Player {
   std::map<ExecutionKey, int64_t> versions_;
 };
 
-}  // namespace
-
-DriveLog toLearnerLog(const std::string& name, std::vector<LogEvent> events) {
-  std::stable_sort(events.begin(), events.end(),
-                   [](const LogEvent& a, const LogEvent& b) { return a.utime < b.utime; });
-  DriveLog log = toDriveLog(name, std::move(events));
+/// The same log with the events that a learner hears, and executions in the order of their ends.
+DriveLog learnersPart(DriveLog log) {
   const auto ignore = [](const auto&) {};
   log.events.erase(std::remove_if(log.events.begin(), log.events.end(),
                                   [&](const LogEvent& event) {
@@ -120,11 +116,15 @@ DriveLog toLearnerLog(const std::string& name, std::vector<LogEvent> events) {
   return log;
 }
 
+}  // namespace
+
+DriveLog toLearnerLog(const std::string& name, std::vector<LogEvent> events) {
+  return learnersPart(toDriveLog(name, std::move(events)));
+}
+
 DriveLog readLearnerLog(const std::string& path) {
-  std::string problem;
-  std::vector<LogEvent> events = readEvents({path}, problem);
-  DriveLog log = toLearnerLog(std::filesystem::path(path).stem().string(), std::move(events));
-  log.problem = problem;
+  DriveLog log = learnersPart(readDriveLog({path}));
+  log.name = std::filesystem::path(path).stem().string();
   if (log.executions.empty())
     throw std::runtime_error(path +
                              ": no execution that has ended; a log with INS, MOTOR and EXECUTION "

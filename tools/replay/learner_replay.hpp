@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "common/log/drive_log.hpp"
+#include "common/drive/drive_log.hpp"
 #include "common/pattern/pattern.hpp"
 #include "common/vehicle/model.hpp"
 #include "modules/learner/learner_node.hpp"
 
 namespace tread::replay {
 
-/// What the learner reads of a drive: only INS, MOTOR and EXECUTION events, in order of the
-/// recorder's time; executions in order of their end. `name` stands for the log in reports.
+/// What the learner reads of a drive: only INS, MOTOR and EXECUTION events, in the robot's
+/// time; executions in order of their end. `name` stands for the log in reports.
 DriveLog toLearnerLog(const std::string& name, std::vector<LogEvent> events);
 
 /// Reads a log file, whose name without ending stands for it; throws std::runtime_error with one

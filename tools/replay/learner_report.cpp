@@ -89,8 +89,6 @@ void writeIntake(std::ostream& out, const DriveLog& log, const LearnerRun& run) 
         << " have a measured end; only those are in the errors below\n";
   if (run.learned.size() != log.executions.size())
     out << "  " << log.executions.size() - run.learned.size() << " before the first INS message\n";
-  if (log.invalid > 0)
-    out << "  " << log.invalid << " messages of other types on our channels were skipped\n";
   if (!log.problem.empty()) out << "  " << log.problem << "\n";
   if (!run.health.empty()) out << "  HEALTH at the end: " << run.health << "\n";
 }

@@ -112,7 +112,7 @@ void addMatching(CLI::App& app, Arguments& arguments) {
 }
 
 void comparePlanner(Arguments& arguments) {
-  const replay::RobotLog log = replay::readRobotLog(arguments.log);
+  const replay::RobotLog log = replay::readRobotLog({arguments.log});
   const auto config = [&] {
     if (arguments.config.empty()) return replay::plannerConfigOf(log);
     ConfigReader reader = ConfigReader::fromFile(arguments.config);
@@ -143,7 +143,7 @@ struct LearnerArguments : Arguments {
 
 /// A robot's log: its own sets and reports are compared.
 void compareLearner(LearnerArguments& arguments) {
-  const replay::RobotLog log = replay::readRobotLog(arguments.log);
+  const replay::RobotLog log = replay::readRobotLog({arguments.log});
   const auto config = [&] {
     if (arguments.config.empty()) return replay::learnerConfigOf(log, TREAD_CONFIG_DIR "/patterns");
     ConfigReader reader = ConfigReader::fromFile(arguments.config);
@@ -160,7 +160,7 @@ void compareLearnedPoses(const LearnerArguments& arguments) {
   const std::vector<LogEvent> events = readEvents({arguments.log}, problem);
   const auto config = [&] {
     if (arguments.config.empty())
-      return replay::learnerConfigOf(replay::readRobotLog(arguments.log),
+      return replay::learnerConfigOf(replay::readRobotLog({arguments.log}),
                                      TREAD_CONFIG_DIR "/patterns");
     ConfigReader reader = ConfigReader::fromFile(arguments.config);
     return learner::readLearnerConfig(reader);

@@ -10,8 +10,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "common/drive/drive_reader.hpp"
 #include "common/geometry/se2.hpp"
-#include "common/log/event_log.hpp"
 #include "common/messages/blank.hpp"
 #include "common/recordings/foreign_types.hpp"
 #include "common/types/message_type.hpp"
@@ -217,10 +217,9 @@ void number(std::vector<Message>& messages) {
  * stamps of LIDAR. */
 void readMbotLog(const std::string& path, MappingRecording& recording) {
   recording.config = indoorConfig();
-  LogReader log(path);
-  LogEvent event;
+  DriveReader log({path});
   std::optional<int64_t> first;
-  while (log.next(event)) {
+  for (DriveEvent event; log.next(event);) {
     if (!first) first = event.utime;
     const int64_t utime = kStartUs + event.utime - *first;
     if (event.channel == "TRUE_POSE") {

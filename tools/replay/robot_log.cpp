@@ -14,26 +14,6 @@ namespace tread::replay {
 namespace {
 
 constexpr int64_t kTransportUs = 20;  ///< of a message on the virtual bus
-/// A broken message may hold any time: a stamp this far [us] ahead of the log's clock is believed
-/// only after so many in a row.
-constexpr int64_t kLargestLead = 5'000'000;
-constexpr int kBelievedAfter = 5;
-/// A running robot publishes at least this often [us]: a longer silence means that the recorder's
-/// clock was set.
-constexpr int64_t kLongestSilence = 1'000'000;
-
-/// Time and number of an event on a channel that one process publishes with the time of sending or
-/// of a measurement just made. Not PROGRAM: a planner that has just started does not know the time.
-std::optional<Stamp> stampOf(const LogEvent& event) {
-  std::optional<Stamp> stamp;
-  dispatch(
-      event,
-      [&](const auto& message) {
-        stamp = Stamp{event.utime, message.utime, message.seq};
-      },
-      kIns, kMotor, kExecution);
-  return stamp;
-}
 
 /// Number of an event on a channel of one publisher.
 std::optional<int64_t> numberOf(const LogEvent& event) {
@@ -43,32 +23,6 @@ std::optional<int64_t> numberOf(const LogEvent& event) {
       kProgram, kIns, kMotor, kExecution);
   return seq;
 }
-
-/// Follows the robot's clock through a log.
-class Clock {
- public:
-  int64_t heard(const LogEvent& event, const std::optional<Stamp>& stamp) {
-    const int64_t passed = event.utime - last_recorded_;
-    if (now_ != 0 && passed > 0 && passed < kLongestSilence) now_ += passed;
-    last_recorded_ = event.utime;
-    if (stamp) follow(stamp->utime);
-    heard_ = std::max(heard_, now_);
-    return heard_;
-  }
-
- private:
-  void follow(int64_t utime) {
-    const int64_t lead = utime - now_;
-    const bool sane = lead > -kLongestSilence && lead < kLargestLead;
-    doubted_ = sane ? 0 : doubted_ + 1;
-    if (now_ == 0 || doubted_ >= kBelievedAfter || (sane && lead > 0)) now_ = utime;
-  }
-
-  int64_t now_ = 0;
-  int64_t heard_ = 0;
-  int64_t last_recorded_ = 0;
-  int doubted_ = 0;  ///< stamps in a row that are far from now_
-};
 
 void noteSeq(const LogEvent& event, int64_t seq, std::map<std::string, int64_t>& last,
              std::map<std::string, int64_t>& missing) {
@@ -81,9 +35,10 @@ void noteSeq(const LogEvent& event, int64_t seq, std::map<std::string, int64_t>&
 }
 
 /// Leaves out what a robot with a key has not taken: unsealed messages that do not stop.
-void removeUnsealed(std::vector<LogEvent>& events) {
+void removeUnsealed(std::vector<TimedEvent>& events) {
   bool robot_has_key = false;
-  const auto refused = [&](const LogEvent& event) {
+  const auto refused = [&](const TimedEvent& timed) {
+    const LogEvent& event = timed.event;
     if (event.channel == kMotor.name) robot_has_key = event.sealed;
     bool is_stop = false;
     dispatch(
@@ -93,12 +48,40 @@ void removeUnsealed(std::vector<LogEvent>& events) {
   events.erase(std::remove_if(events.begin(), events.end(), refused), events.end());
 }
 
-bool inVirtualTime(const std::vector<LogEvent>& events) {
-  for (const LogEvent& event : events) {
+bool inVirtualTime(const std::vector<TimedEvent>& events) {
+  for (const TimedEvent& timed : events) {
     health_t health;
-    if (decode(event, kHealth, health)) return health.utc < 0;
+    if (decode(timed.event, kHealth, health)) return health.utc < 0;
   }
   return false;
+}
+
+/// What is known of the events as a whole.
+void describe(RobotLog& log) {
+  removeUnsealed(log.events);
+  log.virtual_time = inVirtualTime(log.events);
+  std::map<std::string, int64_t> last;
+  for (TimedEvent& timed : log.events) {
+    config_t config;
+    if (decode(timed.event, kConfig, config))
+      log.configs.emplace(config.config_process, config.config_text);
+    if (const auto number = numberOf(timed.event)) noteSeq(timed.event, *number, last, log.missing);
+    if (log.virtual_time) timed.heard += kTransportUs;
+  }
+}
+
+template <class Keep>
+RobotLog robotLogOf(const std::string& name, DriveReader events, const Keep& keep) {
+  RobotLog log;
+  log.name = name;
+  for (DriveEvent event; events.next(event);)
+    if (keep(event)) {
+      const int64_t heard = event.utime;
+      log.events.push_back({std::move(event), heard});
+    }
+  log.problem = events.problem();
+  describe(log);
+  return log;
 }
 
 /// From the start of a process to its first message on the robot, at most [us].
@@ -236,27 +219,7 @@ std::vector<Snapshot> fromReplayable(const RobotLog& log, std::vector<Snapshot> 
 }  // namespace
 
 RobotLog toRobotLog(const std::string& name, std::vector<LogEvent> events) {
-  RobotLog log;
-  log.name = name;
-  removeUnsealed(events);
-  log.virtual_time = inVirtualTime(events);
-  Clock clock;
-  std::map<std::string, int64_t> last;
-  for (LogEvent& event : events) {
-    config_t config;
-    if (decode(event, kConfig, config))
-      log.configs.emplace(config.config_process, config.config_text);
-    const std::optional<Stamp> stamp = stampOf(event);
-    if (const auto number = numberOf(event)) noteSeq(event, *number, last, log.missing);
-    const int64_t heard = log.virtual_time ? event.utime + kTransportUs : clock.heard(event, stamp);
-    log.events.push_back({std::move(event), heard});
-  }
-  // Events before the first stamp get the time of the first stamp.
-  const auto first = std::find_if(log.events.begin(), log.events.end(),
-                                  [](const TimedEvent& event) { return event.heard != 0; });
-  for (auto early = log.events.begin(); first != log.events.end() && early != first; ++early)
-    early->heard = first->heard;
-  return log;
+  return robotLogOf(name, DriveReader(std::move(events)), [](const LogEvent&) { return true; });
 }
 
 Intake intakeOf(const RobotLog& log, const std::string& process,
@@ -290,18 +253,19 @@ std::string intakeLine(const RobotLog& log, const std::string& process,
          std::to_string(intake.in_log) + " of the same time";
 }
 
-RobotLog readRobotLog(const std::string& path) {
-  const auto isOurs = [](const LogEvent& event) {
-    return event.channel != kScan.name && event.channel != kPlanTree.name &&
+RobotLog readRobotLog(const std::vector<std::string>& paths,
+                      const std::vector<const char*>& without) {
+  const auto isOurs = [&](const LogEvent& event) {
+    const auto named = [&](const char* name) { return event.channel == name; };
+    return std::none_of(without.begin(), without.end(), named) &&
            std::any_of(kChannels.begin(), kChannels.end(),
-                       [&](const ChannelSpec& spec) { return event.channel == spec.name; });
+                       [&](const ChannelSpec& spec) { return named(spec.name); });
   };
-  std::string problem;
-  std::vector<LogEvent> events = readEvents({path}, problem, isOurs);
-  RobotLog log = toRobotLog(std::filesystem::path(path).filename().string(), std::move(events));
-  log.problem = problem;
+  if (paths.empty()) throw std::runtime_error("no log is named");
+  RobotLog log = robotLogOf(std::filesystem::path(paths.front()).filename().string(),
+                            DriveReader(paths), isOurs);
   if (log.events.empty())
-    throw std::runtime_error(path + ": no event on any of our channels" +
+    throw std::runtime_error(paths.front() + ": no event on any of our channels" +
                              (log.problem.empty() ? "" : "; " + log.problem));
   return log;
 }

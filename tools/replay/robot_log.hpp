@@ -9,8 +9,7 @@
 
 #include "common/bus/lcm_bus.hpp"
 #include "common/config/config_reader.hpp"
-#include "common/log/drive_log.hpp"
-#include "common/log/event_log.hpp"
+#include "common/drive/drive_log.hpp"
 
 namespace tread::replay {
 
@@ -21,15 +20,12 @@ struct TimedEvent {
 };
 
 /// The log of a running robot: what lcm-logger or tread-missions --log wrote.
-/** A recorder dates events with its own clock, which for lcm-logger is UTC. The robot's time is
- * found as its processes find it: the newest utime heard plus the time passed since (LcmBus). In
- * virtual time (HEALTH without UTC) both clocks are one. */
 struct RobotLog {
   std::string name;  ///< file name without folder
   std::vector<TimedEvent> events;
   std::map<std::string, std::string> configs;  ///< by process: the first CONFIG
-  bool virtual_time = false;
-  std::string problem;  ///< one clear line if the log is damaged; what is whole was read
+  bool virtual_time = false;  ///< HEALTH without UTC
+  std::string problem;        ///< one clear line of what is wrong with the log, see DriveReader
   /// Messages that the log misses by seq, per channel.
   std::map<std::string, int64_t> missing;
 };
@@ -47,11 +43,13 @@ Intake intakeOf(const RobotLog& log, const std::string& process,
 std::string intakeLine(const RobotLog& log, const std::string& process,
                        const std::vector<std::string>& channels);
 
-/// Reads a log. Throws std::runtime_error with one clear line if it cannot be read or holds nothing
-/// of ours.
-RobotLog readRobotLog(const std::string& path);
+/// Reads a log (one file, or its parts in order) without some channels, by default those that no
+/// replayed process hears. Throws std::runtime_error with one clear line if it cannot be read or
+/// holds nothing of ours.
+RobotLog readRobotLog(const std::vector<std::string>& paths,
+                      const std::vector<const char*>& without = {kScan.name, kPlanTree.name});
 
-/// The same from events in memory; `name` stands for the log in reports.
+/// The same from events in memory, at the recorder's times; `name` stands for the log in reports.
 RobotLog toRobotLog(const std::string& name, std::vector<LogEvent> events);
 
 /// The CONFIG of a process with other values in it, KEY=VALUE with dots between sections; throws

@@ -9,7 +9,7 @@
 
 #include <tread/program_t.hpp>
 
-#include "common/log/drive_log.hpp"
+#include "common/drive/drive_log.hpp"
 #include "modules/learner/learner_node.hpp"
 
 namespace tread::shadow {

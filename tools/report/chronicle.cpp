@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/log/drive_log.hpp"
+#include "common/drive/drive_log.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "common/report/text.hpp"
 

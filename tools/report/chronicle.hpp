@@ -61,7 +61,7 @@ class Chronicle {
   int reached() const;
   std::string counts() const;
 
-  int64_t begun_ = -1;  ///< [us] by the logger
+  int64_t begun_ = -1;  ///< [us]
   std::vector<GoalStory> goals_;
   std::vector<Incident> incidents_;
   std::map<std::string, double> heard_;  ///< [s] by channel, the last message

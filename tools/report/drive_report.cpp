@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "common/config/config_reader.hpp"
-#include "common/log/drive_log.hpp"
+#include "common/drive/drive_log.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "common/report/text.hpp"
@@ -251,12 +251,9 @@ double DriveRecord::straightLine() const {
 DriveRecord readDrive(const std::vector<std::string>& logs) {
   DriveRecord drive;
   Reader reader(drive);
-  LogEvent event;
-  for (const std::string& path : logs) {
-    LogReader log(path);
-    while (log.next(event)) reader.take(event);
-    if (drive.problem.empty()) drive.problem = log.problem();
-  }
+  DriveReader log(logs);
+  for (DriveEvent event; log.next(event);) reader.take(event);
+  drive.problem = log.problem();
   // A file of another kind has nothing to tell.
   if (drive.events == 0 && !drive.problem.empty()) throw std::runtime_error(drive.problem);
   return drive;

@@ -153,7 +153,7 @@ class Latencies {
 
 /// One drive in a log: from the first goal to the arrival, or to the log's end.
 struct DriveRecord {
-  std::string problem;  ///< of the log, one line; empty = whole
+  std::string problem;  ///< of the log, one line; empty = nothing is wrong with it
   int64_t events = 0;
   bool has_goal = false;
   Pose2 T_map_goal;

@@ -3,7 +3,6 @@
 #include "tools/report/drive_report.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -16,17 +15,6 @@ namespace tread::report {
 namespace {
 
 using Executions = std::vector<const shadow::ShadowedExecution*>;
-
-/// All channels but the large ones that neither the learner nor the robot's time needs.
-replay::RobotLog relevantLog(const std::vector<std::string>& paths) {
-  constexpr std::array<const char*, 4> kTooMuch{kScan.name, kPlanTree.name, kMap.name,
-                                                kLearnerState.name};
-  std::string ignored;
-  std::vector<LogEvent> events = readEvents(paths, ignored, [&](const LogEvent& event) {
-    return std::find(kTooMuch.begin(), kTooMuch.end(), event.channel) == kTooMuch.end();
-  });
-  return replay::toRobotLog(paths.empty() ? "no log" : paths.front(), std::move(events));
-}
 
 /// Executions wholly on one surface, each with its number on it, from 1; and on which segment.
 struct Numbered {
@@ -85,10 +73,11 @@ RuleErrors errorsByRule(const std::vector<std::string>& logs, const std::string&
   RuleErrors errors;
   errors.rules = rules;
   try {
-    const replay::RobotLog log = relevantLog(logs);
+    // The learner does not need the large ones.
+    const replay::RobotLog log =
+        replay::readRobotLog(logs, {kScan.name, kPlanTree.name, kMap.name, kLearnerState.name});
     const learner::LearnerNodeConfig config = replay::learnerConfigOf(log, patterns_folder);
     errors.driven = config.rule.rule;
-    if (log.events.empty()) throw std::runtime_error("the log is empty");
     shadow::ShadowLearners shadows(config, rules, log.events.front().heard);
     for (const replay::TimedEvent& timed : log.events) shadows.hear(timed.heard, timed.event);
     shadows.finish();

@@ -127,6 +127,8 @@ void replay(const Arguments& arguments, const std::atomic<bool>& stop) {
   ViewServer server(
       settings, [](const std::string&, uint64_t) { return "this is a log"; }, [](uint64_t) {});
   server.feed().openLogs(arguments.logs);
+  const std::string problem = server.feed().problem();
+  if (!problem.empty()) std::printf("tread-view: %s\n", problem.c_str());
   sayWhere(server, settings);
   for (double last = secondsNow(); !stop;) {
     std::this_thread::sleep_for(std::chrono::milliseconds(kWaitMs));

@@ -28,7 +28,7 @@ class TimelineReader {
   explicit TimelineReader(DriveTimeline& drive) : drive_(drive) {}
 
   void take(const LogEvent& event) {
-    if (drive_.begun == 0) drive_.begun = event.utime;
+    if (drive_.begun < 0) drive_.begun = event.utime;
     now_ = static_cast<double>(event.utime - drive_.begun) * 1e-6;
     drive_.duration = std::max(drive_.duration, now_);
     if (event.channel != kHealth.name) drive_.heard[event.channel].push_back(now_);
@@ -270,12 +270,9 @@ std::optional<Pose2> DriveTimeline::poseAt(double time) const {
 DriveTimeline readTimeline(const std::vector<std::string>& logs) {
   DriveTimeline drive;
   TimelineReader timeline(drive);
-  for (const std::string& path : logs) {
-    LogReader log(path);
-    LogEvent event;
-    while (log.next(event)) timeline.take(event);
-    if (drive.problem.empty()) drive.problem = log.problem();
-  }
+  DriveReader reader(logs);
+  for (DriveEvent event; reader.next(event);) timeline.take(event);
+  drive.problem = reader.problem();
   if (logs.empty() || drive.heard.empty())
     throw std::runtime_error((logs.empty() ? std::string("no log") : logs.front()) +
                              ": holds no message of Tread; is it a robot's log?");

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "common/drive/drive_log.hpp"
 #include "common/geometry/se2.hpp"
 #include "common/grid/grid.hpp"
-#include "common/log/drive_log.hpp"
 
 namespace tread::why {
 
@@ -74,11 +74,11 @@ struct CellNote {
   bool came = false;
 };
 
-/// What a log holds of a drive, in the order of recording.
+/// What a log holds of a drive, in the robot's time.
 struct DriveTimeline {
   std::string name;
-  std::string problem;  ///< one clear line if the log is damaged
-  int64_t begun = 0;    ///< [us] by the recorder
+  std::string problem;  ///< one clear line of what is wrong with the log; empty if nothing is
+  int64_t begun = -1;   ///< [us] of the robot's clock
   double duration = 0.0;
   std::map<std::string, std::vector<double>> heard;  ///< by channel
   std::map<std::string, std::vector<HealthNote>> health;

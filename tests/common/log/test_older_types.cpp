@@ -14,7 +14,7 @@
 
 #include <tread_before/motor_t.hpp>
 
-#include "common/log/drive_log.hpp"
+#include "common/drive/drive_log.hpp"
 #include "common/log/older_types.hpp"
 #include "common/messages/pattern_messages.hpp"
 
@@ -45,7 +45,7 @@ std::vector<Message> messagesOn(const Channel<Message>& channel) {
 
 TEST_CASE("an older log is read as if it were of today, no message is left out") {
   const DriveLog log = toDriveLog("two_tracks", olderEvents());
-  CHECK(log.invalid == 0);
+  CHECK(log.problem == "");
   REQUIRE(log.motor.size() == 141);
   const motor_t& driven = log.motor.back();
   REQUIRE(driven.bridge_state == motor_t::STATE_DRIVING);

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/log/drive_log.hpp"
+#include "common/drive/drive_log.hpp"
 #include "common/messages/blank.hpp"
 #include "common/scene/scene.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "common/log/drive_log.hpp"
+#include "common/drive/drive_log.hpp"
 #include "common/messages/blank.hpp"
 #include "modules/simulator/core/noise.hpp"
 

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "common/log/drive_log.hpp"
+#include "common/drive/drive_log.hpp"
 #include "common/mcap/mcap_reader.hpp"
 #include "common/messages/blank.hpp"
 #include "tests/tools/called_program.hpp"

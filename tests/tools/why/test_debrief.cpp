@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/log/drive_log.hpp"
+#include "common/drive/drive_log.hpp"
 #include "common/messages/blank.hpp"
 #include "tests/helpers.hpp"
 #include "tests/tools/called_program.hpp"

@@ -6,7 +6,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "common/log/drive_log.hpp"
+#include "common/drive/drive_log.hpp"
 #include "common/recordings/imported_log.hpp"
 #include "common/recordings/sessions.hpp"
 #include "tools/experiment/adaptation/driving.hpp"
@@ -198,6 +198,7 @@ void readLogs(const std::vector<fs::path>& logs, Recordings& found) {
   for (const fs::path& path : logs) {
     const gap::Drive drive = gap::readDrive(path.string());
     const DriveLog log = readDriveLog({path.string()});
+    if (!log.problem.empty()) found.notes.push_back(path.stem().string() + ": " + log.problem);
     Session session;
     session.name = path.stem().string();
     session.vehicle = "unknown vehicle";

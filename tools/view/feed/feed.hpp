@@ -55,6 +55,8 @@ class Feed {
   void seek(int64_t time, int64_t request);
   void play(bool playing, double speed);
   bool hasLog() const { return player_ != nullptr; }
+  /// One clear line of what is wrong with the log; empty if nothing is.
+  std::string problem() const { return player_ ? player_->problem() : ""; }
   /// [us] the time of what is shown.
   int64_t now() const { return player_ ? player_->now() : newest_; }
 

@@ -19,50 +19,21 @@ bool lasts(const std::string& channel) {
 
 }  // namespace
 
-LogPlayer::LogPlayer(const std::vector<std::string>& logs) {
-  for (const std::string& path : logs) index(path);
+LogPlayer::LogPlayer(const std::vector<std::string>& logs) : reader_(logs) {
+  for (DriveEvent event; reader_.next(event);) {
+    parts_[{event.channel, partOf(event)}].push_back(entries_.size());
+    entries_.push_back(event.place());
+    history_.take(event);
+  }
+  problem_ = reader_.problem();
   if (entries_.empty())
     throw std::runtime_error((logs.empty() ? std::string("no log") : logs.front()) +
                              ": holds no message; is it a robot's log?");
-  // Recorders write in the order of receipt, whose times may lie a little out of order.
-  if (!std::is_sorted(entries_.begin(), entries_.end(),
-                      [](const Entry& a, const Entry& b) { return a.utime < b.utime; })) {
-    std::vector<size_t> order(entries_.size()), place(entries_.size());
-    for (size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::stable_sort(order.begin(), order.end(),
-                     [&](size_t a, size_t b) { return entries_[a].utime < entries_[b].utime; });
-    std::vector<Entry> sorted;
-    for (size_t i = 0; i < order.size(); ++i) {
-      place[order[i]] = i;
-      sorted.push_back(entries_[order[i]]);
-    }
-    entries_ = std::move(sorted);
-    for (auto& [part, entries] : parts_) {
-      for (size_t& entry : entries) entry = place[entry];
-      std::sort(entries.begin(), entries.end());
-    }
-  }
-}
-
-void LogPlayer::index(const std::string& path) {
-  files_.push_back(std::make_unique<LogReader>(path));
-  LogReader& log = *files_.back();
-  LogEvent event;
-  for (;;) {
-    const uint64_t position = log.position();
-    if (!log.next(event)) break;
-    parts_[{event.channel, partOf(event)}].push_back(entries_.size());
-    entries_.push_back({event.utime, position, static_cast<uint32_t>(files_.size() - 1)});
-    history_.take(event);
-  }
-  if (problem_.empty()) problem_ = log.problem();
 }
 
 void LogPlayer::tell(size_t entry, const Take& take) {
-  LogReader& log = *files_[entries_[entry].file];
-  log.seek(entries_[entry].position);
   LogEvent event;
-  if (log.next(event)) take(event);
+  if (reader_.again(entries_[entry], event)) take(event);
 }
 
 void LogPlayer::seek(int64_t time, const Take& take) {
@@ -84,7 +55,7 @@ void LogPlayer::seek(int64_t time, const Take& take) {
   for (const size_t entry : wanted) tell(entry, take);
   next_ = static_cast<size_t>(
       std::upper_bound(entries_.begin(), entries_.end(), time,
-                       [](int64_t at, const Entry& entry) { return at < entry.utime; }) -
+                       [](int64_t at, const EventPlace& entry) { return at < entry.utime; }) -
       entries_.begin());
 }
 

@@ -5,11 +5,10 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "common/log/event_log.hpp"
+#include "common/drive/drive_reader.hpp"
 #include "common/log/message_part.hpp"
 #include "tools/view/feed/history.hpp"
 
@@ -24,7 +23,7 @@ class LogPlayer {
   /// one clear line if one cannot be read or holds nothing.
   explicit LogPlayer(const std::vector<std::string>& logs);
 
-  int64_t begin() const { return entries_.front().utime; }  ///< [us] by the recorder
+  int64_t begin() const { return entries_.front().utime; }  ///< [us] of the robot's clock
   int64_t end() const { return entries_.back().utime; }
   const std::string& problem() const { return problem_; }
   /// What happened in the whole log.
@@ -38,16 +37,10 @@ class LogPlayer {
   int64_t now() const { return now_; }
 
  private:
-  struct Entry {
-    int64_t utime;
-    uint64_t position;
-    uint32_t file;
-  };
-  void index(const std::string& path);
   void tell(size_t entry, const Take& take);
 
-  std::vector<std::unique_ptr<LogReader>> files_;
-  std::vector<Entry> entries_;  ///< in the order of time
+  DriveReader reader_;
+  std::vector<EventPlace> entries_;  ///< in the order of time
   /// By channel and part: which entries there are, ascending.
   std::map<std::pair<std::string, uint64_t>, std::vector<size_t>> parts_;
   std::map<std::pair<std::string, uint64_t>, size_t> told_;  ///< the entry told last

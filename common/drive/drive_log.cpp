@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "common/log/drive_log.hpp"
+#include "common/drive/drive_log.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -21,13 +21,10 @@ class Reader {
  public:
   explicit Reader(DriveLog& log) : log_(log) {}
 
-  void take(const LogEvent& event) {
-    const auto is = [&](const ChannelSpec& channel) { return event.channel == channel.name; };
-    if (!is(kMotor) && !is(kIns) && !is(kExecution) && !is(kConfig) && !is(kMark)) return;
-    const bool decoded = dispatch(
-        event, [&](const auto& message) { take(message, event.utime); }, kMotor, kIns, kExecution,
-        kConfig, kMark);
-    if (!decoded) ++log_.invalid;
+  void take(const DriveEvent& event) {
+    dispatch(
+        event, [&](const auto& message) { take(message, event.recorded); }, kMotor, kIns,
+        kExecution, kConfig, kMark);
   }
 
  private:
@@ -72,34 +69,30 @@ std::string DriveLog::surfaceAt(int64_t utime) const {
   return after == surfaces.begin() ? "unknown" : std::prev(after)->second;
 }
 
-std::vector<LogEvent> readEvents(const std::vector<std::string>& paths, std::string& problem,
-                                 const std::function<bool(const LogEvent&)>& keep) {
-  std::vector<LogEvent> events;
-  for (const std::string& path : paths) {
-    LogReader reader(path);
-    for (LogEvent event; reader.next(event);)
-      if (keep(event)) events.push_back(std::move(event));
-    if (problem.empty()) problem = reader.problem();
-  }
-  return events;
-}
+namespace {
 
-DriveLog toDriveLog(const std::string& name, std::vector<LogEvent> events) {
+DriveLog readDriveLog(const std::string& name, DriveReader events) {
   DriveLog log;
   log.name = name;
   Reader reader(log);
-  for (const LogEvent& event : events) reader.take(event);
-  log.events = std::move(events);
+  for (DriveEvent event; events.next(event);) {
+    reader.take(event);
+    log.events.push_back(std::move(event));
+  }
+  log.problem = events.problem();
+  log.damage = events.damage();
+  log.notes = events.notes();
   return log;
 }
 
+}  // namespace
+
+DriveLog toDriveLog(const std::string& name, std::vector<LogEvent> events) {
+  return readDriveLog(name, DriveReader(std::move(events)));
+}
+
 DriveLog readDriveLog(const std::vector<std::string>& paths) {
-  std::string problem;
-  std::vector<LogEvent> events = readEvents(paths, problem);
-  DriveLog log =
-      toDriveLog(std::filesystem::path(paths.front()).filename().string(), std::move(events));
-  log.problem = problem;
-  return log;
+  return readDriveLog(std::filesystem::path(paths.front()).filename().string(), DriveReader(paths));
 }
 
 void DriveLogBuilder::addMark(int64_t utime, const std::string& kind, const std::string& value) {

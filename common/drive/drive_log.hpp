@@ -2,13 +2,12 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <functional>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "common/log/event_log.hpp"
+#include "common/drive/drive_reader.hpp"
 
 namespace tread {
 
@@ -30,33 +29,27 @@ inline ExecutionKey keyOf(const execution_record_t& record) {
 
 /// What a log holds about a drive: commands, measurements, executions and notes, each in the order
 /// in which they were recorded. Messages that cannot be decoded or claim an impossible time are
-/// left out and counted.
+/// left out; `notes` counts them.
 struct DriveLog {
-  std::string name;              ///< file name without folder
-  std::string problem;           ///< one clear line if the log is damaged; the rest was read
-  std::vector<LogEvent> events;  ///< all of the log, whatever their channel
-  std::vector<motor_t> motor;    ///< MOTOR: the commands as applied
-  std::vector<ins_t> ins;        ///< INS
+  std::string name;                ///< file name without folder
+  std::string problem;             ///< all that is wrong with the log in one line: damage, notes
+  std::string damage;              ///< one clear line if the log is damaged; the rest was read
+  std::vector<std::string> notes;  ///< what else is wrong with it, see DriveReader
+  std::vector<LogEvent> events;    ///< all of the log, whatever their channel, in robot's time
+  std::vector<motor_t> motor;      ///< MOTOR: the commands as applied
+  std::vector<ins_t> ins;          ///< INS
   std::vector<Stamp> motor_stamps, ins_stamps;  ///< of the messages above
   std::vector<execution_record_t> executions;   ///< EXECUTION: those that ended, each once
   std::vector<config_t> configs;                ///< CONFIG
   std::map<int64_t, std::string> surfaces;      ///< MARK surface: from when on [us]
-  size_t invalid = 0;  ///< messages on these channels of another type or with an impossible time
 
   /// The surface at a time; "unknown" before the first mark.
   std::string surfaceAt(int64_t utime) const;
 };
 
-/// All events of log files that are parts of one recording, in order.
-/** Throws std::runtime_error with one clear line if one cannot be read; `problem` tells if one is
- * damaged. `keep` chooses events: a robot's log with all its scans may not fit into memory. */
-std::vector<LogEvent> readEvents(
-    const std::vector<std::string>& paths, std::string& problem,
-    const std::function<bool(const LogEvent&)>& keep = [](const LogEvent&) { return true; });
-
-/// Reads the drive of a recording (one file, or its parts in order); throws as readEvents() does.
+/// Reads the drive of a recording (one file, or its parts in order); throws as DriveReader does.
 DriveLog readDriveLog(const std::vector<std::string>& paths);
-/// The same from events in memory; `name` stands for the file.
+/// The same from events in memory, at the recorder's times; `name` stands for the file.
 DriveLog toDriveLog(const std::string& name, std::vector<LogEvent> events);
 
 /// Decodes an event if it is on one of the channels, and calls `hear` with the message; false if it

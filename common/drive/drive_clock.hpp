@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tread {
+
+/// Finds the robot's time of each event of a log, as its processes find it: the newest utime heard
+/// and the time passed since (FollowedTime).
+/** A recorder dates events with its own clock: that of the robot in virtual time, UTC with
+ * lcm-logger, and either may be set while it runs. A stamp is an event that tells the robot's time
+ * of its sending. What the recorder's clock is ahead of the stamps, at least, is taken off its
+ * times. An event whose time fits neither the last one nor this difference waits for the stamps
+ * behind it: where most of them agree with it a clock was set, or nothing was sent for a while;
+ * else its time is wrong, and it happened between its neighbours. Where the robot's own clock began
+ * anew (its host was started again) times go on. */
+class DriveClock {
+ public:
+  /// When an event took place.
+  struct Dated {
+    int64_t utime = 0;   ///< [us] of the robot's clock; never decreases, never negative
+    bool wrong = false;  ///< what the event says of its time cannot be
+  };
+
+  /// The next event: when it was recorded, and what time of the robot it tells, if any [us].
+  void add(int64_t recorded, std::optional<int64_t> utime);
+  /// No event follows.
+  void close() { closed_ = true; }
+  /// The time of the first event that was not asked for yet; nothing if more events are needed, or
+  /// there is none.
+  std::optional<Dated> next();
+
+  /// What is wrong with the clocks, a line each; complete after the last event.
+  std::vector<std::string> notes() const;
+
+ private:
+  struct Tick {
+    int64_t recorded = 0;
+    std::optional<int64_t> utime;
+  };
+  /// The recorder's clock was set, so it seems: until more is heard it may have been held up.
+  struct Step {
+    int64_t at = 0;      ///< [us] robot's time
+    int64_t before = 0;  ///< [us] offset
+  };
+  struct Jump {
+    int64_t at = 0;
+    int64_t by = 0;  ///< [us]
+  };
+
+  static constexpr int64_t kCatchingUp = 250'000;  // [us]
+
+  bool knowsEnough() const;
+  void begin();
+  void beginWithoutStamps();
+  void convertNanoseconds();
+  int64_t offsetOf(const Tick& stamp) const { return stamp.recorded - *stamp.utime - shift_; }
+  int64_t timeOf(const Tick& tick) const;
+  bool isNear(const Tick& stamp) const;
+  std::optional<int64_t> fitting(const Tick& tick);
+  Dated judge(const Tick& tick);
+  bool goesOn(const Tick& stamp) const;
+  bool agreesWithNext(size_t index) const;
+  std::optional<int64_t> between(const Tick& tick);
+  std::optional<int64_t> byRecorder(const Tick& tick);
+  void take(const Tick& stamp);
+  void follow(int64_t offset);
+  void step(int64_t offset);
+  /// A recorder that was held up writes many events at once: they come ever less late.
+  bool isCatchingUp() const { return earliest_ - least_ > kCatchingUp; }
+
+  std::deque<Tick> ticks_;  ///< not asked for yet
+  size_t stamps_ = 0;       ///< among them
+  bool closed_ = false;
+  bool begun_ = false;
+  bool stamped_ = false;    ///< a stamp was believed
+  bool slow_ = false;       ///< stamps are many seconds apart
+  int64_t scale_ = 1;       ///< of the recorder's unit in a microsecond
+  int64_t first_ = 0;       ///< [us] time of the first event
+  int64_t last_ = 0;        ///< [us] of the last event
+  int64_t last_stamp_ = 0;  ///< [us] of the last stamp that was believed
+  int64_t offset_ = 0;      ///< [us] recorder's clock ahead of the robot's, at least
+  int64_t shift_ = 0;       ///< [us] that the robot's clock lost when it began anew
+  int64_t earliest_ = 0;    ///< [us] offset of the first one of the last stamps
+  int64_t least_ = 0;       ///< [us] and of the fastest one
+  int counted_ = 0;         ///< stamps of these
+  std::optional<Step> step_;
+  std::vector<Jump> jumps_;
+  std::vector<int64_t> restarts_;  ///< [us]
+};
+
+}  // namespace tread

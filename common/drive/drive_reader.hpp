@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/drive/drive_clock.hpp"
+#include "common/log/event_log.hpp"
+
+namespace tread {
+
+/// Where an event of a recording is.
+struct EventPlace {
+  int64_t utime = 0;      ///< [us] of the robot's clock
+  uint64_t position = 0;  ///< in its file, see LogReader::seek()
+  uint32_t file = 0;      ///< of the recording's files
+};
+
+/// An event of a drive: its `utime` is the robot's, at which its processes received it; from event
+/// to event it never decreases.
+struct DriveEvent : LogEvent {
+  int64_t recorded = 0;   ///< [us] by the recorder's clock: any number
+  uint64_t position = 0;  ///< see EventPlace
+  uint32_t file = 0;
+
+  EventPlace place() const { return {utime, position, file}; }
+};
+
+/// Reads the events of a drive from front to back, in the robot's time (see DriveClock).
+/** Every event is given, whatever its time; what is wrong with the log is counted and told. */
+class DriveReader {
+ public:
+  /// The files are parts of one recording, in order. Throws std::runtime_error with one clear line
+  /// if one cannot be read, when it is its turn.
+  explicit DriveReader(std::vector<std::string> files);
+  /// Events in memory, whose utime is the recorder's.
+  explicit DriveReader(std::vector<LogEvent> events);
+
+  /// The next event; false at the end.
+  bool next(DriveEvent& event);
+  /// Reads an event of a file once more, after the last one.
+  bool again(const EventPlace& place, LogEvent& event);
+
+  /// One clear line if a file is damaged; empty if all are whole.
+  const std::string& damage() const { return damage_; }
+  /// What else is wrong, a line each: clocks that were set, times that cannot be, messages that
+  /// are none of Tread's although their channel is. Complete after the last event.
+  std::vector<std::string> notes() const;
+  /// All of this in one line; empty if nothing is wrong.
+  std::string problem() const;
+
+ private:
+  bool read(DriveEvent& event);
+  bool readFiles(DriveEvent& event);
+  void put(DriveEvent&& event);
+
+  std::vector<std::string> paths_;
+  std::vector<std::unique_ptr<LogReader>> files_;  ///< those opened so far
+  std::vector<LogEvent> memory_;
+  size_t next_in_memory_ = 0;
+
+  DriveClock clock_;
+  std::deque<DriveEvent> pending_;  ///< read, but not dated yet
+  std::vector<DriveEvent> spare_;   ///< whose memory the next ones use
+  bool ended_ = false;
+  std::string damage_;
+  std::map<std::string, int64_t> wrong_times_, undecodable_, impossible_;  ///< events by channel
+};
+
+/// All events of a recording, in order; throws as DriveReader does.
+/** `problem` tells what is wrong with it. `keep` chooses events: a robot's log with all its scans
+ * may not fit into memory. */
+std::vector<LogEvent> readEvents(
+    const std::vector<std::string>& paths, std::string& problem,
+    const std::function<bool(const LogEvent&)>& keep = [](const LogEvent&) { return true; });
+
+}  // namespace tread
