@@ -90,11 +90,13 @@ void DriveClock::begin() {
   for (const Tick& tick : ticks_)
     if (tick.utime && offsets.size() < 2 * kStampsAhead) offsets.push_back(offsetOf(tick));
   if (offsets.empty()) return beginWithoutStamps();
+  const int64_t heard_first = offsets.front();
   std::sort(offsets.begin(), offsets.end());
   std::ptrdiff_t most = 0;
   for (auto from = offsets.begin(); from != offsets.end(); ++from) {
     const auto agreeing = std::upper_bound(from, offsets.end(), *from + kStep) - from;
-    if (agreeing > most) offset_ = *from;
+    const bool with_first = *from <= heard_first && heard_first <= *from + kStep;
+    if (agreeing > most || (agreeing == most && with_first)) offset_ = *from;
     most = std::max(most, agreeing);
   }
   stamped_ = true;
@@ -126,20 +128,21 @@ void DriveClock::convertNanoseconds() {
   std::vector<const Tick*> stamps;
   for (const Tick& tick : ticks_)
     if (tick.utime && stamps.size() < 2 * kStampsAhead) stamps.push_back(&tick);
-  size_t paces = 0, thousandfold = 0;
+  size_t paces = 0, thousandfold = 0, slow = 0;
   for (size_t i = kFollowers; i < stamps.size(); ++i) {
     const Tick &from = *stamps[i - kFollowers], &to = *stamps[i];
+    const int64_t passed = *to.utime - *from.utime;
     const double pace = static_cast<double>(to.recorded - from.recorded) /
-                        static_cast<double>(std::max<int64_t>(1, *to.utime - *from.utime));
+                        static_cast<double>(std::max<int64_t>(1, passed));
     ++paces;
+    slow += passed > static_cast<int64_t>(kFollowers) * kSlowest;
     thousandfold += pace > 200.0 && pace < 5000.0 ? 1 : 0;
   }
   const bool too_large =
       stamps.empty() && std::all_of(ticks_.begin(), ticks_.end(),
                                     [](const Tick& tick) { return tick.recorded > kLargestUtime; });
   // Where the robot's times are nanoseconds, too, only its rates tell it.
-  slow_ = paces >= kFollowers && *stamps.back()->utime - *stamps.front()->utime >
-                                     static_cast<int64_t>(stamps.size()) * kSlowest;
+  slow_ = paces >= kFollowers && isMost(slow, paces);
   if (!too_large && (paces == 0 || !isMost(thousandfold, paces))) return;
   scale_ = 1000;
   for (Tick& tick : ticks_) tick.recorded /= scale_;
@@ -162,13 +165,15 @@ bool DriveClock::goesOn(const Tick& stamp) const {
 /// Whether most of the stamps behind one say the same of both clocks.
 bool DriveClock::agreesWithNext(size_t index) const {
   const Tick& stamp = ticks_[index];
+  const auto isBack = [&](const Tick& tick) { return *tick.utime + shift_ < last_ - kDelay; };
   size_t asked = 0, agreeing = 0;
   for (size_t i = index + 1; i < ticks_.size() && asked < kFollowers; ++i) {
     if (!ticks_[i].utime) continue;
     ++asked;
-    agreeing +=
-        std::abs(offsetOf(ticks_[i]) - offsetOf(stamp))<kStep&& * ticks_[i].utime - *stamp.utime> -
-        kStep;
+    const int64_t offset_change = offsetOf(ticks_[i]) - offsetOf(stamp);
+    const int64_t passed = *ticks_[i].utime - *stamp.utime;
+    const bool both_back = isBack(ticks_[i]) || !isBack(stamp);
+    if (std::abs(offset_change) < kStep && passed > -kStep && both_back) ++agreeing;
   }
   if (asked > 0) return isMost(agreeing, asked);
   const int64_t since = timeOf(stamp) - last_;
@@ -177,7 +182,8 @@ bool DriveClock::agreesWithNext(size_t index) const {
 
 DriveClock::Dated DriveClock::judge(const Tick& tick) {
   if (tick.utime && agreesWithNext(0)) {
-    const bool goes_on = isNear(tick) && timeOf(tick) - last_ < kLongestPause;
+    const int64_t since = timeOf(tick) - last_;
+    const bool goes_on = isNear(tick) && since > -kDelay && since < kLongestPause;
     goes_on ? take(tick) : step(offsetOf(tick));
     return {timeOf(tick), false};
   }
@@ -247,6 +253,11 @@ void DriveClock::follow(int64_t offset) {
   if (step_ && std::abs(least_ - step_->before) > kStep)
     jumps_.push_back({step_->at, least_ - step_->before});
   step_.reset();
+}
+
+/// A recorder that was held up writes many events at once: they come ever less late.
+bool DriveClock::isCatchingUp() const {
+  return earliest_ - least_ > kStep;
 }
 
 /// Believes the front's stamp, whose offset is another one: one of the clocks was set.

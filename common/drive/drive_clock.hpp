@@ -53,8 +53,6 @@ class DriveClock {
     int64_t by = 0;  ///< [us]
   };
 
-  static constexpr int64_t kCatchingUp = 250'000;  // [us]
-
   bool knowsEnough() const;
   void begin();
   void beginWithoutStamps();
@@ -71,8 +69,7 @@ class DriveClock {
   void take(const Tick& stamp);
   void follow(int64_t offset);
   void step(int64_t offset);
-  /// A recorder that was held up writes many events at once: they come ever less late.
-  bool isCatchingUp() const { return earliest_ - least_ > kCatchingUp; }
+  bool isCatchingUp() const;
 
   std::deque<Tick> ticks_;  ///< not asked for yet
   size_t stamps_ = 0;       ///< among them

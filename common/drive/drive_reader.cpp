@@ -75,45 +75,61 @@ DriveReader::DriveReader(std::vector<std::string> files) : paths_(std::move(file
 DriveReader::DriveReader(std::vector<LogEvent> events) : memory_(std::move(events)) {}
 
 bool DriveReader::next(DriveEvent& event) {
-  for (;;) {
-    if (const auto dated = clock_.next()) {
-      std::swap(event, pending_.front());
-      event.utime = dated->utime;
-      if (dated->wrong) ++wrong_times_[event.channel];
-      spare_.push_back(std::move(pending_.front()));
+  while (!ended_ && pending_.empty()) {
+    if (!readOn(event)) break;
+    if (date(event)) return true;
+    // Its time is in doubt until more is known.
+    pending_.push_back(std::move(event));
+    event = {};
+  }
+  while (!pending_.empty()) {
+    if (date(pending_.front())) {
+      event = std::move(pending_.front());
       pending_.pop_front();
       return true;
     }
-    if (ended_) return false;
-    DriveEvent read_event;
-    if (!spare_.empty()) {
-      read_event = std::move(spare_.back());
-      spare_.pop_back();
-    }
-    if (read(read_event)) {
-      put(std::move(read_event));
-    } else {
-      ended_ = true;
-      clock_.close();
-    }
+    DriveEvent next;
+    if (readOn(next)) pending_.push_back(std::move(next));
   }
+  return false;
 }
 
-void DriveReader::put(DriveEvent&& event) {
-  std::optional<int64_t> stamp;
-  if (const auto found = headings().find(event.channel); found != headings().end()) {
-    const Heading& heading = found->second;
-    const bool is_type = event.bytes.size() >= kHeadingSize &&
-                         numberAt(event, 0) == heading.fingerprint &&
-                         (heading.decodes == nullptr || heading.decodes(event));
-    const int64_t utime = is_type ? numberAt(event, 8) : 0;
-    if (!is_type) ++undecodable_[event.channel];
-    if (!isPossibleTime(utime)) ++impossible_[event.channel];
-    if (is_type && heading.is_stamp) stamp = utime;
+/// Gives the first event that has no time yet its time, if it is known.
+bool DriveReader::date(DriveEvent& event) {
+  const auto dated = clock_.next();
+  if (!dated) return false;
+  event.utime = dated->utime;
+  if (dated->wrong) ++wrong_times_[event.channel];
+  return true;
+}
+
+/// Reads the next event and tells the clock what it says of its time.
+bool DriveReader::readOn(DriveEvent& event) {
+  if (!read(event)) {
+    ended_ = true;
+    clock_.close();
+    return false;
   }
   event.recorded = event.utime;
-  clock_.add(event.recorded, stamp);
-  pending_.push_back(std::move(event));
+  clock_.add(event.recorded, stampOf(event));
+  return true;
+}
+
+/// The robot's time that a stamp tells; counts messages that cannot be read.
+std::optional<int64_t> DriveReader::stampOf(const LogEvent& event) {
+  const auto found = headings().find(event.channel);
+  if (found == headings().end()) return std::nullopt;
+  const Heading& heading = found->second;
+  const bool is_type = event.bytes.size() >= kHeadingSize &&
+                       numberAt(event, 0) == heading.fingerprint &&
+                       (heading.decodes == nullptr || heading.decodes(event));
+  if (!is_type) {
+    ++undecodable_[event.channel];
+    return std::nullopt;
+  }
+  const int64_t utime = numberAt(event, 8);
+  if (!isPossibleTime(utime)) ++impossible_[event.channel];
+  return heading.is_stamp ? std::optional(utime) : std::nullopt;
 }
 
 bool DriveReader::read(DriveEvent& event) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,7 +58,9 @@ class DriveReader {
  private:
   bool read(DriveEvent& event);
   bool readFiles(DriveEvent& event);
-  void put(DriveEvent&& event);
+  bool readOn(DriveEvent& event);
+  bool date(DriveEvent& event);
+  std::optional<int64_t> stampOf(const LogEvent& event);
 
   std::vector<std::string> paths_;
   std::vector<std::unique_ptr<LogReader>> files_;  ///< those opened so far
@@ -66,7 +69,6 @@ class DriveReader {
 
   DriveClock clock_;
   std::deque<DriveEvent> pending_;  ///< read, but not dated yet
-  std::vector<DriveEvent> spare_;   ///< whose memory the next ones use
   bool ended_ = false;
   std::string damage_;
   std::map<std::string, int64_t> wrong_times_, undecodable_, impossible_;  ///< events by channel

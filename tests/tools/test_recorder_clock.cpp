@@ -86,7 +86,7 @@ class Recording {
   size_t events() const { return events_.size(); }
   /// What a tool says of it, and its exit status.
   std::string of(const std::string& tool) const {
-    for (const char* output : {"out.csv", "out.mcap", "out.json", "back.lcmlog"})
+    for (const char* output : {"out", "out.csv", "out.mcap", "back.lcmlog"})
       std::filesystem::remove_all(folder_.path(output));
     const CalledProgram result = called(tool);
     return result.printed + "exit status " + std::to_string(result.status) + "\n";
@@ -150,6 +150,10 @@ TEST_CASE("tread-replay says the same of a drive under every wrong clock, and on
   requireSameUnderWrongClocks("tread-replay planner LOG");
   requireSameUnderWrongClocks("tread-replay learner LOG");
   requireSameUnderWrongClocks("tread-replay learner LOG --rule collective --patterns " + kPatterns);
+}
+
+TEST_CASE("tread-gap says the same of a drive under every wrong clock, and one line more") {
+  requireSameUnderWrongClocks("tread-gap find --train LOG --out OUT --model " + kModel);
 }
 
 TEST_CASE("tread-overlay says the same of a drive under every wrong clock, and one line more") {

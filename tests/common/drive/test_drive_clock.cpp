@@ -179,6 +179,16 @@ TEST_CASE("where the robot's clock begins anew times go on, and it is told") {
   }
 }
 
+TEST_CASE("parts in the wrong order, or another log of the same clock, follow each other") {
+  std::vector<Tick> ticks = drive(1000);
+  const std::vector<Tick> again = drive(1000);
+  ticks.insert(ticks.end(), again.begin(), again.end());
+  for (size_t i = 1000; i < ticks.size(); ++i) ticks[i].truth += 1000 * kPeriod;
+  const Result result = dated(ticks);
+  CHECK(result.farthest <= 20 * kMs);
+  requireOneNote(result, "the robot's clock began anew at 10.0 s");
+}
+
 TEST_CASE("an event both clocks of which say another year ends in the present") {
   std::vector<Tick> ticks = drive(1000);
   for (size_t i = 500; i < ticks.size(); ++i) {
@@ -190,6 +200,15 @@ TEST_CASE("an event both clocks of which say another year ends in the present") 
   requireOneNote(result, "the robot's clock began anew at");
 }
 
+TEST_CASE("of two robots in one log the one that is heard first gives the time") {
+  std::vector<Tick> ticks = drive(1000);
+  for (size_t i = 2; i < ticks.size(); i += 4) *ticks[i].utime += 86'400 * kSecond;
+  const Result result = dated(ticks);
+  CHECK(result.farthest <= 20 * kMs);
+  CHECK(result.wrong == 250);
+  CHECK(result.notes.empty());
+}
+
 TEST_CASE("a recorder that counts nanoseconds is named and read") {
   for (const int64_t recorder : {int64_t{0}, kUtc}) {
     std::vector<Tick> ticks = drive(1000, recorder);
@@ -198,6 +217,16 @@ TEST_CASE("a recorder that counts nanoseconds is named and read") {
     CHECK(result.farthest <= 2 * kMs);
     requireOneNote(result, "nanoseconds");
   }
+}
+
+TEST_CASE("a log all times of which are nanoseconds is named") {
+  std::vector<Tick> ticks = drive(100);
+  for (Tick& tick : ticks) {
+    tick.recorded *= 1000;
+    tick.truth *= 1000;
+    if (tick.utime) *tick.utime *= 1000;
+  }
+  requireOneNote(dated(ticks), "are their times nanoseconds?");
 }
 
 TEST_CASE("without stamps the recorder's times are all there is") {
