@@ -15,7 +15,6 @@ struct ForeignDrive {
   recordings::RecordedDrive drive;
   std::string poses;                       ///< whose poses were taken, in words
   std::map<std::string, size_t> left_out;  ///< what was not taken, and why
-  std::vector<std::string> notes;          ///< what else a person should know of it, a line each
 };
 
 /// No pose of these robots is farther out [m].
