@@ -29,7 +29,7 @@ void requireUnit(const CsvTable& table, const std::string& column,
                            "; export it as numbers with all their digits");
 }
 
-void checkTimes(const CsvTable& table, const CsvSource& source) {
+void requireFineTimes(const CsvTable& table, const CsvSource& source) {
   const double digit = source.time_unit * table.lastDigit(source.time);
   const size_t last = table.rows() - 1;
   if (digit == 0.0 || last == 0) return;
@@ -43,7 +43,7 @@ void checkTimes(const CsvTable& table, const CsvSource& source) {
 void checkTable(const CsvTable& table, const CsvSource& source) {
   if (!source.time.empty()) {
     requireUnit(table, source.time, source.other_time_units);
-    checkTimes(table, source);
+    requireFineTimes(table, source);
   }
   for (const auto& [quantity, column] : source.columns) {
     requireUnit(table, column.column, column.other_units);

@@ -105,7 +105,7 @@ class CsvContent {
     const CsvTable table(file, source.layout);
     for (const auto& [quantity, column] : source.columns) files_[quantity] = file;
     for (const std::string& words : table.units())
-      result_.notes.push_back(file + ": below the header stand units, left out: " + words);
+      ++result_.left_out[file + ": units below the header: " + words];
     checkTable(table, source);
     std::vector<Row> rows = rowsOf(table, source);
     sortByTime(rows, "rows of " + file, result_);

@@ -30,7 +30,6 @@ struct ForeignDrive {
   recordings::RecordedDrive drive;
   std::string poses;                       ///< whose poses were taken, in words
   std::map<std::string, size_t> left_out;  ///< what is no part of a drive, and why
-  std::vector<std::string> notes;          ///< what else a person should know of it, a line each
   std::vector<Loss> losses;
 
   void lose(const std::string& what, size_t lost, size_t of, const std::string& unit) {

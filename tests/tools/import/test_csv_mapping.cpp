@@ -144,17 +144,16 @@ TEST_CASE("a spreadsheet's table gives the drive that the plain one gives") {
         "t,l,r,x,y,yaw\ns,m/s,m/s,m,m,rad\n" + rows, "My logger\n# t,l,r,x,y,yaw\n" + rows}) {
     const ForeignDrive read = readText(csv, mapping);
     CAPTURE(csv.substr(0, 60));
-    CHECK(read.left_out.empty());
     REQUIRE(read.drive.fixes.size() == 100);
     CHECK(read.drive.fixes.back().time == Approx(4.95));
     CHECK(read.drive.fixes.back().T_map_body.x == Approx(3.0));
     CHECK(read.drive.drive.at(50).command.left == Approx(0.6));
     CHECK(read.drive.drive.at(50).command.right == Approx(0.5));
     const bool units = csv.find("m/s") != std::string::npos;
-    CHECK(read.notes.size() == (units ? 1 : 0));
+    CHECK(read.left_out.size() == (units ? 1 : 0));
     if (units)
-      CHECK_THAT(read.notes[0], Catch::EndsWith("drive.csv: below the header stand units, left "
-                                                "out: s, m/s, m/s, m, m, rad"));
+      CHECK_THAT(read.left_out.begin()->first,
+                 Catch::EndsWith("drive.csv: units below the header: s, m/s, m/s, m, m, rad"));
   }
 }
 
