@@ -22,6 +22,11 @@ constexpr int64_t kConfigPeriodUs = 10'000'000;
 constexpr int64_t kNamesakeLife = 3 * kHealthPeriodUs;
 constexpr size_t kMostNamesakes = 8;
 constexpr size_t kMostOfStop = 65'507;  // [bytes] of a datagram
+/// Names with numbers in them, or of what others send, would make HEALTH so large that it is not
+/// sent.
+constexpr size_t kMostCounters = 50;
+constexpr size_t kLongestCounter = 120;  // [bytes]
+constexpr size_t kLongestReason = 1000;  // [bytes]
 /// CONFIG stays within one datagram.
 constexpr size_t kMaxConfigBytes = 50'000;
 
@@ -229,7 +234,9 @@ void HealthReporter::setCounter(const std::string& name, int64_t value) {
 }
 
 void HealthReporter::addToCounter(const std::string& name, int64_t increment) {
-  counters_[name] += increment;
+  const std::string known = name.substr(0, kLongestCounter);
+  const bool room = counters_.size() < kMostCounters || counters_.count(known) > 0;
+  counters_[room ? known : "others"] += increment;
 }
 
 void HealthReporter::step(int64_t utime) {
@@ -253,7 +260,7 @@ void HealthReporter::publishHealth(int64_t utime) {
   health.boot_id = boot_id_;
   health.health_state =
       namesake(utime) ? std::max<int16_t>(state_, health_t::HEALTH_DEGRADED) : state_;
-  health.health_reason = describe(utime);
+  health.health_reason = describe(utime).substr(0, kLongestReason);
   health.received = statistics.received;
   health.undecodable = statistics.undecodable;
   health.lost = statistics.lost;

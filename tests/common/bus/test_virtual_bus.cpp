@@ -377,3 +377,33 @@ TEST_CASE("HEALTH comes at 1 Hz and CONFIG at the start and every 10 s") {
   REQUIRE(health.back().counters.at(0).counted == 201);
   REQUIRE(health.back().process == "reporting");
 }
+
+TEST_CASE("HEALTH is sent however many reasons there are to count, and counts them all") {
+  class Refusing : public Node {
+   public:
+    explicit Refusing(Bus& bus) : health_(bus, "refusing", "") {}
+    int64_t period() const override { return 10'000; }
+    void step(int64_t utime) override {
+      health_.addToCounter("refused: " + std::to_string(utime) + std::string(300, 'x'));
+      health_.setState(health_t::HEALTH_DEGRADED, std::string(20'000, 'y'));
+      health_.step(utime);
+    }
+
+   private:
+    HealthReporter health_;
+  };
+  VirtualBus bus(1, {});
+  health_t health;
+  int heard = 0;
+  bus.outside().subscribe<health_t>(kHealth, [&](const health_t& message) {
+    health = message;
+    ++heard;
+  });
+  bus.addNode("refusing", [](Bus& end) { return std::make_unique<Refusing>(end); });
+  bus.runUntil(bus.now() + 10'000'000);
+  CHECK(heard >= 9);
+  CHECK(health.num_counters == 51);
+  int64_t counted = 0;
+  for (const counter_t& counter : health.counters) counted += counter.counted;
+  CHECK(counted > 800);
+}
