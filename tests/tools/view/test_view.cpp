@@ -18,7 +18,7 @@
 #include "tests/helpers.hpp"
 #include "tests/system/process.hpp"
 #include "tests/system/robot_run.hpp"
-#include "tests/system/stall_watch.hpp"
+#include "tools/robot/launch/stall_watch.hpp"
 #include "tests/system/worlds.hpp"
 #include "tests/tools/called_program.hpp"
 #include "tests/tools/missions/shipped_robot.hpp"
