@@ -27,10 +27,10 @@ struct Arguments {
   std::string session;
   std::string mapping;
   std::vector<std::string> overrides;
+  bool decimal_comma = false;
   std::string csv;
   std::string log;
   bool keep_lag = false;
-  bool decimal_comma = false;
   Gyro gyro = Gyro::kAtFixes;
   ExecutionLayout layout;
   import::ForeignRobot robot;
