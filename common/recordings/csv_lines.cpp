@@ -76,11 +76,6 @@ char likelyDelimiter(std::string_view text) {
   return likely;
 }
 
-bool holdsNumbers(const CsvLine& line) {
-  const auto good = [](const std::string& field) { return field.empty() || isNumeric(field); };
-  return std::all_of(line.fields.begin(), line.fields.end(), good);
-}
-
 /// The first line that is no comment, or above numbers the comment that has as many fields.
 void findHeader(std::string_view text, CsvStart& start) {
   CsvLines lines(text, start.delimiter);
@@ -186,12 +181,18 @@ bool isNumeric(std::string field) {
   return parseForeignNumber(field).has_value();
 }
 
+bool holdsNumbers(const CsvLine& line) {
+  const auto good = [](const std::string& field) { return field.empty() || isNumeric(field); };
+  return std::all_of(line.fields.begin(), line.fields.end(), good);
+}
+
 bool isNoMeasurement(std::string field) {
   static const std::regex kWords(
       R"([+-]?(nan|inf|infinity|1\.#(qnan|snan|ind|inf)0*)(\(.*\))?|#?n/?a!?|null|none|-)",
       std::regex::icase | std::regex::optimize);
+  // A match takes longer than all else, and a number is no match.
   if (field.empty()) return true;
-  return !isNumeric(field) && field.size() < 20 && std::regex_match(field, kWords);
+  return field.size() < 20 && !isNumeric(field) && std::regex_match(field, kWords);
 }
 
 DecimalSign decimalSign(const std::string& field) {

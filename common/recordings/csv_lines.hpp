@@ -57,6 +57,9 @@ CsvStart findStart(std::string_view text, const CsvLayout& layout);
 /// Whether a field holds a number, be its decimal sign a point or a comma.
 bool isNumeric(std::string field);
 
+/// Whether all fields hold numbers or nothing.
+bool holdsNumbers(const CsvLine& line);
+
 /// Whether a field says that nothing was measured: empty, nan, inf, n/a and what else programs
 /// write.
 bool isNoMeasurement(std::string field);

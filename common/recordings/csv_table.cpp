@@ -88,9 +88,14 @@ void CsvTable::read(std::string text, CsvLayout layout) {
   readHeader(header_.fields);
   CsvLines lines(text, delimiter_);
   CsvLine line;
-  while (lines.next(line))
-    if (!line.comment && line.number > header_.number && !takeUnits(line, layout.columns))
-      addRow(line);
+  while (lines.next(line)) {
+    if (line.comment || line.number == header_.number) continue;
+    if (line.number > header_.number) {
+      if (!takeUnits(line, layout.columns)) addRow(line);
+    } else if (line.fields.size() >= width_ && holdsNumbers(line)) {
+      throw headerError("a header below rows of numbers; were two files joined? Part them here");
+    }
+  }
   if (rows_.empty() && header_.number == 0)
     throw RecordingError(path_ + ": cannot be read or is empty; give a CSV file" +
                          (layout.header ? " with a header line" : ""));
@@ -154,12 +159,13 @@ std::string CsvTable::unit(std::string_view column) const {
 
 /// A comma is decimal where it cannot be one of thousands, and no number has a point.
 void CsvTable::findDecimalSign() {
-  bool comma = false;
-  for (const auto& row : rows_)
-    for (const std::string& field : row) comma = comma || decimalSign(field) == DecimalSign::kComma;
-  for (const auto& row : rows_)
-    for (const std::string& field : row) comma = comma && decimalSign(field) != DecimalSign::kPoint;
-  decimal_comma_ = decimal_comma_ || comma;
+  const auto any = [&](char letter, DecimalSign sign) {
+    for (const auto& row : rows_)
+      for (const std::string& field : row)
+        if (field.find(letter) != std::string::npos && decimalSign(field) == sign) return true;
+    return false;
+  };
+  if (any(',', DecimalSign::kComma) && !any('.', DecimalSign::kPoint)) decimal_comma_ = true;
 }
 
 void CsvTable::require(const std::vector<std::string>& names) const {

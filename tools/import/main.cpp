@@ -30,11 +30,11 @@ struct Arguments {
   std::string session;
   std::string mapping;
   std::vector<std::string> overrides;
+  bool decimal_comma = false;
   std::string csv;
   std::string log;
   bool keep_lag = false;
   bool allow_loss = false;
-  bool decimal_comma = false;
   Gyro gyro = Gyro::kAtFixes;
   ExecutionLayout layout;
   import::ForeignRobot robot;

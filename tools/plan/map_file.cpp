@@ -76,10 +76,10 @@ constexpr uint8_t kUnknownGrey = 205;
 
 std::string unknownAsFree(const GreyImage& image, const PixelRule& rule) {
   const auto count = std::count(image.pixels.begin(), image.pixels.end(), kUnknownGrey);
-  if (count == 0 || image.white != 255 || cellOf(kUnknownGrey / 255.0, rule) != kFree) return {};
+  if (count == 0 || image.white != 255 || !isFree(cellOf(kUnknownGrey / 255.0, rule))) return {};
   return std::to_string(count) + " cells of grey 205, by which map_saver writes the unknown, are " +
          "free by free_thresh " + formatNumber(rule.free) +
-         ", as nav2 reads it; with free_thresh: 0.196 they are unknown";
+         ", as nav2 reads it; with mode: trinary and free_thresh: 0.196 they are unknown";
 }
 
 /// Keys that we do not know are others' business and stay unread.

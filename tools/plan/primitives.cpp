@@ -215,6 +215,8 @@ int nearestBin(const std::vector<double>& headings, double yaw) {
 
 PrimitiveFile parsePrimitives(std::string text, const std::string& name) {
   Tokenizer tokens(std::move(text), name);
+  if (startsWith(tokens.peek(), "{"))
+    throw tokens.error("this is JSON; nav2's lattice primitives are read from a file FILE.json");
   PrimitiveFile file;
   file.name = name;
   readHeader(tokens, file);

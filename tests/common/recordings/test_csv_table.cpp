@@ -89,6 +89,8 @@ TEST_CASE("a header is found behind a # and below other lines") {
   CHECK(complaint("0,1\n2,3\n") ==
         "a.csv:1: numbers stand where the names of the columns should be; without names, say "
         "header: false in the mapping");
+  CHECK(complaint("5,0.5\n6,-2.25\nt,x\n0,0.5\n", layout) ==
+        "a.csv:3: a header below rows of numbers; were two files joined? Part them here");
   CsvLayout comma = layout;
   comma.delimiter = ',';
   CHECK(complaint("t;x\n0;1\n", comma) ==

@@ -10,6 +10,7 @@
 #include "common/config/config_reader.hpp"
 #include "common/geometry/se2.hpp"
 #include "common/recordings/csv_table.hpp"
+#include "tests/tools/called_program.hpp"
 #include "tests/tools/import/drive_samples.hpp"
 #include "tools/import/csv_drive.hpp"
 
@@ -155,6 +156,21 @@ TEST_CASE("a spreadsheet's table gives the drive that the plain one gives") {
       CHECK_THAT(read.left_out.begin()->first,
                  Catch::EndsWith("drive.csv: units below the header: s, m/s, m/s, m, m, rad"));
   }
+}
+
+TEST_CASE("a decimal comma that might be one of thousands is read by option only") {
+  const std::string csv = "t;x;y;yaw\n0;1,500;2,000;1\n50;1,625;2,000;1\n";
+  CHECK_THAT(complaint(csv, kPoses), Catch::Contains("column x is '1,500'; a decimal comma needs"));
+  std::string mapping = kPoses;
+  mapping.replace(mapping.find("- time"), 2, "- decimal_comma: true\n    ");
+  CHECK(readText(csv, mapping).drive.fixes.at(1).T_map_body.x == 1.625);
+  const Folder folder("import_decimal_comma");
+  const std::string log = folder.file("a.lcmlog");
+  const auto run = tread::samples::called("tread-import --format csv --decimal-comma --mapping " +
+                                          folder.file("map.yaml", kPoses) + " " +
+                                          folder.file("a.csv", csv) + " -o " + log);
+  CHECK(run.status == 0);
+  CHECK_THAT(run.printed, Catch::Contains("2 INS"));
 }
 
 TEST_CASE("a unit below the header that is not the mapping's is named") {

@@ -134,10 +134,11 @@ TEST_CASE("a map's unknown that its free_thresh makes free is told") {
   text.replace(text.find("0.196"), 5, ".25");
   CHECK(nav2Map(text).note ==
         "1 cells of grey 205, by which map_saver writes the unknown, are free by free_thresh 0.25, "
-        "as nav2 reads it; with free_thresh: 0.196 they are unknown");
+        "as nav2 reads it; with mode: trinary and free_thresh: 0.196 they are unknown");
   CHECK(nav2Map(text, "P2 2 1 255 254 0\n").note.empty());
   CHECK(nav2Map(text, "P2 2 1 205 205 0\n").note.empty());
   CHECK(nav2Map(text + "mode: raw\n").note.empty());
+  CHECK_THAT(nav2Map(yaml("mode: scale\n")).note, Contains("are free by free_thresh 0.196"));
   text.replace(text.find("negate: 0"), 9, "negate: True");
   CHECK(nav2Map(text).note.empty());
 }

@@ -93,6 +93,9 @@ TEST_CASE("a lattice that cannot be used is one clear line") {
   CHECK_THROWS_WITH(read("1.5707963267948966,\n", "0.0,\n"), Contains("must rise"));
   CHECK_THROWS_WITH(read("[0.2, 0.0, 0.0],\n\t\t\t[0.5, 0.0, 0.0]", ""),
                     Contains("none are there"));
+  CHECK_THROWS_WITH(parse(kLattice),
+                    "a.mprim:1: this is JSON; nav2's lattice primitives are read "
+                    "from a file FILE.json");
   CHECK_THROWS_WITH(read("\"grid_resolution\"", "\"resolution\""), Contains("grid_resolution"));
 }
 

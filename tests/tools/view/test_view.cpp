@@ -230,7 +230,7 @@ TEST_CASE("viewers without end cost neither memory nor the robot's drive") {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   int64_t memory = 0;
   const double before = computedBy(view.process().pid());
-  const StallWatch watch;
+  const tread::launch::StallWatch watch;
   runScript(folder, "flood.mjs", {view.url(), std::to_string(seconds)}, [&](const std::string&) {
     memory = std::max(memory, peakMemory(view.process().pid()));
   });
