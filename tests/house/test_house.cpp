@@ -80,7 +80,8 @@ std::vector<std::string> pureFolders() {
     for (const auto& entry : fs::recursive_directory_iterator(fs::path(TREAD_SOURCE_DIR) / top))
       if (entry.is_directory() && entry.path().filename() == "core")
         folders.push_back(fs::relative(entry.path(), TREAD_SOURCE_DIR).string());
-  for (const std::string module : {"modules/motor_bridge", "modules/ins_driver", "modules/lidar_driver"})
+  for (const std::string module :
+       {"modules/motor_bridge", "modules/ins_driver", "modules/lidar_driver"})
     for (const std::string& device : foldersOf(module))
       if (device != "core" && device != "hokuyo") folders.push_back(module + "/" + device);
   return folders;
@@ -238,7 +239,8 @@ TEST_CASE("only the catalogue names effects") {
     }
 }
 
-TEST_CASE("only lidar_driver knows mrpt-hwdrivers, and only it and the reader of rawlogs mrpt-obs") {
+TEST_CASE(
+    "only lidar_driver knows mrpt-hwdrivers, and only it and the reader of rawlogs mrpt-obs") {
   for (const char* folder : {"common", "modules", "tools"})
     for (const Include& include : includesUnder(folder)) {
       CAPTURE(include.file, include.target);
@@ -247,6 +249,28 @@ TEST_CASE("only lidar_driver knows mrpt-hwdrivers, and only it and the reader of
       if (startsWith(include.target, "mrpt/obs"))
         CHECK((driver || include.file == "tools/import/rawlog_objects.cpp"));
     }
+}
+
+// Whatever else opened a file for writing would empty it before it knew whether it had anything to
+// write. What is left holds a lock, or a secret from its first byte on.
+TEST_CASE("only OutputFile opens files for writing") {
+  const std::set<std::string> others{
+      "common/seal/key_file.cpp",                // a new file, readable by nobody else at any time
+      "tools/robot/launch/host.cpp",             // a lock
+      "tools/robot/launch/running_robots.cpp"};  // a lock with an address in it
+  const std::regex opens(
+      "\\b(std::)?(ofstream|fstream \\w+\\(|basic_ofstream)\\b|fopen\\(|"
+      "\\bcreat\\(|O_CREAT|O_TRUNC|write_to_png\\(");
+  size_t writers = 0;
+  for (const char* folder : {"common", "modules", "tools"})
+    for (const fs::path& path : sourcesUnder(folder)) {
+      const std::string file = fs::relative(path, TREAD_SOURCE_DIR).string();
+      if (!std::regex_search(contentOf(path), opens)) continue;
+      ++writers;
+      CAPTURE(file);
+      CHECK((file == "common/store/output_file.cpp" || others.count(file) == 1));
+    }
+  CHECK(writers == 1 + others.size());
 }
 
 TEST_CASE("each folder of common serves at least two modules or tools") {
