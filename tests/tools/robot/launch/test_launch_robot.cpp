@@ -25,16 +25,18 @@ struct Place {
     fs::create_directories(folder);
   }
   ~Place() { fs::remove_all(folder); }
-  std::vector<std::string> simulated() const {
-    return {kLaunch + "simulated.yaml", "--run", (folder / "run").string(),           "--lcm-url",
-            launchedLcmUrl(),           "--set", "laser_port=" + std::to_string(port)};
+  std::vector<std::string> simulated(const std::string& url = launchedLcmUrl()) const {
+    return {kLaunch + "simulated.yaml",
+            "--run",
+            (folder / "run").string(),
+            "--lcm-url",
+            url,
+            "--set",
+            "laser_port=" + std::to_string(port)};
   }
-  /// `tread-launch --check` of the simulated robot; these words come last.
-  CommandOutcome checked(const std::vector<std::string>& more) const {
-    std::vector<std::string> words{std::string(TREAD_BIN_DIR) + "/tread-launch"};
-    for (const std::string& word : simulated()) words.push_back(word);
-    words.push_back("--check");
-    words.insert(words.end(), more.begin(), more.end());
+  CommandOutcome checked(const std::string& url = launchedLcmUrl()) const {
+    std::vector<std::string> words{std::string(TREAD_BIN_DIR) + "/tread-launch", "--check"};
+    for (const std::string& word : simulated(url)) words.push_back(word);
     return runCommand(words, 60.0);
   }
   const int port = 30000 + (getpid() * 7) % 20000;
@@ -71,7 +73,7 @@ TEST_CASE("the shipped launch files pass the start-up checks, absent instruments
   // Nothing but the network may be missing, which is the host's.
   for (const std::string& line : withoutAdvice(robot.output))
     CHECK_THAT(line, Contains("robot: ready to start") || Contains("multicast"));
-  const CommandOutcome simulated = place.checked({});
+  const CommandOutcome simulated = place.checked();
   INFO(simulated.output);
   CHECK(simulated.code == 0);
   CHECK_THAT(simulated.output, !Contains("device") && !Contains("without a key"));
@@ -99,7 +101,7 @@ TEST_CASE("a port that is in use is named with its remedy before anything is sta
   const auto one = tread::makeLink(laser);
   const auto other = tread::makeLink(relay);
   const CommandOutcome outcome =
-      place.checked({"--lcm-url", "tcpq://127.0.0.1:" + std::to_string(place.port + 1)});
+      place.checked("tcpq://127.0.0.1:" + std::to_string(place.port + 1));
   INFO(outcome.output);
   CHECK(outcome.code == 1);
   CHECK_THAT(outcome.output, Contains("simulated: simulator: ") && Contains("in use") &&
