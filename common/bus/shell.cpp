@@ -81,9 +81,10 @@ int runShell(int argc, char** argv, const std::string& name, const std::string& 
     const ShellBody body = prepare(reader);
     BusAccess access{arguments.lcm_url, hostSealer(arguments.key)};
     if (arguments.check) {
+      if (body.trial) body.trial();
       std::cout << reader.effective();
     } else {
-      body(std::move(access), stop);
+      body.run(std::move(access), stop);
     }
   } catch (const std::exception& error) {
     std::cerr << name << ": " << wordsOf(error) << std::endl;

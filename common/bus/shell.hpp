@@ -5,6 +5,7 @@
 #include <atomic>
 #include <functional>
 #include <string>
+#include <utility>
 
 #include <sys/types.h>
 
@@ -14,7 +15,16 @@
 namespace tread {
 
 /// What a process does once its configuration is read: runs on this bus until `stop`.
-using ShellBody = std::function<void(BusAccess access, const std::atomic<bool>& stop)>;
+struct ShellBody {
+  using Run = std::function<void(BusAccess access, const std::atomic<bool>& stop)>;
+  template <class Callable>
+  ShellBody(Callable body, std::function<void()> attempt = {})
+      : run(std::move(body)), trial(std::move(attempt)) {}
+
+  Run run;
+  /// With --check: tries what must be free, a port for instance; throws with one clear line.
+  std::function<void()> trial;
+};
 /// Reads the configuration, all of it, without opening anything; throws ConfigError.
 using ShellPreparation = std::function<ShellBody(ConfigReader& reader)>;
 
@@ -24,10 +34,11 @@ const std::atomic<bool>& stopRequest(pid_t parent);
 
 /// The main function of a process.
 /** Command line: --config FILE, --set KEY=VALUE (again and again), --lcm-url URL, --key FILE (only
- * sealed messages), --check (only reads the configuration and the key, and prints what holds,
- * defaults included), --with-parent (ends as by SIGINT when the process that started it is gone: a
- * supervisor that is killed leaves nothing driving), --help. stopRequest() becomes `stop`. Where
- * something throws, one clear line and code 1; usage errors end with code 2. */
+ * sealed messages), --check (only reads the configuration and the key, tries what must be
+ * free, and prints what holds, defaults included), --with-parent (ends as by SIGINT when the
+ * process that started it is gone: a supervisor that is killed leaves nothing driving), --help.
+ * stopRequest() becomes `stop`. Where something throws, one clear line and code 1; usage errors end
+ * with code 2. */
 int runShell(int argc, char** argv, const std::string& name, const std::string& description,
              const ShellPreparation& prepare);
 

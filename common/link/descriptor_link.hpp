@@ -18,6 +18,8 @@ namespace tread {
 
 /// Why a device is closed that another program has.
 inline constexpr const char* kInUse = "in use by another program";
+/// It listens, but has no peer yet.
+inline constexpr const char* kNobody = "nobody has connected";
 
 /// Spaces attempts to open a link: 100 ms, doubling with each failure up to 1 s.
 /** The first spacing also follows a success, so that a peer that accepts and hangs up at once is

@@ -65,6 +65,10 @@ std::unique_ptr<Link> makeLink(const std::string& address);
 /// start, before anybody takes this process for the one that works it.
 void requireFree(const Link& link);
 
+/// Throws std::runtime_error with one clear line if an address listens (tcp-server, udp) and
+/// cannot, because another program has the port for instance: what --check tries.
+void requireListening(const std::string& address);
+
 /// Two ends of an in-memory pipe, each direction holding at most `capacity` bytes. For virtual time
 /// and tests.
 std::pair<std::unique_ptr<Link>, std::unique_ptr<Link>> makePipe(size_t capacity = 65536);

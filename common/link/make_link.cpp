@@ -238,6 +238,14 @@ void requireFree(const Link& link) {
                            "; stop that one, or name another device in the configuration");
 }
 
+void requireListening(const std::string& address) {
+  const LinkAddress::Kind kind = parseLinkAddress(address).kind;
+  if (kind != LinkAddress::Kind::kTcpServer && kind != LinkAddress::Kind::kUdp) return;
+  const std::string problem = makeLink(address)->problem();
+  if (!problem.empty() && problem.find(kNobody) == std::string::npos)
+    throw std::runtime_error(problem + "; end the program that has this port, or name another one");
+}
+
 std::pair<std::unique_ptr<Link>, std::unique_ptr<Link>> makePipe(size_t capacity) {
   const auto cable = std::make_shared<Cable>(capacity);
   return {std::make_unique<PipeEnd>(cable, 0, "pipe:0"),

@@ -201,7 +201,7 @@ class TcpServerLink final : public SocketLink {
     if (listener_ < 0 && !beginListening(reason)) return -1;
     const int fd = ::accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     const bool nobody = fd < 0 && (errno == EAGAIN || errno == EWOULDBLOCK);
-    if (fd < 0) reason = nobody ? "nobody has connected" : systemReason(errno);
+    if (fd < 0) reason = nobody ? kNobody : systemReason(errno);
     const int at_once = 1;
     if (fd >= 0) ::setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof at_once);
     return fd;

@@ -290,7 +290,8 @@ void requireAddable(const std::string& folder, const PatternSet& executed,
   std::error_code failure;
   fs::create_directories(folder, failure);
   if (!fs::is_directory(folder, failure) || ::access(folder.c_str(), W_OK | X_OK) != 0)
-    throw RecordingError(folder + ": cannot be made or written to; check the name and rights");
+    throw RecordingError(folder + ": cannot be made or written to (" +
+                         std::generic_category().message(errno) + "); check the name and rights");
 }
 
 bool addSurface(const std::string& folder, const PatternSet& executed,

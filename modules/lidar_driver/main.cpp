@@ -100,7 +100,7 @@ int main(int argc, char** argv) {
     const LidarDriverConfig config = readLidarDriverConfig(reader);
     checkDeviceAddress(config.device.name, config.address);
     if (config.ground_mounting) checkDeviceAddress(config.device.name, config.ground_address);
-    return [config, &stuck](BusAccess access, const std::atomic<bool>& stop) {
+    const auto run = [config, &stuck](BusAccess access, const std::atomic<bool>& stop) {
       LcmBus bus(std::move(access), TimeSource::kHost);
       GuardedSource source(sourceOf(config), stuck);
       LidarDriverNode node(config, bus, source, [](const std::string& line) {
@@ -108,6 +108,10 @@ int main(int argc, char** argv) {
       });
       bus.run(node, stop);
     };
+    return {run, [config] {
+              requireListening(config.address);
+              if (config.ground_mounting) requireListening(config.ground_address);
+            }};
   };
   const int code =
       runShell(argc, argv, "tread-lidar-driver", "Publishes SCAN from a range finder.", prepare);

@@ -24,7 +24,7 @@ void mustOffer(const Link& line) {
 ShellBody prepare(ConfigReader& reader) {
   const SimulatorConfig config = readSimulatorConfig(reader);
   const auto world = std::make_shared<const World>(readWorld(config.world));
-  return [config, world](BusAccess access, const std::atomic<bool>& stop) {
+  const auto run = [config, world](BusAccess access, const std::atomic<bool>& stop) {
     LcmBus bus(std::move(access), TimeSource::kHost);
     SimulatorSettings settings = config.settings;
     settings.robot.start_utime = bus.now();
@@ -45,6 +45,10 @@ ShellBody prepare(ConfigReader& reader) {
                        });
     bus.run(node, stop);
   };
+  return {run, [config] {
+            requireListening(config.laser);
+            if (config.settings.robot.ground_laser) requireListening(config.ground_laser);
+          }};
 }
 
 }  // namespace

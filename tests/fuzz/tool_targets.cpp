@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "common/drive/drive_log.hpp"
+#include "common/link/link.hpp"
 #include "common/recordings/csv_table.hpp"
 #include "common/recordings/drive_recordings.hpp"
 #include "common/recordings/imported_log.hpp"
@@ -175,11 +176,55 @@ void launchFile(const uint8_t* bytes, size_t size) {
       processes.push_back(
           {process, launch::startCommand(process, process.program, read.lcm_url, read.key)});
     try {
-      launch::supervisorConfig(read.name, processes, launch::RunPaths(settings.run), false);
+      launch::supervisorConfig(read.name, processes, false);
     } catch (const std::invalid_argument& refusal) {
       require(refusal.what()[0] != '\0');
     }
   });
+}
+
+/// A line of its configuration as supervisord takes it apart: comments, percent signs, then the
+/// words as a shell would.
+std::vector<std::string> supervisorWords(const std::string& line) {
+  std::vector<std::string> words{""};
+  bool open = false;
+  char quote = 0;
+  for (size_t i = 0; i < line.size(); ++i) {
+    require((line[i] != ';' && line[i] != '#') || i == 0 || line[i - 1] != ' ');
+    if (line[i] == '%') require(line[++i] == '%');
+    if (quote != 0) {
+      quote = line[i] == quote ? 0 : quote;
+      if (quote != 0) words.back() += line[i];
+    } else if (line[i] == ' ') {
+      if (open) words.emplace_back();
+      open = false;
+      continue;
+    } else if (line[i] == '\'' || line[i] == '"') {
+      quote = line[i];
+    } else {
+      words.back() += line[i] == '\\' ? line[++i] : line[i];
+    }
+    open = true;
+  }
+  require(quote == 0 && line.back() != ' ');
+  return words;
+}
+
+/// The path of a run folder: refused, or the same path in every process.
+void runPath(const uint8_t* bytes, size_t size) {
+  launch::FolderFacts folder;
+  folder.path = "/" + textOf(bytes, size);
+  folder.writable = true;
+  folder.free_bytes = INT64_MAX;
+  if (!launch::checkFolder(folder).empty()) return;
+  const std::string device = folder.path + "/devices/ins";
+  const std::string set = "address=tty:" + device + "?baud=460800";
+  require(supervisorWords(launch::supervisorCommand({"program", "--set", set})) ==
+          std::vector<std::string>{"program", "--set", set});
+  ConfigReader reader = ConfigReader::fromText("address: none", "driver", {set});
+  std::string address;
+  reader.text("address", address);
+  require(parseLinkAddress(address).path == device);
 }
 
 /// Lines of supervisord's log, signs of life of processes, and what `ip route` answers.
@@ -290,6 +335,7 @@ void addToolTargets(std::map<std::string, Target>& all) {
       {"queries", queries},
       {"recipe", recipe},
       {"recorded_drive", recordedDrive},
+      {"run_path", runPath},
       {"ros2_map", ros2Map},
       {"sbpl_map", sbplMap},
       {"session_table", sessionTable},

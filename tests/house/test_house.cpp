@@ -251,6 +251,28 @@ TEST_CASE(
     }
 }
 
+// Whatever else opened a file for writing would empty it before it knew whether it had anything to
+// write. What is left holds a lock, or a secret from its first byte on.
+TEST_CASE("only OutputFile opens files for writing") {
+  const std::set<std::string> others{
+      "common/seal/key_file.cpp",                // a new file, readable by nobody else at any time
+      "tools/robot/launch/host.cpp",             // a lock
+      "tools/robot/launch/running_robots.cpp"};  // a lock with an address in it
+  const std::regex opens(
+      "\\b(std::)?(ofstream|fstream \\w+\\(|basic_ofstream)\\b|fopen\\(|"
+      "\\bcreat\\(|O_CREAT|O_TRUNC|write_to_png\\(");
+  size_t writers = 0;
+  for (const char* folder : {"common", "modules", "tools"})
+    for (const fs::path& path : sourcesUnder(folder)) {
+      const std::string file = fs::relative(path, TREAD_SOURCE_DIR).string();
+      if (!std::regex_search(contentOf(path), opens)) continue;
+      ++writers;
+      CAPTURE(file);
+      CHECK((file == "common/store/output_file.cpp" || others.count(file) == 1));
+    }
+  CHECK(writers == 1 + others.size());
+}
+
 TEST_CASE("each folder of common serves at least two modules or tools") {
   std::map<std::string, std::set<std::string>> users;
   for (const char* folder : {"modules", "tools"})

@@ -82,7 +82,7 @@ const std::vector<WritingCommand>& commands() {
       {kMission + "--log OUT", "faults.yaml"},
       {kMission + "--show 3 --picture OUT", "faults.yaml"},
       {"tread-gap find --model IN --train @/arcs.lcmlog --out OUT", kModel, "made", true},
-      {"tread-gap repeat @/arcs.lcmlog @/more.lcmlog --model IN --out OUT", kModel, "made", true},
+      {"tread-gap repeat @/long.lcmlog @/longer.lcmlog --model IN --out OUT", kModel, "made", true},
       {"tread-gap plan track_asymmetry yaw_pull --model IN --out OUT", kModel},
       {"tread-gap what-if --model IN --add slip_ratio --out OUT", kModel, "made.html"},
       {"tread-patterns make IN --model " + kTeodor + " -o OUT",
@@ -108,7 +108,8 @@ class Inputs {
  public:
   Inputs() : drives_("writing_tools") {
     gap::samples::writeDrive(path("arcs.lcmlog"), 60.0);
-    gap::samples::writeDrive(path("more.lcmlog"), 61.0);
+    gap::samples::writeDrive(path("long.lcmlog"), 205.0);
+    gap::samples::writeDrive(path("longer.lcmlog"), 210.0);
     folder_.write("faults.yaml", "messages: []\n");
     folder_.write("track.nmea", nmeaTrack());
     folder_.write("drive.clf", carmenDrive());
@@ -173,8 +174,12 @@ struct Outcome {
   int signal = 0;
   std::string complaint;  ///< what stood on stderr
 
+  /// Warnings are about other things.
   bool isOneLine() const {
-    return !complaint.empty() && complaint.find('\n') == complaint.size() - 1;
+    size_t lines = 0;
+    for (const std::string& line : testing::linesOf(complaint))
+      lines += line.find(": warning: ") == std::string::npos ? 1U : 0U;
+    return lines == 1;
   }
 };
 
@@ -322,7 +327,8 @@ Row rowOf(const WritingCommand& command, const Inputs& inputs) {
   Row row(5, "has none");
   row[0] = desk.run(desk.out(), Trouble::kNone).complaint;
   INFO(row[0]);
-  REQUIRE(fs::exists(desk.out()));
+  CHECK(fs::exists(desk.out()));
+  if (!fs::exists(desk.out())) return row;
   if (names_output && !command.input.empty())
     for (const std::string more : {"", " --force"})
       row[0] = refused(desk, inputAsOutput(command, desk.in()), "input", Trouble::kNone, more);

@@ -21,6 +21,28 @@ constexpr const char* kRouteRemedy =
     "ip link set lo up multicast on; ip route replace 224.0.0.0/4 dev lo  (as root)";
 constexpr const char* kRemedyWithoutRoot = "; or without root: --lcm-url tcpq://127.0.0.1:7668";
 
+bool isUtf8(const std::string& text) {
+  size_t following = 0;
+  for (const unsigned char c : text) {
+    if (following > 0 ? (c >> 6) != 2 : (c >> 6) == 2 || c > 0xF4) return false;
+    following = following > 0 ? following - 1 : c < 0xC0 ? 0 : c < 0xE0 ? 1 : c < 0xF0 ? 2 : 3;
+  }
+  return following == 0;
+}
+
+/// What of a path the processes' arguments, YAML and addresses of links, would misread; empty if
+/// nothing.
+std::string unusable(const std::string& path) {
+  if (std::any_of(path.begin(), path.end(), [](unsigned char c) { return c < ' ' || c == 127; }))
+    return "a control character";
+  if (!isUtf8(path)) return "bytes that are no UTF-8";
+  for (const auto& [part, name] : {std::pair{"?", "a question mark"},
+                                   {": ", "a colon before a blank"},
+                                   {" #", "a # behind a blank"}})
+    if (path.find(part) != std::string::npos) return name;
+  return "";
+}
+
 std::string megabytes(int64_t bytes) {
   return std::to_string(bytes / 1'000'000) + " MB";
 }
@@ -206,6 +228,15 @@ std::vector<HostFinding> checkFolder(const FolderFacts& facts) {
                         "mkdir -p " + facts.path + "; chown it to yourself; or use --run DIR"});
     return findings;
   }
+  if (const std::string why = unusable(facts.path); !why.empty())
+    findings.push_back({true,
+                        "the path " + facts.path + " has " + why +
+                            ", which addresses of devices in it cannot hold",
+                        "use another folder with --run"});
+  if (!facts.foreign.empty())
+    findings.push_back(
+        {true, facts.foreign + " belongs to " + facts.owner_of_foreign + " and cannot be written",
+         "chown -R USER " + facts.path + "  (as root); or use another folder with --run"});
   if (facts.free_bytes < kWantedSpace)
     findings.push_back(
         {facts.free_bytes < kNeededSpace,

@@ -88,6 +88,8 @@ struct FolderFacts {
   size_t longest_socket = 0;  ///< byte
   int owner = 0;              ///< pid of the tread-launch that runs in it; 0 = none
   bool occupied = false;      ///< somebody runs in it
+  std::string foreign{};      ///< something in it that we may not write; empty = nothing
+  std::string owner_of_foreign{};
 };
 
 std::vector<HostFinding> checkFolder(const FolderFacts& facts);

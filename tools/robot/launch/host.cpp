@@ -17,15 +17,19 @@
 #include <net/if.h>
 #include <netinet/in.h>
 #include <poll.h>
+#include <pwd.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "common/link/link.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/seal/key_file.hpp"
+#include "common/store/output_file.hpp"
 
 namespace tread::launch {
 namespace {
@@ -176,6 +180,19 @@ std::vector<HostFinding> checkKey(const LaunchFile& launch) {
   }
 }
 
+/// tread-launch itself listens where messages go over TCP.
+std::vector<HostFinding> checkRelay(const LcmAddress& address) {
+  if (address.provider != "tcpq") return {};
+  try {
+    requireListening("tcp-server:127.0.0.1:" + std::to_string(address.port));
+    return {};
+  } catch (const std::runtime_error& error) {
+    const std::string line = error.what();
+    return {{true, line.substr(0, line.find("; ")),
+             "end the program that has it, or use --lcm-url tcpq://127.0.0.1:PORT"}};
+  }
+}
+
 /// Asks this host about multicast; sends one datagram to the group, on a port of its own.
 NetworkFacts networkFacts(const LcmAddress& address, bool sealed) {
   NetworkFacts facts;
@@ -302,6 +319,30 @@ std::string findProgram(const std::string& word, const std::string& bin) {
   return "";
 }
 
+/// By trying: permissions do not tell of a file system that is read-only or has no place for names.
+bool takesFiles(const std::string& folder) {
+  try {
+    checkOutputs({{folder + "/trial"}}, {}, true);
+    return true;
+  } catch (const std::runtime_error&) {
+    return false;
+  }
+}
+
+/// What another user's run has left, root's for instance.
+void findForeign(const std::string& folder, FolderFacts& facts) {
+  std::error_code none;
+  for (const auto& entry : fs::recursive_directory_iterator(folder, none)) {
+    if (entry.is_symlink(none) || access(entry.path().c_str(), W_OK) == 0) continue;
+    struct stat status {};
+    lstat(entry.path().c_str(), &status);
+    const passwd* const user = getpwuid(status.st_uid);
+    facts.foreign = entry.path().string();
+    facts.owner_of_foreign = user != nullptr ? user->pw_name : std::to_string(status.st_uid);
+    return;
+  }
+}
+
 FolderFacts folderFacts(const RunPaths& paths) {
   FolderFacts facts;
   facts.path = paths.folder;
@@ -310,7 +351,8 @@ FolderFacts folderFacts(const RunPaths& paths) {
   fs::path nearest = paths.folder;
   std::error_code none;
   while (!fs::exists(nearest, none) && nearest.has_relative_path()) nearest = nearest.parent_path();
-  facts.writable = fs::is_directory(nearest, none) && access(nearest.c_str(), W_OK | X_OK) == 0;
+  facts.writable = takesFiles(nearest.string());
+  findForeign(paths.folder, facts);
   struct statvfs disk {};
   if (statvfs(nearest.c_str(), &disk) == 0)
     facts.free_bytes = static_cast<int64_t>(disk.f_bavail) * static_cast<int64_t>(disk.f_frsize);
@@ -343,9 +385,10 @@ std::vector<HostFinding> checkHost(const LaunchFile& launch, const LaunchSetting
     findings.push_back(missingTool("supervisord", "supervisor"));
   if (findProgram("setpriv", "").empty()) findings.push_back(missingTool("setpriv", "util-linux"));
   add(checkKey(launch));
-  if (const auto address = parseLcmUrl(launch.lcm_url))
+  if (const auto address = parseLcmUrl(launch.lcm_url)) {
     add(checkNetwork(*address, networkFacts(*address, !launch.key.empty()), launch.simulated));
-  else
+    add(checkRelay(*address));
+  } else
     findings.push_back(
         {true, "LCM URL '" + launch.lcm_url + "' cannot be read", urlRemedy(launch.simulated)});
   std::string mapping;

@@ -95,10 +95,9 @@ struct SupervisedProcess {
 };
 
 /// The configuration of Debian's supervisor for one run; `as_root` if root runs it.
-/** Throws std::invalid_argument, one line, for what its format cannot hold. */
+/** Both supervisord and supervisorctl must work in the run folder. */
 std::string supervisorConfig(const std::string& name,
-                             const std::vector<SupervisedProcess>& processes, const RunPaths& paths,
-                             bool as_root);
+                             const std::vector<SupervisedProcess>& processes, bool as_root);
 
 /// Words as one line that supervisor takes apart into the same words.
 std::string supervisorCommand(const std::vector<std::string>& words);

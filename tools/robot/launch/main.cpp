@@ -168,7 +168,7 @@ int start(const LaunchFile& launch, const Options& options) {
   if (const auto address = parseLcmUrl(launch.lcm_url); address && address->provider == "tcpq")
     relay.emplace(address->port);
   writeText(paths.config,
-            supervisorConfig(launch.name, withCommands(launch, settings), paths, geteuid() == 0));
+            supervisorConfig(launch.name, withCommands(launch, settings), geteuid() == 0));
   std::cout << launch.name << ": starting " << launch.processes.size() << " processes; logs in "
             << paths.logs << std::endl;
   const Announcement announcement({launch.name, launch.lcm_url, launch.key});
@@ -257,6 +257,7 @@ int status(const LaunchFile& launch, const RunPaths& paths) {
     std::cout << process << trouble << std::endl;
   std::ifstream hung(paths.hung);
   for (std::string line; std::getline(hung, line);) std::cout << line << std::endl;
+  std::filesystem::current_path(paths.folder);
   become({"supervisorctl", "--configuration", paths.config, "status"});
 }
 

@@ -259,7 +259,8 @@ void Run::becomeSupervisor(int lock, const sigset_t& mask, pid_t parent) const {
     unsetenv("NOTIFY_SOCKET");
   std::signal(SIGPIPE, SIG_DFL);
   sigprocmask(SIG_SETMASK, &mask, nullptr);
-  execlp("supervisord", "supervisord", "--configuration", paths_.config.c_str(), nullptr);
+  if (chdir(paths_.folder.c_str()) == 0)
+    execlp("supervisord", "supervisord", "--configuration", paths_.config.c_str(), nullptr);
   std::perror("tread-launch: supervisord");
   _exit(127);
 }

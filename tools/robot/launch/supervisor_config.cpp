@@ -19,16 +19,6 @@ std::string withoutPercent(const std::string& text) {
   return result;
 }
 
-/// A path as the value of a key.
-std::string value(const std::string& path) {
-  for (const char* comment : {" ;", " #", "\t;", "\t#", "\n"})
-    if (path.find(comment) != std::string::npos)
-      throw std::invalid_argument("'" + path +
-                                  "' has a blank before ; or #, which supervisor takes for a "
-                                  "comment; choose another folder");
-  return withoutPercent(path);
-}
-
 bool isPlain(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
          std::string("-_./:=@,+%").find(c) != std::string::npos;
@@ -48,33 +38,33 @@ std::string quotedWord(const std::string& word) {
   return result;
 }
 
-void writeCommon(std::ostream& out, const std::string& name, const RunPaths& paths, bool as_root) {
+/// Paths are those below the run folder, in which the supervisor works: it expands some values
+/// twice and others once, so that no spelling of a percent sign in them would do.
+void writeCommon(std::ostream& out, const std::string& name, bool as_root) {
+  const RunPaths paths(".");
   out << "; Written by tread-launch at each start; changes are lost.\n"
       << "[unix_http_server]\n"
-      << "file=" << value(paths.socket) << "\n"
+      << "file=" << paths.socket << "\n"
       << "chmod=0700\n\n"
       << "[supervisord]\n"
       << "identifier=tread-" << name << "\n"
       << "nodaemon=true\n"
       << "silent=true\n"  // tread-launch tells what happens
-      << "directory=" << value(paths.folder) << "\n"
-      << "logfile=" << value(paths.supervisor_log) << "\n"
+      << "logfile=" << paths.supervisor_log << "\n"
       << "logfile_maxbytes=1MB\n"
       << "logfile_backups=3\n"
-      << "pidfile=" << value(paths.pid) << "\n";
+      << "pidfile=" << paths.pid << "\n";
   if (as_root) out << "user=root\n";  // else it warns of it at each start
   out << "\n[rpcinterface:supervisor]\n"
       << "supervisor.rpcinterface_factory = supervisor.rpcinterface:make_main_rpcinterface\n\n"
       << "[supervisorctl]\n"
-      << "serverurl=unix://" << value(paths.socket) << "\n";
+      << "serverurl=unix://" << paths.socket << "\n";
 }
 
-void writeProcess(std::ostream& out, const SupervisedProcess& supervised, size_t place,
-                  const RunPaths& paths) {
+void writeProcess(std::ostream& out, const SupervisedProcess& supervised, size_t place) {
   const LaunchProcess& process = supervised.process;
   out << "\n[program:" << process.name << "]\n"
       << "command=" << supervisorCommand(supervised.command) << "\n"
-      << "directory=" << value(paths.folder) << "\n"
       << "priority=" << 10 * (place + 1) << "\n"  // the order of starting; stopped in reverse
       << "autorestart=true\n"
       << "startsecs=1\n"
@@ -83,7 +73,7 @@ void writeProcess(std::ostream& out, const SupervisedProcess& supervised, size_t
       << "stopwaitsecs=" << process.stop_time << "\n"
       << "killasgroup=true\n"
       << "redirect_stderr=true\n"
-      << "stdout_logfile=" << value(paths.logs + "/" + process.name + ".log") << "\n"
+      << "stdout_logfile=" << RunPaths(".").logs << "/" << process.name << ".log\n"
       << "stdout_logfile_maxbytes=5MB\n"
       << "stdout_logfile_backups=3\n";
 }
@@ -130,11 +120,10 @@ std::string supervisorCommand(const std::vector<std::string>& words) {
 }
 
 std::string supervisorConfig(const std::string& name,
-                             const std::vector<SupervisedProcess>& processes, const RunPaths& paths,
-                             bool as_root) {
+                             const std::vector<SupervisedProcess>& processes, bool as_root) {
   std::ostringstream out;
-  writeCommon(out, name, paths, as_root);
-  for (size_t i = 0; i < processes.size(); ++i) writeProcess(out, processes[i], i, paths);
+  writeCommon(out, name, as_root);
+  for (size_t i = 0; i < processes.size(); ++i) writeProcess(out, processes[i], i);
   return out.str();
 }
 

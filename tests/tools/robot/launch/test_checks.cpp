@@ -198,6 +198,25 @@ TEST_CASE("the device is that of the last --set, else of the configuration, and 
   CHECK(deviceOf({"--set"}, "", "/run").empty());
 }
 
+TEST_CASE("a run folder's name that addresses cannot hold, and another user's state, are named") {
+  FolderFacts facts;
+  facts.writable = true;
+  facts.free_bytes = 10'000'000'000;
+  for (const char* good : {"/run/100% free", "/run/it's \"mine\"", "/run/a;b#1", "/run/a:b"}) {
+    facts.path = good;
+    CHECK(checkFolder(facts).empty());
+  }
+  for (const char* bad : {"/run/a?b", "/run/a: b", "/run/a #b", "/run/a\tb"}) {
+    facts.path = bad;
+    CHECK_THAT(oneLine(checkFolder(facts)), Contains("cannot hold; fix: use another folder"));
+  }
+  facts.path = "/run/r";
+  facts.foreign = "/run/r/state/learner";
+  facts.owner_of_foreign = "root";
+  CHECK_THAT(oneLine(checkFolder(facts)),
+             Contains("/run/r/state/learner belongs to root and cannot be written; fix: chown -R"));
+}
+
 TEST_CASE("a run folder that cannot serve gives one line") {
   FolderFacts facts{"/run/r", true, 1'000'000'000, 20, 0, false};
   CHECK_THAT(oneLine(checkFolder(facts)), StartsWith("robot: advice: only 1000 MB are free"));

@@ -3,6 +3,7 @@
 // The launch files that are shipped, with the real processes.
 #include <catch2/catch.hpp>
 
+#include "common/link/link.hpp"
 #include "tests/tools/robot/launch/launched.hpp"
 #include "tools/robot/launch/host.hpp"
 
@@ -18,15 +19,28 @@ const std::string kLaunch = std::string(TREAD_SOURCE_DIR) + "/config/launch/";
 
 /// A folder that goes with its test, and a bus and a port of its own.
 struct Place {
-  Place() { fs::create_directories(folder); }
-  ~Place() { fs::remove_all(folder); }
-  std::vector<std::string> simulated() const {
-    const std::string port = std::to_string(30000 + (getpid() * 7) % 20000);
-    return {kLaunch + "simulated.yaml", "--run", (folder / "run").string(), "--lcm-url",
-            launchedLcmUrl(),           "--set", "laser_port=" + port};
+  explicit Place(const std::string& name = "")
+      : folder(fs::temp_directory_path() /
+               ("tread_launch_robot_" + std::to_string(getpid()) + name)) {
+    fs::create_directories(folder);
   }
-  const fs::path folder =
-      fs::temp_directory_path() / ("tread_launch_robot_" + std::to_string(getpid()));
+  ~Place() { fs::remove_all(folder); }
+  std::vector<std::string> simulated(const std::string& url = launchedLcmUrl()) const {
+    return {kLaunch + "simulated.yaml",
+            "--run",
+            (folder / "run").string(),
+            "--lcm-url",
+            url,
+            "--set",
+            "laser_port=" + std::to_string(port)};
+  }
+  CommandOutcome checked(const std::string& url = launchedLcmUrl()) const {
+    std::vector<std::string> words{std::string(TREAD_BIN_DIR) + "/tread-launch", "--check"};
+    for (const std::string& word : simulated(url)) words.push_back(word);
+    return runCommand(words, 60.0);
+  }
+  const int port = 30000 + (getpid() * 7) % 20000;
+  const fs::path folder;
 };
 
 std::vector<int> workersIn(const fs::path& run) {
@@ -59,10 +73,7 @@ TEST_CASE("the shipped launch files pass the start-up checks, absent instruments
   // Nothing but the network may be missing, which is the host's.
   for (const std::string& line : withoutAdvice(robot.output))
     CHECK_THAT(line, Contains("robot: ready to start") || Contains("multicast"));
-  std::vector<std::string> words{std::string(TREAD_BIN_DIR) + "/tread-launch"};
-  for (const std::string& word : place.simulated()) words.push_back(word);
-  words.push_back("--check");
-  const CommandOutcome simulated = runCommand(words, 60.0);
+  const CommandOutcome simulated = place.checked();
   INFO(simulated.output);
   CHECK(simulated.code == 0);
   CHECK_THAT(simulated.output, !Contains("device") && !Contains("without a key"));
@@ -85,8 +96,25 @@ TEST_CASE("a mistake in a robot's configuration stops the start with its file an
              Contains("robot: mapping: ") && Contains("mapping.yaml:") && Contains("cell_sise"));
 }
 
-TEST_CASE("the simulated robot starts, records, and leaves no process when its supervisor dies") {
+TEST_CASE("a port that is in use is named with its remedy before anything is started") {
   const Place place;
+  const std::string laser = "tcp-server:127.0.0.1:" + std::to_string(place.port);
+  const std::string relay = "tcp-server:127.0.0.1:" + std::to_string(place.port + 1);
+  const auto one = tread::makeLink(laser);
+  const auto other = tread::makeLink(relay);
+  const CommandOutcome outcome =
+      place.checked("tcpq://127.0.0.1:" + std::to_string(place.port + 1));
+  INFO(outcome.output);
+  CHECK(outcome.code == 1);
+  CHECK_THAT(outcome.output, Contains("simulated: simulator: ") && Contains("in use") &&
+                                 Contains("end the program that has this port"));
+  CHECK_THAT(outcome.output, Contains("or use --lcm-url tcpq://127.0.0.1:PORT"));
+  CHECK_FALSE(fs::exists(place.folder / "run/log"));
+}
+
+TEST_CASE("the simulated robot starts, records, and leaves no process when its supervisor dies") {
+  // What supervisord expands, what ends its words, and what begins its comments.
+  const Place place("100% \"odd\" %(here)s it's;");
   const fs::path run = place.folder / "run";
   const fs::path output = place.folder / "output.txt";
   const auto says = [&](const std::string& text) {
