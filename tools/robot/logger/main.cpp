@@ -72,7 +72,7 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "tread-logger: %s\n", wordsOf(error).c_str());
+    std::fprintf(stderr, "tread-logger: %s\n", tread::wordsOf(error).c_str());
     return 1;
   }
 }
