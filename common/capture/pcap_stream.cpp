@@ -226,7 +226,7 @@ std::optional<CapturedPayload> PcapStream::payloadOf(const Interface& interface,
                                                      std::string_view frame) {
   if (!isKnown(interface.link_type))
     return leaveOut("captured frames of link layer " + std::to_string(interface.link_type) +
-                    ", which is not known");
+                    ", not of Ethernet, Linux cooked, loopback or bare IPv4");
   const auto begin = internetAt(interface.link_type, frame);
   const std::string_view packet = begin ? frame.substr(std::min(*begin, frame.size())) : "";
   if (packet.size() < 20 || byteAt(packet, 0) >> 4 != 4)

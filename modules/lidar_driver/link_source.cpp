@@ -65,7 +65,7 @@ Reason LinkSource::reason(int64_t utime, bool /*ground*/) const {
   const std::string problem = was_open_ ? "" : linkProblem();
   if (problem.empty()) return reason;
   if (reason.rank <= Rank::kSilent) return {Rank::kSilent, problem};
-  reason.words += "; " + problem;
+  reason.words += (reason.words.back() == '?' ? " " : "; ") + problem;
   return reason;
 }
 

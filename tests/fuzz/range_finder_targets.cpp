@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/capture/pcap_stream.hpp"
 #include "modules/lidar_driver/carmen/carmen_player.hpp"
 #include "modules/lidar_driver/rplidar/rplidar_session.hpp"
 #include "modules/lidar_driver/sick_cola/cola_session.hpp"
@@ -101,6 +102,22 @@ void velodyne(const uint8_t* bytes, size_t size) {
   requireScans(session, now + 1'000'000'000);
 }
 
+/// Payloads of a capture: parts of its bytes, and nothing after it was found damaged.
+void capture(const uint8_t* bytes, size_t size) {
+  PcapStream stream;
+  size_t carried = 0;
+  inPieces(bytes, size, 0, [&](const std::string& piece, int64_t) {
+    const bool damaged = !stream.problem().empty();
+    stream.push(piece);
+    while (const auto payload = stream.next()) {
+      require(!damaged);
+      carried += payload->bytes.size() + 1;
+    }
+    stream.takeLeftOut();
+  });
+  require(carried <= size);
+}
+
 void carmenPlayer(const uint8_t* bytes, size_t size) {
   lidar::CarmenPlayer player({});
   player.open(1'000'000);
@@ -111,6 +128,7 @@ void carmenPlayer(const uint8_t* bytes, size_t size) {
 }  // namespace
 
 void addRangeFinderTargets(std::map<std::string, Target>& targets) {
+  targets["capture"] = capture;
   targets["carmen_player"] = carmenPlayer;
   targets["cola"] = cola;
   targets["cola_command"] = colaCommand;

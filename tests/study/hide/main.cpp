@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
+#include "common/config/problem_words.hpp"
 #include "common/report/page.hpp"
 #include "tests/study/hide/bad_log.hpp"
 #include "tests/study/hide/case_folder.hpp"
@@ -199,7 +200,7 @@ int main(int argc, char** argv) {
   try {
     return parseAndRun(argc, argv);
   } catch (const std::exception& problem) {
-    std::fprintf(stderr, "tread-hide: %s\n", problem.what());
+    std::fprintf(stderr, "tread-hide: %s\n", tread::wordsOf(problem).c_str());
     return 2;
   }
 }

@@ -13,6 +13,7 @@
 
 #include "common/config/command_line.hpp"
 #include "common/config/outputs.hpp"
+#include "common/config/problem_words.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "tests/study/models/comparison_output.hpp"
 #include "tools/gap/drive_log.hpp"
@@ -151,7 +152,7 @@ int main(int argc, char** argv) {
     if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
     tread::gap::compare(options);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "tread-compare-models: %s\n", error.what());
+    std::fprintf(stderr, "tread-compare-models: %s\n", tread::wordsOf(error).c_str());
     return tread::kBadInput;
   }
   return 0;

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/config/command_line.hpp"
+#include "common/config/problem_words.hpp"
 #include "tests/study/rivals/rivals.hpp"
 #include "tools/gap/drive_log.hpp"
 
@@ -79,7 +80,7 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const std::exception& problem) {
-    std::fprintf(stderr, "tread-rival: %s\n", problem.what());
+    std::fprintf(stderr, "tread-rival: %s\n", tread::wordsOf(problem).c_str());
     return 2;
   }
 }

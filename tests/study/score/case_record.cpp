@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "common/config/problem_words.hpp"
+
 namespace tread::blindtest {
 namespace {
 
@@ -114,7 +116,7 @@ CaseRecord recordOf(const Json& line) {
   try {
     return {truthOf(line.at("truth")), answerOf(line.at("answer"), line.at("nominal"))};
   } catch (const nlohmann::json::exception& problem) {
-    throw std::runtime_error("case " + line.value("case", "?") + ": " + problem.what());
+    throw std::runtime_error("case " + line.value("case", "?") + ": " + wordsOf(problem));
   }
 }
 

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
+#include "common/config/problem_words.hpp"
 #include "tests/study/score/score_files.hpp"
 #include "tests/study/score/study.hpp"
 
@@ -97,7 +98,7 @@ int main(int argc, char** argv) {
   try {
     return parseAndRun(argc, argv);
   } catch (const std::exception& problem) {
-    std::fprintf(stderr, "tread-blind: %s\n", problem.what());
+    std::fprintf(stderr, "tread-blind: %s\n", tread::wordsOf(problem).c_str());
     return 2;
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include "tests/study/score/score_files.hpp"
+#include "common/config/problem_words.hpp"
 #include "tests/helpers.hpp"
 
 #include <algorithm>
@@ -61,7 +62,7 @@ ScoredStudy scored(const std::vector<std::string>& lines, const CaseSeconds& sec
       study.cases.push_back(std::move(one));
     }
   } catch (const nlohmann::json::exception& problem) {
-    throw std::runtime_error(std::string("cases.jsonl: ") + problem.what());
+    throw std::runtime_error(std::string("cases.jsonl: ") + wordsOf(problem));
   }
   study.scores = scoresOf(study.cases);
   study.confusion = confusionOf(study.cases);

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <iostream>
 
+#include "common/config/problem_words.hpp"
+
 namespace fs = std::filesystem;
 
 namespace tread::blindtest {
@@ -37,7 +39,7 @@ bool isUsable(const Study& study, const Recording& recording) {
     nominalModel(study, recording.nominal);
     return true;
   } catch (const std::exception& problem) {
-    std::cout << recording.log << " is left out: " << problem.what() << std::endl;
+    std::cout << recording.log << " is left out: " << wordsOf(problem) << std::endl;
     return false;
   }
 }
