@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <limits>
+#include <utility>
 
 #include <catch2/catch.hpp>
 
@@ -37,10 +38,12 @@ struct HandWorld : BridgeWorld {
   /// A planner that wants nothing: only the hand may move the robot, which is armed.
   void armForHand() {
     planner.stands = true;
+    const bool holds = std::exchange(wish.hold, false);
     run(1'200'000);
     arm();
     run(100'000);
-    REQUIRE(isArmed(state()));
+    wish.hold = holds;
+    REQUIRE(state() == State::kArmed);
   }
   void stick(double left, double right) {
     wish.left = left;
@@ -379,6 +382,15 @@ TEST_CASE("armed again after a stop with the stick still held, nothing moves bef
   world.run(1'500'000);
   world.planner.stands = true;  // so that only the hand may move it
   world.arm();
+  world.run(50'000);
+  CHECK(world.state() == State::kDisarmed);
+  CHECK_THAT(world.reason(), Catch::EndsWith("; ARM refused: the stick was not seen at rest: let "
+                                             "it go once"));
+  world.wish.hold = false;
+  world.run(50'000);
+  world.arm();
+  world.run(50'000);
+  world.wish.hold = true;
   for (int i = 0; i < 200; ++i) {
     world.step();
     REQUIRE(world.stands());
@@ -639,9 +651,7 @@ TEST_CASE("with its place unknown a stick gives back, and arms nothing for the h
 
 TEST_CASE("a worn spring: up to a twentieth counts as rest, and moves nothing") {
   HandWorld world;
-  world.wish.hold = false;
   world.armForHand();
-  world.wish.hold = true;
   world.stick(0.05, -0.05);
   world.run(500'000);
   CHECK(world.state() == State::kArmed);

@@ -114,7 +114,7 @@ FailsafeOutputs Failsafe::update(const FailsafeInputs& in) {
   const bool barred =
       !in.program_bar.empty() && out.reason.find(in.program_bar) == std::string::npos;
   if (barred) out.reason += "; programs refused: " + in.program_bar;
-  if (!in.hand_bar.empty()) out.reason += "; " + in.hand_bar;
+  if (out.reason.find(in.hand_bar) == std::string::npos) out.reason += "; " + in.hand_bar;
   if (const std::optional<Fault> fault = worstFault(in)) out.standing_fault = fault->reason;
   out.changed = state_ != state_before || reason_ != reason_before || refusal_ != refusal_before;
   return out;
@@ -149,6 +149,8 @@ bool Failsafe::stopOnFault(const FailsafeInputs& in) {
 
 std::string Failsafe::whyNotArm(const FailsafeInputs& in) const {
   if (!in.leased) return in.unleased;
+  // Who holds the button means to drive by hand: it must not be armed for programs instead.
+  if (!in.hand_bar.empty()) return in.hand_bar;
   const int64_t healthy = healthy_since_ ? in.now - *healthy_since_ : 0;
   if (healthy >= kHealthyBeforeArm) return "";
   return "inputs good for " + std::to_string(healthy / 1000) + " ms, " +
