@@ -51,7 +51,8 @@ std::string newToken() {
 }
 
 bool isLoopback(const std::string& address) {
-  return address.rfind("127.", 0) == 0 || address == "::1" || address == "localhost";
+  const bool numbers = address.find_first_not_of("0123456789.") == std::string::npos;
+  return (numbers && address.rfind("127.", 0) == 0) || address == "::1" || address == "localhost";
 }
 
 void sayWhere(const ViewServer& server, const ServerSettings& settings) {

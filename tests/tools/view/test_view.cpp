@@ -234,24 +234,23 @@ TEST_CASE("viewers without end cost neither memory nor the robot's drive") {
   runScript(folder, "flood.mjs", {view.url(), std::to_string(seconds)}, [&](const std::string&) {
     memory = std::max(memory, peakMemory(view.process().pid()));
   });
+  const double computed = computedBy(view.process().pid()) - before;
   REQUIRE(page.waitFor(20.0));
   INFO("machine held up for " << watch.longest() << " s at most");
   INFO(contentOf(output) << contentOf(folder.path("flood.mjs.txt")));
   std::printf(
       "%s%stread-view used %.0f MB at most, computed %.1f s; machine held up for %.3f s at most\n",
       contentOf(output).c_str(), contentOf(folder.path("flood.mjs.txt")).c_str(),
-      static_cast<double>(memory) * 1e-6, computedBy(view.process().pid()) - before,
-      watch.longest());
+      static_cast<double>(memory) * 1e-6, computed, watch.longest());
   CHECK(page.exitCode() == 0);
   CHECK(contentOf(output).find("is armed") != std::string::npos);
   CHECK(memory > 1'000'000);
   CHECK(memory < 200'000'000);
-  // A machine that stalls disarms the robot by itself; what viewers could take from it is the
-  // page's own lease.
-  if (watch.longest() < 0.1)
-    CHECK_THAT(contentOf(output), Catch::Contains("disarmed 0 times"));
-  else if (watch.longest() < 0.5)
-    CHECK_THAT(contentOf(output), !Catch::Contains("operator"));
+  // Viewers could take the page's own lease from it, or the processor. That a busy machine delays
+  // an instrument by 100 ms is not theirs.
+  if (watch.longest() < 0.5)
+    CHECK_THAT(contentOf(output), !Catch::Contains("operator") && !Catch::Contains("has let go"));
+  CHECK(computed < 1.0 + 0.5 * seconds);
 }
 
 TEST_CASE("viewers from elsewhere need the token, strangers' pages may not talk to the robot") {
