@@ -136,6 +136,7 @@ Drive toDrive(const DriveLog& messages) {
   drive.executions = executionsOf(drive.segments, recordsOf(log));
   Diagnostics notes(drive.name);
   checkPublishers(log, notes);
+  checkOffset(log, spans, notes);
   checkClocks(log, notes);
   checkChannels(log, spans, notes);
   takeOutBroken(drive, notes);

@@ -10,6 +10,7 @@
 #include "common/config/scalars.hpp"
 #include "common/geometry/degrees.hpp"
 #include "common/geometry/se3.hpp"
+#include "common/log/unpacked_file.hpp"
 #include "modules/ins_driver/core/ins_source.hpp"
 
 namespace tread::import {
@@ -64,6 +65,14 @@ class Series {
   std::vector<Sample> samples_;
 };
 
+/// What a number that is too large for a vehicle may be instead.
+std::string unitHint(const std::string& quantity, double limit) {
+  if (quantity == "yaw_rate") return "; are these degrees per second?";
+  const bool side = quantity.rfind("left_", 0) == 0 || quantity.rfind("right_", 0) == 0;
+  if (side && limit == 1.0) return "; is this per cent, or a speed?";
+  return side && limit == 100.0 ? "; are these mm/s, or revolutions a minute?" : "";
+}
+
 bool isMissing(const std::string& field) {
   return field.empty() || field == "nan" || field == "NaN" || field == "NAN";
 }
@@ -105,10 +114,24 @@ class CsvContent {
   };
 
   void read(const std::string& file, const CsvSource& source) {
-    const CsvTable table(file, source.layout);
+    const UnpackedFile unpacked(file);
+    try {
+      read(CsvTable(unpacked.path(), source.layout), file, source);
+    } catch (const RecordingError& error) {
+      throw RecordingError(unpacked.named(error.what()));
+    }
+    if (!unpacked.problem().empty()) result_.losses.push_back({unpacked.problem(), 0.0, 0.0, ""});
+  }
+
+  void read(const CsvTable& table, const std::string& file, const CsvSource& source) {
     for (const auto& [quantity, column] : source.columns) files_[quantity] = file;
     std::vector<Row> rows = rowsOf(table, source);
-    sortByTime(rows, "rows of " + file, result_);
+    const auto same = [&](const Row& a, const Row& b) {
+      return std::all_of(source.columns.begin(), source.columns.end(), [&](const auto& column) {
+        return table.text(a.row, column.second.column) == table.text(b.row, column.second.column);
+      });
+    };
+    sortByTime(rows, "rows of " + file, same, result_);
     for (const Row& row : rows)
       for (const auto& [quantity, column] : source.columns)
         take(table, row.row, row.time, quantity, column, file);
@@ -122,7 +145,7 @@ class CsvContent {
     for (size_t row = 0; row < table.rows(); ++row) {
       raw.push_back(source.time.empty() ? static_cast<double>(row) / source.rate
                                         : table.number(row, source.time));
-      rows.push_back({source.time_unit * raw.back(), row});
+      rows.push_back({source.time_unit * raw.back() + source.time_offset, row});
     }
     if (!source.time.empty())
       if (const auto problem = timeUnitProblem(raw, source.time_unit))
@@ -157,7 +180,7 @@ class CsvContent {
     if (std::abs(value) > column.limit)
       throw table.error(row, "column " + column.column + " (" + quantity + ") is " +
                                  formatNumber(value) + " after unit and scale; allowed is up to " +
-                                 formatNumber(column.limit));
+                                 formatNumber(column.limit) + unitHint(quantity, column.limit));
     series_[quantity].add(time, value, table.line(row));
   }
 
