@@ -8,6 +8,26 @@
 #include "common/types/message_json.hpp"
 
 namespace tread::mcap {
+namespace {
+
+/// Whether a number is a date of this century in us.
+bool isDate(uint64_t us) {
+  return us > 1'200'000'000'000'000 && us < 2'200'000'000'000'000;
+}
+
+/// MCAP counts log times in ns, Tread its messages' own in us; each as the other is named.
+void requireTimeUnits(const std::string& path, const Message& message,
+                      const std::vector<uint8_t>& bytes) {
+  constexpr size_t kUtime = 8;  // [bytes] behind the type's fingerprint
+  uint64_t utime = 0;
+  for (size_t i = kUtime; i < kUtime + 8 && i < bytes.size(); ++i) utime = (utime << 8U) | bytes[i];
+  if (isDate(utime) && isDate(message.log_time))
+    throw std::runtime_error(path + ": its log times are in us; MCAP counts them in ns");
+  if (isDate(utime / 1000) && isDate(message.log_time / 1000))
+    throw std::runtime_error(path + ": utime of " + message.topic + " is in ns; it counts us");
+}
+
+}  // namespace
 
 LogCounts writeLog(const std::string& path, LogWriter& log) {
   Reader reader(path);
@@ -22,14 +42,19 @@ LogCounts writeLog(const std::string& path, LogWriter& log) {
     }
     try {
       const std::vector<uint8_t> bytes = bytesOf(treadTypes(), *type, message.data);
+      requireTimeUnits(path, message, bytes);
       log.write(static_cast<int64_t>(message.log_time / 1000), message.topic, bytes.data(),
                 bytes.size());
       ++counts.taken;
     } catch (const std::invalid_argument& error) {
-      ++counts.left_out[message.topic + ": " + error.what()];
+      ++counts.lost[message.topic + ": " + error.what()];
     }
   }
   counts.problem = reader.problem();
+  counts.lost_bytes = reader.lostBytes();
+  counts.bytes = reader.size();
+  if (reader.lostMessages() > 0)
+    counts.lost["damaged"] = static_cast<int64_t>(reader.lostMessages());
   if (counts.taken == 0)
     throw std::runtime_error(path + ": holds no message of Tread; was it made by tread-export?" +
                              (counts.problem.empty() ? "" : " (" + counts.problem + ")"));

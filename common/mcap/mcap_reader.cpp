@@ -5,6 +5,7 @@
 #include <lz4frame.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
@@ -43,83 +44,115 @@ std::optional<std::string> unpackedAs(const std::string& packing, const std::str
   return out;
 }
 
-}  // namespace
-
-Reader::Reader(const std::string& path) : path_(path), file_(path, std::ios::binary) {
-  std::error_code error;
-  left_ = std::filesystem::file_size(path, error);
-  if (!file_ || error) throw std::runtime_error(path + ": cannot be opened");
-  char magic[kMagicBytes] = {};
-  if (!readFile(magic, kMagicBytes) || std::memcmp(magic, kMagic, kMagicBytes) != 0)
-    throw std::runtime_error(path + ": is no MCAP file");
-}
-
-bool Reader::next(Message& message) {
-  Record record;
-  while (!ended_ && readRecord(record))
-    if (take(record, message)) return true;
-  return false;
-}
-
-bool Reader::end(const std::string& what) {
-  ended_ = true;
-  if (!what.empty()) problem_ = path_ + ": " + what;
-  return false;
-}
-
-bool Reader::readFile(char* bytes, uint64_t size) {
-  if (size > left_) return false;
-  file_.read(bytes, static_cast<std::streamsize>(size));
-  left_ -= size;
-  return static_cast<bool>(file_);
-}
-
-bool Reader::readRecord(Record& record) {
-  const bool inside = chunk_at_ < chunk_.size();
-  std::string head(kRecordHead, '\0');
-  if (inside) {
-    if (chunk_.size() - chunk_at_ < kRecordHead) return end("a chunk ends within a record");
-    head = chunk_.substr(chunk_at_, kRecordHead);
-    chunk_at_ += kRecordHead;
-  } else if (!readFile(head.data(), kRecordHead)) {
-    return end("ends too early; is the file truncated?");
-  }
-  record.op = static_cast<Op>(head[0]);
-  const uint64_t size = FieldReader(head.data() + 1, 8).u64();
-  if (inside) {
-    if (chunk_.size() - chunk_at_ < size) return end("a chunk ends within a record");
-    record.content = chunk_.substr(chunk_at_, size);
-    chunk_at_ += size;
-    return true;
-  }
-  if (size > left_) return end("ends too early; is the file truncated?");
-  record.content.resize(size);
-  return readFile(record.content.data(), size) || end("cannot be read to its end");
-}
-
-void Reader::unpack(const std::string& content) {
+/// The records of a chunk; nothing where it is damaged or packed in a way that is not known.
+std::optional<std::string> unpacked(const std::string& content, std::string& packing) {
   FieldReader fields(content.data(), content.size());
   fields.u64();
   fields.u64();
   const uint64_t size = fields.u64();
   const uint32_t crc = fields.u32();
-  const std::string packing = fields.text();
+  packing = fields.text();
   const std::string packed = fields.bytes(fields.u64());
   std::optional<std::string> chunk;
   if (fields.ok() && size <= kLargestChunk) chunk = unpackedAs(packing, packed, size);
   // Zero: the writer told no checksum.
-  if (!chunk || (crc != 0 && crc32Of(*chunk) != crc)) {
-    if (problem_.empty())
-      problem_ = path_ + ": a chunk is damaged or packed in a way that is not known ('" + packing +
-                 "'); it is left out";
-    return;
-  }
-  chunk_ = std::move(*chunk);
-  chunk_at_ = 0;
+  if (chunk && crc != 0 && crc32Of(*chunk) != crc) chunk.reset();
+  return chunk;
 }
 
-bool Reader::take(const Record& record, Message& message) {
-  FieldReader fields(record.content.data(), record.content.size());
+/// The record within a chunk that begins there; false where it is not whole.
+bool recordIn(const std::string& chunk, size_t at, Op& op, const char*& content, size_t& size) {
+  if (chunk.size() < kRecordHead || at > chunk.size() - kRecordHead) return false;
+  op = static_cast<Op>(chunk[at]);
+  const uint64_t length = FieldReader(chunk.data() + at + 1, 8).u64();
+  if (length > chunk.size() - at - kRecordHead) return false;
+  content = chunk.data() + at + kRecordHead;
+  size = static_cast<size_t>(length);
+  return true;
+}
+
+}  // namespace
+
+Reader::Reader(const std::string& path) : path_(path), file_(path, std::ios::binary) {
+  std::error_code error;
+  size_ = std::filesystem::file_size(path, error);
+  if (!file_ || error) throw std::runtime_error(path + ": cannot be opened");
+  char magic[kMagicBytes] = {};
+  if (!readAt(0, magic, kMagicBytes) || std::memcmp(magic, kMagic, kMagicBytes) != 0)
+    throw std::runtime_error(path + ": is no MCAP file");
+  scan();
+  std::stable_sort(order_.begin(), order_.end(),
+                   [](const Place& a, const Place& b) { return a.time < b.time; });
+}
+
+void Reader::damaged(const std::string& what) {
+  if (problem_.empty()) problem_ = path_ + ": " + what;
+}
+
+bool Reader::readAt(uint64_t at, char* bytes, uint64_t size) {
+  if (at > size_ || size > size_ - at) return false;
+  file_.clear();
+  file_.seekg(static_cast<std::streamoff>(at));
+  file_.read(bytes, static_cast<std::streamsize>(size));
+  return static_cast<bool>(file_);
+}
+
+bool Reader::fileRecord(uint64_t at, Op& op, std::string& content) {
+  char head[kRecordHead];
+  if (!readAt(at, head, kRecordHead)) return false;
+  op = static_cast<Op>(head[0]);
+  const uint64_t size = FieldReader(head + 1, 8).u64();
+  if (size > size_ - at - kRecordHead) return false;
+  content.resize(size);
+  return readAt(at + kRecordHead, content.data(), size);
+}
+
+void Reader::scan() {
+  uint64_t at = kMagicBytes;
+  std::string content;
+  Op op{};
+  size_t messages = 0;
+  bool lost_chunk = false;
+  for (; fileRecord(at, op, content); at += kRecordHead + content.size()) {
+    if (op == Op::kDataEnd || op == Op::kFooter) return;
+    if (op == Op::kMessageIndex) {
+      FieldReader fields(content.data(), content.size());
+      fields.u16();
+      constexpr uint32_t kEntry = 16;  // [bytes]
+      if (lost_chunk) lost_messages_ += fields.u32() / kEntry;
+      continue;
+    }
+    messages = order_.size();
+    if (op == Op::kChunk)
+      scanChunk(at, content);
+    else
+      take({op, content.data(), content.size()}, 0, at);
+    lost_chunk = op == Op::kChunk && order_.size() == messages;
+  }
+  lost_bytes_ += size_ - at;
+  damaged("ends too early; is the file truncated?");
+}
+
+void Reader::scanChunk(uint64_t at, const std::string& content) {
+  std::string packing;
+  const auto chunk = unpacked(content, packing);
+  if (!chunk) {
+    lost_bytes_ += content.size();
+    return damaged("a chunk is damaged or packed in a way that is not known ('" + packing +
+                   "'); it is left out");
+  }
+  Record record;
+  size_t from = 0;
+  for (; recordIn(*chunk, from, record.op, record.content, record.size);
+       from += kRecordHead + record.size)
+    take(record, at, from);
+  if (from == chunk->size()) return;
+  ++lost_messages_;
+  damaged("a chunk ends within a record");
+}
+
+void Reader::take(const Record& record, uint64_t chunk, uint64_t at) {
+  FieldReader fields(record.content, record.size);
   if (record.op == Op::kSchema) {
     const uint16_t id = fields.u16();
     schemas_[id] = fields.text();
@@ -129,24 +162,58 @@ bool Reader::take(const Record& record, Message& message) {
     channel.schema = fields.u16();
     channel.topic = fields.text();
     channel.encoding = fields.text();
-  } else if (record.op == Op::kChunk) {
-    unpack(record.content);
-  } else if (record.op == Op::kDataEnd || record.op == Op::kFooter) {
-    end("");
   } else if (record.op == Op::kMessage) {
-    const auto channel = channels_.find(fields.u16());
+    const bool known = channels_.count(fields.u16()) != 0;
     fields.u32();
-    message.log_time = fields.u64();
+    const uint64_t time = fields.u64();
     fields.u64();
-    if (!fields.ok() || channel == channels_.end()) return false;
-    message.topic = channel->second.topic;
-    message.encoding = channel->second.encoding;
-    const auto schema = schemas_.find(channel->second.schema);
-    message.schema_name = schema == schemas_.end() ? "" : schema->second;
-    message.data = fields.rest();
-    return true;
+    if (fields.ok() && known) return order_.push_back({time, chunk, at});
+    ++lost_messages_;
+    damaged("a message of a channel that the file does not describe");
   }
-  return false;
+}
+
+const std::string& Reader::chunkAt(uint64_t at) {
+  const auto found = std::find_if(chunks_.begin(), chunks_.end(),
+                                  [&](const auto& chunk) { return chunk.first == at; });
+  if (found != chunks_.end()) {
+    std::rotate(chunks_.begin(), found, found + 1);
+    return chunks_.front().second;
+  }
+  std::string content, packing;
+  Op op{};
+  if (fileRecord(at, op, content)) content = unpacked(content, packing).value_or("");
+  cached_ += content.size();
+  chunks_.emplace_front(at, std::move(content));
+  for (; cached_ > kMostCached && chunks_.size() > 1; chunks_.pop_back())
+    cached_ -= chunks_.back().second.size();
+  return chunks_.front().second;
+}
+
+bool Reader::next(Message& message) {
+  if (next_ >= order_.size()) return false;
+  const Place& place = order_[next_++];
+  std::string content;
+  Record record;
+  if (place.chunk != 0) {
+    if (!recordIn(chunkAt(place.chunk), place.at, record.op, record.content, record.size))
+      return next(message);  // the file has changed under the reader
+  } else {
+    if (!fileRecord(place.at, record.op, content)) return next(message);
+    record.content = content.data();
+    record.size = content.size();
+  }
+  FieldReader fields(record.content, record.size);
+  const Channel& channel = channels_[fields.u16()];
+  fields.u32();
+  message.log_time = fields.u64();
+  fields.u64();
+  message.topic = channel.topic;
+  message.encoding = channel.encoding;
+  const auto schema = schemas_.find(channel.schema);
+  message.schema_name = schema == schemas_.end() ? "" : schema->second;
+  message.data = fields.rest();
+  return true;
 }
 
 }  // namespace tread::mcap

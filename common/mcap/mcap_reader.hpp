@@ -3,9 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <fstream>
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "common/mcap/mcap_records.hpp"
 
@@ -20,43 +23,68 @@ struct Message {
   std::string data;
 };
 
-/// Reads an MCAP file from front to back, packed by Zstandard, LZ4 or not at all.
-/** A damaged or truncated file gives what is whole, and says so. The summary is not needed. */
+/// Reads an MCAP file in the order of its log times, packed by Zstandard, LZ4 or not at all.
+/** A recorder writes chunks of its topics one after the other, so that the file's order is another
+ * one. All messages are found first (24 bytes each are kept); the chunks that are read together
+ * then stay in memory, up to kMostCached bytes or one chunk. A damaged or truncated file gives what
+ * is whole, and says so. The summary is not needed. */
 class Reader {
  public:
   /// Throws std::runtime_error with one clear line if it cannot be read or is no MCAP file.
   explicit Reader(const std::string& path);
 
-  /// The next message in the order of the file; false at its end.
+  /// The next message by time, of one time in the order of the file; false after the last one.
   bool next(Message& message);
   /// One clear line if the file is damaged; empty if it is whole.
   const std::string& problem() const { return problem_; }
+  /// Messages that the file holds and that cannot be read, as far as it tells.
+  size_t lostMessages() const { return lost_messages_; }
+  /// Bytes of the file that cannot be read, and all of it.
+  uint64_t lostBytes() const { return lost_bytes_; }
+  uint64_t size() const { return size_; }
+  /// Messages that can be read.
+  size_t messages() const { return order_.size(); }
+
+  static constexpr size_t kMostCached = size_t{256} << 20U;  ///< [bytes] unpacked
 
  private:
   struct Channel {
     uint16_t schema = 0;
     std::string topic, encoding;
   };
+  /// A record, and where its content stands.
   struct Record {
-    Op op;
-    std::string content;
+    Op op{};
+    const char* content = nullptr;
+    size_t size = 0;
+  };
+  struct Place {
+    uint64_t time;   ///< [ns]
+    uint64_t chunk;  ///< of the file [bytes]; 0 = in none
+    uint64_t at;     ///< of the chunk or of the file [bytes]
   };
 
-  bool readRecord(Record& record);
-  bool readFile(char* bytes, uint64_t size);
-  void unpack(const std::string& content);
-  bool take(const Record& record, Message& message);
-  bool end(const std::string& what);
+  void scan();
+  void scanChunk(uint64_t at, const std::string& content);
+  void take(const Record& record, uint64_t chunk, uint64_t at);
+  void damaged(const std::string& what);
+  bool readAt(uint64_t at, char* bytes, uint64_t size);
+  /// The record that begins there; false at the end of the file, or of what is whole.
+  bool fileRecord(uint64_t at, Op& op, std::string& content);
+  const std::string& chunkAt(uint64_t at);
 
   std::string path_;
   std::ifstream file_;
-  uint64_t left_ = 0;    ///< bytes of the file that were not read yet
-  std::string chunk_;    ///< unpacked records
-  size_t chunk_at_ = 0;  ///< next of them
+  uint64_t size_ = 0;
+  std::vector<Place> order_;
+  size_t next_ = 0;
+  std::deque<std::pair<uint64_t, std::string>> chunks_;  ///< the last used ones first
+  size_t cached_ = 0;                                    ///< [bytes]
   std::map<uint16_t, std::string> schemas_;
   std::map<uint16_t, Channel> channels_;
   std::string problem_;
-  bool ended_ = false;
+  size_t lost_messages_ = 0;
+  uint64_t lost_bytes_ = 0;
 };
 
 }  // namespace tread::mcap

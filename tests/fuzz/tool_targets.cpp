@@ -6,6 +6,8 @@
 
 #include "common/drive/drive_log.hpp"
 #include "common/link/link.hpp"
+#include "common/log/unpacked_file.hpp"
+#include "common/mcap/mcap_reader.hpp"
 #include "common/recordings/csv_table.hpp"
 #include "common/recordings/drive_recordings.hpp"
 #include "common/recordings/imported_log.hpp"
@@ -91,6 +93,66 @@ void mappedCsv(const uint8_t* bytes, size_t size) {
     session.pose_rate = 10.0;
     recordings::LogCounts counts;
     makeLog(drive, session, "csv", recordings::ExecutionLayout{}, counts);
+  });
+}
+
+/// An MCAP file, whatever its bytes.
+void mcapFile(const uint8_t* bytes, size_t size) {
+  const MemoryFile file(bytes, size);
+  refusing([&] {
+    mcap::Reader reader(file.path());
+    const size_t all = reader.messages();
+    mcap::Message message;
+    size_t count = 0;
+    for (uint64_t last = 0; reader.next(message); last = message.log_time, ++count)
+      require(message.log_time >= last);
+    require(count == all);
+  });
+}
+
+/// Messages in any order, in chunks or beside them: a byte's lowest bit ends a chunk, the rest and
+/// the next byte are a time.
+void mcapOrder(const uint8_t* bytes, size_t size) {
+  using mcap::FieldWriter;
+  using mcap::Op;
+  FieldWriter channel;
+  channel.u16(1).u16(0).text("INS").text("json").u32(0);
+  std::string file(mcap::kMagic, mcap::kMagicBytes);
+  file += mcap::recordOf(Op::kChannel, channel.bytes);
+  std::string chunk;
+  const auto end_chunk = [&](bool packed) {
+    FieldWriter content;
+    content.u64(0).u64(0).u64(chunk.size()).u32(mcap::crc32Of(chunk)).text("").u64(chunk.size());
+    file += packed ? mcap::recordOf(Op::kChunk, content.bytes + chunk) : chunk;
+    chunk.clear();
+  };
+  for (size_t i = 0; i + 1 < size; i += 2) {
+    FieldWriter message;
+    message.u16(1).u32(0).u64(static_cast<uint64_t>(bytes[i] / 2) * 256 + bytes[i + 1]).u64(0);
+    chunk += mcap::recordOf(Op::kMessage, message.bytes + std::to_string(i));
+    if (bytes[i] % 2 == 1) end_chunk(i % 3 != 0);
+  }
+  end_chunk(true);
+  file += mcap::recordOf(Op::kDataEnd, FieldWriter().u32(0).bytes);
+  const MemoryFile memory(reinterpret_cast<const uint8_t*>(file.data()), file.size());
+  mcap::Reader reader(memory.path());
+  mcap::Message message;
+  size_t count = 0;
+  std::pair<uint64_t, unsigned long> last{0, 0};
+  for (; reader.next(message); ++count) {
+    const std::pair now{message.log_time, std::stoul(message.data)};
+    require(now >= last);
+    last = now;
+  }
+  require(count == size / 2 && reader.problem().empty());
+}
+
+/// What gzip may have packed.
+void packedFile(const uint8_t* bytes, size_t size) {
+  const MemoryFile file(bytes, size);
+  refusing([&] {
+    const UnpackedFile unpacked(file.path());
+    require(unpacked.named("") == "");
   });
 }
 
@@ -331,6 +393,9 @@ void addToolTargets(std::map<std::string, Target>& all) {
       {"launch_file", launchFile},
       {"map_picture", mapPicture},
       {"mbot_log", mbotLog},
+      {"mcap", mcapFile},
+      {"mcap_order", mcapOrder},
+      {"packed", packedFile},
       {"primitives", primitives},
       {"queries", queries},
       {"recipe", recipe},

@@ -137,6 +137,7 @@ Drive toDrive(const DriveLog& messages) {
   Diagnostics notes(drive.name);
   for (const std::string& note : messages.notes) notes.note(note);
   checkPublishers(log, notes);
+  checkOffset(log, spans, notes);
   checkClocks(log, notes);
   checkChannels(log, spans, notes);
   takeOutBroken(drive, notes);

@@ -110,6 +110,9 @@ void checkChannels(const SortedLog& log, const std::vector<HeardSpan>& spans, Di
 /// Clocks that jump or go back, pauses over which the robot did not move among them.
 void checkClocks(const SortedLog& log, Diagnostics& notes);
 
+/// Commands and poses whose clocks differ, by how much.
+void checkOffset(const SortedLog& log, const std::vector<HeardSpan>& spans, Diagnostics& notes);
+
 /// Two robots (or two publishers of a channel) in one log.
 void checkPublishers(const SortedLog& log, Diagnostics& notes);
 

@@ -10,6 +10,7 @@
 #include "common/config/scalars.hpp"
 #include "common/geometry/degrees.hpp"
 #include "common/geometry/se3.hpp"
+#include "common/log/unpacked_file.hpp"
 #include "modules/ins_driver/core/ins_source.hpp"
 #include "tools/import/csv_check.hpp"
 
@@ -65,6 +66,14 @@ class Series {
   std::vector<Sample> samples_;
 };
 
+/// What a number that is too large for a vehicle may be instead.
+std::string unitHint(const std::string& quantity, double limit) {
+  if (quantity == "yaw_rate") return "; are these degrees per second?";
+  const bool side = quantity.rfind("left_", 0) == 0 || quantity.rfind("right_", 0) == 0;
+  if (side && limit == 1.0) return "; is this per cent, or a speed?";
+  return side && limit == 100.0 ? "; are these mm/s, or revolutions a minute?" : "";
+}
+
 /// All quantities of a recording.
 class CsvContent {
  public:
@@ -102,13 +111,27 @@ class CsvContent {
   };
 
   void read(const std::string& file, const CsvSource& source) {
-    const CsvTable table(file, source.layout);
+    const UnpackedFile unpacked(file);
+    try {
+      read(CsvTable(unpacked.path(), source.layout), file, source);
+    } catch (const RecordingError& error) {
+      throw RecordingError(unpacked.named(error.what()));
+    }
+    if (!unpacked.problem().empty()) result_.losses.push_back({unpacked.problem(), 0.0, 0.0, ""});
+  }
+
+  void read(const CsvTable& table, const std::string& file, const CsvSource& source) {
     for (const auto& [quantity, column] : source.columns) files_[quantity] = file;
     for (const std::string& words : table.units())
       ++result_.left_out[file + ": units below the header: " + words];
     checkTable(table, source);
     std::vector<Row> rows = rowsOf(table, source);
-    sortByTime(rows, "rows of " + file, result_);
+    const auto same = [&](const Row& a, const Row& b) {
+      return std::all_of(source.columns.begin(), source.columns.end(), [&](const auto& column) {
+        return table.text(a.row, column.second.column) == table.text(b.row, column.second.column);
+      });
+    };
+    sortByTime(rows, "rows of " + file, same, result_);
     for (const Row& row : rows)
       for (const auto& [quantity, column] : source.columns)
         take(table, row.row, row.time, quantity, column, file);
@@ -147,7 +170,7 @@ class CsvContent {
 
   static double timeOf(const CsvTable& table, size_t row, const CsvSource& source) {
     if (source.time.empty()) return static_cast<double>(row) / source.rate;
-    return source.time_unit * table.number(row, source.time);
+    return source.time_unit * table.number(row, source.time) + source.time_offset;
   }
 
   void take(const CsvTable& table, size_t row, double time, const std::string& quantity,
@@ -160,7 +183,7 @@ class CsvContent {
     if (std::abs(value) > column.limit)
       throw table.error(row, "column " + column.column + " (" + quantity + ") is " +
                                  formatNumber(value) + " after unit and scale; allowed is up to " +
-                                 formatNumber(column.limit));
+                                 formatNumber(column.limit) + unitHint(quantity, column.limit));
     series_[quantity].add(time, value, table.line(row));
   }
 

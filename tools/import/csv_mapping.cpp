@@ -167,6 +167,7 @@ class MappingReader {
     time.choice("unit", unit, namesOf(kUnits));
     source.time_unit = factorOf(kUnits, unit);
     source.other_time_units = otherUnits(kUnits, unit);
+    time.number("offset", source.time_offset, {-1e10, 1e10}, "s");
     time.number("rate", source.rate, {0.01, 10'000.0}, "Hz");
     if (source.time.empty() == (source.rate == 0.0))
       throw time.error("column", "a time is either a column with its unit, or a rate; give one");

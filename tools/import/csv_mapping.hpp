@@ -30,6 +30,7 @@ struct CsvSource {
   std::string time;        ///< column of the time; empty: rows come at `rate`
   double time_unit = 1.0;  ///< [s]
   std::vector<std::string> other_time_units;
+  double time_offset = 0.0;                  ///< [s] added, where its clock is another one
   double rate = 0.0;                         ///< [Hz]
   std::map<std::string, CsvColumn> columns;  ///< by quantity, see csv_mapping.cpp
 };

@@ -46,26 +46,38 @@ inline constexpr double kCommandAge = 0.5;
 /// Messages and rows may overtake each other by so much [s].
 inline constexpr double kOvertaking = 0.2;
 
-/// Sorts what came by its time. What is older than its time allows belongs to a clock that went
-/// back, what has the time of the one before repeats it: both are taken out and counted as lost.
-template <class Item>
-void sortByTime(std::vector<Item>& items, const std::string& unit, ForeignDrive& result) {
-  const size_t all = items.size();
+/// Sorts what came by its time, each of which comes once.
+/** What is older than overtaking allows belongs to a clock that went back; what has the time of the
+ * one before and says something else contradicts it: both are lost. What repeats it is not. */
+template <class Item, class Same>
+void sortByTime(std::vector<Item>& items, const std::string& unit, const Same& same,
+                ForeignDrive& result) {
   double newest = -1e300;
   std::vector<Item> kept;
+  size_t back = 0, other = 0;
   for (Item& item : items) {
-    const bool back = item.time < newest - kOvertaking;
+    if (item.time < newest - kOvertaking) {
+      ++back;
+      continue;
+    }
     newest = std::max(newest, item.time);
-    if (!back) kept.push_back(std::move(item));
+    kept.push_back(std::move(item));
   }
-  result.lose("their clock goes back", all - kept.size(), all, unit);
   std::stable_sort(kept.begin(), kept.end(),
                    [](const Item& a, const Item& b) { return a.time < b.time; });
-  const auto last = std::unique(kept.begin(), kept.end(),
-                                [](const Item& a, const Item& b) { return a.time == b.time; });
-  result.lose("the same time as the one before", size_t(kept.end() - last), all, unit);
-  kept.erase(last, kept.end());
-  items = std::move(kept);
+  const size_t all = items.size();
+  items.clear();
+  for (Item& item : kept) {
+    const bool again = !items.empty() && items.back().time == item.time;
+    if (!again)
+      items.push_back(std::move(item));
+    else if (same(items.back(), item))
+      ++result.left_out[unit + " that come twice"];
+    else
+      ++other;
+  }
+  result.lose("their clock goes back", back, all, unit);
+  result.lose("the same time as the one before", other, all, unit);
 }
 
 /// The usual time between two of these times, which are in order; 0 of fewer than two.

@@ -195,7 +195,9 @@ class LogContent {
 };
 
 void takePoses(const std::string& path, std::vector<Timed> poses, ForeignDrive& result) {
-  sortByTime(poses, "poses", result);
+  sortByTime(
+      poses, "poses", [](const Timed& a, const Timed& b) { return a.content == b.content; },
+      result);
   std::vector<recordings::Fix>& fixes = result.drive.fixes;
   for (const Timed& pose : poses) {
     const double x = of(pose, "x");
@@ -212,7 +214,9 @@ void takePoses(const std::string& path, std::vector<Timed> poses, ForeignDrive& 
 }
 
 void takeCommands(std::vector<DriveSample> commands, ForeignDrive& result) {
-  sortByTime(commands, "commands", result);
+  sortByTime(
+      commands, "commands",
+      [](const DriveSample& a, const DriveSample& b) { return a.command == b.command; }, result);
   std::vector<double> times;
   for (const DriveSample& command : commands) times.push_back(command.time);
   const double period = usualPeriod(times);

@@ -11,6 +11,7 @@
 #include "common/config/command_line.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/config/outputs.hpp"
+#include "common/log/unpacked_file.hpp"
 #include "common/mcap/mcap_log.hpp"
 #include "common/recordings/csv_table.hpp"
 #include "common/recordings/imported_log.hpp"
@@ -32,6 +33,7 @@ struct Arguments {
   std::vector<std::string> overrides;
   bool decimal_comma = false;
   std::string csv;
+  std::string input;  ///< `csv`, or what was packed in it
   std::string log;
   bool keep_lag = false;
   bool allow_loss = false;
@@ -41,9 +43,9 @@ struct Arguments {
 };
 
 RecordedDrive read(const Arguments& arguments, const Session& session) {
-  if (arguments.format == "steps") return readSteps(arguments.csv, session, arguments.gyro);
-  if (arguments.format == "aligned") return readAligned(arguments.csv, session);
-  return readContinuous(arguments.csv, session, arguments.gyro);
+  if (arguments.format == "steps") return readSteps(arguments.input, session, arguments.gyro);
+  if (arguments.format == "aligned") return readAligned(arguments.input, session);
+  return readContinuous(arguments.input, session, arguments.gyro);
 }
 
 /// Of robots that the project's own recordings are not of.
@@ -61,10 +63,14 @@ void checkFormat(const Arguments& arguments) {
     throw RecordingError("--keep-lag and --gyro all: not in aligned files; take --format steps");
 }
 
+/// Of a recording by that of its file or folder.
+std::string nameOf(std::filesystem::path path) {
+  if (!path.has_filename()) path = path.parent_path();
+  return (path.extension() == ".gz" ? path.stem() : path).stem().string();
+}
+
 Session sessionOf(const Arguments& arguments) {
-  const std::string name = arguments.session.empty()
-                               ? std::filesystem::path(arguments.csv).stem().string()
-                               : arguments.session;
+  const std::string name = arguments.session.empty() ? nameOf(arguments.csv) : arguments.session;
   Session session = readSession(arguments.sessions, name);
   session.lag_kept = arguments.keep_lag;
   if (arguments.keep_lag) session.pose_lag = 0.0;
@@ -82,8 +88,7 @@ void checkLength(double length) {
 /// What a foreign recording does not say about its session.
 Session foreignSession(const Arguments& arguments, const RecordedDrive& recording) {
   Session session;
-  std::filesystem::path path(arguments.csv);
-  session.name = (path.has_filename() ? path : path.parent_path()).stem().string();
+  session.name = nameOf(arguments.csv);
   session.robot = "robot of a foreign log";
   session.surface = "unknown";
   session.baseline = arguments.robot.baseline;
@@ -157,7 +162,7 @@ void tellHoles(const std::vector<CommandHole>& holes) {
 Reading readForeign(const Arguments& arguments, Session& session) {
   if (arguments.format != "csv") {
     import::ForeignDrive foreign = arguments.format == "lcm"
-                                       ? import::readForeignLog(arguments.csv, arguments.robot)
+                                       ? import::readForeignLog(arguments.input, arguments.robot)
                                        : import::readRawlog(arguments.csv);
     session = foreignSession(arguments, foreign.drive);
     return taken(std::move(foreign));
@@ -175,18 +180,27 @@ Reading readForeign(const Arguments& arguments, Session& session) {
 }
 
 /// Messages as they are, not a drive made of samples.
-void takeMcap(const Arguments& arguments) {
+int takeMcap(const Arguments& arguments) {
   LogWriter writer(arguments.log);
-  const mcap::LogCounts counts = mcap::writeLog(arguments.csv, writer);
+  const mcap::LogCounts counts = mcap::writeLog(arguments.input, writer);
   writer.close();
   for (const auto& [what, count] : counts.left_out)
     std::printf("left out: %lld of %s\n", static_cast<long long>(count), what.c_str());
   if (!counts.problem.empty()) std::printf("%s\n", counts.problem.c_str());
   std::printf("%s: %lld messages\n", arguments.log.c_str(), static_cast<long long>(counts.taken));
+  std::vector<import::Loss> losses;
+  auto all = static_cast<double>(counts.taken);
+  for (const auto& [what, count] : counts.lost) all += static_cast<double>(count);
+  for (const auto& [what, count] : counts.lost)
+    losses.push_back({what, static_cast<double>(count), all, "messages"});
+  if (counts.lost_bytes > 0)
+    losses.push_back({"damaged", static_cast<double>(counts.lost_bytes),
+                      static_cast<double>(counts.bytes), "bytes"});
+  return verdictOn(losses, arguments);
 }
 
-int run(const Arguments& arguments) {
-  if (arguments.format == "mcap") return takeMcap(arguments), 0;
+int importFrom(const Arguments& arguments) {
+  if (arguments.format == "mcap") return takeMcap(arguments);
   checkLength(arguments.layout.length);
   checkFormat(arguments);
   Session session;
@@ -213,6 +227,24 @@ int run(const Arguments& arguments) {
   const bool both = counts.motor > 0 && counts.ins > 0;
   const int motion = both ? verdictOnMotion(events, arguments) : 0;
   return std::max(motion, verdictOn(reading.losses, arguments));
+}
+
+/// Tables of a mapping are unpacked one by one, rawlogs by MRPT.
+int run(Arguments arguments) {
+  arguments.input = arguments.csv;
+  const std::string packing = packingOf(arguments.csv);
+  if (packing.empty() || arguments.format == "csv" ||
+      (arguments.format == "rawlog" && packing == "gzip"))
+    return importFrom(arguments);
+  const UnpackedFile file(arguments.csv);
+  arguments.input = file.path();
+  try {
+    const int verdict = importFrom(arguments);
+    if (file.problem().empty()) return verdict;
+    return std::max(verdict, verdictOn({{file.problem(), 0.0, 0.0, ""}}, arguments));
+  } catch (const std::exception& error) {
+    throw RecordingError(file.named(error.what()));
+  }
 }
 
 int parseAndRun(int argc, char** argv) {

@@ -54,7 +54,13 @@ class RawlogDrive {
     size_t all = drive.fixes.size() + drive.scans.size();
     for (const auto& [what, count] : lost_) all += count;
     for (const auto& [what, count] : lost_) result_.lose(what, count, all, "poses and scans");
-    sortByTime(drive.fixes, "poses", result_);
+    sortByTime(
+        drive.fixes, "poses",
+        [](const auto& a, const auto& b) {
+          return distanceBetween(a.T_map_body, b.T_map_body) == 0.0 &&
+                 a.T_map_body.yaw == b.T_map_body.yaw;
+        },
+        result_);
     if (!drive.fixes.empty()) drive.fixes.front().new_track = true;
     std::stable_sort(drive.scans.begin(), drive.scans.end(),
                      [](const auto& a, const auto& b) { return a.time < b.time; });

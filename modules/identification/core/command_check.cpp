@@ -3,9 +3,9 @@
 #include "modules/identification/core/command_check.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <complex>
+
+#include "modules/identification/core/heading_fit.hpp"
 
 namespace tread::gap {
 namespace {
@@ -13,65 +13,8 @@ namespace {
 constexpr double kPlausibleSpeed = 15.0;  // [m/s] of a ground vehicle
 constexpr double kPlausibleTurn = 10.0;   // [rad/s]
 constexpr double kNearlyAll = 0.98;       // of the measurements: the rest may be jumps
-constexpr double kDegree = kPi / 180.0;   // [rad]
 constexpr double kClearer = 0.25;         // by which it is larger than that of the other sign
 constexpr double kWeak = 0.4;
-constexpr double kLeastWay = 0.1;     // [m] whose direction is more than noise
-constexpr double kTogether = 0.85;    // coherence of way and heading that belong together
-constexpr double kNotTogether = 0.6;  // and of those that do not
-constexpr size_t kFewestLegs = 20;
-
-double course(const PoseIncrement& increment) {
-  return increment.from.yaw + std::atan2(increment.T_begin_end.y, increment.T_begin_end.x);
-}
-
-double way(const PoseIncrement& increment) {
-  return std::hypot(increment.T_begin_end.x, increment.T_begin_end.y);
-}
-
-/// The heading in the middle of an increment, times a factor.
-double heading(const PoseIncrement& increment, double factor) {
-  return factor * (increment.from.yaw + 0.5 * increment.T_begin_end.yaw);
-}
-
-/// How well the way goes along a heading that is read with a factor.
-struct HeadingFit {
-  double factor = 1.0;
-  double coherence = 0.0;  ///< 0..1
-  double offset = 0.0;     ///< [rad] of the way from the heading, within a quarter turn
-  size_t legs = 0;
-};
-
-HeadingFit fitHeading(const std::vector<PoseIncrement>& increments, double factor) {
-  std::complex<double> sum;
-  double weight = 0.0;
-  HeadingFit fit;
-  fit.factor = factor;
-  for (const PoseIncrement& increment : increments) {
-    const double turn = std::abs(factor * increment.T_begin_end.yaw);
-    const double length = way(increment);
-    if (!(length > kLeastWay) || !(length < 1e3) || turn > kGentle || length < kLever * turn)
-      continue;
-    sum += length * std::polar(1.0, 2.0 * (course(increment) - heading(increment, factor)));
-    weight += length;
-    ++fit.legs;
-  }
-  if (fit.legs < kFewestLegs) return fit;
-  fit.coherence = std::abs(sum) / weight;
-  fit.offset = 0.5 * std::arg(sum);
-  return fit;
-}
-
-/// The heading as it agrees with the way driven; as it is where nothing else clearly does.
-HeadingFit bestHeading(const std::vector<PoseIncrement>& increments) {
-  const HeadingFit itself = fitHeading(increments, 1.0);
-  HeadingFit best = itself;
-  for (const double factor : {-1.0, kDegree, 1.0 / kDegree}) {
-    const HeadingFit fit = fitHeading(increments, factor);
-    if (fit.coherence > std::max(kTogether, best.coherence)) best = fit;
-  }
-  return itself.coherence < kNotTogether && best.coherence > kTogether ? best : itself;
-}
 
 /// The largest of the values but a few; 0 of none.
 double nearlyLargest(std::vector<double> values) {
@@ -134,11 +77,25 @@ class Checker {
   /// The clearest correlation at a lag that a vehicle may have; 0 where too little is known.
   double correlation(const LagTable& table, double sign) const {
     const auto match = table.best(0, increments_.size(), sign, -kEarlier, kLongestLag);
-    return match ? match->correlation : 0.0;
+    return match && match->rows >= kFewestLegs ? match->correlation : 0.0;
+  }
+  /// Whether other lags explain clearly less.
+  bool tellsLag(const LagTable& table, const LagMatch& match) const {
+    constexpr double kLess = 0.1;  // of correlation^2
+    double least = match.correlation;
+    for (const double lag : lags_)
+      if (const auto other = table.near(lag, 0, increments_.size()))
+        least = std::min(least, std::max(0.0, other->correlation));
+    return match.correlation * match.correlation - least * least > kLess;
   }
   /// +1, -1: the rate follows the command, or does the opposite; 0 = not clear.
+  /** What moves to the side as much as along is no vehicle of two sides: its turns are little of
+   * what is commanded. */
   int follows(const LagTable& table) const {
-    if (goesAgainst(table, -kEarlier, kLongestLag)) return -1;
+    const double against = -correlation(table, -1.0);
+    const bool sideways = heading_.legs >= kFewestLegs && heading_.coherence < kNotTogether;
+    if (goesAgainst(table, -kEarlier, kLongestLag))
+      return sideways && against < kVeryClear ? 0 : -1;
     return correlation(table, 1.0) > kClear ? 1 : 0;
   }
 
@@ -157,10 +114,6 @@ class Checker {
                  : increment.v());
     return rates;
   }
-  static bool isTurned(const HeadingFit& fit) {
-    return fit.coherence > kTogether && std::abs(fit.offset) > kPi / 4.0;
-  }
-
   void checkPlausible() {
     std::vector<double> way_rates, gyro;
     for (const PoseIncrement& increment : increments_)
@@ -185,6 +138,9 @@ class Checker {
   void checkHeading() {
     heading_ = bestHeading(increments_);
     turn_factor_ = heading_.factor;
+    // Doubled angles do not tell left from right: where it drives when told forward does.
+    if (isTurned(heading_) && follows(table(speeds(heading_), driveRate())) < 0)
+      heading_.offset = wrapAngle(heading_.offset + kPi);
     if (heading_.factor == kDegree)
       problem("the way goes along the heading if that is in degrees; as radians it does not");
     else if (heading_.factor == 1.0 / kDegree)
@@ -226,28 +182,31 @@ class Checker {
   }
 
   void describe() {
-    speed_ = table(speeds(heading_), driveRate()).best(0, increments_.size());
-    turn_ = table(turns(turn_factor_), turnRate()).best(0, increments_.size());
+    const LagTable speed = table(speeds(heading_), driveRate());
+    const LagTable turn = table(turns(turn_factor_), turnRate());
+    speed_ = speed.best(0, increments_.size(), 1.0, -kEarlier, kLongestLag);
+    turn_ = turn.best(0, increments_.size(), 1.0, -kEarlier, kLongestLag);
     const bool speed_commands = drive_.kind == CommandKind::kTrackSpeed;
     const double gauge = drive_.imported ? drive_.imported->baseline : 0.0;
     gauge_ = speed_commands && gauge > 0.0 ? gauge : 0.0;
-    const auto line = [&](const char* what, const std::optional<LagMatch>& match,
-                          const std::string& gain) {
+    const auto line = [&](const char* what, const LagTable& of,
+                          const std::optional<LagMatch>& match, const std::string& gain) {
       if (!match)
         return result_.lines.push_back(std::string(what) +
                                        ": too little changes to be "
                                        "compared with the commands");
-      result_.lines.push_back(std::string(what) + ": " + gain + ", correlation " +
-                              digits(match->correlation, 2) + " over " +
-                              std::to_string(match->rows) + " intervals, " + digits(match->lag, 2) +
-                              " s after the commands");
+      result_.lines.push_back(
+          std::string(what) + ": " + gain + ", correlation " + digits(match->correlation, 2) +
+          " over " + std::to_string(match->rows) + " intervals, " +
+          (tellsLag(of, *match) ? digits(match->lag, 2) + " s after the commands"
+                                : "commands too steady to see the delay"));
     };
     const double v = speed_ ? speed_->slope : 0.0;
     const double w = turn_ ? turn_->slope : 0.0;
-    line("speed", speed_,
+    line("speed", speed, speed_,
          speed_commands ? "measured is " + digits(v, 3) + " of the commanded"
                         : digits(v, 2) + " m/s at full power");
-    line("turn", turn_,
+    line("turn", turn, turn_,
          gauge_ > 0.0     ? "measured is " + digits(w * gauge_, 3) + " of the commanded"
          : speed_commands ? digits(w, 3) + " rad/s for each m/s of right over left"
                           : digits(2.0 * w, 2) + " rad/s at full power of both against each other");
@@ -298,12 +257,14 @@ class Checker {
                  const LagTable& speed, const LagTable& turn) {
     const Rate sides[] = {[](const TrackCommand& c) { return c.left; },
                           [](const TrackCommand& c) { return c.right; }};
+    constexpr double kBodyClear = 0.9, kBodyClearer = 0.4;
+    if (differentCommands(drive_) < 10) return;
     const double as_sides = correlation(speed, 1.0) + correlation(turn, 1.0);
     for (const int speed_side : {0, 1}) {
       const double along = correlation(table(v, sides[speed_side]), 1.0);
       const LagTable by_side = table(omega, sides[1 - speed_side]);
       const double about = std::max(correlation(by_side, 1.0), -correlation(by_side, -1.0));
-      if (along > kVeryClear && about > kVeryClear && along + about > as_sides + kClearer)
+      if (along > kBodyClear && about > kBodyClear && along + about > as_sides + kBodyClearer)
         return problem(std::string("speed goes with the ") + (speed_side == 0 ? "left" : "right") +
                        " command alone and turn with the other one alone: these are speed and turn "
                        "of the body, not commands of two sides");

@@ -136,6 +136,9 @@ inline std::string digits(double value, int decimals = 1) {
   return zero && text[0] == '-' ? text.substr(1) : text;
 }
 
+/// Different commands, to a hundredth of the largest one.
+size_t differentCommands(const Drive& drive);
+
 /// Whether a drive's measurements belong together, before anything is fitted:
 /// motion against commands (command_check.hpp; order in time, clocks that jump or drift), gyro
 /// against heading (sign, scale, offset of the clocks), what changes on the way (frozen, another

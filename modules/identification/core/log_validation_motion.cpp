@@ -123,7 +123,20 @@ size_t reversals(const Drive& drive) {
   return count;
 }
 
-/// Different commands, to a hundredth of the largest one.
+std::string slopes(const Drive& drive) {
+  std::vector<double> pitch;
+  std::vector<double> roll;
+  for (const Segment& segment : drive.segments)
+    for (const InsSample& sample : segment.ins) {
+      if (std::isfinite(sample.pitch)) pitch.push_back(sample.pitch);
+      if (std::isfinite(sample.roll)) roll.push_back(sample.roll);
+    }
+  if (pitch.empty() || roll.empty()) return "slope not measured";
+  return "pitch " + range(pitch, "rad") + ", roll " + range(roll, "rad");
+}
+
+}  // namespace
+
 size_t differentCommands(const Drive& drive) {
   double largest = 0.0;
   for (const Segment& segment : drive.segments)
@@ -138,20 +151,6 @@ size_t differentCommands(const Drive& drive) {
   std::sort(all.begin(), all.end());
   return static_cast<size_t>(std::unique(all.begin(), all.end()) - all.begin());
 }
-
-std::string slopes(const Drive& drive) {
-  std::vector<double> pitch;
-  std::vector<double> roll;
-  for (const Segment& segment : drive.segments)
-    for (const InsSample& sample : segment.ins) {
-      if (std::isfinite(sample.pitch)) pitch.push_back(sample.pitch);
-      if (std::isfinite(sample.roll)) roll.push_back(sample.roll);
-    }
-  if (pitch.empty() || roll.empty()) return "slope not measured";
-  return "pitch " + range(pitch, "rad") + ", roll " + range(roll, "rad");
-}
-
-}  // namespace
 
 void checkPoses(const Drive& drive, const std::vector<PoseIncrement>& increments,
                 Diagnostics& notes) {

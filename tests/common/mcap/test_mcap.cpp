@@ -73,6 +73,60 @@ TEST_CASE("an MCAP file gives back what was written, over chunks, with topics an
   REQUIRE(file.bytes().size() < 300'000);  // 3 MB before packing
 }
 
+TEST_CASE("messages in another order than their times come by time, within and over chunks") {
+  const McapFile file("order");
+  {
+    mcap::Writer writer(file.path());
+    const uint16_t channel = writer.addChannel(0, "INS", "json");
+    for (int i = 0; i < 3000; ++i) {
+      // Each topic's chunk is written for itself: the second half of the file is between the first.
+      const int at = i < 1500 ? 2 * i : 2 * (i - 1500) + 1;
+      writer.write(channel, static_cast<uint64_t>(at), 5,
+                   std::to_string(at) + std::string(1000, 'x'));
+    }
+    writer.close();
+  }
+  std::string problem;
+  const auto messages = read(file.path(), problem);
+  REQUIRE(problem.empty());
+  REQUIRE(messages.size() == 3000);
+  for (size_t i = 0; i < 3000; ++i) {
+    REQUIRE(messages[i].log_time == i);
+    REQUIRE(messages[i].data.rfind(std::to_string(i) + "x", 0) == 0);
+  }
+}
+
+TEST_CASE("messages of one time keep the order of the file") {
+  const McapFile file("ties");
+  {
+    mcap::Writer writer(file.path());
+    const uint16_t channel = writer.addChannel(0, "INS", "json");
+    for (int i = 0; i < 100; ++i)
+      writer.write(channel, static_cast<uint64_t>(7 - i / 25), 5, std::to_string(i));
+    writer.close();
+  }
+  std::string problem;
+  const auto messages = read(file.path(), problem);
+  REQUIRE(messages.size() == 100);
+  CHECK(messages.front().data == "75");
+  CHECK(messages[1].data == "76");
+  CHECK(messages.back().data == "24");
+}
+
+TEST_CASE("messages of a damaged chunk are counted by the index behind it") {
+  const McapFile file("count");
+  writeDrive(file.path(), 3000);
+  std::string bytes = file.bytes();
+  constexpr size_t kInFirstChunk = 300;
+  bytes[kInFirstChunk] = static_cast<char>(bytes[kInFirstChunk] ^ 0x55);
+  file.write(bytes);
+  mcap::Reader reader(file.path());
+  REQUIRE_FALSE(reader.problem().empty());
+  CHECK(reader.lostMessages() > 0);
+  CHECK(reader.messages() + reader.lostMessages() == 3000);
+  CHECK(reader.lostBytes() > 0);
+}
+
 TEST_CASE("a truncated MCAP file gives its whole chunks, and says so") {
   const McapFile file("cut");
   writeDrive(file.path(), 3000);

@@ -123,6 +123,7 @@ TEST_CASE("fields that are empty or nan are no measurements, but the rest of the
   CHECK(read.losses[0].lost == 1.0);
   CHECK(read.losses[0].of == 5.0);
   CHECK(read.losses[0].what == "the same time as the one before");
+  CHECK(readText("t,x,y,yaw\n0,1,2,0\n100,1,2,0\n100,1,2,0\n", kPoses).losses.empty());
 }
 
 TEST_CASE("a spreadsheet's table gives the drive that the plain one gives") {
@@ -219,7 +220,8 @@ TEST_CASE("refusals name file, line and column") {
   CHECK(complaint("t,x,y,yaw\n0,1,2\n", kPoses) ==
         "drive.csv:2: 3 columns, the header has 4; is the file truncated?");
   CHECK(complaint("l,r\n0.5,0.5\n1.2,0.5\n", kCommands) ==
-        "drive.csv:3: column l (left_command) is 1.2 after unit and scale; allowed is up to 1");
+        "drive.csv:3: column l (left_command) is 1.2 after unit and scale; allowed is up to 1; is "
+        "this per cent, or a speed?");
   CHECK(complaint("t,x,y,yaw\n0,1,2,0\n1,2e5,0,0\n", "origin: {first_fix: true}\n" + kPoses) ==
         "drive.csv:3: column of x: the position is 199999 m from the origin, beyond 100 km; give "
         "another origin in the mapping");

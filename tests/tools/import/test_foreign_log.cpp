@@ -190,14 +190,15 @@ TEST_CASE("bytes of a foreign log that are damaged are counted with the seconds 
 TEST_CASE("poses out of order are sorted, repeated ones and a clock that goes back are counted") {
   ForeignLog log;
   for (const int i : {0, 1, 3, 2, 2, 4, 5, 6, 7, 8}) log.pose(kBegin + 50'000 * i, "POSE", 0.1 * i);
+  log.pose(kBegin + 400'000, "POSE", 0.9);
   log.pose(kBegin, "POSE", 7.0);
   const ForeignDrive foreign = log.read();
   REQUIRE(foreign.drive.fixes.size() == 9);
   for (size_t i = 0; i < 9; ++i)
     CHECK(foreign.drive.fixes[i].T_map_body.x == Approx(0.1 * double(i)));
   REQUIRE(foreign.losses.size() == 2);
-  CHECK(lineOf(foreign.losses[0]) == "1 of 11 poses (9.1 %): their clock goes back");
-  CHECK(lineOf(foreign.losses[1]) == "1 of 11 poses (9.1 %): the same time as the one before");
+  CHECK(lineOf(foreign.losses[0]) == "1 of 12 poses (8.3 %): their clock goes back");
+  CHECK(lineOf(foreign.losses[1]) == "1 of 12 poses (8.3 %): the same time as the one before");
 }
 
 TEST_CASE("a foreign log whose messages count nanoseconds is named") {

@@ -302,7 +302,8 @@ TEST_CASE("what is lost is told, and more than a hundredth of it is exit status 
                   "right_command: {column: r}}}]\n");
   const auto exitOf = [&](int twice, const std::string& more) {
     std::string csv = "t,l,r\n";
-    for (int i = 0; i < 500; ++i) csv += line("%.2f,0.5,0.5\n", 0.05 * (i < twice ? 0 : i));
+    for (int i = 0; i < 500; ++i)
+      csv += line("%.2f,%.3f,0.5\n", 0.05 * (i < twice ? 0 : i), 0.001 * i);
     const std::string command = std::string(TREAD_BIN_DIR) + "/tread-import --format csv " + more +
                                 " --mapping " + mapping + " " + folder.file("drive.csv", csv) +
                                 " -o " + folder.file("drive.lcmlog") + " > " + said + " 2>&1";
@@ -322,6 +323,33 @@ TEST_CASE("what is lost is told, and more than a hundredth of it is exit status 
                           Catch::Contains("more than 1 % was lost") &&
                           Catch::Contains("no commands: 1 times, 2.5 s in all"));
   CHECK(exitOf(50, "--allow-loss") == 0);
+}
+
+TEST_CASE("packed recordings are read, and those of other packers are named") {
+  const Folder folder("import_packed");
+  const std::string said = folder.file("said.txt");
+  const std::string mapping =
+      folder.file("map.yaml",
+                  "tables: [{time: {column: t}, columns: {left_command: {column: l}, "
+                  "right_command: {column: r}}}]\n");
+  std::string csv = "t,l,r\n";
+  for (int i = 0; i < 100; ++i) csv += line("%.2f,0.5,0.5\n", 0.05 * i);
+  const std::string path = folder.file("drive.csv", csv);
+  const auto exitOf = [&](const std::string& pack, const std::string& name) {
+    const std::string command = pack + " " + path + " && " + TREAD_BIN_DIR +
+                                "/tread-import --format csv --mapping " + mapping + " " + name +
+                                " -o " + folder.file("drive.lcmlog") + " > " + said + " 2>&1";
+    return WEXITSTATUS(std::system(command.c_str()));
+  };
+  const auto words = [&] {
+    std::ifstream file(said);
+    return std::string{std::istreambuf_iterator<char>(file), {}};
+  };
+  CHECK(exitOf("gzip -kf", path + ".gz") == 0);
+  CHECK_THAT(words(), Catch::Contains(" 100 MOTOR"));
+  if (std::system("command -v xz > /dev/null") != 0) return;
+  CHECK(exitOf("xz -kf", path + ".xz") == 2);
+  CHECK_THAT(words(), Catch::Contains("is packed by xz; unpack it first: xz -dk " + path + ".xz"));
 }
 
 TEST_CASE("a session that is not known is refused, and so is a file that is not there") {
