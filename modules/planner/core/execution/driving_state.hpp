@@ -25,6 +25,7 @@ struct PlannerInputs : RobotReadings {
   std::optional<Goal> goal;
   std::string goal_lost;     ///< why the last goal has ended; empty if its operator took it back
   int64_t set_received = 0;  ///< [us] when a part of a pattern set came last; 0 = never
+  std::string map_fault;     ///< why mapping does not believe a range finder; empty if it does
 };
 
 /// How the planner stands to its goal; the numbers are those of plan_t.
