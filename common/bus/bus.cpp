@@ -197,6 +197,11 @@ void HealthReporter::setState(int16_t state, const std::string& reason) {
   reason_ = reason;
 }
 
+void HealthReporter::fail(const std::string& reason) {
+  if (state_ != health_t::HEALTH_FAILED) next_health_ = 0;
+  setState(health_t::HEALTH_FAILED, reason);
+}
+
 void HealthReporter::watchNamesakes() {
   bus_.overhear<health_t>(kHealth, [this](const health_t& health) {
     if (health.process != process_ || health.boot_id == boot_id_) return;

@@ -281,6 +281,8 @@ class HealthReporter {
 
   /// One clear line: what, where, what to do. Empty reason with kOk.
   void setState(int16_t state, const std::string& reason);
+  /// HEALTH_FAILED, of which others hear in the next step, not up to a second later.
+  void fail(const std::string& reason);
   /// Sets a named counter, for instance {"refused: wrong checksum", 3}.
   void setCounter(const std::string& name, int64_t value);
   void addToCounter(const std::string& name, int64_t increment = 1);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #include "common/geometry/se2.hpp"
 
@@ -88,6 +89,21 @@ void takePoints(const scan_t& message, std::vector<Beam>& beams) {
   }
 }
 
+/// Of all that a scan measures, bit for bit (FNV-1a).
+uint64_t fingerprint(const scan_t& message) {
+  uint64_t hash = 0xcbf29ce484222325ULL;
+  const auto add = [&hash](const std::vector<float>& values) {
+    for (const float value : values) {
+      uint32_t bits = 0;
+      std::memcpy(&bits, &value, sizeof bits);
+      hash = (hash ^ bits) * 0x100000001b3ULL;
+    }
+  };
+  add(message.ranges);
+  for (const std::vector<float>& point : message.points) add(point);
+  return hash;
+}
+
 }  // namespace
 
 std::optional<ReceivedScan> readScan(const scan_t& message, std::string& refusal) {
@@ -99,7 +115,8 @@ std::optional<ReceivedScan> readScan(const scan_t& message, std::string& refusal
     refusal = fault;
     return std::nullopt;
   }
-  ReceivedScan scan{message.utime, message.utime + message.duration, *T_body_sensor, {}};
+  ReceivedScan scan{
+      message.utime, message.utime + message.duration, *T_body_sensor, {}, fingerprint(message)};
   takeRanges(message, scan.beams);
   takePoints(message, scan.beams);
   return scan;

@@ -20,6 +20,7 @@ struct ReceivedScan {
   int64_t last = 0;   ///< [us] time of the last
   Eigen::Isometry3d T_body_sensor;
   std::vector<Beam> beams;
+  uint64_t fingerprint = 0;  ///< of all that was measured, bit for bit
 };
 
 /// Checks a SCAN message field by field and takes its beams; else nothing and the reason.

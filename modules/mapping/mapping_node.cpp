@@ -86,6 +86,8 @@ void readMap(ConfigReader& reader, OccupancyMapConfig& map) {
 constexpr int64_t kTrackSpan = 6'000'000;
 /// Scans that wait for poses at the same time; more means that the poses do not come.
 constexpr size_t kMostWaiting = 20;
+/// Range finders that a robot may have.
+constexpr size_t kMostFinders = 8;
 /// A message stamped further in the future than this comes from another clock [us].
 constexpr int64_t kFarthestAhead = 200'000;
 /// LCM loses what a publisher sends above 100 kB in 20 ms, which is this node's period.
@@ -179,6 +181,7 @@ void MappingNode::hear(const ins_t& message) {
 void MappingNode::beginNewMap() {
   health_.addToCounter("new maps: INS jumped");
   map_ = std::make_unique<OccupancyMap>(config_.map);
+  monitors_.clear();
   turns_.clear();
 }
 
@@ -223,10 +226,37 @@ void MappingNode::insert(const ReceivedScan& scan) {
   const auto first = track_.at(scan.first, max_gap);
   const auto last = track_.at(scan.last, max_gap);
   if (!first || !last) return refuse("gap in INS at its time");
-  const auto refusal = map_->insert({scan.last, *first, *last, scan.T_body_sensor, scan.beams});
+  const Scan placed{scan.last, *first, *last, scan.T_body_sensor, scan.beams};
+  ScanMonitor& monitor = monitorOf(scan.T_body_sensor);
+  const ScanDefect defect = monitor.update(
+      {placed, scan.fingerprint}, [&](int64_t utime) { return track_.at(utime, max_gap); });
+  if (monitor.verdict() != ScanDefect::kNone) return refuse("range finder not believed");
+  if (defect != ScanDefect::kNone) return refuse("in doubt");
+  const auto refusal = map_->insert(placed);
   if (refusal != OccupancyMap::Refusal::kNone) return refuse(reasonOf(refusal));
   last_taken_ = bus_.now();
   health_.addToCounter("scans taken");
+}
+
+ScanMonitor& MappingNode::monitorOf(const Eigen::Isometry3d& T_body_sensor) {
+  for (auto& [T_known, monitor] : monitors_)
+    if (T_known.isApprox(T_body_sensor, 1e-6)) return monitor;
+  // Broken messages may tell any mounting.
+  if (monitors_.size() >= kMostFinders) monitors_.clear();
+  const OccupancyMapConfig& map = config_.map;
+  monitors_.emplace_back(T_body_sensor, ScanMonitor(map.robot, map.obstacle.robot_height));
+  return monitors_.back().second;
+}
+
+/// What is wrong with a range finder that is not believed, in one line; empty if all are.
+std::string MappingNode::lyingFinder() const {
+  for (const auto& [T_body_sensor, monitor] : monitors_) {
+    if (monitor.verdict() == ScanDefect::kNone) continue;
+    const Eigen::Vector3d& p_body = T_body_sensor.translation();
+    return "range finder at " + metres(p_body.x()) + ", " + metres(p_body.y()) + ", " +
+           metres(p_body.z()) + " m: " + monitor.words();
+  }
+  return "";
 }
 
 void MappingNode::publishTiles(int64_t utime) {
@@ -254,6 +284,8 @@ void MappingNode::send(CellIndex index) {
 }
 
 void MappingNode::reportHealth(int64_t now) {
+  const std::string lie = lyingFinder();
+  if (!lie.empty()) return health_.fail(lie);
   const int64_t silence = microseconds(config_.silence);
   if (now - last_taken_ < silence) return health_.setState(health_t::HEALTH_OK, "");
   std::ostringstream line;

@@ -6,6 +6,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <tread/scan_t.hpp>
 
@@ -13,6 +15,7 @@
 #include "common/config/config_reader.hpp"
 #include "common/messages/scan_messages.hpp"
 #include "modules/mapping/core/occupancy_map.hpp"
+#include "modules/mapping/core/scan_monitor.hpp"
 #include "modules/mapping/core/spatial_track.hpp"
 
 namespace tread::mapping {
@@ -53,6 +56,8 @@ class MappingNode : public Node {
   void beginNewMap();
   Fate tryFirst(int64_t now);
   void insert(const ReceivedScan& scan);
+  ScanMonitor& monitorOf(const Eigen::Isometry3d& T_body_sensor);
+  std::string lyingFinder() const;
   void refuse(const std::string& reason);
   void publishTiles(int64_t utime);
   void send(CellIndex tile);
@@ -64,6 +69,7 @@ class MappingNode : public Node {
   std::unique_ptr<OccupancyMap> map_;
   SpatialTrack track_;
   std::deque<ReceivedScan> waiting_;
+  std::vector<std::pair<Eigen::Isometry3d, ScanMonitor>> monitors_;  ///< by range finder
   TileSchedule turns_;
   int64_t next_cycle_ = 0;
   int64_t seq_ = 0;

@@ -228,6 +228,7 @@ void PlannerNode::subscribe() {
     if (!shock) return health_.addToCounter("SHOCK refused: no such ground");
     supervisor_.setShock(*shock);
   });
+  bus_.overhear<health_t>(kHealth, [this](const health_t& message) { take(message); });
   bus_.subscribe<goal_t>(kGoal, [this](const goal_t& message) { take(message); });
   bus_.subscribe<pattern_set_part_t>(kPatternSet,
                                      [this](const pattern_set_part_t& message) { take(message); });
@@ -291,6 +292,23 @@ void PlannerNode::take(const goal_t& message) {
   const bool leased = config_.operators.lease_us > 0;
   if (leased && robot_.untimely(message.utime, "GOAL")) return;
   if (!goal_.take(*goal, bus_.now())) health_.addToCounter("GOAL refused: it has ended before");
+}
+
+void PlannerNode::take(const health_t& message) {
+  if (message.process != "mapping") return;
+  const bool failed = message.health_state == health_t::HEALTH_FAILED;
+  inputs_.map_fault = failed ? "mapping: " + message.health_reason : "";
+}
+
+/// Whoever arms again has looked at the robot.
+void PlannerNode::disarm(const std::string& why) {
+  auto message = blank<arm_t>();
+  message.utime = bus_.now();
+  message.seq = seq_arm_++;
+  message.armed = 0;
+  message.armed_by = "planner";
+  message.arm_reason = why;
+  bus_.publish(kArm, message);
 }
 
 void PlannerNode::watchGoal(int64_t utime) {
@@ -379,6 +397,7 @@ void PlannerNode::step(int64_t utime) {
   });
   if (!decision.halted.empty() && config_.operators.lease_us > 0)
     goal_.lose("stopped: " + decision.halted + "; look, then give the goal again");
+  if (!decision.halted.empty() && !inputs_.map_fault.empty()) disarm(inputs_.map_fault);
   // The loss itself stops the robot, too.
   if (!decision.halted.empty() && inputs_.goal) way_back_.giveUp(decision.halted);
   publishProgram(utime, supervisor_.program());

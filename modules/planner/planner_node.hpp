@@ -50,7 +50,9 @@ class PlannerNode : public Node {
   void take(const map_tile_t& message);
   void take(const fence_t& message);
   void take(const goal_t& message);
+  void take(const health_t& message);
   void take(const pattern_set_part_t& message);
+  void disarm(const std::string& why);
   void watchGoal(int64_t utime);
   void watchLink(int64_t utime);
   bool outOfReach(int64_t version) const;
@@ -88,6 +90,7 @@ class PlannerNode : public Node {
   int64_t longest_swap_ = 0;  ///< [us]
   int64_t next_plan_ = 0;
   int64_t next_tree_ = 0;
+  int64_t seq_arm_ = 0;
   int64_t seq_program_ = 0;
   int64_t seq_plan_ = 0;
   int64_t seq_tree_ = 0;

@@ -447,3 +447,32 @@ TEST_CASE(
   REQUIRE(radiusOf(small) < 0.95);
   REQUIRE(radiusOf("start_free_radius: 3\n" + small) == 3.0);
 }
+
+TEST_CASE("A frozen range finder is named at once, is left out of the map, and recovers") {
+  Rig rig;
+  rig.world.boxes.push_back({{-3.0, 2.0, -1.0}, {8.0, 2.4, 2.0}});
+  rig.run(1.0);
+  std::vector<float> last;
+  rig.instruments().breakScan = [&](scan_t& scan) {
+    if (last.empty()) last = scan.ranges;
+    scan.ranges = last;
+  };
+  rig.run(1.0);
+  // Standing it shows the same, and nobody can tell.
+  CHECK(rig.health.health_state == health_t::HEALTH_OK);
+  rig.instruments().speed = 0.8;
+  rig.run(0.55);
+  CHECK(rig.health.health_state == health_t::HEALTH_FAILED);
+  CHECK_THAT(rig.health.health_reason,
+             Catch::Contains("range finder at 0.25, 0.00, 0.50 m") &&
+                 Catch::Contains("it repeats bit for bit what it saw before the robot moved"));
+  rig.instruments().speed = 0.0;
+  const int64_t taken = rig.counted("scans taken");
+  rig.run(3.0);
+  CHECK(rig.health.health_state == health_t::HEALTH_FAILED);
+  CHECK(rig.counted("scans taken") <= taken + 2);
+  CHECK(rig.counted("scans refused: range finder not believed") > 20);
+  rig.instruments().breakScan = nullptr;
+  rig.run(4.0);
+  CHECK(rig.health.health_state == health_t::HEALTH_OK);
+}

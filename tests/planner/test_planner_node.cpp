@@ -238,6 +238,50 @@ TEST_CASE("Blind for half a second: the program is emptied, and the view's retur
   CHECK(yard.robot().speed() > 0.3);
 }
 
+TEST_CASE("A range finder that mapping does not believe: zero at once, disarmed, a new goal") {
+  Yard yard;
+  std::optional<arm_t> disarmed;
+  yard.bus.outside().subscribe<arm_t>(kArm, [&](const arm_t& message) {
+    if (message.armed == 0) disarmed = message;
+  });
+  yard.run(1.0);
+  yard.sendGoal(10.0);
+  yard.armAndGo();
+  yard.run(3.0);
+  REQUIRE(yard.robot().speed() > 0.5);
+  health_t health{};
+  health.process = "mapping";
+  health.health_state = health_t::HEALTH_DEGRADED;
+  yard.bus.outside().publish(kHealth, health);
+  health.process = "learner";
+  health.health_state = health_t::HEALTH_FAILED;
+  yard.bus.outside().publish(kHealth, health);
+  yard.run(0.2);
+  REQUIRE(yard.robot().program().running.execution_id != 0);
+  health.process = "mapping";
+  health.health_reason = "range finder: it is frozen";
+  yard.bus.outside().publish(kHealth, health);
+  yard.run(0.1);
+  CHECK(yard.robot().program().running.execution_id == 0);
+  CHECK_THAT(yard.plan.reason, Catch::Contains("stopped: mapping: range finder: it is frozen"));
+  REQUIRE(disarmed);
+  CHECK(disarmed->armed_by == "planner");
+  CHECK(disarmed->arm_reason == "mapping: range finder: it is frozen");
+  yard.run(1.0);
+  // While it lasts, nobody is driven blindly.
+  yard.armAndGo();
+  yard.sendGoal(10.0);
+  yard.run(1.0);
+  CHECK(yard.robot().program().running.execution_id == 0);
+  health.health_state = health_t::HEALTH_OK;
+  yard.bus.outside().publish(kHealth, health);
+  yard.run(3.0);
+  yard.renewGoal();
+  yard.sendGoal(10.0);
+  yard.run(1.0);
+  CHECK(yard.robot().speed() > 0.3);
+}
+
 TEST_CASE("A tile of another cell size does not empty the map in use") {
   Yard yard;
   yard.run(1.0);

@@ -130,6 +130,12 @@ class CauseSearch {
       case Topic::kEstop:
         estop();
         break;
+      case Topic::kFinder:
+        say("range_finder", "what the range finder shows was not believed: " + main_.reason);
+        if (const HealthNote* const note =
+                drive_.complaintOf("mapping", t_ - kBefore, t_ + kAfterwards, "range finder at "))
+          prove("mapping", *note);
+        break;
       case Topic::kPerson:
         say("disarmed", main_.reason);
         quote("disarms");

@@ -7,6 +7,7 @@ namespace tread::why {
 const std::vector<ReasonWords>& reasonTable() {
   static const std::vector<ReasonWords> table{
       {"E-stop", Topic::kEstop},
+      {"range finder at ", Topic::kFinder},
       {"disarmed by ", Topic::kPerson},
       {"controller lost: ", Topic::kController},
       {"controller is being started up", Topic::kController},

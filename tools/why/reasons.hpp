@@ -11,6 +11,7 @@ namespace tread::why {
 /// of reasons that come together the first in this list is looked at first.
 enum class Topic {
   kEstop,
+  kFinder,      ///< a range finder that mapping does not believe
   kPerson,      ///< disarmed by somebody
   kController,  ///< the motor controller or its line
   kBridge,      ///< motor_bridge itself

@@ -186,17 +186,17 @@ void OccupancyMap::standAt(const Pose2& T_map_body) {
   for (const size_t offset : under_robot_) classify(offset);
 }
 
-bool OccupancyMap::isOwnBody(const Eigen::Vector3d& p_body) const {
-  const FootprintSize& robot = config_.robot;
+bool isOwnBody(const Eigen::Vector3d& p_body, const FootprintSize& robot, double height) {
   return p_body.x() < robot.front + kOwnBodyMargin && p_body.x() > -robot.rear - kOwnBodyMargin &&
-         std::abs(p_body.y()) < robot.half_width + kOwnBodyMargin &&
-         p_body.z() < config_.obstacle.robot_height;
+         std::abs(p_body.y()) < robot.half_width + kOwnBodyMargin && p_body.z() < height;
 }
 
 const std::vector<Ray>& OccupancyMap::raysOf(const Scan& scan) {
   rays_.clear();
   for (const Beam& beam : scan.beams) {
-    if (beam.hit && isOwnBody(scan.T_body_sensor * beam.end)) continue;
+    if (beam.hit &&
+        isOwnBody(scan.T_body_sensor * beam.end, config_.robot, config_.obstacle.robot_height))
+      continue;
     const double range = beam.end.norm();
     const bool marks = beam.hit && range <= config_.marking_range;
     const double reach = marks ? range : std::min(range, config_.clearing_range);

@@ -34,6 +34,9 @@ struct Scan {
   std::vector<Beam> beams;
 };
 
+/// Whether a return comes from the robot itself: within its outline and a little more.
+bool isOwnBody(const Eigen::Vector3d& p_body, const FootprintSize& robot, double height);
+
 /// Everything that shapes the local map.
 struct OccupancyMapConfig {
   VoxelConfig voxels;
@@ -107,7 +110,6 @@ class OccupancyMap {
   void assumeStartFree(const Eigen::Vector2d& p_map);
   void standAt(const Pose2& T_map_body);
   const std::vector<Ray>& raysOf(const Scan& scan);
-  bool isOwnBody(const Eigen::Vector3d& p_body) const;
   void classify(size_t offset);
   void classifyAround(size_t offset);
   int surfaceAt(CellIndex cell) const;

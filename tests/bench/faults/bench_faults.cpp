@@ -6,11 +6,13 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
 #include "tests/bench/faults/fault_run.hpp"
+#include "tests/bench/faults/lie_table.hpp"
 #include "tests/bench/faults/return_run.hpp"
 
 namespace {
@@ -25,6 +27,8 @@ struct Arguments {
   bool go_back = false;
   bool bare = false;
   bool lies = false;
+  bool eyes = false;
+  bool table = false;
   RunOptions run;
 };
 
@@ -121,6 +125,75 @@ int goBack(const Arguments& arguments) {
   return collided == 0 && moving == 0 ? 0 : 1;
 }
 
+/// Missions whose range finder lies: is it named, and does the robot stop before it touches
+/// anything?
+int watchEyes(const Arguments& arguments) {
+  const missions::RobotConfig robot = missions::readRobot(TREAD_CONFIG_DIR "/robots/teodor");
+  struct Figures {
+    int missions = 0, moved = 0, named = 0, collided = 0;
+    double slowest = 0.0, farthest = 0.0;
+    std::vector<double> after;
+  };
+  std::map<FaultKind, Figures> by_kind;
+  int collided = 0;
+  for (int i = 0; i < (arguments.only ? 1 : arguments.missions); ++i) {
+    const uint64_t seed = arguments.seed + static_cast<uint64_t>(i);
+    const FaultSchedule schedule = scanScheduleOf(seed, arguments.run.duration);
+    const FaultyRun run = runFaulty(robot, schedule, arguments.run);
+    const FaultEffect& effect = run.effect;
+    Figures& figures = by_kind[schedule.faults.front().kind];
+    ++figures.missions;
+    figures.moved += effect.moved ? 1 : 0;
+    figures.named += effect.moved && effect.named_after ? 1 : 0;
+    figures.collided += run.collisions > 0 ? 1 : 0;
+    collided += run.collisions > 0 ? 1 : 0;
+    if (effect.named_after) {
+      figures.after.push_back(*effect.named_after);
+      figures.slowest = std::max(figures.slowest, *effect.named_after);
+      figures.farthest = std::max(figures.farthest, effect.zero_way);
+    }
+    const bool missed = effect.moved && !effect.named_after;
+    if (!missed && !run.violation && run.collisions == 0 && !arguments.only) continue;
+    printSeed(seed, schedule, run);
+    std::printf("  named after %.2f s, %.2f m, %.0f deg; zero after %.2f s, %.2f m: %s\n",
+                effect.named_after.value_or(-1.0), effect.named_way,
+                effect.named_turn * 180.0 / 3.14159265, effect.zero_after.value_or(-1.0),
+                effect.zero_way, effect.reason.c_str());
+    std::fflush(stdout);
+  }
+  for (auto& [kind, figures] : by_kind) {
+    std::sort(figures.after.begin(), figures.after.end());
+    const double median = figures.after.empty() ? 0.0 : figures.after[figures.after.size() / 2];
+    std::printf(
+        "%-26s %3d missions, moved under it in %3d, named in %3d, after %.2f s (median) to %.2f s, "
+        "stood after %.2f m at most; %d touched something\n",
+        nameOf(kind), figures.missions, figures.moved, figures.named, median, figures.slowest,
+        figures.farthest, figures.collided);
+  }
+  std::printf("%d touched something\n", collided);
+  return collided == 0 ? 0 : 1;
+}
+
+/// What comes of each lie of each input.
+int printTable(const Arguments& arguments) {
+  const missions::RobotConfig robot = missions::readRobot(TREAD_CONFIG_DIR "/robots/teodor");
+  std::vector<uint64_t> seeds;
+  for (int i = 0; i < arguments.missions; ++i)
+    seeds.push_back(arguments.seed + static_cast<uint64_t>(i));
+  int collisions = 0;
+  for (const Lie& lie : lies()) {
+    const LieFigures figures = measure(robot, lie, seeds);
+    std::printf(
+        "%-17s %-26s stopped %d of %d, zero after %4.0f ms at most, stood after %.2f m, %d "
+        "contacts: %s\n",
+        lie.input, lie.way, figures.stopped, figures.missions, 1e3 * figures.after, figures.way,
+        figures.collisions, figures.reason.c_str());
+    std::fflush(stdout);
+    collisions += figures.collisions;
+  }
+  return collisions == 0 ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -134,12 +207,22 @@ int main(int argc, char** argv) {
                "instead: the operator falls silent for good, and the robot shall return");
   app.add_flag("--lies", arguments.lies,
                "each mission with a pad, keyboard or page that never tells a rest");
+  app.add_flag("--eyes", arguments.eyes,
+               "instead: only the range finder lies, from a drawn moment on; is it named?")
+      ->excludes("--go-back");
+  app.add_flag("--table", arguments.table,
+               "instead: each lie of each input in so many missions, and how soon it stops")
+      ->excludes("--go-back")
+      ->excludes("--eyes");
   app.add_flag("--bare", arguments.bare, "without fences, driving by hand, tilts and returns");
   app.add_option("--seconds", arguments.run.duration, "of each mission")
       ->check(CLI::Range(8.0, 600.0));
   app.add_option("--beams", arguments.run.beams, "of each scan; 541 as the range finder has it")
       ->check(CLI::Range(91, 1081));
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
-  return runProgram("bench-faults",
-                    [&] { return arguments.go_back ? goBack(arguments) : drive(arguments); });
+  return runProgram("bench-faults", [&] {
+    if (arguments.table) return printTable(arguments);
+    if (arguments.eyes) return watchEyes(arguments);
+    return arguments.go_back ? goBack(arguments) : drive(arguments);
+  });
 }

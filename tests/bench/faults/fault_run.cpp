@@ -12,11 +12,14 @@
 #include "common/messages/fence_messages.hpp"
 #include "modules/simulator/emulators/nmea/nmea_ins_emulator.hpp"
 #include "modules/simulator/emulators/roboteq/roboteq_emulator.hpp"
+#include "tests/bench/faults/effect_watch.hpp"
 #include "tests/bench/faults/forger.hpp"
 #include "tests/bench/faults/invariants.hpp"
 #include "tests/bench/faults/limit_rules.hpp"
 #include "tests/bench/faults/lying_hand.hpp"
+#include "tests/bench/faults/lying_parts.hpp"
 #include "tests/bench/faults/person_at_stick.hpp"
+#include "tests/bench/faults/scan_faults.hpp"
 #include "tools/missions/mission.hpp"
 
 namespace tread::faults {
@@ -43,6 +46,23 @@ class DisturbedIns : public sim::InsErrors {
     if (frozen && last_) input = *last_;
     if (!frozen) last_ = truth;
     if (drift_since > 0) drift_ = 0.4 * static_cast<double>(utime - drift_since) * 1e-6;
+    if (!mirrored) mirror_ = truth;
+    // About the way ahead when it began.
+    const double left =
+        2.0 * ((input.body.p_map - mirror_.body.p_map)
+                   .head<2>()
+                   .dot(Eigen::Vector2d(-std::sin(mirror_.yaw), std::cos(mirror_.yaw))));
+    const double turned = 2.0 * (mirror_.yaw - input.yaw);
+    if (mirrored) {
+      input.body.p_map.head<2>() -=
+          left * Eigen::Vector2d(-std::sin(mirror_.yaw), std::cos(mirror_.yaw));
+      input.yaw += turned;
+      input.body.R_map_body =
+          Eigen::AngleAxisd(turned, Eigen::Vector3d::UnitZ()).toRotationMatrix() *
+          input.body.R_map_body;
+      input.rate_body.z() *= -1.0;
+      input.v_body.y() *= -1.0;
+    }
     input.body.p_map.x() += jump + drift_ * strength;
     input.yaw += turn;
     input.body.R_map_body = Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()).toRotationMatrix() *
@@ -51,12 +71,13 @@ class DisturbedIns : public sim::InsErrors {
     input.body.R_map_body *= Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX()).toRotationMatrix();
     return input;
   }
-  bool frozen = false;
+  bool frozen = false, mirrored = false;
   double jump = 0.0, turn = 0.0, roll = 0.0, strength = 0.0;
   int64_t drift_since = 0;
 
  private:
   std::optional<sim::InsInput> last_;
+  sim::InsInput mirror_;
   double drift_ = 0.0;
 };
 
@@ -79,7 +100,7 @@ class Run {
         world_(missions::makeMissionWorld(schedule.seed, robot.simulated.vehicle.outline, kLine)),
         own_fences_(fencesOf(schedule.scenario, world_)),
         system_(configured(robot), world_.description, world_.T_map_start, schedule.seed, "",
-                planOf(schedule), nullptr, parts()),
+                planOf(schedule), nullptr, parts(robot.simulated.vehicle)),
         bus_(system_.bus()),
         start_(bus_.now()),
         active_(schedule.faults.size(), false),
@@ -105,6 +126,7 @@ class Run {
     }
     result_.collisions = static_cast<int>(system_.robot().truth().collisions.size());
     result_.paths_judged = path_.judged();
+    result_.effect = effect_.effect();
     return result_;
   }
 
@@ -129,11 +151,14 @@ class Run {
     return limits;
   }
 
-  sim::RobotParts parts() {
+  sim::RobotParts parts(const sim::VehicleParameters& vehicle) {
     auto errors = std::make_unique<DisturbedIns>();
     ins_ = errors.get();
     sim::RobotParts parts;
     parts.ins_errors = std::move(errors);
+    auto drive = std::make_unique<LyingDrive>(sim::makeVehicle(vehicle));
+    drive_ = drive.get();
+    parts.vehicle = std::move(drive);
     return parts;
   }
 
@@ -146,7 +171,7 @@ class Run {
                               const uint8_t* bytes, size_t size) {
       handed(now, node, channel, {bytes, bytes + size});
     });
-    system_.disturbScans([this](lidar::RangeScan& scan) { disturb(scan); });
+    system_.disturbScans([this](lidar::RangeScan& scan) { scans_.disturb(scan); });
   }
 
   void breaks(const std::string& what) {
@@ -161,8 +186,14 @@ class Run {
     const bool genuine = !schedule_.keyed || static_cast<size_t>(size) != bytes.size();
     if (!genuine) return;
     sent_.insert(hashOf(bytes));
-    if (const auto motor = messageOf(kMotor, message)) note(*motor);
-    if (const auto health = messageOf(kHealth, message)) breaks(counts_.check(*health));
+    if (const auto motor = messageOf(kMotor, message)) {
+      note(*motor);
+      effect_.receive(*motor);
+    }
+    if (const auto health = messageOf(kHealth, message)) {
+      breaks(counts_.check(*health));
+      effect_.receive(*health);
+    }
     if (const auto plan = messageOf(kPlan, message)) {
       if (plan->set_version < version_)
         breaks("the planner's PATTERN_SET went back from version " + std::to_string(version_) +
@@ -170,6 +201,7 @@ class Run {
       version_ = plan->set_version;
       result_.arrived = result_.arrived || plan->plan_status == plan_t::PLAN_ARRIVED;
       breaks(path_.check(now, *plan));
+      effect_.receive(*plan);
       returns_.sent(*plan);
     }
     if (!schedule_.scenario.go_back) return;
@@ -248,6 +280,8 @@ class Run {
     const std::array<double, 2> power = system_.devices().power(now);
     breaks(motors_.check(now, power));
     const bool turns = power[0] != 0.0 || power[1] != 0.0;
+    if (!schedule_.faults.empty() && now - start_ >= schedule_.faults.front().from)
+      effect_.step(now, turns, system_.robot().truth(), active_.front());
     result_.drove = result_.drove || turns;
     if (now - start_ > schedule_.end()) result_.drove_after = result_.drove_after || turns;
     if ((now - start_) % 1'000'000 == 0)
@@ -364,6 +398,12 @@ class Run {
         faults.corrupt_share = active ? fault.strength : 0.0;
         faults.garbage_share = active ? 0.5 * fault.strength : 0.0;
         return ins.setFaults(faults);
+      case FaultKind::kInsMirror:
+        ins_->mirrored = active;
+        return;
+      case FaultKind::kDriveMirror:
+        drive_->swapped = active;
+        return;
       case FaultKind::kInsJump:
         ins_->jump = active ? 6.0 * fault.strength - 3.0 : 0.0;
         ins_->turn = active && fault.strength < 0.3 ? 1.0 - 2.0 * fault.strength : 0.0;
@@ -380,8 +420,13 @@ class Run {
         return;
       case FaultKind::kPhantom:
       case FaultKind::kVanish:
-        scan_fault_ = active ? &fault : nullptr;
-        return;
+      case FaultKind::kScanFreeze:
+      case FaultKind::kScanLag:
+      case FaultKind::kScanMirror:
+      case FaultKind::kScanTurn:
+      case FaultKind::kScanFar:
+      case FaultKind::kScanZero:
+        return active ? scans_.begin(fault) : scans_.end();
       case FaultKind::kBattery:
         return motor.setBrownOut(active);
       case FaultKind::kMotorLine:
@@ -394,24 +439,12 @@ class Run {
     }
   }
 
-  void disturb(lidar::RangeScan& scan) const {
-    if (scan_fault_ == nullptr) return;
-    const bool phantom = scan_fault_->kind == FaultKind::kPhantom;
-    const double centre = 1.6 * (scan_fault_->strength - 0.5);
-    const double half = phantom ? 0.2 : 0.9;
-    for (size_t i = 0; i < scan.ranges.size(); ++i) {
-      const double angle = scan.angle_first + static_cast<double>(i) * scan.angle_step;
-      if (std::abs(angle - centre) > half) continue;
-      scan.ranges[i] = phantom ? static_cast<float>(1.0 + 3.0 * scan_fault_->strength)
-                               : std::numeric_limits<float>::infinity();
-    }
-  }
-
   FaultSchedule schedule_;
   RunOptions options_;
   missions::MissionWorld world_;
   std::vector<Fence> own_fences_;
   DisturbedIns* ins_ = nullptr;
+  LyingDrive* drive_ = nullptr;
   missions::RobotSystem system_;
   VirtualBus& bus_;
   int64_t start_;
@@ -428,7 +461,8 @@ class Run {
   std::optional<FenceRequest> put_;
   bool operator_lost_ = false;
   int64_t operator_until_ = 0;  ///< [us]
-  const Fault* scan_fault_ = nullptr;
+  ScanFaults scans_;
+  EffectWatch effect_;
   std::map<std::string, std::deque<std::vector<uint8_t>>> kept_;
   bool replaying_ = false;
   std::map<std::string, std::set<std::vector<uint8_t>>> handed_;  ///< by node
@@ -438,6 +472,10 @@ class Run {
 };
 
 }  // namespace
+
+FaultSchedule scanScheduleOf(uint64_t seed, double duration) {
+  return drawScanFault(seed, kFirstFault, std::llround(0.7 * duration * 1e6));
+}
 
 FaultSchedule bareScheduleOf(uint64_t seed, double duration) {
   return drawSchedule(seed, kFirstFault, std::llround(0.7 * duration * 1e6));

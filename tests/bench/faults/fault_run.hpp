@@ -17,6 +17,18 @@ struct Violation {
   std::string what;
 };
 
+/// What came of the first fault, from where it began or, if that was later, from where the robot
+/// moved.
+struct FaultEffect {
+  bool moved = false;                 ///< the robot moved while it lasted
+  std::optional<double> named_after;  ///< [s] mapping told that a range finder is wrong
+  std::optional<double> zero_after;   ///< [s] the motors were at zero, for half a second at least
+  double named_way = 0.0;             ///< [m]
+  double named_turn = 0.0;            ///< [rad]
+  double zero_way = 0.0;              ///< [m] until it stood
+  std::string reason;                 ///< MOTOR's or PLAN's then
+};
+
 /// What came of a mission.
 struct FaultyRun {
   std::optional<Violation> violation;
@@ -31,6 +43,7 @@ struct FaultyRun {
   bool returned = false;    ///< it moved without its operator
   bool tilt_stop = false;   ///< the bridge stopped it for its roll or pitch
   bool fence_stop = false;  ///< ... or at a fence
+  FaultEffect effect;
 };
 
 struct RunOptions {
@@ -46,6 +59,8 @@ struct RunOptions {
 /// 5 ms; ends at the first that is broken.
 FaultyRun runFaulty(const missions::RobotConfig& robot, const FaultSchedule& schedule,
                     const RunOptions& options = {});
+/// A lying range finder alone, at a moment that the seed draws.
+FaultSchedule scanScheduleOf(uint64_t seed, double duration);
 /// The faults of a seed, in a mission of this duration [s], without fences, hands and returns.
 FaultSchedule bareScheduleOf(uint64_t seed, double duration);
 /// The same with them, and with faults of theirs.

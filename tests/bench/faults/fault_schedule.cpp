@@ -9,7 +9,6 @@
 #include "tools/missions/robot_system.hpp"
 
 namespace tread::faults {
-namespace {
 
 const char* nameOf(FaultKind kind) {
   constexpr const char* kNames[] = {"drop",
@@ -34,14 +33,25 @@ const char* nameOf(FaultKind kind) {
                                     "operator lost",
                                     "E-stop",
                                     "disarmed",
-                                    "INS tilt"};
+                                    "INS tilt",
+                                    "range finder frozen",
+                                    "old scans under new times",
+                                    "scans mirrored",
+                                    "scans turned",
+                                    "scans all far",
+                                    "scans all zero",
+                                    "INS mirrored",
+                                    "motors swapped"};
   static_assert(std::size(kNames) == static_cast<size_t>(FaultKind::kCount));
   return kNames[static_cast<size_t>(kind)];
 }
 
+namespace {
+
 /// Kinds that drawSchedule() knows: more would change what each seed means.
 constexpr auto kFirstKinds = static_cast<uint64_t>(FaultKind::kTilt);
 constexpr uint64_t kScenarioStream = 0x5ce9a210;
+constexpr uint64_t kScanStream = 0x11e5ca9;
 constexpr uint64_t kPlannerStream = 0x91a77e2;
 constexpr uint64_t kLieStream = 0x71e5;
 
@@ -183,6 +193,22 @@ void addScenario(FaultSchedule& schedule, int64_t first, int64_t last) {
   if (stop < 2)
     schedule.faults.push_back({stop == 0 ? FaultKind::kEstop : FaultKind::kDisarm, stop_from,
                                stop_from + 300'000, "*", "*", 1.0});
+}
+
+FaultSchedule drawScanFault(uint64_t seed, int64_t first, int64_t last) {
+  Draw draw(seed ^ kScanStream);
+  constexpr auto kFirst = static_cast<uint64_t>(FaultKind::kScanFreeze);
+  constexpr auto kEnd = static_cast<uint64_t>(FaultKind::kScanZero) + 1;
+  Fault fault;
+  fault.kind = static_cast<FaultKind>(kFirst + draw.below(kEnd - kFirst));
+  fault.from = moment(draw, first, last, 1.0);
+  const bool for_good = draw.share() < 0.7;
+  fault.until = for_good ? INT64_MAX : fault.from + static_cast<int64_t>(5e6 * draw.share());
+  fault.strength = draw.share();
+  FaultSchedule schedule;
+  schedule.seed = seed;
+  schedule.faults.push_back(fault);
+  return schedule;
 }
 
 FaultPlan planOf(const FaultSchedule& schedule) {

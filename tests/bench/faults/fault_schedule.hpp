@@ -51,9 +51,20 @@ enum class FaultKind {
   kOperatorLost,
   kEstop,
   kDisarm,
-  kTilt,  ///< the INS tells a roll; not drawn by drawSchedule()
+  kTilt,  ///< the INS tells a roll; not drawn by drawSchedule(), as the next
+  kScanFreeze,
+  kScanLag,  ///< old scans under new times
+  kScanMirror,
+  kScanTurn,
+  kScanFar,
+  kScanZero,
+  kInsMirror,    ///< as if left were right
+  kDriveMirror,  ///< the motors' cables are swapped
   kCount
 };
+
+/// In words.
+const char* nameOf(FaultKind kind);
 
 struct Fault {
   FaultKind kind = FaultKind::kDrop;
@@ -116,6 +127,8 @@ FaultSchedule drawSchedule(uint64_t seed, int64_t first, int64_t last);
 void addScenario(FaultSchedule& schedule, int64_t first, int64_t last);
 /// In place of a hand one that lies.
 void addLie(FaultSchedule& schedule, int64_t first, int64_t last);
+/// One fault of the range finder alone, at a drawn moment, mostly for good.
+FaultSchedule drawScanFault(uint64_t seed, int64_t first, int64_t last);
 /// Those of messages, as the bus makes them.
 FaultPlan planOf(const FaultSchedule& schedule);
 /// "4.20 to 6.31 s: drop on MAP to planner, strength 0.52".

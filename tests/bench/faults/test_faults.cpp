@@ -86,6 +86,27 @@ TEST_CASE("seeds that once broke a rule, or touched something") {
   }
 }
 
+TEST_CASE("a range finder that lies while the robot drives is named and touches nothing") {
+  for (auto kind = FaultKind::kScanFreeze; kind <= FaultKind::kScanZero;
+       kind = static_cast<FaultKind>(static_cast<int>(kind) + 1))
+    for (const double strength : {0.2, 0.8}) {
+      CAPTURE(nameOf(kind), strength);
+      FaultSchedule schedule;
+      schedule.seed = 3;
+      schedule.faults = {faultOf(kind, 7.0, 1e6, "*", "*", strength)};
+      const FaultyRun run = runFaulty(teodor(), schedule);
+      CHECK((run.violation ? run.violation->what : "") == "");
+      CHECK(run.collisions == 0);
+      REQUIRE(run.effect.moved);
+      REQUIRE(run.effect.named_after);
+      CHECK(*run.effect.named_after < 0.6);
+      REQUIRE(run.effect.zero_after);
+      CHECK(*run.effect.zero_after < *run.effect.named_after + 0.15);
+      CHECK(run.effect.reason == "disarmed by planner");
+      CHECK_FALSE(run.arrived);
+    }
+}
+
 TEST_CASE("an operator lost for good: with `go_back` the robot returns to where its way began") {
   int lost = 0, back = 0;
   missions::RobotConfig robot = teodor();

@@ -231,6 +231,8 @@ TEST_CASE("reasons are sorted by what they are about") {
   CHECK(topicOf("motor_bridge: INS is stale: nothing new within 100 ms") == Topic::kInsStale);
   CHECK(topicOf("INS is 168 ms old") == Topic::kInsStale);
   CHECK(topicOf("MAP is 900 ms old") == Topic::kMap);
+  CHECK(topicOf("stopped: mapping: range finder at 0.25, 0.00, 0.50 m: it repeats bit for bit") ==
+        Topic::kFinder);
   CHECK(topicOf("controller: undervoltage") == Topic::kController);
   CHECK(topicOf("what nobody has ever said") == Topic::kOther);
   CHECK(isOrdinary("armed by operator"));

@@ -26,6 +26,7 @@ Preconditions checkSensors(const PlannerInputs& s, const MapAndSet& supplies,
   if (!s.pose) return waiting(Level::kStop, "no usable INS yet");
   if (s.now - s.pose->utime > limits.pose)
     return waiting(Level::kStop, oldAs("INS", s.now - s.pose->utime));
+  if (!s.map_fault.empty()) return waiting(Level::kStop, s.map_fault);
   if (supplies.map_utime == 0) return waiting(Level::kStop, "no MAP yet");
   if (s.now - supplies.map_utime > limits.map_stop)
     return waiting(Level::kStop, oldAs("MAP", s.now - supplies.map_utime));

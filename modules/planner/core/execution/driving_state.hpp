@@ -26,6 +26,7 @@ struct PlannerInputs : RobotReadings {
   std::string goal_lost;     ///< why the last goal has ended; empty if its operator took it back
   std::string bar;           ///< why nothing may drive before a person has looked; empty = nothing
   int64_t set_received = 0;  ///< [us] when a part of a pattern set came last; 0 = never
+  std::string map_fault;     ///< why mapping does not believe a range finder; empty if it does
 };
 
 /// How the planner stands to its goal; the numbers are those of plan_t.

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <tread/health_t.hpp>
+#include <tread/motor_t.hpp>
+#include <tread/plan_t.hpp>
+
+#include "modules/simulator/core/robot.hpp"
+#include "tests/bench/faults/fault_run.hpp"
+
+namespace tread::faults {
+
+/// Measures what comes of a fault: call step() from its begin on.
+class EffectWatch {
+ public:
+  void receive(const health_t& health);
+  void receive(const motor_t& motor);
+  void receive(const plan_t& plan) { plan_reason_ = plan.reason; }
+  void step(int64_t now, bool turns, const sim::RobotTruth& truth, bool active);
+  const FaultEffect& effect() const { return effect_; }
+
+ private:
+  std::string motor_reason_, plan_reason_;
+  bool disarmed_ = false;
+  bool named_ = false;            ///< since the fault's begin
+  std::optional<int64_t> since_;  ///< [us] the robot moves under the fault
+  int64_t turned_ = 0;            ///< [us] when the motors turned last
+  double from_ = 0.0, yaw_ = 0.0;
+  FaultEffect effect_;
+};
+
+}  // namespace tread::faults
