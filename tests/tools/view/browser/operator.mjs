@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// A page that drives the robot, without its pictures: node operator.mjs MODULES HTTP-URL SECONDS
-// Says "is armed", and at the end how often the robot was disarmed and how long it heard nothing at most.
+// A page that drives the robot, without its pictures: node operator.mjs MODULES HTTP-URL SECONDS, or until
+// SIGTERM. Says "is armed", and at the end how often the robot was disarmed and how long it heard nothing at most.
 import { createRequire } from "node:module";
 const require = createRequire(`${process.argv[2]}/x.js`);
 const { FoxgloveClient } = require("@foxglove/ws-protocol");
 const { WebSocket } = require("ws");
 const url = new URL(process.argv[3]);
-const end = performance.now() + 1000 * Number(process.argv[4]);
+let end = performance.now() + 1000 * Number(process.argv[4]);
+process.on("SIGTERM", () => { end = 0; });
 const fail = (words) => { console.error(words); process.exit(1); };
 
 const socket = new WebSocket(url.href.replace("http", "ws"), [FoxgloveClient.SUPPORTED_SUBPROTOCOL], { origin: url.origin });
