@@ -111,44 +111,59 @@ void Reader::scan() {
   uint64_t at = kMagicBytes;
   std::string content;
   Op op{};
-  size_t messages = 0;
-  bool lost_chunk = false;
+  bool chunk_lost = false;
+  bool data_ended = false;
   for (; fileRecord(at, op, content); at += kRecordHead + content.size()) {
-    if (op == Op::kDataEnd || op == Op::kFooter) return;
-    if (op == Op::kMessageIndex) {
+    if (op == Op::kFooter) return forgetUnknown();
+    data_ended = data_ended || op == Op::kDataEnd;
+    if (op == Op::kChunk) {
+      chunk_lost = !scanChunk(at, content);
+    } else if (op == Op::kMessageIndex && chunk_lost) {
       FieldReader fields(content.data(), content.size());
       fields.u16();
       constexpr uint32_t kEntry = 16;  // [bytes]
-      if (lost_chunk) lost_messages_ += fields.u32() / kEntry;
-      continue;
-    }
-    messages = order_.size();
-    if (op == Op::kChunk)
-      scanChunk(at, content);
-    else
+      lost_messages_ += fields.u32() / kEntry;
+    } else {
+      // The summary behind the data repeats what a damaged chunk said of channels.
       take({op, content.data(), content.size()}, 0, at);
-    lost_chunk = op == Op::kChunk && order_.size() == messages;
+    }
   }
-  lost_bytes_ += size_ - at;
-  damaged("ends too early; is the file truncated?");
+  if (!data_ended) {
+    lost_bytes_ += size_ - std::min(at, size_);
+    damaged("ends too early; is the file truncated?");
+  }
+  forgetUnknown();
 }
 
-void Reader::scanChunk(uint64_t at, const std::string& content) {
+bool Reader::scanChunk(uint64_t at, const std::string& content) {
   std::string packing;
   const auto chunk = unpacked(content, packing);
   if (!chunk) {
     lost_bytes_ += content.size();
-    return damaged("a chunk is damaged or packed in a way that is not known ('" + packing +
-                   "'); it is left out");
+    damaged("a chunk is damaged or packed in a way that is not known ('" + packing +
+            "'); it is left out");
+    return false;
   }
   Record record;
   size_t from = 0;
   for (; recordIn(*chunk, from, record.op, record.content, record.size);
        from += kRecordHead + record.size)
     take(record, at, from);
-  if (from == chunk->size()) return;
-  ++lost_messages_;
-  damaged("a chunk ends within a record");
+  if (from != chunk->size()) {
+    ++lost_messages_;
+    damaged("a chunk ends within a record");
+  }
+  return true;
+}
+
+void Reader::forgetUnknown() {
+  const auto unknown = std::stable_partition(order_.begin(), order_.end(), [&](const Place& place) {
+    return channels_.count(place.channel) != 0;
+  });
+  if (unknown == order_.end()) return;
+  lost_messages_ += static_cast<size_t>(order_.end() - unknown);
+  order_.erase(unknown, order_.end());
+  damaged("messages of a channel that the file does not describe");
 }
 
 void Reader::take(const Record& record, uint64_t chunk, uint64_t at) {
@@ -163,13 +178,13 @@ void Reader::take(const Record& record, uint64_t chunk, uint64_t at) {
     channel.topic = fields.text();
     channel.encoding = fields.text();
   } else if (record.op == Op::kMessage) {
-    const bool known = channels_.count(fields.u16()) != 0;
+    const uint16_t id = fields.u16();
     fields.u32();
     const uint64_t time = fields.u64();
     fields.u64();
-    if (fields.ok() && known) return order_.push_back({time, chunk, at});
+    if (fields.ok()) return order_.push_back({time, chunk, at, id});
     ++lost_messages_;
-    damaged("a message of a channel that the file does not describe");
+    damaged("a message ends too early");
   }
 }
 

@@ -25,9 +25,10 @@ struct Message {
 
 /// Reads an MCAP file in the order of its log times, packed by Zstandard, LZ4 or not at all.
 /** A recorder writes chunks of its topics one after the other, so that the file's order is another
- * one. All messages are found first (24 bytes each are kept); the chunks that are read together
+ * one. All messages are found first (32 bytes each are kept); the chunks that are read together
  * then stay in memory, up to kMostCached bytes or one chunk. A damaged or truncated file gives what
- * is whole, and says so. The summary is not needed. */
+ * is whole, and says so. The summary is not needed, but taken where a
+ * damaged chunk described a channel. */
 class Reader {
  public:
   /// Throws std::runtime_error with one clear line if it cannot be read or is no MCAP file.
@@ -62,11 +63,14 @@ class Reader {
     uint64_t time;   ///< [ns]
     uint64_t chunk;  ///< of the file [bytes]; 0 = in none
     uint64_t at;     ///< of the chunk or of the file [bytes]
+    uint16_t channel;
   };
 
   void scan();
-  void scanChunk(uint64_t at, const std::string& content);
+  bool scanChunk(uint64_t at, const std::string& content);
   void take(const Record& record, uint64_t chunk, uint64_t at);
+  /// Leaves out the messages of channels that stand nowhere.
+  void forgetUnknown();
   void damaged(const std::string& what);
   bool readAt(uint64_t at, char* bytes, uint64_t size);
   /// The record that begins there; false at the end of the file, or of what is whole.

@@ -11,9 +11,11 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kLeastWay = 0.1;  // [m] whose direction is more than noise
+/// [m] whose direction is more than noise; the second for what is slower than that.
+constexpr double kLeastWay[] = {0.1, 0.03};
 
-HeadingFit fitHeading(const std::vector<PoseIncrement>& increments, double factor) {
+HeadingFit fitHeading(const std::vector<PoseIncrement>& increments, double factor,
+                      double least_way) {
   std::complex<double> sum;
   double weight = 0.0;
   HeadingFit fit;
@@ -21,7 +23,7 @@ HeadingFit fitHeading(const std::vector<PoseIncrement>& increments, double facto
   for (const PoseIncrement& increment : increments) {
     const double turn = std::abs(factor * increment.T_begin_end.yaw);
     const double length = way(increment);
-    if (!(length > kLeastWay) || !(length < 1e3) || turn > kGentle || length < kLever * turn)
+    if (!(length > least_way) || !(length < 1e3) || turn > kGentle || length < kLever * turn)
       continue;
     sum += length * std::polar(1.0, 2.0 * (course(increment) - heading(increment, factor)));
     weight += length;
@@ -52,10 +54,13 @@ bool isTurned(const HeadingFit& fit) {
 }
 
 HeadingFit bestHeading(const std::vector<PoseIncrement>& increments) {
-  const HeadingFit itself = fitHeading(increments, 1.0);
+  HeadingFit itself;
+  double least_way = 0.0;
+  for (const double least : kLeastWay)
+    if (itself.legs < kFewestLegs) itself = fitHeading(increments, 1.0, least_way = least);
   HeadingFit best = itself;
   for (const double factor : {-1.0, kDegree, 1.0 / kDegree}) {
-    const HeadingFit fit = fitHeading(increments, factor);
+    const HeadingFit fit = fitHeading(increments, factor, least_way);
     if (fit.coherence > std::max(kTogether, best.coherence)) best = fit;
   }
   return itself.coherence < kNotTogether && best.coherence > kTogether ? best : itself;

@@ -50,7 +50,7 @@ TEST_CASE("a packed file that was cut off gives what is whole, and says so") {
   CHECK(numbers().rfind(text, 0) == 0);
 }
 
-TEST_CASE("a plain file is read where it is; other packers are named with what unpacks them") {
+TEST_CASE("a plain file is read where it is, other packers are named with what unpacks them") {
   const TemporaryFile plain;
   makeFile(plain.path, "t,x\n1,2\n");
   CHECK(UnpackedFile(plain.path).path() == plain.path);
