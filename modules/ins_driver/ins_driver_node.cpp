@@ -10,6 +10,7 @@
 
 #include "common/messages/blank.hpp"
 #include "common/messages/ins_messages.hpp"
+#include "modules/ins_driver/core/device_clock.hpp"
 #include "modules/ins_driver/ins_config.hpp"
 #include "modules/ins_driver/nmea/nmea_ins.hpp"
 #include "modules/ins_driver/novatel/novatel_ins.hpp"
@@ -305,22 +306,7 @@ std::string InsDriverNode::measurementProblem(int64_t utime) const {
            ", mapping cannot use them; where the device tells heights above the ellipsoid only, "
            "configure geoid_separation";
   }
-  return origin_problem_.empty() ? dateProblem() : origin_problem_;
-}
-
-/// GPS counts weeks modulo 1024: an old receiver dates 19.6 years back.
-std::string InsDriverNode::dateProblem() const {
-  constexpr double kEra = 1024.0 * 7.0 * 86400e6;
-  constexpr double kDay = 86400e6;
-  if (device_utc_ < 0 || bus_.utc() < 0) return {};
-  const auto off = static_cast<double>(bus_.utc() - device_utc_);
-  const double eras = std::round(off / kEra);
-  if (eras == 0.0 || std::abs(off - eras * kEra) > kDay) return {};
-  return "the device's date is " + std::to_string(std::llround(std::abs(eras) * 1024.0)) +
-         " weeks " + (eras > 0.0 ? "behind" : "ahead of") +
-         " this host's: its GPS week number has rolled over; update its firmware (device_utc of "
-         "INS "
-         "is wrong, all else is right)";
+  return origin_problem_.empty() ? rolledOver(device_utc_, bus_.utc()) : origin_problem_;
 }
 
 std::string InsDriverNode::fillInProblem(int64_t utime) const {

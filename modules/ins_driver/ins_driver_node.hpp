@@ -63,7 +63,6 @@ class InsDriverNode : public Node {
   std::string fillInProblem(int64_t utime) const;
   std::string lineProblem(int64_t utime) const;
   std::string measurementProblem(int64_t utime) const;
-  std::string dateProblem() const;
   void reportCounters(int64_t utime);
 
   InsDriverConfig config_;

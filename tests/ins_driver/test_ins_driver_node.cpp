@@ -544,7 +544,7 @@ TEST_CASE("positions too seldom for the attitudes between them are told") {
     rig.bus.runUntil(rig.bus.now() + 50'000);
   }
   INFO(rig.health.health_reason);
-  CHECK(rig.healthSays("attitudes left out"));
+  CHECK(rig.healthSays("a position near the attitude in"));
   CHECK(rig.healthSays("GGA 1.0 Hz, PASHR 20.0 Hz"));
 }
 

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/ins_driver/core/device_clock.hpp"
 
+#include <cmath>
 #include <cstdlib>
 
 namespace tread::ins {
@@ -79,6 +80,18 @@ int64_t GpsWeeks::timeOf(int64_t week, int64_t time_of_week) {
   }
   newest_ = time;
   return time;
+}
+
+std::string rolledOver(int64_t device_utc, int64_t host_utc) {
+  if (device_utc < 0 || host_utc < 0) return {};
+  const int64_t off = host_utc - device_utc;
+  const int64_t eras = std::llround(static_cast<double>(off) / static_cast<double>(kEraUs));
+  if (eras == 0 || std::abs(off - eras * kEraUs) > kDayUs) return {};
+  return "the device's date is " + std::to_string(1024 * std::abs(eras)) + " weeks " +
+         (eras > 0 ? "behind" : "ahead of") +
+         " this host's: its GPS week number has rolled over; update its firmware (device_utc of "
+         "INS "
+         "is wrong, all else is right)";
 }
 
 }  // namespace tread::ins

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace tread::ins {
@@ -72,5 +73,9 @@ class GpsWeeks {
   int64_t shift_ = 0;  ///< added to what the device tells [us]
   int64_t rollovers_ = 0;
 };
+
+/// What is wrong with a device's date [us UTC] that is whole eras of 1024 weeks off the host's, to
+/// a day; empty if it is not, or one of them is not known (-1).
+std::string rolledOver(int64_t device_utc, int64_t host_utc);
 
 }  // namespace tread::ins

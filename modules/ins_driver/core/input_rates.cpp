@@ -19,6 +19,27 @@ std::string rounded(double value, int digits) {
   return text.str();
 }
 
+/// How often an input came in a window, and whether mostly too late to be carried from the one
+/// before.
+struct Pace {
+  double rate = 0.0;  ///< [Hz]
+  bool slow = false;
+};
+
+Pace paceOf(const InputCount& before, const InputCount& after, double seconds) {
+  const int64_t came = after.came - before.came;
+  return {static_cast<double>(came) / seconds, came > 0 && 2 * (after.apart - before.apart) > came};
+}
+
+bool manyOf(int64_t some, int64_t all) {
+  return static_cast<double>(some) > kTolerated * static_cast<double>(all);
+}
+
+std::string having(const char* what, int64_t some, int64_t all) {
+  return std::string(what) + " in " + std::to_string(some) + " of " + std::to_string(all) +
+         " poses; ";
+}
+
 }  // namespace
 
 std::string InputRates::remedy(const std::string& input, double rate, double needed,
@@ -38,39 +59,26 @@ std::string InputRates::compare(const Counts& end) const {
   const AssemblerCounts& before = start_->epochs;
   const AssemblerCounts& after = end.epochs;
   const double seconds = static_cast<double>(end.utime - start_->utime) * 1e-6;
+  const Pace positions = paceOf(before.positions, after.positions, seconds);
+  const Pace headings = paceOf(before.headings, after.headings, seconds);
+  const Pace velocities = paceOf(before.velocities, after.velocities, seconds);
   const int64_t poses = after.published - before.published;
-  const auto rateOf = [&](InputCount AssemblerCounts::*input) {
-    return static_cast<double>((after.*input).came - (before.*input).came) / seconds;
-  };
-  const auto isSlow = [&](InputCount AssemblerCounts::*input) {
-    const int64_t came = (after.*input).came - (before.*input).came;
-    return came > 0 && 2 * ((after.*input).apart - (before.*input).apart) > came;
-  };
-  const auto manyLack = [&](int64_t without, int64_t all) {
-    return static_cast<double>(without) > kTolerated * static_cast<double>(all);
-  };
-  const auto having = [&](const char* what, int64_t without) {
-    return std::string(what) + " in " + std::to_string(poses - without) + " of " +
-           std::to_string(poses) + " poses; ";
-  };
-  const double positions = rateOf(&AssemblerCounts::positions);
-  const double headings = rateOf(&AssemblerCounts::headings);
-  const double velocities = rateOf(&AssemblerCounts::velocities);
   const int64_t no_heading = after.without_heading - before.without_heading;
   const int64_t no_velocity = after.without_velocity - before.without_velocity;
   const int64_t left_out = after.attitude_only - before.attitude_only;
-  if (isSlow(&AssemblerCounts::headings) && manyLack(no_heading, poses))
-    return having("a heading", no_heading) + messages(end) +
-           remedy("headings", headings, positions, "attitude_hold", config_.attitude_hold_us);
-  if (isSlow(&AssemblerCounts::velocities) && manyLack(no_velocity, poses))
-    return having("a velocity", no_velocity) + messages(end) +
-           remedy("velocities", velocities, positions, "position_hold", config_.position_hold_us);
+  if (headings.slow && manyOf(no_heading, poses))
+    return having("a heading", poses - no_heading, poses) + messages(end) +
+           remedy("headings", headings.rate, positions.rate, "attitude_hold",
+                  config_.attitude_hold_us);
+  if (velocities.slow && manyOf(no_velocity, poses))
+    return having("a velocity", poses - no_velocity, poses) + messages(end) +
+           remedy("velocities", velocities.rate, positions.rate, "position_hold",
+                  config_.position_hold_us);
   // Attitudes to which no position could be carried.
-  if (config_.attitude_epochs && isSlow(&AssemblerCounts::positions) &&
-      manyLack(left_out, left_out + poses))
-    return std::to_string(left_out) + " attitudes left out for want of a position near them; " +
-           messages(end) +
-           remedy("positions", positions, headings, "position_hold", config_.position_hold_us);
+  if (config_.attitude_epochs && positions.slow && manyOf(left_out, left_out + poses))
+    return having("a position near the attitude", poses, left_out + poses) + messages(end) +
+           remedy("positions", positions.rate, headings.rate, "position_hold",
+                  config_.position_hold_us);
   return {};
 }
 
