@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -42,10 +43,9 @@ inline CalledProgram called(const std::string& command_line) {
 class OwnFolder {
  public:
   OwnFolder() {
-    static int count = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("tread-tools-" + std::to_string(getpid()) + "-" + std::to_string(++count));
-    std::filesystem::create_directories(path_);
+    // What a killed test has left may have the name of any pid.
+    std::string name = (std::filesystem::temp_directory_path() / "tread-tools-XXXXXX").string();
+    path_ = mkdtemp(name.data());
   }
   ~OwnFolder() { std::filesystem::remove_all(path_); }
   OwnFolder(const OwnFolder&) = delete;

@@ -22,6 +22,7 @@
 #include "tests/common/recordings/synthetic_drives.hpp"
 #include "tests/helpers.hpp"
 #include "tests/tools/called_program.hpp"
+#include "tests/tools/experiment/small_world.hpp"
 #include "tests/tools/gap/arc_drive.hpp"
 #include "tests/tools/programs.hpp"
 
@@ -93,8 +94,8 @@ const std::vector<WritingCommand>& commands() {
       {"tread-patterns record IN --recordings DIR --surface made -n 3 --model " + kTeodor, kSet,
        "made.csv"},
       {"tread-patterns from-recordings IN -o OUT", "drives", "made", true},
-      {"tread-experiment transitions --world IN --repetitions 40 --out OUT",
-       kConfig + "worlds/transitions_symmetric.yaml", "made", true},
+      {"tread-experiment transitions --world IN --rules off,single --repetitions 20 --out OUT",
+       "small.yaml", "made", true},
       {"tread-experiment adaptation --recordings IN --rules off --starts 3 --out OUT", "drives",
        "made", true},
       {"tread-compare-models --log IN --out OUT", "arcs.lcmlog", "made", true},
@@ -111,6 +112,7 @@ class Inputs {
     gap::samples::writeDrive(path("long.lcmlog"), 205.0);
     gap::samples::writeDrive(path("longer.lcmlog"), 210.0);
     folder_.write("faults.yaml", "messages: []\n");
+    folder_.write("small.yaml", experiment::testing::kSmallWorld);
     folder_.write("track.nmea", nmeaTrack());
     folder_.write("drive.clf", carmenDrive());
     run("tread-missions --length 25 --seed 3 --log " + path("drive.lcmlog"));

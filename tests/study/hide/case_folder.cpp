@@ -21,7 +21,7 @@ void writeLog(const fs::path& path, const MadeCase& made) {
   LogWriter writer(path.string());
   for (const LogEvent& event : made.events)
     writer.write(event.utime, event.channel, event.bytes.data(), event.bytes.size());
-  writer.flush();
+  writer.close();
   if (made.keep < 1.0)
     fs::resize_file(path,
                     static_cast<uintmax_t>(made.keep * static_cast<double>(fs::file_size(path))));

@@ -58,7 +58,7 @@ class ForeignLog {
     add(utime, channel, Bytes("pose_xyt_t").time(utime).number(x).number(2.0).number(0.5));
   }
   ForeignDrive read(const ForeignRobot& robot = {}) {
-    writer_->flush();
+    writer_->close();
     return readForeignLog(path_, robot);
   }
 

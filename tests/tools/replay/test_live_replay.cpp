@@ -60,7 +60,7 @@ class LiveLearner {
     LogWriter writer(folder_.file("played.lcmlog"));
     for (const LogEvent& event : events)
       writer.write(event.utime, event.channel, event.bytes.data(), event.bytes.size());
-    writer.flush();
+    writer.close();
     bus_ = std::make_unique<LcmBus>(url_, TimeSource::kHost);
     keep(kIns);
     keep(kMotor);
