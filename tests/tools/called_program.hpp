@@ -26,9 +26,10 @@ struct CalledProgram {
   bool isOneLine() const { return !printed.empty() && printed.find('\n') == printed.size() - 1; }
 };
 
-/// A program of the build, called as people call it: "tread-report drive.lcmlog".
-inline CalledProgram called(const std::string& command_line) {
-  const std::string command = std::string(TREAD_BIN_DIR) + "/" + command_line + " 2>&1";
+/// A program of the build, called as people call it: "tread-report drive.lcmlog"; after `through`,
+/// for instance "timeout 5".
+inline CalledProgram called(const std::string& command_line, const std::string& through = "") {
+  const std::string command = through + " " + TREAD_BIN_DIR + "/" + command_line + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
   REQUIRE(pipe != nullptr);
   CalledProgram result;
