@@ -53,6 +53,7 @@ LogCounts writeLog(const std::string& path, LogWriter& log) {
   counts.problem = reader.problem();
   counts.lost_bytes = reader.lostBytes();
   counts.bytes = reader.size();
+  counts.cut_off = reader.cutOff();
   if (reader.lostMessages() > 0)
     counts.lost["damaged"] = static_cast<int64_t>(reader.lostMessages());
   if (counts.taken == 0)

@@ -17,6 +17,7 @@ struct LogCounts {
   std::map<std::string, int64_t> lost;      ///< messages of Tread's, by topic and why
   uint64_t lost_bytes = 0;                  ///< of the file
   uint64_t bytes = 0;                       ///< all of it
+  bool cut_off = false;                     ///< more may have stood behind them
   std::string problem;                      ///< one clear line if the file is damaged
 };
 

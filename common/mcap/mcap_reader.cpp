@@ -128,7 +128,8 @@ void Reader::scan() {
       take({op, content.data(), content.size()}, 0, at);
     }
   }
-  if (!data_ended) {
+  cut_off_ = !data_ended;
+  if (cut_off_) {
     lost_bytes_ += size_ - std::min(at, size_);
     damaged("ends too early; is the file truncated?");
   }

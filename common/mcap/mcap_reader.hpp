@@ -43,6 +43,8 @@ class Reader {
   /// Bytes of the file that cannot be read, and all of it.
   uint64_t lostBytes() const { return lost_bytes_; }
   uint64_t size() const { return size_; }
+  /// Whether its data have no end: what stood behind it is not known.
+  bool cutOff() const { return cut_off_; }
   /// Messages that can be read.
   size_t messages() const { return order_.size(); }
 
@@ -89,6 +91,7 @@ class Reader {
   std::string problem_;
   size_t lost_messages_ = 0;
   uint64_t lost_bytes_ = 0;
+  bool cut_off_ = false;
 };
 
 }  // namespace tread::mcap

@@ -17,8 +17,10 @@ constexpr double kMostCells = 8000.0;     // of a grid
 constexpr double kShortestMotion = 0.3;   // [s] between two poses whose difference is a rate
 constexpr double kLongestMotion = 1.2;    // [s]
 constexpr double kUsual[] = {-0.3, 2.0};  // [s] by which a vehicle follows its commands
-constexpr double kLeastOverlap = 60.0;    // [s]
+constexpr double kLeastOverlap = 20.0;    // [s]
+constexpr double kLongOverlap = 60.0;     // [s] of which fewer correlation is enough
 constexpr double kExplains = 0.4;         // mean correlation^2 of speed and turn
+constexpr double kExplainsShort = 0.7;    // the same of less driving
 constexpr double kBetter = 0.3;           // by which it is larger than without an offset
 constexpr double kAloneBetter = 0.15;     // and than at any other offset
 constexpr double kApart = 3.0;            // [s] from which on it is another one
@@ -148,7 +150,9 @@ void checkOffset(const SortedLog& log, const std::vector<HeardSpan>& spans, Diag
   const double other = std::max(all.best(-1e300, best.first - kApart).second,
                                 all.best(best.first + kApart, 1e300).second);
   const bool is_usual = best.first > kUsual[0] - step && best.first < kUsual[1] + step;
-  if (is_usual || best.second < kExplains || best.second < usual.second + kBetter ||
+  const double driven = step * static_cast<double>(std::min(known(commands), known(motion)));
+  const double enough = driven < 2.0 * kLongOverlap ? kExplainsShort : kExplains;
+  if (is_usual || best.second < enough || best.second < usual.second + kBetter ||
       best.second < other + kAloneBetter)
     return;
   notes.contradiction(

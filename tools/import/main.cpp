@@ -133,11 +133,10 @@ int verdictOnMotion(const std::vector<LogEvent>& events, const Arguments& argume
   int verdict = 0;
   for (const gap::LogNote& note :
        gap::toDrive(toDriveLog(arguments.csv, std::move(driven))).notes) {
-    if (!note.of_commands) continue;
-    if (!note.fatal) {
-      std::printf("%s\n", note.what.c_str());
-      continue;
-    }
+    if (!note.fatal && note.of_commands) std::printf("%s\n", note.what.c_str());
+    if (note.fatal && !note.of_commands)
+      std::printf("tread-gap will not use it: %s\n", note.what.c_str());
+    if (!note.fatal || !note.of_commands) continue;
     std::fflush(stdout);
     std::fprintf(stderr, "tread-import: %s: the commands do not explain the motion: %s\n",
                  arguments.csv.c_str(), note.what.c_str());
@@ -193,6 +192,7 @@ int takeMcap(const Arguments& arguments) {
   for (const auto& [what, count] : counts.lost) all += static_cast<double>(count);
   for (const auto& [what, count] : counts.lost)
     losses.push_back({what, static_cast<double>(count), all, "messages"});
+  if (counts.cut_off) losses.push_back({"what follows the end of the file", 0.0, 0.0, ""});
   if (counts.lost_bytes > 0)
     losses.push_back({"damaged", static_cast<double>(counts.lost_bytes),
                       static_cast<double>(counts.bytes), "bytes"});

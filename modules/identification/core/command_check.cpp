@@ -299,7 +299,8 @@ class Checker {
     };
     if (drive_.encoders.empty()) return;
     const LagTable turn = by(turns(turn_factor_), turnRate());
-    if (goesAgainst(turn, -1.0, 1.0))
+    const bool with_commands = turn_ && turn_->correlation > kClear;
+    if (with_commands && goesAgainst(turn, -1.0, 1.0))
       problem("the robot turns against its wheels' speeds (correlation " +
               digits(turn.best(0, increments_.size(), -1.0)->correlation, 2) +
               "), but with its commands: the measured speeds of left and right are swapped");

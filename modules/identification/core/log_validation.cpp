@@ -244,10 +244,11 @@ void checkGyro(const Drive& drive, Diagnostics& notes) {
     return notes.note("no gyro beside the heading, or nothing turns: not compared");
   if (goesAgainst(table, -1.0, 1.0)) {
     const auto against = table.best(0, increments.size(), -1.0);
-    return notes.fatal("flipped sign: the gyro turns against the heading (slope " +
-                       digits(against->slope, 2) + ", correlation " +
-                       digits(against->correlation, 2) + " over " + std::to_string(against->rows) +
-                       " intervals); check how the INS is mounted and which sign it uses");
+    return notes.contradiction("flipped sign: the gyro turns against the heading (slope " +
+                               digits(against->slope, 2) + ", correlation " +
+                               digits(against->correlation, 2) + " over " +
+                               std::to_string(against->rows) +
+                               " intervals); check how the INS is mounted and which sign it uses");
   }
   const std::string r = "correlation " + digits(match->correlation, 2) + " over " +
                         std::to_string(match->rows) + " intervals";

@@ -137,6 +137,7 @@ TEST_CASE("a truncated MCAP file gives its whole chunks, and says so") {
     std::string problem;
     const size_t messages = read(file.path(), problem).size();
     REQUIRE_THAT(problem, Catch::Contains("is the file truncated?"));
+    REQUIRE(mcap::Reader(file.path()).cutOff());
     least = std::min(least, messages);
     most = std::max(most, messages);
   }

@@ -13,6 +13,7 @@
 #include "common/recordings/csv_table.hpp"
 #include "common/recordings/imported_log.hpp"
 #include "tests/tools/import/drive_samples.hpp"
+#include "tools/gap/drive_log.hpp"
 
 using namespace tread;
 using namespace tread::recordings;
@@ -380,4 +381,7 @@ TEST_CASE("real recordings become logs in all their formats") {
   REQUIRE(aligned.executions.size() == 40);
   REQUIRE(whole.executions.size() == 40);
   REQUIRE(whole.motor.back().battery_voltage == Approx(48.25).margin(0.5));
+  for (const Imported* log : {&steps, &aligned, &whole})
+    for (const gap::LogNote& note : gap::toDrive(toDriveLog("drive", log->events)).notes)
+      CHECK_FALSE((note.of_commands && note.fatal));
 }
