@@ -56,12 +56,15 @@ DriveLog toDriveLog(const std::string& name, std::vector<LogEvent> events);
 /// is on none or not of its type.
 template <class Hear, class... Messages>
 bool dispatch(const LogEvent& event, Hear&& hear, const Channel<Messages>&... channels) {
-  const auto heard = [&](const auto& channel, auto message) {
+  const auto heard = [&](const auto& channel, const auto* type) {
+    // Most events are on none of the channels: no message is made for them.
+    if (event.channel != channel.name) return false;
+    std::decay_t<decltype(*type)> message{};
     if (!decode(event, channel, message)) return false;
     hear(std::as_const(message));
     return true;
   };
-  return (heard(channels, Messages{}) || ...);
+  return (heard(channels, static_cast<const Messages*>(nullptr)) || ...);
 }
 
 /// Makes the log of a drive as a robot's logger would have recorded it: numbers the messages of

@@ -5,25 +5,38 @@
 #include <functional>
 
 namespace tread {
+namespace {
+
+/// Whether the event is on the channel; what its message says of its part.
+template <class Message, class Part>
+bool isOn(const LogEvent& event, const Channel<Message>& channel, const Part& part,
+          uint64_t& result) {
+  if (event.channel != channel.name) return false;
+  Message message;
+  if (decode(event, channel, message)) result = part(message);
+  return true;
+}
+
+}  // namespace
 
 uint64_t partOf(const LogEvent& event) {
-  map_tile_t tile;
-  health_t health;
-  config_t config;
-  pattern_set_part_t part;
-  if (event.channel == kMap.name && decode(event, kMap, tile))
+  const auto hash = [](const std::string& name) { return std::hash<std::string>()(name); };
+  const auto ofTile = [](const map_tile_t& tile) {
     return static_cast<uint64_t>(static_cast<uint32_t>(tile.tile_x)) << 32 |
            static_cast<uint32_t>(tile.tile_y);
-  if (event.channel == kPatternSet.name && decode(event, kPatternSet, part))
+  };
+  const auto ofSet = [](const pattern_set_part_t& part) {
     return static_cast<uint64_t>(part.part);
-  const std::hash<std::string> hash;
-  fence_t fence;
-  if (event.channel == kFence.name && decode(event, kFence, fence)) return hash(fence.fence_name);
-
-  if (event.channel == kHealth.name && decode(event, kHealth, health)) return hash(health.process);
-  if (event.channel == kConfig.name && decode(event, kConfig, config))
-    return hash(config.config_process);
-  return 0;
+  };
+  const auto ofFence = [&](const fence_t& fence) { return hash(fence.fence_name); };
+  const auto ofHealth = [&](const health_t& health) { return hash(health.process); };
+  const auto ofConfig = [&](const config_t& config) { return hash(config.config_process); };
+  uint64_t part = 0;
+  const bool has_parts = isOn(event, kMap, ofTile, part) || isOn(event, kPatternSet, ofSet, part) ||
+                         isOn(event, kFence, ofFence, part) ||
+                         isOn(event, kHealth, ofHealth, part) ||
+                         isOn(event, kConfig, ofConfig, part);
+  return has_parts ? part : 0;
 }
 
 }  // namespace tread
