@@ -13,6 +13,7 @@
 #include "common/mcap/mcap_log.hpp"
 #include "common/recordings/csv_table.hpp"
 #include "common/recordings/imported_log.hpp"
+#include "common/store/output_file.hpp"
 #include "tools/import/csv_drive.hpp"
 #include "tools/import/foreign_log.hpp"
 #include "tools/import/rawlog.hpp"
@@ -108,6 +109,9 @@ RecordedDrive readForeign(const Arguments& arguments, Session& session) {
   }
   ConfigReader reader = ConfigReader::fromFile(arguments.mapping, arguments.overrides);
   const import::CsvMapping mapping = import::readCsvMapping(reader);
+  for (const import::CsvSource& source : mapping.sources)  // tables beside the named one
+    refuseToReplace(arguments.log,
+                    {(std::filesystem::path(arguments.csv).parent_path() / source.file).string()});
   import::ForeignDrive foreign = import::readMappedCsv(arguments.csv, mapping);
   tell(foreign);
   session = foreignSession(arguments, foreign.drive);
