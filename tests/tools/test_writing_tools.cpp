@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // Every command that writes a file, against what may go wrong with that file.
-#include <linux/capability.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
@@ -22,15 +17,20 @@
 #include "tests/common/recordings/synthetic_drives.hpp"
 #include "tests/helpers.hpp"
 #include "tests/tools/called_program.hpp"
+#include "tests/tools/experiment/drawn_driving.hpp"
 #include "tests/tools/experiment/small_world.hpp"
 #include "tests/tools/gap/arc_drive.hpp"
 #include "tests/tools/programs.hpp"
+#include "tests/tools/troubled_program.hpp"
 
 namespace fs = std::filesystem;
 using namespace tread;
 using tread::samples::called;
 using tread::samples::CalledProgram;
+using tread::samples::Outcome;
 using tread::samples::OwnFolder;
+using tread::samples::runIn;
+using tread::samples::Trouble;
 
 namespace {
 
@@ -96,9 +96,9 @@ const std::vector<WritingCommand>& commands() {
       {"tread-patterns from-recordings IN -o OUT", "drives", "made", true},
       {"tread-experiment transitions --world IN --rules off,single --repetitions 20 --out OUT",
        "small.yaml", "made", true},
-      {"tread-experiment adaptation --recordings IN --rules off --starts 3 --out OUT", "drives",
+      {"tread-experiment adaptation --recordings IN --rules off --starts 3 --out OUT", "driving",
        "made", true},
-      {"tread-compare-models --log IN --out OUT", "arcs.lcmlog", "made", true},
+      {"tread-compare-models --log IN --out OUT", "long.lcmlog", "made", true},
       {"tread-key new OUT", ""},
   };
   return all;
@@ -124,6 +124,9 @@ class Inputs {
     writeDrives(drives_, {{"one", "Rover", "hard", samples::linearGround(0.95, 0.50, -0.05)},
                           {"two", "Rover", "soft", samples::linearGround(0.85, 0.43, -0.10)}});
     fs::copy(drives_.file(""), path("drives"), fs::copy_options::recursive);
+    const samples::Folder driving("writing_tools_driving");
+    adaptation::writeDriving(driving, {{"a", "grass"}, {"b", "sand"}});
+    fs::copy(driving.file(""), path("driving"), fs::copy_options::recursive);
   }
 
   std::string path(const std::string& name) const { return folder_.path(name); }
@@ -168,61 +171,6 @@ class Inputs {
   OwnFolder folder_;
   samples::Folder drives_;
 };
-
-enum class Trouble { kNone, kUnwritable, kFullDisk, kKilled };
-
-struct Outcome {
-  int status = -1;
-  int signal = 0;
-  std::string complaint;  ///< what stood on stderr
-
-  /// Warnings are about other things.
-  bool isOneLine() const {
-    size_t lines = 0;
-    for (const std::string& line : testing::linesOf(complaint))
-      lines += line.find(": warning: ") == std::string::npos ? 1U : 0U;
-    return lines == 1;
-  }
-};
-
-/// In the child. A limit on file sizes fails in the middle of writing, as a full disk does; who
-/// does not ignore its signal is killed by it, there and then.
-void meet(Trouble trouble) {
-  // Root writes everywhere, but not without this capability.
-  if (trouble == Trouble::kUnwritable) ::prctl(PR_CAPBSET_DROP, CAP_DAC_OVERRIDE);
-  if (trouble != Trouble::kFullDisk && trouble != Trouble::kKilled) return;
-  const rlimit none{0, 0};
-  ::setrlimit(RLIMIT_CORE, &none);
-  const rlimit tight{20, 20};
-  ::setrlimit(RLIMIT_FSIZE, &tight);
-  std::signal(SIGXFSZ, trouble == Trouble::kFullDisk ? SIG_IGN : SIG_DFL);
-}
-
-Outcome runIn(const std::string& folder, const std::string& words, Trouble trouble) {
-  int ends[2];
-  REQUIRE(::pipe(ends) == 0);
-  const std::string line = "exec " + std::string(TREAD_BIN_DIR) + "/" + words + " >/dev/null";
-  const pid_t child = ::fork();
-  if (child == 0) {
-    ::dup2(ends[1], STDERR_FILENO);
-    ::close(ends[0]);
-    meet(trouble);
-    if (::chdir(folder.c_str()) != 0) ::_exit(99);
-    ::execl("/bin/sh", "sh", "-c", line.c_str(), static_cast<char*>(nullptr));
-    ::_exit(99);
-  }
-  ::close(ends[1]);
-  Outcome outcome;
-  char piece[4096];
-  for (ssize_t got; (got = ::read(ends[0], piece, sizeof piece)) > 0;)
-    outcome.complaint.append(piece, static_cast<size_t>(got));
-  ::close(ends[0]);
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  if (WIFSIGNALED(status)) outcome.signal = WTERMSIG(status);
-  if (WIFEXITED(status)) outcome.status = WEXITSTATUS(status);
-  return outcome;
-}
 
 using Content = std::map<std::string, std::string>;
 
@@ -298,9 +246,9 @@ std::string refused(const Desk& desk, const std::string& out, const std::string&
 }
 
 /// A command that fails while it writes over what is there.
-std::string failed(const Desk& desk, Trouble trouble, const std::string& force) {
+std::string failed(const Desk& desk, Trouble trouble) {
   const Content before = desk.content();
-  const Outcome outcome = desk.run(desk.out(), trouble, force);
+  const Outcome outcome = desk.run(desk.out(), trouble, " --force");
   INFO(outcome.complaint);
   const bool killed = trouble == Trouble::kKilled;
   if (killed)
@@ -324,7 +272,6 @@ Row rowOf(const WritingCommand& command, const Inputs& inputs) {
   CAPTURE(command.words);
   const bool never_replaces = command.words.rfind("tread-key", 0) == 0;
   const bool names_output = command.words.find("OUT") != std::string::npos;
-  const std::string force = never_replaces ? "" : " --force";
   const Desk desk(command, inputs);
   Row row(5, "has none");
   row[0] = desk.run(desk.out(), Trouble::kNone).complaint;
@@ -336,9 +283,9 @@ Row rowOf(const WritingCommand& command, const Inputs& inputs) {
       row[0] = refused(desk, inputAsOutput(command, desk.in()), "input", Trouble::kNone, more);
   row[1] = refused(desk, desk.out(), never_replaces ? "File exists" : "--force", Trouble::kNone);
   row[2] = refused(desk, desk.closed(), "ermission denied", Trouble::kUnwritable);
-  if (never_replaces) fs::remove(desk.out());
-  row[3] = failed(desk, Trouble::kFullDisk, force);
-  row[4] = failed(desk, Trouble::kKilled, force);
+  if (never_replaces) return row;  // it makes a new file or none
+  row[3] = failed(desk, Trouble::kFullDisk);
+  row[4] = failed(desk, Trouble::kKilled);
   return row;
 }
 

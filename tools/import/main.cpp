@@ -15,6 +15,7 @@
 #include "common/mcap/mcap_log.hpp"
 #include "common/recordings/csv_table.hpp"
 #include "common/recordings/imported_log.hpp"
+#include "common/store/output_file.hpp"
 #include "tools/gap/drive_log.hpp"
 #include "tools/import/csv_drive.hpp"
 #include "tools/import/foreign_log.hpp"
@@ -168,8 +169,12 @@ Reading readForeign(const Arguments& arguments, Session& session) {
   }
   ConfigReader reader = ConfigReader::fromFile(arguments.mapping, arguments.overrides);
   import::CsvMapping mapping = import::readCsvMapping(reader);
-  for (import::CsvSource& source : mapping.sources)
+  for (import::CsvSource& source : mapping.sources) {
     source.layout.decimal_comma = source.layout.decimal_comma || arguments.decimal_comma;
+    // A table beside the one that is named is an input, too.
+    refuseToReplace(arguments.log,
+                    {(std::filesystem::path(arguments.csv).parent_path() / source.file).string()});
+  }
   import::ForeignDrive foreign = import::readMappedCsv(arguments.csv, mapping);
   session = foreignSession(arguments, foreign.drive);
   session.robot = mapping.robot;

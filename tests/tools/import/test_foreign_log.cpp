@@ -49,7 +49,7 @@ class Bytes {
 class ForeignLog {
  public:
   ForeignLog() : folder_("import_foreign"), path_(folder_.file("foreign.log", "")) {
-    writer_ = std::make_unique<LogWriter>(path_);
+    writer_ = std::make_unique<LogWriter>(path_, OutputFile::Kind::kGrowing);
   }
   void add(int64_t utime, const std::string& channel, const Bytes& message) {
     writer_->write(utime, channel, message.bytes.data(), message.bytes.size());
@@ -58,7 +58,7 @@ class ForeignLog {
     add(utime, channel, Bytes("pose_xyt_t").time(utime).number(x).number(2.0).number(0.5));
   }
   ForeignDrive read(const ForeignRobot& robot = {}) {
-    writer_->close();
+    writer_->flush();
     return readForeignLog(path_, robot);
   }
 
