@@ -47,7 +47,7 @@ constexpr size_t kSample = 90;
 constexpr int kLeastExplained = 12;
 constexpr double kLeastShare = 0.75;
 /// ... and more, where only one earlier scan does not fit: what fits several by chance is rare.
-constexpr double kLeastAlone = 24.0;
+constexpr double kLeastAlone = 30.0;
 /// ... in so many of twelve sectors, and each that it breaks counts as so many.
 constexpr int kLeastSectors = 3;
 constexpr int kBroken = 4;
@@ -115,7 +115,10 @@ ScanMonitor::Suspicion ScanMonitor::suspect(const ToldScan& told, const PoseAt& 
   if (repeats(told)) return {ScanDefect::kFrozen};
   if (!level_) return {};
   ScanView view(scan, robot_, height_);
-  const Suspicion best = explain(view, poseAt);
+  // Between scans that are far apart too much may change.
+  const bool doubted = !recent_.empty() && recent_.back().defect != ScanDefect::kNone;
+  const bool apart = newest_ && !doubted && scan.utime - newest_->utime() > kMoment;
+  const Suspicion best = apart ? Suspicion{} : explain(view, poseAt);
   if (best.defect != ScanDefect::kNone) return best;
   if (seesThrough(scan)) return {ScanDefect::kSeesThrough};
   keep(std::move(view));
@@ -222,17 +225,24 @@ ScanMonitor::Suspicion ScanMonitor::explain(const ScanView& view, const PoseAt& 
   const double least = doubts.size() > 1 ? kLeastExplained : kLeastAlone;
   static const std::vector<Suspicion> kAll = hypotheses();
   for (Suspicion suspicion : kAll) {
-    double least_gain = std::numeric_limits<double>::infinity();
+    size_t explained = 0, tried = 0;
     for (const Doubt& doubt : doubts) {
       const auto T_reference_scan = placed(suspicion, view, *doubt.reference, poseAt);
       const double gain = T_reference_scan ? gainOf(*T_reference_scan, *doubt.reference,
                                                     doubt.missed, doubt.matched)
                                            : 0.0;
-      least_gain = std::min(least_gain, gain);
       suspicion.gain += gain;
-      if (gain <= 0.0) break;
+      explained += gain > 0.0 ? 1 : 0;
+      // From farther away much was hidden: the nearest two decide, and half of all.
+      if (++tried <= 2 && gain <= 0.0) break;
     }
-    if (least_gain > 0.0 && suspicion.gain >= least && suspicion.gain > best.gain) best = suspicion;
+    // A little delay explains much that is none: there all must agree.
+    const bool delayed = suspicion.defect == ScanDefect::kDelayed;
+    const size_t needed =
+        delayed ? doubts.size() : std::max(std::min<size_t>(2, doubts.size()), doubts.size() / 2);
+    if (tried == doubts.size() && explained >= needed && suspicion.gain >= least &&
+        suspicion.gain > best.gain)
+      best = suspicion;
   }
   return best;
 }
@@ -269,6 +279,11 @@ void ScanMonitor::keep(ScanView view) {
 }
 
 bool ScanMonitor::agree(const Suspicion& a, const Suspicion& b) {
+  // What needs no motion to be sure may change: far ranges that repeat are frozen ones, too.
+  const auto plain = [](ScanDefect defect) {
+    return defect != ScanDefect::kNone && defect <= ScanDefect::kSeesThrough;
+  };
+  if (plain(a.defect) && plain(b.defect)) return true;
   return a.defect == b.defect && a.always == b.always &&
          std::abs(wrapAngle(a.angle - b.angle)) < 2.5 * kAngleStep &&
          std::abs(a.delay - b.delay) < 1.5 * kDelayStep;

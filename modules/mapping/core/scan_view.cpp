@@ -22,6 +22,8 @@ constexpr double kApartPerRange = 0.015;
 constexpr double kInPlane = 0.04;
 /// So near to the plane of another scan it would have seen it, too [m].
 constexpr double kSamePlane = 0.06;
+/// With a smaller share of its points there the planes differ: on hills both may have seen ground.
+constexpr double kMostInPlane = 0.6;
 /// What moves may leave the view or the range within a moment: so far it counts for nothing [m].
 constexpr double kMayLeave = 1.0;
 
@@ -81,9 +83,11 @@ void ScanView::sortIn(std::vector<std::pair<int, Eigen::Vector3d>> hits) {
 std::vector<Eigen::Vector2d> ScanView::inPlane(const ScanView& other, size_t at_most) const {
   std::vector<Eigen::Vector2d> points;
   const size_t step = other.points_.size() / at_most + 1;
-  for (size_t i = 0; i < other.points_.size(); i += step)
+  size_t looked_at = 0;
+  for (size_t i = 0; i < other.points_.size(); i += step, ++looked_at)
     if (std::abs((T_sensor_map_ * other.p_map_[i]).z()) < kSamePlane)
       points.push_back(other.points_[i]);
+  if (static_cast<double>(points.size()) < kMostInPlane * static_cast<double>(looked_at)) return {};
   return points;
 }
 

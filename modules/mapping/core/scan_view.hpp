@@ -32,7 +32,8 @@ class ScanView {
   const PlaneMove& T_map_sensor() const { return T_map_sensor_; }
   const std::vector<Eigen::Vector2d>& points() const { return points_; }
   /// The points of another view that lie in the plane which this one looked at: what is higher or
-  /// lower it could not see, and ground is seen elsewhere as soon as the robot pitches.
+  /// lower it could not see, and ground is seen elsewhere as soon as the robot pitches. None if
+  /// most lie elsewhere.
   std::vector<Eigen::Vector2d> inPlane(const ScanView& other, size_t at_most) const;
 
   /// How a point of another scan lies to this one's.

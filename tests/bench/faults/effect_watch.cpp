@@ -8,7 +8,9 @@
 namespace tread::faults {
 namespace {
 
-constexpr int64_t kStands = 500'000;  // [us] of zero: no pause between two patterns
+constexpr int64_t kTogether = 20'000;    // [us] a fault that stops the motors at once
+constexpr int64_t kStands = 500'000;     // [us] of zero
+constexpr int64_t kForGood = 3'000'000;  // [us] no pause before a turn
 
 double seconds(int64_t us) {
   return static_cast<double>(us) * 1e-6;
@@ -18,31 +20,38 @@ double seconds(int64_t us) {
 
 void EffectWatch::receive(const health_t& health) {
   const bool failed = health.process == "mapping" && health.health_state == health_t::HEALTH_FAILED;
-  named_ = named_ || failed;
+  named_ = named_ || (begun_ && failed);
 }
 
 void EffectWatch::receive(const motor_t& motor) {
-  disarmed_ = motor.bridge_state == motor_t::STATE_DISARMED;
+  disarmed_ = !mayDrive(motor.bridge_state);
   motor_reason_ = motor.state_reason;
 }
 
+void EffectWatch::receive(const plan_t& plan) {
+  goal_lost_ = plan.goal_id == 0;
+  plan_reason_ = plan.reason;
+}
+
 void EffectWatch::step(int64_t now, bool turns, const sim::RobotTruth& truth, bool active) {
-  if (!since_ && active && turns) {
-    since_ = turned_ = now;
+  begun_ = begun_ || active;
+  if (turns) turned_ = now;
+  if (!since_ && active && now - turned_ < kTogether) {
+    since_ = now;
     from_ = truth.distance;
     yaw_ = truth.T_map_body.yaw;
     effect_.moved = true;
   }
   if (!since_ || effect_.zero_after) return;
-  effect_.named_turn = std::max(effect_.named_turn,
-                                effect_.named_after ? 0.0 : std::abs(truth.T_map_body.yaw - yaw_));
   if (named_ && !effect_.named_after) {
     effect_.named_after = seconds(now - *since_);
     effect_.named_way = truth.distance - from_;
   }
-  if (turns) turned_ = now;
-  if (now - turned_ < kStands) return;
-  effect_.zero_after = seconds(turned_ - *since_);
+  if (!effect_.named_after)
+    effect_.named_turn = std::max(effect_.named_turn, std::abs(truth.T_map_body.yaw - yaw_));
+  const bool stopped = disarmed_ || goal_lost_ || now - turned_ > kForGood;
+  if (now - turned_ < kStands || !stopped) return;
+  effect_.zero_after = seconds(std::max(turned_ - *since_, int64_t{0}));
   effect_.zero_way = truth.distance - from_;
   effect_.reason = disarmed_ ? motor_reason_ : plan_reason_;
 }

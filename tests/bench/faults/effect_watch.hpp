@@ -11,18 +11,20 @@
 
 namespace tread::faults {
 
-/// Measures what comes of a fault: call step() from its begin on.
+/// Measures what comes of a fault, until the robot stands for good: disarmed, without a goal, or
+/// for three seconds.
 class EffectWatch {
  public:
   void receive(const health_t& health);
   void receive(const motor_t& motor);
-  void receive(const plan_t& plan) { plan_reason_ = plan.reason; }
+  void receive(const plan_t& plan);
   void step(int64_t now, bool turns, const sim::RobotTruth& truth, bool active);
   const FaultEffect& effect() const { return effect_; }
 
  private:
   std::string motor_reason_, plan_reason_;
-  bool disarmed_ = false;
+  bool disarmed_ = false, goal_lost_ = false;
+  bool begun_ = false;
   bool named_ = false;            ///< since the fault's begin
   std::optional<int64_t> since_;  ///< [us] the robot moves under the fault
   int64_t turned_ = 0;            ///< [us] when the motors turned last

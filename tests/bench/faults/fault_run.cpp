@@ -280,8 +280,7 @@ class Run {
     const std::array<double, 2> power = system_.devices().power(now);
     breaks(motors_.check(now, power));
     const bool turns = power[0] != 0.0 || power[1] != 0.0;
-    if (!schedule_.faults.empty() && now - start_ >= schedule_.faults.front().from)
-      effect_.step(now, turns, system_.robot().truth(), active_.front());
+    if (!active_.empty()) effect_.step(now, turns, system_.robot().truth(), active_.front());
     result_.drove = result_.drove || turns;
     if (now - start_ > schedule_.end()) result_.drove_after = result_.drove_after || turns;
     if ((now - start_) % 1'000'000 == 0)

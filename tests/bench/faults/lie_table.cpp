@@ -63,7 +63,7 @@ LieFigures measure(const missions::RobotConfig& robot, const Lie& lie,
     if (!run.effect.moved) continue;
     ++figures.missions;
     figures.collisions += run.collisions;
-    if (!run.effect.zero_after || run.arrived) continue;
+    if (!run.effect.zero_after) continue;
     ++figures.stopped;
     figures.after = std::max(figures.after, *run.effect.zero_after);
     figures.way = std::max(figures.way, run.effect.zero_way);
