@@ -258,14 +258,14 @@ TEST_CASE("only OutputFile opens files for writing") {
       "common/seal/key_file.cpp",                // a new file, readable by nobody else at any time
       "tools/robot/launch/host.cpp",             // a lock
       "tools/robot/launch/running_robots.cpp"};  // a lock with an address in it
-  const std::regex opens(
-      "\\b(std::)?(ofstream|fstream \\w+\\(|basic_ofstream)\\b|fopen\\(|"
-      "\\bcreat\\(|O_CREAT|O_TRUNC|write_to_png\\(");
+  const std::vector<std::string> opens{"ofstream", "fopen(", "O_CREAT", "O_TRUNC", "write_to_png("};
   size_t writers = 0;
   for (const char* folder : {"common", "modules", "tools"})
     for (const fs::path& path : sourcesUnder(folder)) {
       const std::string file = fs::relative(path, TREAD_SOURCE_DIR).string();
-      if (!std::regex_search(contentOf(path), opens)) continue;
+      const std::string text = contentOf(path);
+      const auto stands = [&](const std::string& word) { return text.find(word) != text.npos; };
+      if (std::none_of(opens.begin(), opens.end(), stands)) continue;
       ++writers;
       CAPTURE(file);
       CHECK((file == "common/store/output_file.cpp" || others.count(file) == 1));
