@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #include <cstdint>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -13,7 +12,6 @@
 
 #include "common/config/command_line.hpp"
 #include "common/config/outputs.hpp"
-#include "common/config/problem_words.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "tests/study/models/comparison_output.hpp"
 #include "tools/gap/drive_log.hpp"
@@ -133,27 +131,23 @@ void compare(const Options& options) {
 }  // namespace tread::gap
 
 int main(int argc, char** argv) {
-  try {
-    CLI::App app{"How good is what tread-gap discovers, beside the models that others use?",
-                 "tread-compare-models"};
-    tread::gap::Options options;
-    app.footer(tread::gap::kFooter);
-    app.add_option("--log", options.logs, "logs of drives")->required()->expected(-1);
-    app.add_option("--model", options.model, "the ideal model (YAML), without effects");
-    tread::Outputs(app)
-        .folder("--out", options.out,
-                "folder for comparison.json and comparison.md; made if needed")
-        ->required();
-    app.add_flag("--pool", options.pool, "also judge each log by what all others teach");
-    app.add_option("--seed", options.seed, "of the random draws of the tests")
-        ->capture_default_str()
-        ->check(CLI::Range(int64_t{0}, int64_t{9'000'000'000'000'000'000}));
-    tread::addThreads(app, options.threads);
-    if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
+  CLI::App app{"How good is what tread-gap discovers, beside the models that others use?",
+               "tread-compare-models"};
+  tread::gap::Options options;
+  app.footer(tread::gap::kFooter);
+  app.add_option("--log", options.logs, "logs of drives")->required()->expected(-1);
+  app.add_option("--model", options.model, "the ideal model (YAML), without effects");
+  tread::Outputs(app)
+      .folder("--out", options.out, "folder for comparison.json and comparison.md; made if needed")
+      ->required();
+  app.add_flag("--pool", options.pool, "also judge each log by what all others teach");
+  app.add_option("--seed", options.seed, "of the random draws of the tests")
+      ->capture_default_str()
+      ->check(CLI::Range(int64_t{0}, int64_t{9'000'000'000'000'000'000}));
+  tread::addThreads(app, options.threads);
+  if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
+  return tread::runProgram("tread-compare-models", [&] {
     tread::gap::compare(options);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "tread-compare-models: %s\n", tread::wordsOf(error).c_str());
-    return tread::kBadInput;
-  }
-  return 0;
+    return 0;
+  });
 }
