@@ -79,17 +79,6 @@ struct HandWorld : BridgeWorld {
 
 }  // namespace
 
-TEST_CASE("a program that follows another within a step inherits no rest from it") {
-  ManualControl manual(ManualLimits{});
-  const int64_t lease = ManualLimits{}.lease_us;
-  REQUIRE(manual.receive({7, "first", 1, 0, true, false, 0.0, 0.0}, 0).empty());
-  manual.update(0, false, true);
-  REQUIRE(manual.receive({8, "second", 1, lease + 1, true, false, 1.0, 1.0}, lease + 1).empty());
-  manual.update(lease + 2, false, true);
-  CHECK_FALSE(manual.takes());
-  CHECK_FALSE(manual.bar().empty());
-}
-
 TEST_CASE("a moved stick takes over within 100 ms of its message, and the program is gone") {
   HandWorld world;
   world.drive();

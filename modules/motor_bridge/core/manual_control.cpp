@@ -37,8 +37,7 @@ std::string ManualControl::receive(const ManualNotice& notice, int64_t now) {
              std::to_string(limits_.lease_us / 1000) + " ms";
   }
   const bool known = !std::isnan(notice.left) && !std::isnan(notice.right);
-  // Another station may follow within one step of the bridge, before update() sees the silence.
-  if (!known || !same) must_rest_ = true;
+  if (!known) must_rest_ = true;
   last_ = notice;
   if (atRest()) must_rest_ = false;
   return "";

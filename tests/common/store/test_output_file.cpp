@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include <cstdio>
+
 #include <catch2/catch.hpp>
 
 #include "common/store/output_file.hpp"
@@ -94,6 +96,7 @@ TEST_CASE("pipes and the standard streams are written to as they stand") {
   const Place place;
   writeText("/dev/null", "x");
   REQUIRE(::mkfifo((place / "pipe").c_str(), 0600) == 0);
+  std::fflush(nullptr);  // what is printed here already must not be printed there once more
   const pid_t writer = ::fork();
   if (writer == 0) {
     // Into the file that the stream leads to, behind what is in it.
