@@ -7,10 +7,9 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
-
-#include <cstdio>
 
 #include <catch2/catch.hpp>
 
