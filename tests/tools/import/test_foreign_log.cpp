@@ -156,7 +156,7 @@ TEST_CASE("bytes of a foreign log that are damaged are counted with the seconds 
   const std::string path = folder.file("foreign.log");
   uint64_t from = 0, to = 0;
   {
-    LogWriter writer(path);
+    LogWriter writer(path, OutputFile::Kind::kGrowing);
     for (int i = 0; i < 200; ++i) {
       const int64_t utime = kBegin + 50'000 * i;
       const auto pose = Bytes("pose_xyt_t").time(utime).number(0.01 * i).number(0).number(0);

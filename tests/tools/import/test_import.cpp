@@ -338,8 +338,9 @@ TEST_CASE("packed recordings are read, and those of other packers are named") {
   const std::string path = folder.file("drive.csv", csv);
   const auto exitOf = [&](const std::string& pack, const std::string& name) {
     const std::string command = pack + " " + path + " && " + TREAD_BIN_DIR +
-                                "/tread-import --format csv --mapping " + mapping + " " + name +
-                                " -o " + folder.file("drive.lcmlog") + " > " + said + " 2>&1";
+                                "/tread-import --force --format csv --mapping " + mapping + " " +
+                                name + " -o " + folder.file("drive.lcmlog") + " > " + said +
+                                " 2>&1";
     return WEXITSTATUS(std::system(command.c_str()));
   };
   const auto words = [&] {

@@ -40,10 +40,14 @@ class Log {
                 .string()) {
     const std::vector<MotionSample> said = drive(model);
     LogWriter writer(path_);
-    for (int i = 0; i < 40 * 20; ++i) writer.write(kMotor, motor(i));
-    for (size_t i = 0; with_ins && i < said.size(); ++i)
-      if (!silent(0.02 * static_cast<double>(i)))
+    int commands = 0;
+    for (size_t i = 0; i < said.size(); ++i) {  // in order of time, as a recorder writes
+      for (; commands < 40 * 20 && 0.05 * commands <= 0.02 * static_cast<double>(i); ++commands)
+        writer.write(kMotor, motor(commands));
+      if (with_ins && !silent(0.02 * static_cast<double>(i)))
         writer.write(kIns, ins(said[i], static_cast<int64_t>(i)));
+    }
+    for (; commands < 40 * 20; ++commands) writer.write(kMotor, motor(commands));
   }
   ~Log() { std::filesystem::remove(path_); }
   const std::string& path() const { return path_; }

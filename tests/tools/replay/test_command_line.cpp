@@ -29,7 +29,8 @@ TEST_CASE("from a recording to a report on the command line") {
              folder.file("sessions.csv", sessions(242)) + " " + csv + " -o " + log);
   INFO(import.printed);
   REQUIRE(import.status == 0);
-  REQUIRE(lines(import.printed) == 1);
+  // What was taken, and how speed and turn follow the commands.
+  REQUIRE(lines(import.printed) == 3);
   const CalledProgram replay = called("tread-replay learner " + log + " --model " + kModel +
                                       " --rule collective --report " + report);
   INFO(replay.printed);
