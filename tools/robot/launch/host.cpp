@@ -91,7 +91,8 @@ ProcessFacts processFacts(const LaunchProcess& process, const std::string& lcm_u
   facts.config_readable = process.config.empty() || access(process.config.c_str(), R_OK) == 0;
   const auto check = checkCommand(process, program, lcm_url);
   if (facts.program_found && facts.config_readable && !check.empty()) {
-    const CommandOutcome outcome = runCommand(check, 10.0);
+    constexpr double kPatience = 60.0;  // [s] on a busy machine; most answer within half a second
+    const CommandOutcome outcome = runCommand(check, kPatience);
     facts.check_code = outcome.code;
     (outcome.code == 0 ? facts.configuration : facts.check_line) =
         outcome.code == 0 ? outcome.output : firstLine(outcome.output);
