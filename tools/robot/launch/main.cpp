@@ -217,8 +217,10 @@ class LateMessages {
         kHealth, [this](const health_t& health) { late_[health.process] = health.late > 0; });
   }
   void listenFor(int milliseconds) {
-    if (bus_) return bus_->handle(milliseconds), void();
-    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    if (bus_)
+      bus_->handle(milliseconds);
+    else
+      std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
   }
   int64_t processes() const {
     return std::count_if(late_.begin(), late_.end(), [](const auto& late) { return late.second; });
