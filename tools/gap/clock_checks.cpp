@@ -179,12 +179,16 @@ std::string lineOf(const Pause& pause, const std::string& place, bool with_motor
 
 /// A pause after which the robot is where it was one message later, although it moves: time went
 /// on, the robot did not.
-void checkPauses(const SortedLog& log, Diagnostics& notes) {
+/** Where MOTOR pauses, too, only the numbers that the robot gave its messages tell such a jump from
+ * a time in which nothing was recorded. An import numbers the rows that it has: its pauses are
+ * breaks, whatever the poses are. A robot that turns on the spot may face the same way again. */
+void checkPauses(const SortedLog& log, Numbering numbering, Diagnostics& notes) {
   const std::vector<ins_t>& ins = log.ins;
   for (size_t i = 1; i < ins.size(); ++i) {
     const int64_t step = ins[i].utime - ins[i - 1].utime;
     if (step < kLongStep || !isNext(ins[i].seq, ins[i - 1].seq) || jumpAnnounced(ins, i)) continue;
     const bool with_motor = motorPauses(log.motor, ins[i - 1].utime, ins[i].utime);
+    if (with_motor && numbering == Numbering::kByImport) continue;
     const Motion& least = with_motor ? kTogetherWithMotor : kAlone;
     const auto before = beside(ins, i - 1, -1);
     const auto after = beside(ins, i, 1);
@@ -206,10 +210,10 @@ void checkPauses(const SortedLog& log, Diagnostics& notes) {
 
 }  // namespace
 
-void checkClocks(const SortedLog& log, Diagnostics& notes) {
+void checkClocks(const SortedLog& log, Numbering numbering, Diagnostics& notes) {
   checkStamps("MOTOR", log.drive.motor_stamps, log, notes);
   checkStamps("INS", log.drive.ins_stamps, log, notes);
-  checkPauses(log, notes);
+  checkPauses(log, numbering, notes);
   int64_t last = log.origin;
   if (!log.motor.empty()) last = std::max(last, log.motor.back().utime);
   if (!log.ins.empty()) last = std::max(last, log.ins.back().utime);
