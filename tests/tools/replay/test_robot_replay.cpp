@@ -290,6 +290,37 @@ TEST_CASE("a robot's log through the planner gives the programs and plans of the
   REQUIRE(check.equal());
 }
 
+TEST_CASE("a planner that mapping's HEALTH stopped is stopped in the replay, too") {
+  // The range finder lies for six seconds: mapping says so, and the planner overhears it.
+  const auto lies = [](missions::RobotSystem& system) {
+    const int64_t start = system.bus().now();
+    system.disturbScans([&system, start](lidar::RangeScan& scan) {
+      const int64_t driven = system.bus().now() - start;
+      if (driven > 12'000'000 && driven < 18'000'000)
+        std::fill(scan.ranges.begin(), scan.ranges.end(), 0.0F);
+    });
+  };
+  std::vector<LogEvent> events = drivenLog(25.0, {}, "collective", lies);
+  const auto stopped = std::count_if(events.begin(), events.end(), [](const LogEvent& event) {
+    plan_t plan;
+    return decode(event, kPlan, plan) && contains(plan.reason, "mapping: ");
+  });
+  REQUIRE(stopped >= 20);
+  const PlannerCheck check = plannerCheck(events);
+  REQUIRE(check.programs.equal == check.steps);
+  REQUIRE(check.plans.equal >= 100);
+  REQUIRE(check.equal());
+  // Without HEALTH nothing tells the replay why the robot stopped.
+  events.erase(std::remove_if(events.begin(), events.end(),
+                              [](const LogEvent& event) {
+                                health_t health;
+                                return decode(event, kHealth, health) &&
+                                       health.process == "mapping";
+                              }),
+               events.end());
+  REQUIRE_FALSE(plannerCheck(events).equal());
+}
+
 TEST_CASE("what a robot with a key did not take is not replayed, a stop is") {
   std::vector<LogEvent> events = plainDrive();
   for (LogEvent& event : events) event.sealed = true;
