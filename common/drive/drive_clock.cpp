@@ -15,6 +15,8 @@ constexpr int64_t kUnconfirmed = 10 * kSecond;  // the same beside the robot's o
 constexpr int64_t kSilence = kSecond;           // a running robot publishes at least this often
 constexpr int64_t kDelay = kSecond;             // of a recorder that is held up
 constexpr int64_t kStep = 250'000;              // [us] by which clocks differ before one was set
+constexpr int64_t kAtOnce = 50'000;             // [us] in which a recorder writes what has waited
+constexpr int64_t kMuchAtOnce = 20'000;         // [us] of the robot's time within no time
 constexpr int64_t kAlone = 3600 * kSecond;      // over which the robot's clock is believed alone
 constexpr int64_t kLongestPause = 7 * kDay;     // of a recording
 constexpr int64_t kLargestUtime = 10'000'000'000'000'000;  // three centuries
@@ -71,10 +73,13 @@ std::optional<DriveClock::Dated> DriveClock::next() {
   return dated;
 }
 
-/// Where both clocks are one (virtual time, imports), messages are still under way for a while.
+/// Whether both clocks are one (virtual time, imports): messages are still under way for a while.
+bool DriveClock::isOneClock() const {
+  return offset_ > -20'000 && offset_ < kStep;
+}
+
 int64_t DriveClock::timeOf(const Tick& tick) const {
-  const bool one_clock = offset_ > -20'000 && offset_ < kStep;
-  return tick.recorded - (one_clock ? 0 : offset_);
+  return tick.recorded - (one_clock_ ? 0 : offset_);
 }
 
 bool DriveClock::isNear(const Tick& stamp) const {
@@ -99,15 +104,49 @@ void DriveClock::begin() {
     if (agreeing > most || (agreeing == most && with_first)) offset_ = *from;
     most = std::max(most, agreeing);
   }
+  std::vector<const Tick*> agreeing;
+  for (const Tick& tick : ticks_)
+    if (tick.utime && offsetOf(tick) >= offset_ && offsetOf(tick) <= offset_ + kStep)
+      agreeing.push_back(&tick);
+  const bool burst = beginWithBurst(agreeing);
+  one_clock_ = !burst && isOneClock();
   stamped_ = true;
   // The first event of all may have a wrong time, too: it counts where another one follows soon.
   const auto first =
-      std::adjacent_find(ticks_.begin(), ticks_.end(), [](const Tick& tick, const Tick& next) {
+      std::adjacent_find(ticks_.begin(), ticks_.end(), [&](const Tick& tick, const Tick& next) {
         const int64_t gap = next.recorded - tick.recorded;
-        return gap > -kStep && gap < kUnconfirmed;
+        return burst || (gap > -kStep && gap < kUnconfirmed);
       });
   first_ = std::max<int64_t>(0, timeOf(first == ticks_.end() ? ticks_.front() : *first));
   last_ = last_stamp_ = first_;
+}
+
+/// Where a recorder that was not listened to wrote the first stamps at once, each is as old as it
+/// says: begins with the first one. True if so.
+/** The events before it were recorded until nobody listened any more: right before it. */
+bool DriveClock::beginWithBurst(const std::vector<const Tick*>& agreeing) {
+  int64_t from = agreeing.front()->recorded, to = from;
+  int64_t oldest = *agreeing.front()->utime, newest = oldest;
+  for (const Tick* tick : agreeing) {
+    from = std::min(from, tick->recorded);
+    to = std::max(to, tick->recorded);
+    oldest = std::min(oldest, *tick->utime);
+    newest = std::max(newest, *tick->utime);
+  }
+  if (newest - oldest < 2 * (to - from) + kMuchAtOnce) return false;
+  const auto first = std::find_if(ticks_.begin(), ticks_.end(),
+                                  [](const Tick& tick) { return tick.utime.has_value(); });
+  const int64_t before = oldest - *first->utime;
+  if (first->recorded > from || before < -kStep || before > kUnconfirmed) return false;
+  offset_ = offsetOf(*first);
+  int64_t waited = 0;
+  for (auto tick = first; tick != ticks_.begin();) {
+    const int64_t later = tick->recorded;
+    --tick;
+    if (waited == 0 && later - tick->recorded > kDelay) waited = later - tick->recorded;
+    tick->recorded += waited;
+  }
+  return true;
 }
 
 void DriveClock::beginWithoutStamps() {
@@ -123,6 +162,26 @@ void DriveClock::beginWithoutStamps() {
   first_ = last_ = begin - offset_;
 }
 
+bool DriveClock::isThousandfold(int64_t recorded, int64_t passed) {
+  const double pace =
+      static_cast<double>(recorded) / static_cast<double>(std::max<int64_t>(1, passed));
+  return pace > 200.0 && pace < 5000.0;
+}
+
+/// The same without the recorder's longest pause: a recorder that was not listened to for a minute
+/// has no pace of a thousand.
+bool DriveClock::isThousandfoldWithoutLargestStep(const std::vector<const Tick*>& stamps) {
+  int64_t largest = 0, passed_then = 0;
+  for (size_t i = 1; i < stamps.size(); ++i) {
+    const int64_t step = stamps[i]->recorded - stamps[i - 1]->recorded;
+    if (step <= largest) continue;
+    largest = step;
+    passed_then = *stamps[i]->utime - *stamps[i - 1]->utime;
+  }
+  return isThousandfold(stamps.back()->recorded - stamps.front()->recorded - largest,
+                        *stamps.back()->utime - *stamps.front()->utime - passed_then);
+}
+
 /// Recorders of other projects count nanoseconds: their seconds last a thousand of the robot's.
 void DriveClock::convertNanoseconds() {
   std::vector<const Tick*> stamps;
@@ -132,18 +191,17 @@ void DriveClock::convertNanoseconds() {
   for (size_t i = kFollowers; i < stamps.size(); ++i) {
     const Tick &from = *stamps[i - kFollowers], &to = *stamps[i];
     const int64_t passed = *to.utime - *from.utime;
-    const double pace = static_cast<double>(to.recorded - from.recorded) /
-                        static_cast<double>(std::max<int64_t>(1, passed));
     ++paces;
     slow += passed > static_cast<int64_t>(kFollowers) * kSlowest;
-    thousandfold += pace > 200.0 && pace < 5000.0 ? 1 : 0;
+    thousandfold += isThousandfold(to.recorded - from.recorded, passed);
   }
   const bool too_large =
       stamps.empty() && std::all_of(ticks_.begin(), ticks_.end(),
                                     [](const Tick& tick) { return tick.recorded > kLargestUtime; });
   // Where the robot's times are nanoseconds, too, only its rates tell it.
   slow_ = paces >= kFollowers && isMost(slow, paces);
-  if (!too_large && (paces == 0 || !isMost(thousandfold, paces))) return;
+  const bool one_step = !stamps.empty() && !isThousandfoldWithoutLargestStep(stamps);
+  if (!too_large && (paces == 0 || !isMost(thousandfold, paces) || one_step)) return;
   scale_ = 1000;
   for (Tick& tick : ticks_) tick.recorded /= scale_;
 }
@@ -173,7 +231,10 @@ bool DriveClock::agreesWithNext(size_t index) const {
     const int64_t offset_change = offsetOf(ticks_[i]) - offsetOf(stamp);
     const int64_t passed = *ticks_[i].utime - *stamp.utime;
     const bool both_back = isBack(ticks_[i]) || !isBack(stamp);
-    if (std::abs(offset_change) < kStep && passed > -kStep && both_back) ++agreeing;
+    // What a recorder writes at once may be of any time, pauses among it.
+    const bool at_once = std::abs(ticks_[i].recorded - stamp.recorded) < kAtOnce && passed >= 0 &&
+                         passed < kUnconfirmed;
+    if ((std::abs(offset_change) < kStep || at_once) && passed > -kStep && both_back) ++agreeing;
   }
   if (asked > 0) return isMost(agreeing, asked);
   const int64_t since = timeOf(stamp) - last_;
@@ -253,6 +314,7 @@ void DriveClock::follow(int64_t offset) {
   if (step_ && std::abs(least_ - step_->before) > kStep)
     jumps_.push_back({step_->at, least_ - step_->before});
   step_.reset();
+  one_clock_ = isOneClock();
 }
 
 /// A recorder that was held up writes many events at once: they come ever less late.
@@ -277,6 +339,7 @@ void DriveClock::step(int64_t offset) {
     step_ = Step{last_, offset_};
   }
   offset_ = offset;
+  one_clock_ = isOneClock();
   counted_ = 0;
   last_stamp_ = *stamp.utime + shift_;
   follow(offset);
