@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "common/messages/ins_messages.hpp"
 #include "tools/gap/reading.hpp"
@@ -123,15 +124,29 @@ bool jumpAnnounced(const std::vector<ins_t>& ins, size_t index) {
   return false;
 }
 
-/// Whether MOTOR, too, is silent from `begin` to `end`, and misses no number.
-bool motorPauses(const std::vector<motor_t>& motor, int64_t begin, int64_t end) {
+/// MOTOR around the middle of a pause: the last message before it, and the next one.
+std::optional<std::pair<const motor_t*, const motor_t*>> motorAround(
+    const std::vector<motor_t>& motor, int64_t begin, int64_t end) {
   const auto after =
       std::lower_bound(motor.begin(), motor.end(), begin + (end - begin) / 2,
                        [](const motor_t& message, int64_t utime) { return message.utime < utime; });
-  if (after == motor.begin() || after == motor.end()) return false;
-  const motor_t& before = *(after - 1);
-  return isNext(after->seq, before.seq) && std::abs(before.utime - begin) <= kTogether &&
-         std::abs(after->utime - end) <= kTogether;
+  if (after == motor.begin() || after == motor.end()) return std::nullopt;
+  return std::pair(&*(after - 1), &*after);
+}
+
+/// Whether MOTOR, too, is silent from `begin` to `end`, and misses no number.
+bool motorPauses(const std::vector<motor_t>& motor, int64_t begin, int64_t end) {
+  const auto around = motorAround(motor, begin, end);
+  return around && isNext(around->second->seq, around->first->seq) &&
+         std::abs(around->first->utime - begin) <= kTogether &&
+         std::abs(around->second->utime - end) <= kTogether;
+}
+
+/// Whether MOTOR has no message in half of the pause: nothing was recorded. The streams of an
+/// import need not end together.
+bool isBreak(const std::vector<motor_t>& motor, int64_t begin, int64_t end) {
+  const auto around = motorAround(motor, begin, end);
+  return around && around->second->utime - around->first->utime >= (end - begin) / 2;
 }
 
 /// What happened in a pause.
@@ -187,8 +202,9 @@ void checkPauses(const SortedLog& log, Numbering numbering, Diagnostics& notes) 
   for (size_t i = 1; i < ins.size(); ++i) {
     const int64_t step = ins[i].utime - ins[i - 1].utime;
     if (step < kLongStep || !isNext(ins[i].seq, ins[i - 1].seq) || jumpAnnounced(ins, i)) continue;
+    if (numbering == Numbering::kByImport && isBreak(log.motor, ins[i - 1].utime, ins[i].utime))
+      continue;
     const bool with_motor = motorPauses(log.motor, ins[i - 1].utime, ins[i].utime);
-    if (with_motor && numbering == Numbering::kByImport) continue;
     const Motion& least = with_motor ? kTogetherWithMotor : kAlone;
     const auto before = beside(ins, i - 1, -1);
     const auto after = beside(ins, i, 1);

@@ -168,6 +168,14 @@ TEST_CASE("an import that has neither commands nor poses for a while has a break
   };
   CHECK(measured(0) == 7);
   CHECK(measured(1) >= 5);  // without encoders the first 3 s are not used
+  // Poses that come back a second after the commands; the robot has driven a circle.
+  SmallLog late;
+  Pose2 at_break = drive(late, 0.0, 15.0, {0.5, 0.0, 1.0}, {});
+  for (double time = break_end - 1.0; time < break_end; time += 0.05) late.motor(time, {0.0, 1.0});
+  drive(late, break_end, break_end + 15.0, {0.5, 0.0, 1.0}, at_break);
+  CHECK(fatal(late.sorted()).find("clock jump: INS goes on by 6.") == 0);
+  late.add(kConfig, config);
+  CHECK(fatal(late.sorted()) == "");
   // One stream that jumps ahead beside the other one is the clock's fault in an import, too.
   auto events = goodLog().sorted();
   events.push_back(eventOf(kConfig, config));
