@@ -24,8 +24,8 @@ struct RobotLog {
   std::string name;  ///< file name without folder
   std::vector<TimedEvent> events;
   std::map<std::string, std::string> configs;  ///< by process: the first CONFIG
-  bool virtual_time = false;  ///< HEALTH without UTC
-  std::string problem;        ///< one clear line of what is wrong with the log, see DriveReader
+  bool virtual_time = false;                   ///< HEALTH without UTC
+  std::string problem;  ///< one clear line of what is wrong with the log, see DriveReader
   /// Messages that the log misses by seq, per channel.
   std::map<std::string, int64_t> missing;
 };
