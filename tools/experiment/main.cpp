@@ -164,6 +164,7 @@ void run(const Arguments& arguments) {
             << textOfAgreement(batch.tables, batch.setting, batch.sets) << '\n'
             << textOfRemembered(batch) << '\n'
             << textOfDrift(batch) << '\n'
+            << textOfFirstExecutions(batch.tables, batch.setting) << '\n'
             << textOfVariants(batch) << textOfKeyFigures(batch.tables, batch.setting, batch.sets)
             << std::flush;
   std::fprintf(stderr, "%s: %zu transitions, %.2f s of trials on %d threads\n",

@@ -169,6 +169,10 @@ class Methods {
     const State& one = all_[i];
     return one.fixed != nullptr ? (*one.fixed)[pattern] : one.now->predictEnd(pattern);
   }
+  /// Of predictEnd(); nothing if the method does not state it.
+  std::optional<PoseCovariance> endCovariance(size_t i, size_t pattern) const {
+    return all_[i].now ? all_[i].now->endCovariance(pattern) : std::nullopt;
+  }
   void learn(size_t i, size_t pattern, const learner::ConstTrajectory& measured) {
     if (all_[i].now) all_[i].now->learn(pattern, measured, note_);
   }

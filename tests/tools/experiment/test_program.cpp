@@ -83,6 +83,10 @@ TEST_CASE("one command writes all tables, pictures and the report of a world") {
   const auto unchanged = linesOf(out + "/unchanged.csv");
   CHECK(unchanged[0] == "surface,quantity,rule,ratio");
   CHECK(unchanged.size() == 1 + 4 * 2 * 4);
+  const auto first = linesOf(out + "/first_executions.csv");
+  CHECK(first[0] == "from,to,quantity,rule,k,error");
+  CHECK(first.size() == 1 + 16 * 2 * 4 * 6);
+  CHECK(linesOf(out + "/regions.csv").size() == 1);  // none of these rules states a region
 
   CHECK(linesOf(out + "/unchanged_sequences.csv").size() == unchanged.size());
   CHECK(linesOf(out + "/drift.csv").size() == 1 + 4 * 301);
@@ -109,7 +113,9 @@ TEST_CASE("several sets of recordings give means with their spread, and the numb
   CHECK(printed.find("paper") == std::string::npos);
   const auto sets = linesOf(folder / "out/sets.csv");
   CHECK(sets[0] == "table,seed,from,to,quantity,rule,against,k,value");
-  CHECK(sets.size() == 1 + 3 * (2 * 2 * 4 + 2 * 2 * 3 + 2 * 2 * 4 * 4 + 2 * (2 * 2 * 4)));
+  // Table I, Table II, all patterns, first executions (unchanged ground, too), unchanged.
+  CHECK(sets.size() ==
+        1 + 3 * (2 * 2 * 4 + 2 * 2 * 3 + 2 * 2 * 4 * 4 + 4 * 2 * 4 * 6 + 2 * (2 * 2 * 4)));
 }
 
 TEST_CASE("the usual methods with extras: lines are short, variants are told") {
@@ -126,6 +132,10 @@ TEST_CASE("the usual methods with extras: lines are short, variants are told") {
   std::istringstream lines(printed);
   for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 160);
   CHECK(printed.find("REMEMBERED surfaces") != std::string::npos);
+  CHECK(printed.find("90 % REGIONS") != std::string::npos);
+  const auto regions = linesOf(folder / "out/regions.csv");
+  CHECK(regions[0] == "from,to,quantity,rule,execution,share");
+  CHECK(regions.size() == 1 + 4 * 12 * 4);  // multi_model with each history
   const std::string report = contentOf(folder / "out/report.html");
   for (const char* words : {"over 5 excitation runs of 40", "On other terms", "multi_model_unmet"})
     CHECK(report.find(words) != std::string::npos);
@@ -137,9 +147,10 @@ TEST_CASE("the usual methods with extras: lines are short, variants are told") {
 TEST_CASE("an option replaces keys of the learner's configuration") {
   const Folder folder;
   write(folder / "small.yaml", kSmallWorld);
-  const std::string few = "--world " + (folder / "small.yaml") +
-                          " --rules multi_model,collective --repetitions 20 --threads 2 --force --out " +
-                          (folder / "out");
+  const std::string few =
+      "--world " + (folder / "small.yaml") +
+      " --rules multi_model,collective --repetitions 20 --threads 2 --force --out " +
+      (folder / "out");
   const auto table = [&](const std::string& set) {
     const auto [code, printed] = run(few + set);
     INFO(printed);

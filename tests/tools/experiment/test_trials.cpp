@@ -5,6 +5,8 @@
 #include "tests/helpers.hpp"
 #include "tests/tools/experiment/counted_new.hpp"
 #include "tests/tools/experiment/small_world.hpp"
+#include "tools/experiment/end_region.hpp"
+#include "tools/experiment/first_executions.hpp"
 
 namespace tread::experiment {
 namespace {
@@ -159,6 +161,41 @@ TEST_CASE("twice as long commands make patterns twice as long") {
   CHECK(recorded.patterns.patterns()[1].commands.size() == 20);
   CHECK(recorded.surfaces[0].executions[0][0].size() == 20);
   CHECK(recorded.surfaces[0].executions[0][0].back().x == Approx(1.1 * 1.1).epsilon(0.1));
+}
+
+TEST_CASE("first executions: no learning stays, learning improves, regions hold at home") {
+  const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
+  Methods changed({"off", "collective", "multi_model"}, {}, grounds, 0, 1, {});
+  const FirstExecutions first =
+      driveFirstExecutions(changed, {grounds[0], grounds[1], false, 200, 7});
+  const auto yaw = [&](size_t k, size_t method) {
+    RatioMoments sums(changed.size());
+    sums.addRun(first.all_patterns[k].orientation);
+    return sums.error(method).value;
+  };
+  CHECK(yaw(0, 0) == yaw(0, 1));
+  CHECK(yaw(5, 0) == Approx(yaw(0, 0)).epsilon(0.1));
+  for (const size_t method : {1U, 2U}) CHECK(yaw(5, method) < 0.6 * yaw(5, 0));
+  REQUIRE(first.regions.size() == 12);
+  CHECK(first.regions[0][0].ends == 0.0);
+  CHECK(first.regions[0][2].ends == 200.0);
+  Methods home({"multi_model_home"}, {}, grounds, 1, 1, {});
+  const FirstExecutions unchanged =
+      driveFirstExecutions(home, {grounds[1], grounds[1], false, 200, 7});
+  for (const auto& methods : unchanged.regions) {
+    CHECK(methods[0].ends == 200.0);
+    CHECK(methods[0].inside > 0.8 * methods[0].ends);
+  }
+}
+
+TEST_CASE("an end is inside the region of nine in ten up to 2.5 deviations, yaw wrapped") {
+  const PoseCovariance covariance{0.01, 0.0, 0.0, 0.04, 0.0, 0.01};
+  const Pose2 predicted{1.0, 0.0, 3.1};
+  CHECK(isInside(predicted, {1.249, 0.0, 3.1}, covariance));
+  CHECK_FALSE(isInside(predicted, {1.251, 0.0, 3.1}, covariance));
+  CHECK(isInside(predicted, {1.0, -0.499, 3.1}, covariance));
+  CHECK(isInside(predicted, {1.0, 0.0, -3.1}, covariance));
+  CHECK_FALSE(isInside(predicted, predicted, {0.0, 0.0, 0.0, 0.0, 0.0, 0.0}));
 }
 
 }  // namespace tread::experiment
