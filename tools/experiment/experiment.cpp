@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "common/parallel/parallel_for.hpp"
+#include "tools/experiment/rival_rule.hpp"
 #include "tools/experiment/trials.hpp"
 
 namespace tread::experiment {
@@ -35,7 +36,7 @@ int64_t share(int64_t repetitions, int64_t i, int64_t runs) {
 /// So many on each surface.
 int64_t longDrives(int64_t repetitions) {
   constexpr int64_t kFewest = 2;
-  return std::max(std::clamp(repetitions / 20, kFewest, kLongDrives), repetitions / 300);
+  return std::max(std::clamp(repetitions / 4, kFewest, kLongDrives), repetitions / 300);
 }
 
 /// Bins for the errors of single executions, from those without learning.
@@ -97,6 +98,11 @@ class Schedule {
     for (Transition& transition : transitions_) addTransition(transition);
     unchanged_.resize(grounds.size());
     for (size_t s = 0; s < grounds.size(); ++s) addUnchanged(s);
+    rivals_.resize(grounds.size() * grounds.size());
+    // Tuned before, as all excitation runs of a transition begin with them.
+    onThreads(settings.threads)(rivals_.size(), [&](size_t i) {
+      rivals_[i] = tunedRivals(settings.rules, grounds, i / grounds.size(), i % grounds.size());
+    });
   }
 
   const std::vector<std::function<void()>>& tasks() const { return tasks_; }
@@ -111,7 +117,8 @@ class Schedule {
   Methods methods(size_t from, size_t to, int64_t run) const {
     return Methods(
         settings_.rules, settings_.config, grounds_, from, to,
-        {settings_.excitation, seedOf({settings_.seed, 1, from, to, static_cast<uint64_t>(run)})});
+        {settings_.excitation, seedOf({settings_.seed, 1, from, to, static_cast<uint64_t>(run)})},
+        rivals_[from * grounds_.size() + to]);
   }
   TrialSite site(size_t from, size_t to, Trial trial, int64_t run, int64_t repetitions) const {
     return {grounds_[from], grounds_[to], settings_.change_inside && from != to, repetitions,
@@ -129,6 +136,7 @@ class Schedule {
   const std::vector<Ground>& grounds_;
   const ExperimentSettings& settings_;
   int64_t runs_, long_drives_, long_runs_;
+  std::vector<Rivals> rivals_;  ///< [from * surfaces + to]
   std::vector<Transition> transitions_;
   std::vector<std::vector<UnchangedErrors>> unchanged_;  ///< [surface][run]
   std::vector<std::function<void()>> tasks_;

@@ -12,8 +12,10 @@
 #include "common/config/command_line.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/config/outputs.hpp"
+#include "common/config/scalars.hpp"
 #include "common/store/output_file.hpp"
 #include "tools/experiment/adaptation/adaptation.hpp"
+#include "tools/experiment/adaptation/rivals.hpp"
 #include "tools/experiment/tables.hpp"
 
 namespace {
@@ -51,8 +53,9 @@ void define(CLI::App& command, Arguments& arguments) {
   command.add_option("--sessions", request.sessions, "drives: only these sessions")->delimiter(',');
   command
       .add_option("--rules", request.rules,
-                  "methods: RULE, RULE_home, RULE_unmet, "
-                  "RULE_remembered, omniscient")
+                  "methods: RULE, RULE_home, RULE_unmet, RULE_remembered, RULE a rule of the "
+                  "learner or a rival (" +
+                      tread::joinWords(tread::adaptation::rivalNames()) + "); omniscient")
       ->delimiter(',')
       ->capture_default_str();
   command.add_option("--sequence", request.sequences,
@@ -107,8 +110,9 @@ void define(CLI::App& command, AdaptationArguments& arguments) {
       ->required();
   command
       .add_option("--rules", arguments.settings.rules,
-                  "off, rules of learner.yaml or RULE_home, rivals (constant, kalman, slip, gp, "
-                  "basis), hindsight: slip regression that has seen the whole session")
+                  "off, rules of learner.yaml or RULE_home, rivals (" +
+                      tread::joinWords(tread::adaptation::rivalNames()) +
+                      "), hindsight: slip regression that has seen the whole session")
       ->delimiter(',')
       ->capture_default_str();
   command

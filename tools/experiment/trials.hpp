@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <random>
@@ -18,7 +19,14 @@
 #include "modules/learner/core/rules/learning_rule.hpp"
 #include "modules/learner/core/scaling.hpp"
 
+namespace tread::adaptation {
+class Rival;
+}
+
 namespace tread::experiment {
+
+/// Rivals by name, as they begin.
+using Rivals = std::map<std::string, std::unique_ptr<adaptation::Rival>>;
 
 /// Where one execution ended, and what it covered on the way.
 struct ExecutionEnd {
@@ -127,7 +135,8 @@ enum class History {
   kRemembered,  ///< all surfaces, A last
 };
 
-/// What is compared: a rule with a history. Without a rule it is the omniscient one.
+/// What is compared: a rule of the learner or a rival (adaptation/rivals.hpp) with a history.
+/// Without a rule it is the omniscient one.
 struct Method {
   std::string rule;
   History history = History::kNone;
@@ -155,15 +164,22 @@ struct Excitation {
   uint64_t seed = 1;
 };
 
+/// Names of all that can learn: rules of the learner, then rivals.
+std::vector<std::string> learnerNames();
+
 /// The methods that are compared, ready for a transition from surface A to surface B.
 /** Each starts with IP_A and drives an excitation run of its history. A = B is unchanged ground. */
 class Methods {
  public:
   Methods(const std::vector<std::string>& names, const learner::RuleConfig& config,
           const std::vector<Ground>& grounds, size_t from, size_t to, const Excitation& excitation);
+  /// The same with rivals that were tuned for this transition before.
+  Methods(const std::vector<std::string>& names, const learner::RuleConfig& config,
+          const std::vector<Ground>& grounds, size_t from, size_t to, const Excitation& excitation,
+          const Rivals& rivals);
 
   size_t size() const { return all_.size(); }
-  /// All methods as they were before the transition; allocates nothing.
+  /// All methods as they were before the transition; rules of the learner allocate nothing.
   void reset();
   Pose2 predictEnd(size_t i, size_t pattern) const {
     const State& one = all_[i];

@@ -74,8 +74,8 @@ std::vector<Fold> foldsOf(const std::vector<Session>& sessions, std::vector<std:
 struct Prepared {
   Reference reference;
   NoiseModel noise;
-  std::vector<Known> home;                   ///< training sessions of the same vehicle
-  std::vector<std::optional<Rival>> rivals;  ///< by rule; nothing for rules of ours
+  std::vector<Known> home;                     ///< training sessions of the same vehicle
+  std::vector<std::unique_ptr<Rival>> rivals;  ///< by rule; nullptr for rules of ours
 };
 
 Prepared prepare(const std::vector<Session>& sessions, const std::vector<TermTable>& tables,
