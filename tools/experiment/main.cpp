@@ -59,7 +59,8 @@ void define(CLI::App& command, Arguments& arguments) {
       ->delimiter(',')
       ->capture_default_str();
   command.add_option("--sequence", request.sequences,
-                     "test sequence, patterns with commas between; once for each sequence");
+                     "test sequence, patterns with commas between; once for each sequence "
+                     "(default: the world's; left, left, right; the patterns most apart)");
   command.add_option("--repetitions", request.repetitions, "of each transition")
       ->check(CLI::Range(2, 100'000'000))
       ->capture_default_str();

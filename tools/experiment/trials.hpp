@@ -272,6 +272,12 @@ double student99(size_t samples);
 /// Patterns by index, one after the other.
 using Sequence = std::vector<size_t>;
 
+/// Test sequences where none is given: the two patterns whose ends are most apart, one twice and
+/// then the other, and mirrored.
+/** Patterns that move in one dimension only are no choice while two others are left. An angle
+ * counts as its arc at the mean distance of all ends. Empty if there is one pattern only. */
+std::vector<Sequence> sequencesFor(const PatternSet& set);
+
 /// Errors of all rules: per driven metre and per radian turned.
 struct Errors {
   explicit Errors(size_t rules = 0) : position(rules), orientation(rules) {}

@@ -179,6 +179,19 @@ TEST_CASE("a folder of recordings gives the same tables as the world that they c
   CHECK(contentOf(folder / "b/table1.csv").find("ice,road,position,off,") != std::string::npos);
 }
 
+TEST_CASE("a set without left and right gets sequences of the patterns most apart") {
+  const Folder folder;
+  std::string world = kSmallWorld;
+  for (const auto& [name, other] : {std::pair{"left", "port"}, std::pair{"right", "starboard"}})
+    for (size_t at = world.find(name); at != std::string::npos; at = world.find(name, at))
+      world.replace(at, std::string(name).size(), other);
+  recordings::writeRecordings(folder / "recorded", record(parseTransitionWorld(world, "small"), 1));
+  const auto [code, printed] = run("--recordings " + (folder / "recorded") + kFour);
+  INFO(printed);
+  CHECK(code == 0);
+  CHECK(printed.find("test sequences are port, port, starboard") != std::string::npos);
+}
+
 TEST_CASE("the real recordings are compared by one command") {
   const std::string drive = tread::testing::recorded("drive");
   if (drive.empty()) {

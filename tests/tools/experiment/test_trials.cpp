@@ -193,6 +193,11 @@ TEST_CASE("first executions: no learning stays, learning improves, regions hold 
   }
 }
 
+TEST_CASE("sequences are of the patterns whose ends are most apart, not of straight ones") {
+  const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
+  CHECK(sequencesFor(grounds[0].averaged) == std::vector<Sequence>{{1, 1, 2}, {2, 2, 1}});
+}
+
 TEST_CASE("an end is inside the region of nine in ten up to 2.5 deviations, yaw wrapped") {
   const PoseCovariance covariance{0.01, 0.0, 0.0, 0.04, 0.0, 0.01};
   const Pose2 predicted{1.0, 0.0, 3.1};
