@@ -119,7 +119,7 @@ class Runner {
       throw std::invalid_argument("--sets and --length need a --world, which can be recorded anew");
     batch_.source = "recordings " + fs::path(request.recordings).filename().string();
     const PatternRecordings recorded = recordingsOfFolder(request, batch_);
-    chooseSequences(recorded.patterns, {{"left", "left", "right"}, {"right", "right", "left"}});
+    chooseSequences(recorded.patterns, {});
     runRecordings(recorded, 0);
   }
 
@@ -146,6 +146,28 @@ class Runner {
     }
     for (const std::vector<std::string>& names : usual)
       batch_.settings.sequences.push_back(sequenceOf(names, set));
+    if (batch_.settings.sequences.empty()) chooseByEnds(set);
+  }
+
+  /// The usual names where the set has them, else what moves most apart.
+  void chooseByEnds(const PatternSet& set) {
+    const auto has = [&](const char* name) {
+      const auto& patterns = set.patterns();
+      return std::any_of(patterns.begin(), patterns.end(),
+                         [&](const MotionPattern& pattern) { return pattern.name == name; });
+    };
+    if (has("left") && has("right"))
+      return chooseSequences(set, {{"left", "left", "right"}, {"right", "right", "left"}});
+    batch_.settings.sequences = sequencesFor(set);
+    if (batch_.settings.sequences.empty())
+      throw std::invalid_argument(batch_.source +
+                                  ": there is one pattern only; transitions need two");
+    std::vector<std::string> names;
+    for (const size_t pattern : batch_.settings.sequences.front())
+      names.push_back(set.patterns()[pattern].name);
+    batch_.notes.push_back("test sequences are " + joinWords(names) +
+                           " and the mirrored one, the patterns whose ends are most apart; "
+                           "--sequence names others");
   }
 
   void runRecordings(const PatternRecordings& recorded, uint64_t number) {

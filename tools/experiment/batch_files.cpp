@@ -115,6 +115,7 @@ report::Page pageOf(const Batch& batch, const std::string& transition, const std
       textSection("Table I: errors", textOfErrors(batch.tables, batch.setting) +
                                          textOfAgreement(batch.tables, batch.setting, batch.sets)),
       textSection("Table II: error reductions", textOfReductions(batch.tables, batch.setting)),
+      textSection("First executions", textOfFirstExecutions(batch.tables, batch.setting)),
       {"Figure 4: from " + transition, {picture(folder + "/figure4.png", "error over executions")}},
       {"Figure 5: from " + transition, {picture(folder + "/figure5.png", "error distributions")}},
       allPatternsSection(batch)};
@@ -214,6 +215,7 @@ void writeBatch(const std::string& folder, const Batch& batch) {
   writeText(path("table1.txt"), textOfErrors(tables, batch.setting) + "\n" +
                                     textOfAgreement(tables, batch.setting, batch.sets));
   writeText(path("table2.txt"), textOfReductions(tables, batch.setting));
+  writeText(path("first_executions.txt"), textOfFirstExecutions(tables, batch.setting));
   writeText(path("key_figures.txt"),
             textOfVariants(batch) + textOfKeyFigures(tables, batch.setting, batch.sets));
   writeText(path("report.html"), report::htmlOf(pageOf(batch, words, folder)));

@@ -7,13 +7,14 @@
 #include <mutex>
 
 #include "common/parallel/parallel_for.hpp"
+#include "tools/experiment/rival_rule.hpp"
 #include "tools/experiment/trials.hpp"
 
 namespace tread::experiment {
 namespace {
 
 constexpr int64_t kSideRepetitions = 240;  // of what is not in Tables I and II
-constexpr int64_t kLongDrives = 16;        // on each surface
+constexpr int64_t kLongDrives = 16;        // on each surface, at least; fewer in a quick run
 constexpr size_t kBins = 50;
 constexpr double kBinsReach = 2.5;  // times the mean error without learning
 
@@ -23,12 +24,19 @@ enum class Trial : uint64_t {
   kDevelopment,
   kLong,
   kLongSequences,
-  kDrift
+  kDrift,
+  kFirst
 };
 
 /// Of the i-th of `runs`.
 int64_t share(int64_t repetitions, int64_t i, int64_t runs) {
   return repetitions * (i + 1) / runs - repetitions * i / runs;
+}
+
+/// So many on each surface.
+int64_t longDrives(int64_t repetitions) {
+  constexpr int64_t kFewest = 2;
+  return std::max(std::clamp(repetitions / 4, kFewest, kLongDrives), repetitions / 300);
 }
 
 /// Bins for the errors of single executions, from those without learning.
@@ -60,6 +68,7 @@ struct RunErrors {
   SequenceErrors sequences;
   std::vector<Errors> all_patterns;
   std::vector<Errors> development;
+  FirstExecutions first;
   std::vector<int> remembered;
 };
 
@@ -69,6 +78,7 @@ using Drift = std::vector<std::vector<double>>;  // [method][execution]
 struct UnchangedErrors {
   Errors random;
   Errors sequences;
+  FirstExecutions first;
   Drift drift;  ///< empty without a pattern to watch
 };
 
@@ -80,13 +90,19 @@ class Schedule {
       : grounds_(grounds),
         settings_(settings),
         runs_(std::min(settings.excitations, settings.repetitions)),
-        long_runs_(std::min(settings.excitations, kLongDrives)) {
+        long_drives_(longDrives(settings.repetitions)),
+        long_runs_(std::min({settings.excitations, kLongDrives, long_drives_})) {
     for (size_t from = 0; from < grounds.size(); ++from)
       for (size_t to = 0; to < grounds.size(); ++to)
         if (from != to) transitions_.push_back({from, to, {}});
     for (Transition& transition : transitions_) addTransition(transition);
     unchanged_.resize(grounds.size());
     for (size_t s = 0; s < grounds.size(); ++s) addUnchanged(s);
+    rivals_.resize(grounds.size() * grounds.size());
+    // Tuned before, as all excitation runs of a transition begin with them.
+    onThreads(settings.threads)(rivals_.size(), [&](size_t i) {
+      rivals_[i] = tunedRivals(settings.rules, grounds, i / grounds.size(), i % grounds.size());
+    });
   }
 
   const std::vector<std::function<void()>>& tasks() const { return tasks_; }
@@ -101,12 +117,17 @@ class Schedule {
   Methods methods(size_t from, size_t to, int64_t run) const {
     return Methods(
         settings_.rules, settings_.config, grounds_, from, to,
-        {settings_.excitation, seedOf({settings_.seed, 1, from, to, static_cast<uint64_t>(run)})});
+        {settings_.excitation, seedOf({settings_.seed, 1, from, to, static_cast<uint64_t>(run)})},
+        rivals_[from * grounds_.size() + to]);
   }
   TrialSite site(size_t from, size_t to, Trial trial, int64_t run, int64_t repetitions) const {
     return {grounds_[from], grounds_[to], settings_.change_inside && from != to, repetitions,
             seedOf({settings_.seed, 2, from, to, static_cast<uint64_t>(trial),
                     static_cast<uint64_t>(run)})};
+  }
+  /// Repetitions of what is not in Tables I and II.
+  int64_t side() const {
+    return std::max(std::min(settings_.repetitions, kSideRepetitions), settings_.repetitions / 10);
   }
   void addTransition(Transition& transition);
   RunErrors driveTransition(size_t from, size_t to, int64_t run) const;
@@ -114,7 +135,8 @@ class Schedule {
 
   const std::vector<Ground>& grounds_;
   const ExperimentSettings& settings_;
-  int64_t runs_, long_runs_;
+  int64_t runs_, long_drives_, long_runs_;
+  std::vector<Rivals> rivals_;  ///< [from * surfaces + to]
   std::vector<Transition> transitions_;
   std::vector<std::vector<UnchangedErrors>> unchanged_;  ///< [surface][run]
   std::vector<std::function<void()>> tasks_;
@@ -134,16 +156,15 @@ RunErrors Schedule::driveTransition(size_t from, size_t to, int64_t run) const {
   const auto siteOf = [&](Trial trial, int64_t repetitions) {
     return site(from, to, trial, run, share(repetitions, run, runs_));
   };
-  const int64_t side =
-      std::max(std::min(settings_.repetitions, kSideRepetitions), settings_.repetitions / 10);
   const auto bins = binsFor(grounds_[from], grounds_[to], settings_.sequences);
   RunErrors errors;
   errors.sequences = driveSequences(all, siteOf(Trial::kSequences, settings_.repetitions),
                                     settings_.sequences, bins.first, bins.second);
-  errors.all_patterns = driveAllPatterns(all, siteOf(Trial::kAllPatterns, side),
+  errors.all_patterns = driveAllPatterns(all, siteOf(Trial::kAllPatterns, side()),
                                          settings_.sequences, settings_.all_patterns_after);
-  errors.development = driveDevelopment(all, siteOf(Trial::kDevelopment, side), settings_.sequences,
-                                        settings_.development);
+  errors.development = driveDevelopment(all, siteOf(Trial::kDevelopment, side()),
+                                        settings_.sequences, settings_.development);
+  errors.first = driveFirstExecutions(all, siteOf(Trial::kFirst, side()));
   for (size_t i = 0; i < all.size(); ++i) errors.remembered.push_back(all.remembered(i));
   return errors;
 }
@@ -153,12 +174,13 @@ void Schedule::addUnchanged(size_t surface) {
   for (int64_t run = 0; run < long_runs_; ++run)
     tasks_.push_back([this, surface, run] {
       Methods all = methods(surface, surface, run);
-      const int64_t drives =
-          share(std::max(kLongDrives, settings_.repetitions / 300), run, long_runs_);
+      const int64_t drives = share(long_drives_, run, long_runs_);
       const auto siteOf = [&](Trial trial) { return site(surface, surface, trial, run, drives); };
       UnchangedErrors& errors = unchanged_[surface][static_cast<size_t>(run)];
       errors.random = driveLong(all, siteOf(Trial::kLong), {});
       errors.sequences = driveLong(all, siteOf(Trial::kLongSequences), settings_.sequences);
+      errors.first = driveFirstExecutions(
+          all, site(surface, surface, Trial::kFirst, run, share(side(), run, long_runs_)));
       if (const auto watched = neverExecuted(grounds_[surface], settings_.sequences))
         errors.drift =
             driveDrift(all, siteOf(Trial::kDrift), settings_.sequences, *watched, settings_.drift);
@@ -195,11 +217,13 @@ ExperimentErrors Schedule::errors() const {
                            std::vector<Histogram>(methods, bins.second)},
                           {},
                           {},
+                          FirstExecutions(methods),
                           std::vector<double>(methods, 0.0)};
     for (const RunErrors& run : transition.runs) {
       sums.sequences.addRun(run.sequences);
       addRun(run.all_patterns, sums.all_patterns, methods);
       addRun(run.development, sums.development, methods);
+      sums.first.addRun(run.first);
       for (size_t i = 0; i < methods; ++i)
         sums.remembered[i] += run.remembered[i] / static_cast<double>(transition.runs.size());
     }
@@ -208,13 +232,16 @@ ExperimentErrors Schedule::errors() const {
   std::vector<const Drift*> drifts;
   for (const std::vector<UnchangedErrors>& runs : unchanged_) {
     Errors random(methods), sequences(methods);
+    FirstExecutions first(methods);
     for (const UnchangedErrors& run : runs) {
       random.addRun(run.random);
       sequences.addRun(run.sequences);
+      first.addRun(run.first);
       if (!run.drift.empty()) drifts.push_back(&run.drift);
     }
     all.unchanged.push_back(std::move(random));
     all.unchanged_sequences.push_back(std::move(sequences));
+    all.unchanged_first.push_back(std::move(first));
   }
   all.drift = meanDrift(drifts);
   return all;

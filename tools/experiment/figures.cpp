@@ -31,6 +31,14 @@ Style styleOf(const std::string& rule) {
       {"multi_model_home", report::kBlue},
       {"multi_model_unmet", report::kSkyBlue},
       {"multi_model_remembered", report::kGreen},
+      {"constant", report::kBlue},
+      {"kalman", report::kRed},
+      {"slip", report::kOrange},
+      {"gp", report::kGreen},
+      {"basis", report::kPink},
+      {"rls2", report::kSkyBlue},
+      {"rls3", report::kBlue},
+      {"imm", report::kGreen},
       {kOmniscient, report::kBlack}};
   const auto colour = colours.find(rule);
   Style style;

@@ -103,6 +103,31 @@ std::vector<Ground> groundsOf(const recordings::PatternRecordings& recorded,
   return grounds;
 }
 
+std::vector<Sequence> sequencesFor(const PatternSet& set) {
+  const std::vector<MotionPattern>& patterns = set.patterns();
+  std::vector<size_t> candidates, all;
+  double reach = 0.0;
+  for (size_t p = 0; p < patterns.size(); ++p) {
+    all.push_back(p);
+    if (learner::roleOf(patterns[p], {}).gives_scaling) candidates.push_back(p);
+    reach += patterns[p].end().position().norm() / static_cast<double>(patterns.size());
+  }
+  if (candidates.size() < 2) candidates = all;
+  Sequence best;
+  double farthest = -1.0;
+  for (const size_t a : candidates)
+    for (const size_t b : candidates) {
+      const Pose2 end_a = patterns[a].end(), end_b = patterns[b].end();
+      const double apart =
+          std::hypot((end_a.position() - end_b.position()).norm(), reach * (end_a.yaw - end_b.yaw));
+      if (a >= b || apart <= farthest) continue;
+      farthest = apart;
+      best = {a, b};
+    }
+  if (best.empty()) return {};
+  return {{best[0], best[0], best[1]}, {best[1], best[1], best[0]}};
+}
+
 namespace {
 
 constexpr Range kGain{0.05, 5.0};

@@ -12,8 +12,10 @@
 #include "common/config/command_line.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/config/outputs.hpp"
+#include "common/config/scalars.hpp"
 #include "common/store/output_file.hpp"
 #include "tools/experiment/adaptation/adaptation.hpp"
+#include "tools/experiment/adaptation/rivals.hpp"
 #include "tools/experiment/tables.hpp"
 
 namespace {
@@ -51,12 +53,14 @@ void define(CLI::App& command, Arguments& arguments) {
   command.add_option("--sessions", request.sessions, "drives: only these sessions")->delimiter(',');
   command
       .add_option("--rules", request.rules,
-                  "methods: RULE, RULE_home, RULE_unmet, "
-                  "RULE_remembered, omniscient")
+                  "methods: RULE, RULE_home, RULE_unmet, RULE_remembered, RULE a rule of the "
+                  "learner or a rival (" +
+                      tread::joinWords(tread::adaptation::rivalNames()) + "); omniscient")
       ->delimiter(',')
       ->capture_default_str();
   command.add_option("--sequence", request.sequences,
-                     "test sequence, patterns with commas between; once for each sequence");
+                     "test sequence, patterns with commas between; once for each sequence "
+                     "(default: the world's; left, left, right; the patterns most apart)");
   command.add_option("--repetitions", request.repetitions, "of each transition")
       ->check(CLI::Range(2, 100'000'000))
       ->capture_default_str();
@@ -107,8 +111,9 @@ void define(CLI::App& command, AdaptationArguments& arguments) {
       ->required();
   command
       .add_option("--rules", arguments.settings.rules,
-                  "off, rules of learner.yaml or RULE_home, rivals (constant, kalman, slip, gp, "
-                  "basis), hindsight: slip regression that has seen the whole session")
+                  "off, rules of learner.yaml or RULE_home, rivals (" +
+                      tread::joinWords(tread::adaptation::rivalNames()) +
+                      "), hindsight: slip regression that has seen the whole session")
       ->delimiter(',')
       ->capture_default_str();
   command
@@ -164,6 +169,7 @@ void run(const Arguments& arguments) {
             << textOfAgreement(batch.tables, batch.setting, batch.sets) << '\n'
             << textOfRemembered(batch) << '\n'
             << textOfDrift(batch) << '\n'
+            << textOfFirstExecutions(batch.tables, batch.setting) << '\n'
             << textOfVariants(batch) << textOfKeyFigures(batch.tables, batch.setting, batch.sets)
             << std::flush;
   std::fprintf(stderr, "%s: %zu transitions, %.2f s of trials on %d threads\n",

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "tools/experiment/rival_rule.hpp"
+
 namespace tread::experiment {
 namespace {
 
@@ -30,9 +32,15 @@ void drive(learner::LearningRule& rule, const Ground& ground, int64_t executions
 
 }  // namespace
 
+std::vector<std::string> learnerNames() {
+  std::vector<std::string> names = learner::ruleNames();
+  names.insert(names.end(), adaptation::rivalNames().begin(), adaptation::rivalNames().end());
+  return names;
+}
+
 std::optional<Method> methodOf(const std::string& name) {
   if (name == kOmniscient) return Method{};
-  for (const std::string& rule : learner::ruleNames())
+  for (const std::string& rule : learnerNames())
     for (const NamedHistory& one : kHistories)
       if (name == rule + one.suffix && (rule != kOff || one.history == History::kNone))
         return Method{rule, one.history};
@@ -41,7 +49,7 @@ std::optional<Method> methodOf(const std::string& name) {
 
 std::vector<std::string> methodNames() {
   std::vector<std::string> names;
-  for (const std::string& rule : learner::ruleNames())
+  for (const std::string& rule : learnerNames())
     for (const NamedHistory& one : kHistories)
       if (methodOf(rule + one.suffix)) names.push_back(rule + one.suffix);
   names.emplace_back(kOmniscient);
@@ -49,16 +57,18 @@ std::vector<std::string> methodNames() {
 }
 
 std::vector<std::string> defaultMethods() {
-  return {kOff,
-          "single",
-          "collective",
-          "collective_home",
-          "telescoping",
-          "multi_model",
-          "multi_model_home",
-          "multi_model_unmet",
-          "multi_model_remembered",
-          kOmniscient};
+  std::vector<std::string> names{kOff,
+                                 "single",
+                                 "collective",
+                                 "collective_home",
+                                 "telescoping",
+                                 "multi_model",
+                                 "multi_model_home",
+                                 "multi_model_unmet",
+                                 "multi_model_remembered"};
+  names.insert(names.end(), adaptation::rivalNames().begin(), adaptation::rivalNames().end());
+  names.emplace_back(kOmniscient);
+  return names;
 }
 
 std::vector<size_t> excitationOrder(History history, size_t surfaces, size_t from, size_t to,
@@ -76,7 +86,13 @@ std::vector<size_t> excitationOrder(History history, size_t surfaces, size_t fro
 
 Methods::Methods(const std::vector<std::string>& names, const learner::RuleConfig& config,
                  const std::vector<Ground>& grounds, size_t from, size_t to,
-                 const Excitation& excitation) {
+                 const Excitation& excitation)
+    : Methods(names, config, grounds, from, to, excitation, tunedRivals(names, grounds, from, to)) {
+}
+
+Methods::Methods(const std::vector<std::string>& names, const learner::RuleConfig& config,
+                 const std::vector<Ground>& grounds, size_t from, size_t to,
+                 const Excitation& excitation, const Rivals& rivals) {
   for (const std::string& name : names) {
     const Method method = methodOf(name).value();
     State one;
@@ -85,7 +101,9 @@ Methods::Methods(const std::vector<std::string>& names, const learner::RuleConfi
     } else {
       learner::RuleConfig of_method = config;
       of_method.rule = method.rule;
-      one.start = learner::makeRule(of_method, grounds[from].averaged);
+      const auto rival = rivals.find(method.rule);
+      one.start = rival != rivals.end() ? rivalRule(*rival->second, grounds[from])
+                                        : learner::makeRule(of_method, grounds[from].averaged);
       std::mt19937_64 random(excitation.seed);
       for (const size_t s : excitationOrder(method.history, grounds.size(), from, to, random))
         drive(*one.start, grounds[s], excitation.executions, random);

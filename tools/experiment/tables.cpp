@@ -64,6 +64,24 @@ void addUnchanged(const Errors& errors, const ExperimentSettings& settings, cons
   });
 }
 
+void addFirstExecutions(const FirstExecutions& first, const ExperimentSettings& settings, Row about,
+                        Tables& tables) {
+  for (size_t k = 0; k < first.all_patterns.size(); ++k) {
+    about.k = static_cast<int>(FirstExecutions::kTested[k]);
+    addErrors(first.all_patterns[k], settings, about, tables.first_executions);
+  }
+  about.quantity = kRegion;
+  for (size_t j = 0; j < first.regions.size(); ++j)
+    for (size_t i = 0; i < settings.rules.size(); ++i) {
+      const RegionCount& count = first.regions[j][i];
+      if (count.ends == 0.0) continue;
+      about.k = static_cast<int>(j) + 1;
+      about.rule = settings.rules[i];
+      about.estimate = {count.inside / count.ends};
+      tables.regions.push_back(about);
+    }
+}
+
 /// The i-th row of one table, over all sets of recordings.
 Row combinedRow(const std::vector<const Row*>& sets) {
   Row row = *sets.front();
@@ -104,12 +122,20 @@ std::string ratioLine(const Row& row) {
   return row.from + "," + row.quantity + "," + row.rule + "," + number(row.estimate.value);
 }
 
-const std::array<TableFile, 5> kTableFiles{{
+const std::array<TableFile, 7> kTableFiles{{
     {"table1", &Tables::errors, "from,to,quantity,rule,error,low,high",
      [](const Row& row) { return what(row) + "," + interval(row.estimate); }},
     {"table2", &Tables::reductions, "from,to,quantity,rule,against,reduction_percent,low,high",
      [](const Row& row) { return what(row) + "," + row.against + "," + interval(row.estimate); }},
     {"all_patterns", &Tables::all_patterns, "from,to,quantity,rule,k,error",
+     [](const Row& row) {
+       return what(row) + "," + std::to_string(row.k) + "," + number(row.estimate.value);
+     }},
+    {"first_executions", &Tables::first_executions, "from,to,quantity,rule,k,error",
+     [](const Row& row) {
+       return what(row) + "," + std::to_string(row.k) + "," + number(row.estimate.value);
+     }},
+    {"regions", &Tables::regions, "from,to,quantity,rule,execution,share",
      [](const Row& row) {
        return what(row) + "," + std::to_string(row.k) + "," + number(row.estimate.value);
      }},
@@ -136,6 +162,7 @@ Tables tablesOf(const ExperimentErrors& errors, const ExperimentSettings& settin
     about.to = grounds[transition.to].surface;
     addErrors(transition.sequences.errors, settings, about, tables.errors);
     addReductions(transition.sequences.errors, settings, about, tables.reductions);
+    addFirstExecutions(transition.first, settings, about, tables);
     for (size_t k = 0; k < transition.all_patterns.size(); ++k) {
       about.k = settings.all_patterns_after[k];
       addErrors(transition.all_patterns[k], settings, about, tables.all_patterns);
@@ -145,6 +172,7 @@ Tables tablesOf(const ExperimentErrors& errors, const ExperimentSettings& settin
     Row about;
     about.from = about.to = grounds[s].surface;
     addUnchanged(errors.unchanged[s], settings, about, tables.unchanged);
+    addFirstExecutions(errors.unchanged_first[s], settings, about, tables);
     addUnchanged(errors.unchanged_sequences[s], settings, about, tables.unchanged_sequences);
   }
   return tables;
@@ -166,7 +194,7 @@ const Row* find(const std::vector<Row>& rows, const std::string& from, const std
   return nullptr;
 }
 
-const std::array<TableFile, 5>& tableFiles() {
+const std::array<TableFile, 7>& tableFiles() {
   return kTableFiles;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/experiment/first_executions.hpp"
 #include "tools/experiment/trials.hpp"
 
 namespace tread::experiment {
@@ -37,14 +38,16 @@ struct TransitionErrors {
   SequenceErrors sequences;
   std::vector<Errors> all_patterns;  ///< by all_patterns_after
   std::vector<Errors> development;   ///< by execution
+  FirstExecutions first;             ///< of random patterns
   std::vector<double> remembered;    ///< surfaces before the transition, mean over excitation runs
 };
 
 /// Section V on one set of recordings.
 struct ExperimentErrors {
-  std::vector<TransitionErrors> transitions;  ///< from each surface to each other one, in order
-  std::vector<Errors> unchanged;              ///< by surface, in the long run, random patterns
-  std::vector<Errors> unchanged_sequences;    ///< the same over the test sequences
+  std::vector<TransitionErrors> transitions;     ///< from each surface to each other one, in order
+  std::vector<Errors> unchanged;                 ///< by surface, in the long run, random patterns
+  std::vector<Errors> unchanged_sequences;       ///< the same over the test sequences
+  std::vector<FirstExecutions> unchanged_first;  ///< by surface
   /// Width of the pattern `watched` by rule, over executions on unchanged ground; see driveDrift().
   std::vector<std::vector<double>> drift;
 };
@@ -63,6 +66,9 @@ inline constexpr const char* kPosition = "position";
 inline constexpr const char* kOrientation = "orientation";
 inline constexpr const char* kQuantities[] = {kPosition, kOrientation};
 
+/// Of a share of ends inside 90 % regions.
+inline constexpr const char* kRegion = "region";
+
 /// One number of a table.
 struct Row {
   std::string from;  ///< for unchanged ground: the surface
@@ -77,10 +83,13 @@ struct Row {
 
 /// The numbers of an experiment.
 struct Tables {
-  std::vector<Row> errors;               ///< Table I
-  std::vector<Row> reductions;           ///< [%] Table II
-  std::vector<Row> all_patterns;         ///< errors over all patterns after k executions
-  std::vector<Row> unchanged;            ///< [1] error in the long run over the omniscient one
+  std::vector<Row> errors;        ///< Table I
+  std::vector<Row> reductions;    ///< [%] Table II
+  std::vector<Row> all_patterns;  ///< errors over all patterns after k executions
+  /// Errors over all patterns after k executions of random ones; also on unchanged ground.
+  std::vector<Row> first_executions;
+  std::vector<Row> regions;    ///< [1] share of ends inside, before execution k = 1, 2, ...
+  std::vector<Row> unchanged;  ///< [1] error in the long run over the omniscient one
   std::vector<Row> unchanged_sequences;  ///< the same over the test sequences
 };
 
@@ -107,7 +116,7 @@ struct TableFile {
   std::string (*line)(const Row& row);
 };
 /// All tables, in the order of sets of recordings.csv.
-const std::array<TableFile, 5>& tableFiles();
+const std::array<TableFile, 7>& tableFiles();
 std::string csvOf(const Tables& tables, const TableFile& file);
 
 /// drift.csv: rule,executions,width of the watched pattern over its shipped one [1].

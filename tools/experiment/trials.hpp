@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <random>
@@ -18,7 +19,14 @@
 #include "modules/learner/core/rules/learning_rule.hpp"
 #include "modules/learner/core/scaling.hpp"
 
+namespace tread::adaptation {
+class Rival;
+}
+
 namespace tread::experiment {
+
+/// Rivals by name, as they begin.
+using Rivals = std::map<std::string, std::unique_ptr<adaptation::Rival>>;
 
 /// Where one execution ended, and what it covered on the way.
 struct ExecutionEnd {
@@ -127,7 +135,8 @@ enum class History {
   kRemembered,  ///< all surfaces, A last
 };
 
-/// What is compared: a rule with a history. Without a rule it is the omniscient one.
+/// What is compared: a rule of the learner or a rival (adaptation/rivals.hpp) with a history.
+/// Without a rule it is the omniscient one.
 struct Method {
   std::string rule;
   History history = History::kNone;
@@ -155,19 +164,30 @@ struct Excitation {
   uint64_t seed = 1;
 };
 
+/// Names of all that can learn: rules of the learner, then rivals.
+std::vector<std::string> learnerNames();
+
 /// The methods that are compared, ready for a transition from surface A to surface B.
 /** Each starts with IP_A and drives an excitation run of its history. A = B is unchanged ground. */
 class Methods {
  public:
   Methods(const std::vector<std::string>& names, const learner::RuleConfig& config,
           const std::vector<Ground>& grounds, size_t from, size_t to, const Excitation& excitation);
+  /// The same with rivals that were tuned for this transition before.
+  Methods(const std::vector<std::string>& names, const learner::RuleConfig& config,
+          const std::vector<Ground>& grounds, size_t from, size_t to, const Excitation& excitation,
+          const Rivals& rivals);
 
   size_t size() const { return all_.size(); }
-  /// All methods as they were before the transition; allocates nothing.
+  /// All methods as they were before the transition; rules of the learner allocate nothing.
   void reset();
   Pose2 predictEnd(size_t i, size_t pattern) const {
     const State& one = all_[i];
     return one.fixed != nullptr ? (*one.fixed)[pattern] : one.now->predictEnd(pattern);
+  }
+  /// Of predictEnd(); nothing if the method does not state it.
+  std::optional<PoseCovariance> endCovariance(size_t i, size_t pattern) const {
+    return all_[i].now ? all_[i].now->endCovariance(pattern) : std::nullopt;
   }
   void learn(size_t i, size_t pattern, const learner::ConstTrajectory& measured) {
     if (all_[i].now) all_[i].now->learn(pattern, measured, note_);
@@ -251,6 +271,12 @@ double student99(size_t samples);
 
 /// Patterns by index, one after the other.
 using Sequence = std::vector<size_t>;
+
+/// Test sequences where none is given: the two patterns whose ends are most apart, one twice and
+/// then the other, and mirrored.
+/** Patterns that move in one dimension only are no choice while two others are left. An angle
+ * counts as its arc at the mean distance of all ends. Empty if there is one pattern only. */
+std::vector<Sequence> sequencesFor(const PatternSet& set);
 
 /// Errors of all rules: per driven metre and per radian turned.
 struct Errors {

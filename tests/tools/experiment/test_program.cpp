@@ -83,6 +83,10 @@ TEST_CASE("one command writes all tables, pictures and the report of a world") {
   const auto unchanged = linesOf(out + "/unchanged.csv");
   CHECK(unchanged[0] == "surface,quantity,rule,ratio");
   CHECK(unchanged.size() == 1 + 4 * 2 * 4);
+  const auto first = linesOf(out + "/first_executions.csv");
+  CHECK(first[0] == "from,to,quantity,rule,k,error");
+  CHECK(first.size() == 1 + 16 * 2 * 4 * 6);
+  CHECK(linesOf(out + "/regions.csv").size() == 1);  // none of these rules states a region
 
   CHECK(linesOf(out + "/unchanged_sequences.csv").size() == unchanged.size());
   CHECK(linesOf(out + "/drift.csv").size() == 1 + 4 * 301);
@@ -109,7 +113,9 @@ TEST_CASE("several sets of recordings give means with their spread, and the numb
   CHECK(printed.find("paper") == std::string::npos);
   const auto sets = linesOf(folder / "out/sets.csv");
   CHECK(sets[0] == "table,seed,from,to,quantity,rule,against,k,value");
-  CHECK(sets.size() == 1 + 3 * (2 * 2 * 4 + 2 * 2 * 3 + 2 * 2 * 4 * 4 + 2 * (2 * 2 * 4)));
+  // Table I, Table II, all patterns, first executions (unchanged ground, too), unchanged.
+  CHECK(sets.size() ==
+        1 + 3 * (2 * 2 * 4 + 2 * 2 * 3 + 2 * 2 * 4 * 4 + 4 * 2 * 4 * 6 + 2 * (2 * 2 * 4)));
 }
 
 TEST_CASE("the usual methods with extras: lines are short, variants are told") {
@@ -126,6 +132,10 @@ TEST_CASE("the usual methods with extras: lines are short, variants are told") {
   std::istringstream lines(printed);
   for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 160);
   CHECK(printed.find("REMEMBERED surfaces") != std::string::npos);
+  CHECK(printed.find("90 % REGIONS") != std::string::npos);
+  const auto regions = linesOf(folder / "out/regions.csv");
+  CHECK(regions[0] == "from,to,quantity,rule,execution,share");
+  CHECK(regions.size() == 1 + 4 * 12 * 4);  // multi_model with each history
   const std::string report = contentOf(folder / "out/report.html");
   for (const char* words : {"over 5 excitation runs of 40", "On other terms", "multi_model_unmet"})
     CHECK(report.find(words) != std::string::npos);
@@ -137,9 +147,10 @@ TEST_CASE("the usual methods with extras: lines are short, variants are told") {
 TEST_CASE("an option replaces keys of the learner's configuration") {
   const Folder folder;
   write(folder / "small.yaml", kSmallWorld);
-  const std::string few = "--world " + (folder / "small.yaml") +
-                          " --rules multi_model,collective --repetitions 20 --threads 2 --force --out " +
-                          (folder / "out");
+  const std::string few =
+      "--world " + (folder / "small.yaml") +
+      " --rules multi_model,collective --repetitions 20 --threads 2 --force --out " +
+      (folder / "out");
   const auto table = [&](const std::string& set) {
     const auto [code, printed] = run(few + set);
     INFO(printed);
@@ -166,6 +177,19 @@ TEST_CASE("a folder of recordings gives the same tables as the world that they c
   CHECK(linesOf(folder / "a/table1.csv").size() == linesOf(folder / "b/table1.csv").size());
   // Surfaces of a folder are in the order of their names.
   CHECK(contentOf(folder / "b/table1.csv").find("ice,road,position,off,") != std::string::npos);
+}
+
+TEST_CASE("a set without left and right gets sequences of the patterns most apart") {
+  const Folder folder;
+  std::string world = kSmallWorld;
+  for (const auto& [name, other] : {std::pair{"left", "port"}, std::pair{"right", "starboard"}})
+    for (size_t at = world.find(name); at != std::string::npos; at = world.find(name, at))
+      world.replace(at, std::string(name).size(), other);
+  recordings::writeRecordings(folder / "recorded", record(parseTransitionWorld(world, "small"), 1));
+  const auto [code, printed] = run("--recordings " + (folder / "recorded") + kFour);
+  INFO(printed);
+  CHECK(code == 0);
+  CHECK(printed.find("test sequences are port, port, starboard") != std::string::npos);
 }
 
 TEST_CASE("the real recordings are compared by one command") {

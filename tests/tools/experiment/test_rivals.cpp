@@ -14,6 +14,7 @@ namespace {
 Sample sampleAt(double v, double w, const Eigen::Vector3d& residual) {
   Sample sample;
   sample.speeds.fill({v, w});
+  sample.twist = {v, 0.0, w};
   sample.residual = residual;
   sample.noise.setConstant(0.04);
   return sample;
@@ -84,25 +85,52 @@ TEST_CASE("every rival that was tuned finds the yaw gain of new ground, and keep
     training.push_back(ground(gain, 62, static_cast<uint64_t>(10.0 * gain + 50.0)));
   for (const std::string& name : rivalNames()) {
     CAPTURE(name);
-    Rival rival = tunedRival(name, training, 1);
-    Rival home = rival;
-    for (const Sample& sample : ground(0.15, 10, 7)) rival.learn(sample);
-    for (const Sample& sample : ground(0.0, 10, 8)) home.learn(sample);
+    const std::unique_ptr<Rival> rival = tunedRival(name, training, 1), home = rival->clone();
+    for (const Sample& sample : ground(0.15, 10, 7)) rival->learn(sample);
+    for (const Sample& sample : ground(0.0, 10, 8)) home->learn(sample);
     const Sample asked = sampleAt(1.0, 1.0, Eigen::Vector3d::Zero());
     const std::vector<Twist2> reference(kPieceSamples, Twist2{1.0, 0.0, 1.0});
-    CHECK(rival.corrected(reference, asked).front().omega == Approx(1.15).margin(0.03));
-    CHECK(home.corrected(reference, asked).front().omega == Approx(1.0).margin(0.03));
-    CHECK(rival.corrected(reference, asked).front().v_x == Approx(1.0).margin(0.03));
+    CHECK(rival->corrected(reference, asked).front().omega == Approx(1.15).margin(0.03));
+    CHECK(home->corrected(reference, asked).front().omega == Approx(1.0).margin(0.03));
+    CHECK(rival->corrected(reference, asked).front().v_x == Approx(1.0).margin(0.03));
   }
+}
+
+TEST_CASE("least squares of gains give what a calculation by hand gives") {
+  // P = 0.25 / 0.7, h = 1 and 0.003^2 of noise: x = r P / (P + R).
+  const Sample sample = sampleAt(1.0, 0.0, {-0.2, 0.0, 0.0});
+  const double P = 0.25 / 0.7, x = -0.2 * P / (P + 9e-6);
+  const auto rls2 = tunedRival("rls2", {}, 1), rls3 = tunedRival("rls3", {}, 1);
+  rls2->learn(sample);
+  rls3->learn(sample);
+  const std::vector<Twist2> twists{{1.0, 1.0, 1.0}};
+  CHECK(rls2->corrected(twists, sample)[0].v_x == Approx(1.0 + x));
+  CHECK(rls2->corrected(twists, sample)[0].v_y == Approx(1.0 + x));
+  CHECK(rls2->corrected(twists, sample)[0].omega == 1.0);
+  CHECK(rls3->corrected(twists, sample)[0].v_x == Approx(1.0 + x));
+  CHECK(rls3->corrected(twists, sample)[0].v_y == 1.0);
+}
+
+TEST_CASE("interacting models are sure of calm ground, and take a change at once") {
+  const auto imm = tunedRival("imm", {}, 1);
+  const auto forward = [&](double gain) {
+    Sample sample = sampleAt(1.0, 0.0, {gain, 0.0, 0.0});
+    sample.noise.setConstant(0.0004);
+    imm->learn(sample);
+    return imm->corrected({{1.0, 0.0, 0.0}}, sample)[0].v_x - 1.0;
+  };
+  for (int i = 0; i < 20; ++i) forward(i % 2 == 0 ? 0.02 : -0.02);
+  CHECK(std::abs(forward(0.02)) < 0.015);
+  CHECK(forward(-0.4) == Approx(-0.4).margin(0.02));
 }
 
 TEST_CASE("hindsight is the regression over the whole session, and a jump does not move it") {
   std::vector<Sample> session = ground(0.15, 60, 9);
   session[7].residual[2] = 30.0;
-  const Rival whole = hindsight(session);
+  const std::unique_ptr<Rival> whole = hindsight(session);
   const Sample asked = sampleAt(0.5, -1.0, Eigen::Vector3d::Zero());
   const std::vector<Twist2> reference(kPieceSamples, Twist2{0.5, 0.0, -1.0});
-  CHECK(whole.corrected(reference, asked).back().omega == Approx(-1.15).margin(0.01));
+  CHECK(whole->corrected(reference, asked).back().omega == Approx(-1.15).margin(0.01));
 }
 
 TEST_CASE("lagged commands follow the step response of a dead time and a first-order lag") {

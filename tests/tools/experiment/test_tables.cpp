@@ -49,6 +49,14 @@ ExperimentSettings settings() {
   return made;
 }
 
+/// The same errors after any number of executions; the last method states regions.
+FirstExecutions knownFirst() {
+  FirstExecutions first(4);
+  for (Errors& errors : first.all_patterns) errors = errorsOf({0.4, 0.2, 0.1, 0.05});
+  for (auto& methods : first.regions) methods[3] = {10.0, 9.0};
+  return first;
+}
+
 /// From ice to road: without learning 0.4, single 0.2, collective 0.1, the best 0.05.
 ExperimentErrors knownErrors() {
   const Errors known = errorsOf({0.4, 0.2, 0.1, 0.05});
@@ -61,6 +69,8 @@ ExperimentErrors knownErrors() {
   errors.transitions = {transition};
   errors.unchanged = {known, known};
   errors.unchanged_sequences = {known, known};
+  errors.transitions[0].first = knownFirst();
+  errors.unchanged_first = {knownFirst(), knownFirst()};
   return errors;
 }
 
@@ -238,6 +248,29 @@ TEST_CASE("the transition of the figures is the one that costs most without lear
   errors.transitions.push_back(back);
   CHECK(transitionOfFigures(errors, settings(), grounds()) == 1);
   CHECK(wordsOf(back, grounds()) == "road to ice");
+}
+
+TEST_CASE("first executions: errors over those of off and of the right set, regions, price") {
+  Setting setting;
+  setting.surfaces = {"ice", "road"};
+  setting.rules = settings().rules;
+  const std::string text = textOfFirstExecutions(knownTables(), setting);
+  INFO(text);
+  const auto lines = linesOf(text);
+  const auto after = [&](const std::string& title, size_t row) {
+    const auto at = std::find_if(lines.begin(), lines.end(),
+                                 [&](const std::string& line) { return line.find(title) == 0; });
+    REQUIRE(at != lines.end());
+    return *(at + static_cast<std::ptrdiff_t>(row));
+  };
+  CHECK(after("error ", 3).find("0.100") != std::string::npos);
+  CHECK(after("over off ", 3).find("0.250") != std::string::npos);
+  CHECK(after("over omniscient ", 3).find("2.000") != std::string::npos);
+  CHECK(after("worst over off ", 2).find("0.500") != std::string::npos);
+  CHECK(after("position  ", 3).find("2.000") != std::string::npos);
+  CHECK(after("new ground", 1).find("omniscient") == 0);
+  CHECK(after("new ground", 1).find("90") != std::string::npos);
+  CHECK(after("unchanged ground", 1).find("90") != std::string::npos);
 }
 
 }  // namespace tread::experiment

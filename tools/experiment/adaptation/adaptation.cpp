@@ -8,11 +8,10 @@
 #include <optional>
 #include <stdexcept>
 
-#include <Eigen/Cholesky>
-
 #include "common/config/scalars.hpp"
 #include "common/parallel/parallel_for.hpp"
 #include "tools/experiment/adaptation/walkers.hpp"
+#include "tools/experiment/end_region.hpp"
 #include "tools/experiment/trials.hpp"
 
 namespace tread::adaptation {
@@ -75,8 +74,8 @@ std::vector<Fold> foldsOf(const std::vector<Session>& sessions, std::vector<std:
 struct Prepared {
   Reference reference;
   NoiseModel noise;
-  std::vector<Known> home;                   ///< training sessions of the same vehicle
-  std::vector<std::optional<Rival>> rivals;  ///< by rule; nothing for rules of ours
+  std::vector<Known> home;                     ///< training sessions of the same vehicle
+  std::vector<std::unique_ptr<Rival>> rivals;  ///< by rule; nullptr for rules of ours
 };
 
 Prepared prepare(const std::vector<Session>& sessions, const std::vector<TermTable>& tables,
@@ -111,17 +110,6 @@ Prepared prepare(const std::vector<Session>& sessions, const std::vector<TermTab
   return prepared;
 }
 
-/// Whether an end lies within the region that a covariance states for nine in ten.
-bool isInside(const Pose2& said, const Pose2& was, const PoseCovariance& stated) {
-  constexpr double kQuantile = 6.251;  // chi^2, three degrees of freedom
-  Eigen::Matrix3d covariance;
-  covariance << stated[0], stated[1], stated[2], stated[1], stated[3], stated[4], stated[2],
-      stated[4], stated[5];
-  const Eigen::Vector3d apart(was.x - said.x, was.y - said.y, wrapAngle(was.yaw - said.yaw));
-  const Eigen::LLT<Eigen::Matrix3d> root(covariance);
-  return root.info() == Eigen::Success && apart.dot(root.solve(apart)) < kQuantile;
-}
-
 /// Adds the errors of predictions that begin at a piece.
 void score(const Session& session, const Walker& walker, size_t piece,
            std::array<Cell, kHorizons.size()>& cells) {
@@ -143,7 +131,7 @@ void score(const Session& session, const Walker& walker, size_t piece,
       if (i > 0 || wanted != kPieceSamples) continue;
       if (const auto stated = walker.endCovariance(piece)) {
         ++cells[h].stated;
-        if (isInside(said, was, *stated)) ++cells[h].inside;
+        if (experiment::isInside(said, was, *stated)) ++cells[h].inside;
       }
     }
     at = at * poses.back();

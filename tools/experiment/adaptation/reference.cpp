@@ -197,6 +197,29 @@ std::vector<Twist2> Reference::twists(const SampledSegment& segment, double base
   return twists;
 }
 
+Sample sampleOf(const std::vector<Twist2>& twists) {
+  Sample sample;
+  sample.twist.setZero();
+  std::array<double, kParts> counts{};
+  sample.speeds.fill(Eigen::Vector2d::Zero());
+  for (size_t t = 0; t < twists.size(); ++t) {
+    const Twist2& twist = twists[t];
+    sample.twist += Eigen::Vector3d(twist.v_x, twist.v_y, twist.omega);
+    const size_t part = t * kParts / twists.size();
+    sample.speeds[part] += Eigen::Vector2d(twist.v_x, twist.omega);
+    counts[part] += 1.0;
+  }
+  sample.twist /= static_cast<double>(twists.size());
+  for (size_t part = 0; part < kParts; ++part)
+    if (counts[part] > 0.0)
+      sample.speeds[part] /= counts[part];
+    else
+      sample.speeds[part] = {sample.twist[0], sample.twist[2]};  // fewer samples than parts
+  sample.residual.setZero();
+  sample.noise.setOnes();
+  return sample;
+}
+
 Predicted predicted(const Session& session, const Reference& reference) {
   std::vector<std::vector<Twist2>> segments;
   for (const SampledSegment& segment : session.segments)
@@ -205,28 +228,19 @@ Predicted predicted(const Session& session, const Reference& reference) {
   for (const Piece& piece : session.pieces) {
     const auto first = segments[piece.segment].begin() + static_cast<std::ptrdiff_t>(piece.begin);
     all.twists.emplace_back(first, first + kPieceSamples);
-    Sample sample;
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    constexpr size_t kPart = kPieceSamples / kParts;
-    sample.speeds.fill(Eigen::Vector2d::Zero());
-    for (size_t t = 0; t < kPieceSamples; ++t) {
-      const Twist2& twist = all.twists.back()[t];
-      sum += Eigen::Vector3d(twist.v_x, twist.v_y, twist.omega);
-      sample.speeds[t / kPart] += Eigen::Vector2d(twist.v_x, twist.omega) / kPart;
-    }
-    sample.residual = piece.mean_twist - sum / static_cast<double>(kPieceSamples);
-    sample.noise.setOnes();
+    Sample sample = sampleOf(all.twists.back());
+    sample.residual = piece.mean_twist - sample.twist;
     sample.repeats = repeats(session, all.samples.size());
     all.samples.push_back(sample);
   }
   return all;
 }
 
-std::vector<Pose2> integrated(const std::vector<Twist2>& twists) {
+std::vector<Pose2> integrated(const std::vector<Twist2>& twists, double period) {
   std::vector<Pose2> poses;
   Pose2 at;
   for (const Twist2& twist : twists) {
-    at = at * integrate(twist, kPeriod);
+    at = at * integrate(twist, period);
     poses.push_back(at);
   }
   return poses;

@@ -43,6 +43,7 @@ struct NoiseModel {
 /// What a piece tells beside the reference.
 struct Sample {
   std::array<Eigen::Vector2d, kParts> speeds;  ///< mean v_x and omega of each part, by reference
+  Eigen::Vector3d twist;                       ///< mean twist, by reference
   Eigen::Vector3d residual;                    ///< measured mean twist less that of the reference
   Eigen::Vector3d noise;                       ///< its variance
   bool repeats = false;                        ///< under the steady command of the sample before
@@ -96,8 +97,11 @@ struct Predicted {
 };
 Predicted predicted(const Session& session, const Reference& reference);
 
-/// Poses after each sample of twists that are held for kPeriod.
-std::vector<Pose2> integrated(const std::vector<Twist2>& twists);
+/// Poses after each sample of twists that are held for `period` [s].
+std::vector<Pose2> integrated(const std::vector<Twist2>& twists, double period = kPeriod);
+
+/// What a reference says of a series of samples; nothing is measured of it yet.
+Sample sampleOf(const std::vector<Twist2>& twists);
 
 /// How executions scatter on the same ground: half the squared difference of two pieces one after
 /// the other under one steady command.

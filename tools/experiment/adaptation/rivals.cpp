@@ -115,24 +115,24 @@ double GaussianProcess::logLikelihood(size_t axis, const KernelTuning& tuning,
   return sum;
 }
 
-Rival::Rival(const Rival& other) {
+AxisRivals::AxisRivals(const AxisRivals& other) {
   for (size_t axis = 0; axis < kAxes; ++axis)
     if (other.axes_[axis]) axes_[axis] = other.axes_[axis]->clone();
 }
 
-void Rival::learn(const Sample& sample) {
+void AxisRivals::learn(const Sample& sample) {
   for (const auto& axis : axes_)
     if (axis) axis->learn(sample);
 }
 
-std::vector<Twist2> Rival::corrected(std::vector<Twist2> twists, const Sample& sample) const {
+std::vector<Twist2> AxisRivals::corrected(std::vector<Twist2> twists, const Sample& sample) const {
   for (size_t part = 0; part < kParts; ++part) {
     const auto offset = [&](size_t axis) {
       return axes_[axis] ? axes_[axis]->offset(sample.speeds[part]) : 0.0;
     };
     const Twist2 change{offset(0), offset(1), offset(2)};
-    constexpr size_t kPart = kPieceSamples / kParts;
-    for (size_t t = part * kPart; t < (part + 1) * kPart; ++t) {
+    for (size_t t = 0; t < twists.size(); ++t) {
+      if (t * kParts / twists.size() != part) continue;
       twists[t].v_x += change.v_x;
       twists[t].v_y += change.v_y;
       twists[t].omega += change.omega;

@@ -21,12 +21,16 @@
 //   basis      recursive least squares with forgetting on a few functions of (v, w) that are
 //              learned from the training sessions: the directions (SVD) in which their residual
 //              maps over random Fourier features differ (a function encoder by least squares)
+//   rls2       recursive least squares with forgetting on two gains of the mean twist: of both
+//              velocities and of the yaw rate (gain_rivals.hpp)
+//   rls3       the same with three gains: of v_x, v_y and omega
+//   imm        those three gains by an interacting multiple-model filter: calm or changed
 //   gp         a Gaussian process over (v, w), squared exponential kernel with two length scales
-// All take an innovation beyond 2.5 standard deviations for that much less certain (Huber), as the
-// poses jump at times. What each expects beforehand is tuned on the training sessions alone: prior
-// deviations, forgetting, noise and the number of functions by the likelihood of the next
-// execution, the process by its marginal likelihood, over runs of 31 pieces that begin with a fresh
-// rival.
+// All but the gains take an innovation beyond 2.5 standard deviations for that much less certain
+// (Huber), as the poses jump at times. What each expects beforehand is tuned on the training
+// sessions alone: prior deviations, forgetting, noise and the number of functions by the likelihood
+// of the next execution, the process by its marginal likelihood, over runs of 31 pieces that begin
+// with a fresh rival.
 namespace tread::adaptation {
 
 /// Samples of each training session, in order of time.
@@ -115,17 +119,26 @@ class GaussianProcess : public AxisRival {
   Eigen::VectorXd weights_;  ///< L'^-1 z
 };
 
-/// A rival for all three velocities.
+/// Learns how twists differ from the reference's.
 class Rival {
  public:
-  explicit Rival(std::array<std::unique_ptr<AxisRival>, kAxes> axes) : axes_(std::move(axes)) {}
-  Rival(const Rival& other);
-  Rival(Rival&&) = default;
-  Rival& operator=(Rival&&) = default;
+  virtual ~Rival() = default;
+  virtual void learn(const Sample& sample) = 0;
+  /// The reference's twists of a piece, corrected; `sample` is what it says of the piece.
+  virtual std::vector<Twist2> corrected(std::vector<Twist2> twists, const Sample& sample) const = 0;
+  virtual std::unique_ptr<Rival> clone() const = 0;
+};
 
-  void learn(const Sample& sample);
-  /// The reference's twists of a piece, corrected.
-  std::vector<Twist2> corrected(std::vector<Twist2> twists, const Sample& sample) const;
+/// A rival that learns the three velocities apart.
+class AxisRivals : public Rival {
+ public:
+  explicit AxisRivals(std::array<std::unique_ptr<AxisRival>, kAxes> axes)
+      : axes_(std::move(axes)) {}
+  AxisRivals(const AxisRivals& other);
+
+  void learn(const Sample& sample) override;
+  std::vector<Twist2> corrected(std::vector<Twist2> twists, const Sample& sample) const override;
+  std::unique_ptr<Rival> clone() const override { return std::make_unique<AxisRivals>(*this); }
 
  private:
   std::array<std::unique_ptr<AxisRival>, kAxes> axes_;  ///< nullptr: this velocity is left
@@ -136,14 +149,16 @@ const std::vector<std::string>& rivalNames();
 
 /// Slip regression fitted to a whole session at once (Huber's loss); it learns no more.
 /** No rival, as it knows what is to be predicted: a bound for what its terms can do. */
-Rival hindsight(const std::vector<Sample>& session);
+std::unique_ptr<Rival> hindsight(const std::vector<Sample>& session);
 
 /// Fewer sessions do not say how grounds differ.
 inline constexpr size_t kLeastSessions = 3;
 
 /// A rival that was tuned on training sessions, knowing nothing of the ground it meets.
 /** With fewer than kLeastSessions it keeps what is expected in general; there is no basis then.
+ * What rls2, rls3 and imm expect is never tuned.
  * `seed` draws the random features. */
-Rival tunedRival(const std::string& name, const TrainingSamples& training, uint64_t seed);
+std::unique_ptr<Rival> tunedRival(const std::string& name, const TrainingSamples& training,
+                                  uint64_t seed);
 
 }  // namespace tread::adaptation

@@ -10,6 +10,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "common/recordings/sessions.hpp"
+#include "tools/experiment/adaptation/gain_rivals.hpp"
 #include "tools/experiment/adaptation/rivals.hpp"
 
 namespace tread::adaptation {
@@ -278,11 +279,12 @@ std::unique_ptr<AxisRival> axisRival(const std::string& name, size_t axis,
 }  // namespace
 
 const std::vector<std::string>& rivalNames() {
-  static const std::vector<std::string> names{"constant", "kalman", "slip", "gp", "basis"};
+  static const std::vector<std::string> names{"constant", "kalman", "slip", "gp",
+                                              "basis",    "rls2",   "rls3", "imm"};
   return names;
 }
 
-Rival hindsight(const std::vector<Sample>& session) {
+std::unique_ptr<Rival> hindsight(const std::vector<Sample>& session) {
   std::array<std::unique_ptr<AxisRival>, kAxes> axes;
   for (size_t axis = 0; axis < kAxes; ++axis) {
     const auto n = static_cast<Eigen::Index>(session.size());
@@ -299,13 +301,15 @@ Rival hindsight(const std::vector<Sample>& session) {
     axes[axis] =
         std::make_unique<LinearRival>(axis, terms, LinearTuning{Eigen::Vector3d::Zero()}, x);
   }
-  return Rival(std::move(axes));
+  return std::make_unique<AxisRivals>(std::move(axes));
 }
 
-Rival tunedRival(const std::string& name, const TrainingSamples& training, uint64_t seed) {
+std::unique_ptr<Rival> tunedRival(const std::string& name, const TrainingSamples& training,
+                                  uint64_t seed) {
+  if (auto rival = gainRival(name)) return rival;
   std::array<std::unique_ptr<AxisRival>, kAxes> axes;
   for (size_t axis = 0; axis < kAxes; ++axis) axes[axis] = axisRival(name, axis, training, seed);
-  return Rival(std::move(axes));
+  return std::make_unique<AxisRivals>(std::move(axes));
 }
 
 }  // namespace tread::adaptation

@@ -86,16 +86,17 @@ class RuleWalker : public Walker {
 
 class RivalWalker : public Walker {
  public:
-  RivalWalker(const Rival& fresh, const Known& known) : rival_(fresh), known_(known) {}
+  RivalWalker(std::unique_ptr<Rival> rival, const Known& known)
+      : rival_(std::move(rival)), known_(known) {}
 
-  void learn(size_t piece) override { rival_.learn(known_.reference.samples[piece]); }
+  void learn(size_t piece) override { rival_->learn(known_.reference.samples[piece]); }
   std::vector<Pose2> predict(size_t piece) const override {
     return integrated(
-        rival_.corrected(known_.reference.twists[piece], known_.reference.samples[piece]));
+        rival_->corrected(known_.reference.twists[piece], known_.reference.samples[piece]));
   }
 
  private:
-  Rival rival_;
+  std::unique_ptr<Rival> rival_;
   const Known& known_;
 };
 
@@ -133,7 +134,7 @@ std::unique_ptr<Walker> ruleWalker(const learner::RuleConfig& config, const Hist
 }
 
 std::unique_ptr<Walker> rivalWalker(const Rival& fresh, const Known& known) {
-  return std::make_unique<RivalWalker>(fresh, known);
+  return std::make_unique<RivalWalker>(fresh.clone(), known);
 }
 
 std::unique_ptr<Walker> hindsightWalker(const Known& known) {
