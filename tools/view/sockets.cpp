@@ -229,7 +229,8 @@ void Sockets::giveTurns() {
 
 int Sockets::write(lws* socket) {
   Client* const client = find(socket);
-  if (client == nullptr) return 0;
+  // libwebsockets calls of itself, too; then it is not this client's turn.
+  if (client == nullptr || !client->asked) return 0;
   client->asked = false;
   for (size_t sent = 0; !client->frames.empty() && sent < kPiece;) {
     const auto [bytes, text] = events_.bytesOf(*client, client->frames.pop());

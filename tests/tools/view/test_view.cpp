@@ -256,7 +256,7 @@ TEST_CASE("viewers without end cost neither memory nor the robot's drive") {
   // an instrument by 100 ms is not theirs.
   if (watch.longest() < 0.5)
     CHECK_THAT(contentOf(output), !Catch::Contains("operator") && !Catch::Contains("has let go"));
-  CHECK(computed < 5.0 + 0.5 * seconds);
+  CHECK(computed < 2.0 + 0.3 * seconds);
 }
 
 TEST_CASE("viewers from elsewhere need the token, strangers' pages may not talk to the robot") {
