@@ -81,8 +81,9 @@ SealKey readKey(const std::string& path) {
     if (++keys > 1 || !isKey(line, key)) keys = 2;
   }
   if (keys != 1)
-    keyFile(path).refuse("holds no key (one line of 64 hexadecimal digits)",
-                         "make one with tread-key new");
+    // Neither tread-key nor a start ever writes over a file that is there.
+    keyFile(path).refuse("holds no key (one line of 64 hexadecimal digits), or only a part of one",
+                         "remove it, then make one with tread-key new " + path);
   return key;
 }
 

@@ -7,9 +7,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <filesystem>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
+
+#include "common/store/output_file.hpp"
 
 namespace tread {
 namespace {
@@ -48,9 +51,9 @@ void requirePrivate(const PrivateFile& file, const struct stat& entry) {
                     std::to_string(::geteuid()) + " who starts this",
                 "chown it, or " + file.maker);
   if ((entry.st_mode & 077) != 0)
-    file.refuse("others than its owner may use it (mode " + octal(entry.st_mode) + ")",
-                "chmod 600 " + file.path +
-                    ", and make a new one if somebody else may have read it");
+    file.refuse(
+        "others than its owner may use it (mode " + octal(entry.st_mode) + ")",
+        "chmod 600 " + file.path + ", and make a new one if somebody else may have read it");
 }
 
 }  // namespace
@@ -109,6 +112,7 @@ void PrivateFile::make(const std::string& text) const {
     refuse("cannot be made (" + reason(failure) + ")",
            failure == EEXIST ? "an existing file is never overwritten: name another one"
                              : "check the path and the rights");
+  syncFolder(std::filesystem::absolute(path).parent_path().string());
 }
 
 }  // namespace tread

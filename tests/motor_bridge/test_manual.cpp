@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -311,15 +312,17 @@ TEST_CASE("the hand needs the dead-man's button, the lease and valid numbers to 
     world.wish.give_back = true;
   }
   SECTION("no number") {
-    world.stick(kUnknown, 0.5);
-    world.run(1'000'000);
-    world.stick(0.5, kUnknown);
-    world.run(1'000'000);
-    world.stick(0.5, std::numeric_limits<double>::infinity());
-    world.run(1'000'000);
-    world.stick(0.5, -1.5);
-    world.run(1'000'000);
-    CHECK(world.state() == State::kDriving);
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    for (const auto& [left, right] : std::vector<std::pair<double, double>>{
+             {kUnknown, 0.5}, {0.5, kUnknown}, {0.5, kInfinite}, {0.5, -1.5}, {-1.5, 0.5}}) {
+      CAPTURE(left, right);
+      // Only a stick that was seen at rest could take over.
+      world.stick(0.0, 0.0);
+      world.run(200'000);
+      world.stick(left, right);
+      world.run(1'000'000);
+      CHECK(world.state() == State::kDriving);
+    }
     world.wish.hold = false;
   }
   world.stick(1.0, 1.0);

@@ -86,13 +86,15 @@ std::string newPem() {
   return {bytes, static_cast<size_t>(size)};
 }
 
-/// Empty where the text holds no certificate.
+/// Empty where the text holds no certificate, or not its key.
 std::string fingerprintOf(const std::string& pem) {
   const Bio text(BIO_new_mem_buf(pem.data(), static_cast<int>(pem.size())));
   const X509Pointer certificate(PEM_read_bio_X509(text.get(), nullptr, nullptr, nullptr));
   unsigned char digest[EVP_MAX_MD_SIZE];
   unsigned int size = 0;
-  if (!certificate || X509_digest(certificate.get(), EVP_sha256(), digest, &size) != 1) return "";
+  const Key key(PEM_read_bio_PrivateKey(text.get(), nullptr, nullptr, nullptr));
+  if (!certificate || !key || X509_digest(certificate.get(), EVP_sha256(), digest, &size) != 1)
+    return "";
   constexpr const char* kDigits = "0123456789ABCDEF";
   std::string words;
   for (unsigned int i = 0; i < size; ++i) {
@@ -113,7 +115,7 @@ Certificate ownCertificate(const std::string& folder) {
   Certificate certificate{file.path, "", !file.isThere() && file.ensure(newPem())};
   certificate.fingerprint = fingerprintOf(file.read());
   if (certificate.fingerprint.empty())
-    file.refuse("holds no certificate", "remove it, so that another one is made");
+    file.refuse("holds no certificate with its key", "remove it, so that another one is made");
   return certificate;
 }
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <optional>
 #include <thread>
+
+#include <sys/resource.h>
 
 #include <sodium.h>
 #include <CLI/CLI.hpp>
@@ -26,6 +29,8 @@ using namespace tread::view;
 
 constexpr int kWaitMs = 2;
 constexpr double kConsolePeriod = 0.3;  // [s]
+/// Of this program beside the robot's: a third of their share where the processor is scarce.
+constexpr int kNiceness = 5;
 
 struct Arguments {
   std::vector<std::string> logs;
@@ -82,6 +87,8 @@ void protect(Arguments& arguments) {
 }
 
 void live(const Arguments& arguments, const std::atomic<bool>& stop) {
+  // Before any thread is started, which would keep its own.
+  setpriority(PRIO_PROCESS, 0, std::max(kNiceness, getpriority(PRIO_PROCESS, 0)));
   const launch::RunningRobot robot = launch::findRobot(arguments.lcm_url, arguments.key);
   operators::LiveConsole console(robot, arguments.operator_name, "by the page of tread-view");
   ServerSettings settings = arguments.server;

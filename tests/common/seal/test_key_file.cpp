@@ -2,7 +2,11 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
+#include <csignal>
+
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "common/seal/key_file.hpp"
@@ -96,8 +100,9 @@ TEST_CASE("what is no key is refused in one line with what to do") {
         kDigits.substr(1) + " ", kDigits + "\r\n", std::string(100000, 'a'),
         kDigits + "\n" + half + "\n", half + "\n" + kDigits + "\n", std::string(64, '\0')}) {
     CAPTURE(text.substr(0, 100), text.size());
-    CHECK_THROWS_WITH(readKey(written(folder.file("key"), text)),
-                      Contains("holds no key") && Contains("tread-key new"));
+    CHECK_THROWS_WITH(
+        readKey(written(folder.file("key"), text)),
+        Contains("holds no key") && Contains("remove it, then make one with tread-key"));
   }
   CHECK_THROWS_WITH(readKey(folder.file("none")),
                     Contains("No such file") && Contains("tread-key"));
@@ -105,6 +110,29 @@ TEST_CASE("what is no key is refused in one line with what to do") {
   REQUIRE(mkfifo(folder.file("pipe").c_str(), 0600) == 0);
   CHECK_THROWS_WITH(readKey(folder.file("pipe")), Contains("is no file"));
   CHECK(readKey(written(folder.file("key"), "# why\n\n" + kDigits)).bytes[31] == 0xaa);
+}
+
+TEST_CASE(
+    "a start that is killed while it writes the key leaves none, and the next start makes one") {
+  const Folder folder;
+  const std::string path = folder.file("key");
+  const pid_t killed = fork();
+  if (killed == 0) {
+    // The kernel kills the process when it writes its first byte.
+    const rlimit nothing{0, 0};
+    std::signal(SIGXFSZ, SIG_DFL);
+    setrlimit(RLIMIT_CORE, &nothing);
+    setrlimit(RLIMIT_FSIZE, &nothing);
+    ensureKey(path);
+    _exit(0);
+  }
+  int status = 0;
+  REQUIRE(waitpid(killed, &status, 0) == killed);
+  REQUIRE(WIFSIGNALED(status));
+  CHECK(WTERMSIG(status) == SIGXFSZ);
+  CHECK_FALSE(fs::exists(path));
+  CHECK(ensureKey(path));
+  CHECK_NOTHROW(readKey(path));
 }
 
 TEST_CASE(

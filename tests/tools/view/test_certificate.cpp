@@ -33,8 +33,13 @@ TEST_CASE("a certificate that others may read, or that is none, is refused with 
                     Catch::Contains("certificate " + path + ": others than its owner") &&
                         Catch::Contains("chmod 600"));
   fs::permissions(path, fs::perms(0600));
-  std::ofstream(path, std::ios::trunc) << "nothing";
-  CHECK_THROWS_WITH(ownCertificate(folder.path("view")),
-                    Catch::Contains("holds no certificate; remove it"));
+  const std::string whole = folder.text("view/certificate.pem");
+  for (const std::string& text : {std::string(), std::string("nothing"),
+                                  whole.substr(0, whole.find("-----BEGIN PRIVATE KEY"))}) {
+    CAPTURE(text);
+    std::ofstream(path, std::ios::trunc) << text;
+    CHECK_THROWS_WITH(ownCertificate(folder.path("view")),
+                      Catch::Contains("holds no certificate with its key; remove it"));
+  }
   CHECK_THROWS_WITH(ownCertificate("/proc/none"), Catch::Contains("cannot be made"));
 }

@@ -69,7 +69,9 @@ class Launched {
   }
   ~Launched() {
     for (const int pid : pids()) kill(pid, SIGKILL);
-    std::filesystem::remove_all(folder);
+    // The supervisor removes files of its own meanwhile.
+    std::error_code none;
+    std::filesystem::remove_all(folder, none);
   }
   Launched(const Launched&) = delete;
   Launched& operator=(const Launched&) = delete;

@@ -127,6 +127,12 @@ TEST_CASE(
   }
   std::filesystem::permissions(key, std::filesystem::perms(0644));
   CHECK_THAT(call(robot, {}).output, Contains("(mode 0644); fix: chmod 600 " + key));
+  std::filesystem::permissions(key, std::filesystem::perms(0600));
+  std::filesystem::resize_file(key, std::filesystem::file_size(key) / 2);
+  const CommandOutcome part = call(robot, {});
+  CHECK(part.code == 1);
+  CHECK_THAT(part.output, Contains("trial: key " + key + ": holds no key") &&
+                              Contains("remove it, then make one with tread-key new " + key));
 
   const Launched open({"good"}, TREAD_STAND_IN, "key: none\n");
   CHECK_THAT(call(open, {"--check"}).output,

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // What it costs the robot that 200 raw clients and a page of another origin ask for all they can get:
-// node flood.mjs MODULES HTTP-URL SECONDS
+// node flood.mjs MODULES HTTP-URL SECONDS [NICE]
 import { createRequire } from "node:module";
-import { existsSync } from "node:fs";
+import { existsSync, readdirSync, readFileSync } from "node:fs";
 import http from "node:http";
 import os from "node:os";
 const require = createRequire(`${process.argv[2]}/x.js`);
@@ -14,8 +14,21 @@ const ws = url.href.replace("http", "ws");
 const milliseconds = 1000 * Number(process.argv[4]);
 let end = Infinity;
 const fail = (words) => { console.error(words); process.exit(1); };
-// The strangers' own computing is not what is measured.
-os.setPriority(10);
+// The strangers' own computing is not what is measured: they would be on other machines. Their browser takes the same
+// priority, as long as it may not raise its own.
+os.setPriority(Number(process.argv[5] ?? 10));
+
+/// [s] that this process and those that it has started have computed so far.
+function computed() {
+  const all = readdirSync("/proc").filter((name) => /^\d+$/.test(name)).flatMap((name) => {
+    try {
+      const words = readFileSync(`/proc/${name}/stat`, "latin1").replace(/^.*\) /, "").split(" ");
+      return [{ pid: Number(name), parent: Number(words[1]), seconds: (Number(words[11]) + Number(words[12])) / 100 }];
+    } catch { return []; }
+  });
+  const of = (pid) => all.filter(({ parent }) => parent === pid).reduce((sum, { pid, seconds }) => sum + seconds + of(pid), 0);
+  return process.cpuUsage().user / 1e6 + process.cpuUsage().system / 1e6 + of(process.pid);
+}
 
 // A page of another origin: it opens sockets as fast as it can, and counts what gets through.
 const stranger = http.createServer((_, answer) => answer.end(`<script>
@@ -61,9 +74,12 @@ for (let kind = 0; kind < 200; ++kind) knock(kind);
 const inTime = performance.now() + 30000;
 while (opened < 20 && performance.now() < inTime) await new Promise((done) => setTimeout(done, 50));
 end = performance.now() + milliseconds;
+const before = computed();
 await new Promise((done) => setTimeout(done, end - performance.now()));
 const [tried, through] = await page.evaluate(() => [window.tried, window.opened]);
+const share = (computed() - before) / milliseconds * 1e5;
 await browser.close();
+console.log(`flood and its browser: ${share.toFixed(0)} % of a core`);
 console.log(`page of another origin: ${tried} sockets tried, ${through} opened; raw clients: ${opened} opened, ${closed} closed, ${requests} requests, ${(bytes / 1e6).toFixed(0)} MB got`);
 if (through > 0 || tried < 20) fail("a page of another origin got through, or did not try");
 if (opened < 20 || requests < 50) fail("the raw clients did not get in: nothing was tried");

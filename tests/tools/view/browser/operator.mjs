@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// A page that drives the robot, without its pictures: node operator.mjs MODULES HTTP-URL SECONDS, or until
+// A page that drives the robot to and fro, without its pictures: node operator.mjs MODULES HTTP-URL SECONDS, or until
 // SIGTERM. Says "is armed", and at the end how often the robot was disarmed and how long it heard nothing at most.
 import { createRequire } from "node:module";
 const require = createRequire(`${process.argv[2]}/x.js`);
@@ -36,7 +36,7 @@ client.on("status", ({ message }) => { told = message; });
 client.on("serverInfo", () => {
   const channel = client.advertise({ topic: "view/command", encoding: "json", schemaName: "" });
   const say = (message) => client.sendMessage(channel, new TextEncoder().encode(JSON.stringify({ ...message, seen })));
-  let asked = -1e9;
+  let asked = -1e9, x = -20;
   setInterval(() => {
     if (performance.now() > end) {
       console.log(`${heard} MOTOR, longest pause ${longest.toFixed(0)} ms, disarmed ${disarmed} times: ${[...reasons].join(" | ")}`);
@@ -48,6 +48,6 @@ client.on("serverInfo", () => {
     say({ op: "alive" });
     if (performance.now() - asked < 4000) return;
     if (motor.bridge_state === 0 || motor.bridge_state === 4) { asked = performance.now(); say({ op: "arm" }); }
-    if (motor.bridge_state === 1) { asked = performance.now(); say({ op: "goal", x: 30, y: 0 }); }
+    if (motor.bridge_state === 1) { asked = performance.now(); say({ op: "goal", x: x = -x, y: 0 }); }
   }, 200);
 });
