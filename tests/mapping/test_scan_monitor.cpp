@@ -169,6 +169,21 @@ TEST_CASE("a turned scan is named at once, and one that always was when the robo
   }
 }
 
+TEST_CASE("a turned scan is named where a wall is all that is seen, also by a robot that stands") {
+  sim::WorldDescription wall;
+  wall.bounds = {{-20.0, -20.0}, {20.0, 20.0}};
+  wall.obstacles.push_back(sim::boxObstacle({6.0, 0.3, 1.4}, 5.0, 0.3, 1.5));
+  for (const double v_x : {0.0, 0.8}) {
+    CAPTURE(v_x);
+    ScanDrive drive(wall);
+    drive.drive(v_x, 0.0, 1.5);
+    drive.disturb = [](scan_t& scan) { turnBeams(scan, -50.0 * kPi / 180.0); };
+    const Named named = drivenUntilNamed(drive, v_x, 0.0);
+    CHECK(named.defect == ScanDefect::kTurned);
+    CHECK(named.seconds < 0.5);
+  }
+}
+
 TEST_CASE("old scans under new times are named as such") {
   for (const size_t ago : {3U, 5U, 10U})
     for (const auto& [v_x, omega] : {std::pair(1.0, 0.0), std::pair(0.3, 0.6)}) {

@@ -42,48 +42,20 @@ constexpr Distance kCompared[] = {{0.2, 0.1}, {0.5, 0.26}, {1.2, 0.6}};
 
 /// Points of a scan that are compared.
 constexpr size_t kSample = 90;
-/// A defect explains at least so many that do not fit as told, and this share of those of which
-/// the reference knows anything ...
-constexpr int kLeastExplained = 12;
-constexpr double kLeastShare = 0.75;
-/// ... and more, where only one earlier scan does not fit: what fits several by chance is rare.
+/// Points of a scan that do not fit an earlier one, for a doubt; and points that a defect explains
+/// where only one earlier scan does not fit: what fits several by chance is rare.
+constexpr size_t kLeastMissed = 12;
 constexpr double kLeastAlone = 30.0;
-/// ... in so many of twelve sectors, and each that it breaks counts as so many.
-constexpr int kLeastSectors = 3;
-constexpr int kBroken = 4;
+/// ... or where earlier scans, which fit each other, would be wrong in the same way: rises seen
+/// from here and there look like that.
+constexpr double kLeastAlways = 60.0;
 
-constexpr double kAngleStep = 4.0 / 180.0 * kPi;
-constexpr double kLeastAngle = 12.0 / 180.0 * kPi;
-constexpr double kDelayStep = 0.1;  // [s]
-constexpr double kLeastDelay = 0.2;
-constexpr double kMostDelay = 1.55;
+/// So long a scan that decides nothing is not compared with later ones [us].
+constexpr int64_t kUndecided = 1'500'000;
 
 constexpr size_t kJudged = 5;
 constexpr int kSure = 3;
 constexpr int64_t kGoodAgain = 1'000'000;  // [us]
-
-/// Points that a place of a scan explains, less what it breaks; 0 if it is no explanation.
-double gainOf(const PlaneMove& T_reference_scan, const ScanView& reference,
-              const std::vector<Eigen::Vector2d>& missed,
-              const std::vector<Eigen::Vector2d>& matched) {
-  int explained = 0, unexplained = 0, broken = 0;
-  std::array<bool, 12> sectors{};
-  for (const Eigen::Vector2d& point : missed) {
-    const ScanView::Fit fit = reference.fit(T_reference_scan * point);
-    unexplained += fit == ScanView::Fit::kMiss ? 1 : 0;
-    if (fit != ScanView::Fit::kMatch) continue;
-    ++explained;
-    const double bearing = std::atan2(point.y(), point.x()) + kPi;
-    sectors[std::min<size_t>(11, static_cast<size_t>(bearing / kPi * 6.0))] = true;
-  }
-  if (explained < kLeastExplained || explained < kLeastShare * (explained + unexplained) ||
-      std::count(sectors.begin(), sectors.end(), true) < kLeastSectors)
-    return 0.0;
-  for (const Eigen::Vector2d& point : matched)
-    broken += reference.fit(T_reference_scan * point) == ScanView::Fit::kMatch ? 0 : 1;
-  const double gain = explained - kBroken * broken;
-  return gain < 0.5 * explained ? 0.0 : gain;
-}
 
 bool beyond(double way, double turn, double least_way, double least_turn) {
   return way > least_way || turn > least_turn;
@@ -104,25 +76,33 @@ ScanDefect ScanMonitor::update(const ToldScan& told, const PoseAt& poseAt) {
   level_ = T.linear()(2, 2) > 0.97;
   T_body_sensor_.linear() = turnedBy(std::atan2(T.linear()(1, 0), T.linear()(0, 0)));
   T_body_sensor_.translation() = T.translation().head<2>();
-  const Suspicion suspicion = suspect(told, poseAt);
-  judge(suspicion, told.scan.utime);
-  return suspicion.defect;
+  const auto suspicion = suspect(told, poseAt);
+  if (!suspicion) return ScanDefect::kNone;
+  judge(*suspicion, told.scan.utime);
+  return suspicion->defect;
 }
 
-ScanMonitor::Suspicion ScanMonitor::suspect(const ToldScan& told, const PoseAt& poseAt) {
-  const Scan& scan = told.scan;
-  if (scan.beams.empty()) return {ScanDefect::kEmpty};
-  if (repeats(told)) return {ScanDefect::kFrozen};
-  if (!level_) return {};
+std::optional<ScanSuspicion> ScanMonitor::suspect(const ToldScan& told, const PoseAt& poseAt) {
+  if (told.scan.beams.empty()) return ScanSuspicion{ScanDefect::kEmpty};
+  if (repeats(told)) return ScanSuspicion{ScanDefect::kFrozen};
+  if (!level_) return ScanSuspicion{};
+  return compare(told.scan, poseAt);
+}
+
+std::optional<ScanSuspicion> ScanMonitor::compare(const Scan& scan, const PoseAt& poseAt) {
   ScanView view(scan, robot_, height_);
-  // Between scans that are far apart too much may change.
-  const bool doubted = !recent_.empty() && recent_.back().defect != ScanDefect::kNone;
-  const bool apart = newest_ && !doubted && scan.utime - newest_->utime() > kMoment;
-  const Suspicion best = apart ? Suspicion{} : explain(view, poseAt);
-  if (best.defect != ScanDefect::kNone) return best;
-  if (seesThrough(scan)) return {ScanDefect::kSeesThrough};
+  if (!apart(scan.utime)) {
+    const std::vector<ScanDoubt> doubts = this->doubts(view);
+    const ScanSuspicion best = explain(view, doubts, poseAt);
+    if (best.defect != ScanDefect::kNone) return best;
+    if (seesThrough(scan)) return ScanSuspicion{ScanDefect::kSeesThrough};
+    if (undecided(view, doubts, poseAt)) {
+      unsettled_ = true;
+      return std::nullopt;
+    }
+  }
   keep(std::move(view));
-  return best;
+  return ScanSuspicion{};
 }
 
 bool ScanMonitor::repeats(const ToldScan& told) {
@@ -141,18 +121,25 @@ bool ScanMonitor::repeats(const ToldScan& told) {
   bits.turned = std::max(bits.turned, Eigen::AngleAxisd(motion.linear()).angle());
   ++bits.repeats;
   bits_.push_back(bits);
-  const auto returns =
-      std::count_if(told.scan.beams.begin(), told.scan.beams.end(), [&](const Beam& beam) {
-        return beam.hit && !isOwnBody(told.scan.T_body_sensor * beam.end, robot_, height_);
-      });
+  const auto returns = returnsOf(told.scan);
   if (returns >= kManyReturns) return beyond(bits.moved, bits.turned, kLittleWay, kLittleTurn);
   return returns >= kFewReturns && beyond(bits.moved, bits.turned, kWay, kTurn);
 }
 
+int64_t ScanMonitor::returnsOf(const Scan& scan) const {
+  return std::count_if(scan.beams.begin(), scan.beams.end(), [&](const Beam& beam) {
+    return beam.hit && !isOwnBody(scan.T_body_sensor * beam.end, robot_, height_);
+  });
+}
+
+bool ScanMonitor::apart(int64_t utime) const {
+  const bool doubted =
+      unsettled_ || (!recent_.empty() && recent_.back().defect != ScanDefect::kNone);
+  return newest_ && !doubted && utime - newest_->utime() > kMoment;
+}
+
 bool ScanMonitor::seesThrough(const Scan& scan) const {
-  if (!newest_ ||
-      (scan.utime - newest_->utime() > kMoment && recent_.back().defect == ScanDefect::kNone))
-    return false;
+  if (!newest_) return false;
   const ScanView::SeenThrough seen = newest_->seenThrough(scan);
   const auto all = static_cast<double>(newest_->points().size());
   return seen.expected >= std::max(kLeastExpected, kExpectedShare * all) &&
@@ -167,8 +154,10 @@ std::vector<const ScanView*> ScanMonitor::references(const ScanView& view) const
       const PlaneMove motion = kept.T_map_sensor().inverse() * view.T_map_sensor();
       return beyond(motion.translation().norm(), turnOf(motion), distance.way, distance.turn);
     });
-    const bool again = far != views_.rend() && &*far == references.back();
-    if (far != views_.rend() && !again) references.push_back(&*far);
+    if (far == views_.rend()) break;
+    // The newest one may be among those along the way.
+    const bool again = !references.empty() && far->utime() == references.back()->utime();
+    if (!again) references.push_back(&*far);
   }
   return references;
 }
@@ -183,7 +172,7 @@ std::optional<PlaneMove> ScanMonitor::sensorAt(int64_t utime, const PoseAt& pose
   return plane * T_body_sensor_;
 }
 
-std::optional<PlaneMove> ScanMonitor::placed(const Suspicion& suspicion, const ScanView& view,
+std::optional<PlaneMove> ScanMonitor::placed(const ScanSuspicion& suspicion, const ScanView& view,
                                              const ScanView& reference,
                                              const PoseAt& poseAt) const {
   const PlaneMove T_reference_map = reference.T_map_sensor().inverse();
@@ -203,65 +192,71 @@ std::optional<PlaneMove> ScanMonitor::placed(const Suspicion& suspicion, const S
   return reference_then->inverse() * *then;
 }
 
-std::vector<ScanMonitor::Doubt> ScanMonitor::doubts(const ScanView& view) const {
-  std::vector<Doubt> doubts;
+std::vector<ScanDoubt> ScanMonitor::doubts(const ScanView& view) const {
+  std::vector<ScanDoubt> doubts;
   for (const ScanView* reference : references(view)) {
     const PlaneMove told = reference->T_map_sensor().inverse() * view.T_map_sensor();
-    Doubt doubt{reference, {}, {}};
+    ScanDoubt doubt{reference, told, {}, {}, {}};
     for (const Eigen::Vector2d& point : reference->inPlane(view, kSample)) {
       const ScanView::Fit fit = reference->fit(told * point);
-      if (fit == ScanView::Fit::kMiss) doubt.missed.push_back(point);
       if (fit == ScanView::Fit::kMatch) doubt.matched.push_back(point);
+      if (fit == ScanView::Fit::kMiss) doubt.missed.push_back(point);
+      if (fit == ScanView::Fit::kHidden) doubt.hidden.push_back(point);
     }
-    if (doubt.missed.size() >= kLeastExplained) doubts.push_back(std::move(doubt));
+    if (doubt.missed.size() + doubt.hidden.size() >= kLeastMissed)
+      doubts.push_back(std::move(doubt));
   }
   return doubts;
 }
 
-ScanMonitor::Suspicion ScanMonitor::explain(const ScanView& view, const PoseAt& poseAt) const {
-  const std::vector<Doubt> doubts = this->doubts(view);
-  Suspicion best;
+ScanSuspicion ScanMonitor::explain(const ScanView& view, const std::vector<ScanDoubt>& doubts,
+                                   const PoseAt& poseAt) const {
+  ScanSuspicion best;
   if (doubts.empty()) return best;
-  const double least = doubts.size() > 1 ? kLeastExplained : kLeastAlone;
-  static const std::vector<Suspicion> kAll = hypotheses();
-  for (Suspicion suspicion : kAll) {
-    size_t explained = 0, tried = 0;
-    for (const Doubt& doubt : doubts) {
-      const auto T_reference_scan = placed(suspicion, view, *doubt.reference, poseAt);
-      const double gain = T_reference_scan ? gainOf(*T_reference_scan, *doubt.reference,
-                                                    doubt.missed, doubt.matched)
-                                           : 0.0;
-      suspicion.gain += gain;
-      explained += gain > 0.0 ? 1 : 0;
-      // From farther away much was hidden: the nearest two decide, and half of all.
-      if (++tried <= 2 && gain <= 0.0) break;
-    }
-    // A little delay explains much that is none: there all must agree.
-    const bool delayed = suspicion.defect == ScanDefect::kDelayed;
-    const size_t needed =
-        delayed ? doubts.size() : std::max(std::min<size_t>(2, doubts.size()), doubts.size() / 2);
-    if (tried == doubts.size() && explained >= needed && suspicion.gain >= least &&
-        suspicion.gain > best.gain)
-      best = suspicion;
+  // What begins now fits the newest good scan worst.
+  const bool sudden = doubts.front().reference == &*newest_;
+  const double least_sudden = doubts.size() > 1 ? kLeastMissed : kLeastAlone;
+  static const std::vector<ScanSuspicion> kAll = scanHypotheses();
+  for (const ScanSuspicion& hypothesis : kAll) {
+    if (!sudden && !hypothesis.always) continue;
+    const double least = hypothesis.always ? kLeastAlways : least_sudden;
+    const ScanSuspicion weighed = weigh(hypothesis, view, doubts, poseAt);
+    if (weighed.gain >= least && weighed.gain > best.gain) best = weighed;
   }
   return best;
 }
 
-std::vector<ScanMonitor::Suspicion> ScanMonitor::hypotheses() {
-  std::vector<Suspicion> all;
-  for (double angle = 0.0; angle < 2.0 * kPi - kAngleStep / 2.0; angle += kAngleStep) {
-    if (std::abs(wrapAngle(angle)) > kLeastAngle - 1e-6) {
-      all.push_back({ScanDefect::kTurned, 0.0, angle, 0.0, false});
-      all.push_back({ScanDefect::kTurned, 0.0, angle, 0.0, true});
-    }
-    // Of motion alone, mirrored and turned is hardly told from turned.
-    all.push_back({ScanDefect::kMirrored, 0.0, angle, 0.0, false});
-    if (angle == 0.0) all.push_back({ScanDefect::kMirrored, 0.0, angle, 0.0, true});
+ScanSuspicion ScanMonitor::weigh(ScanSuspicion suspicion, const ScanView& view,
+                                 const std::vector<ScanDoubt>& doubts, const PoseAt& poseAt) const {
+  size_t explained = 0, tried = 0;
+  for (const ScanDoubt& doubt : doubts) {
+    const auto T_reference_scan = placed(suspicion, view, *doubt.reference, poseAt);
+    const double gain = T_reference_scan ? gainOf(suspicion.defect, *T_reference_scan, doubt) : 0.0;
+    // From farther away much was hidden: the nearest two decide, and half of all.
+    if (++tried <= 2 && gain <= 0.0) return {};
+    const double apart = 1e-6 * static_cast<double>(view.utime() - doubt.reference->utime());
+    if (tried == 1 && !beyondMotion(*T_reference_scan, doubt, apart)) return {};
+    suspicion.gain += gain;
+    explained += gain > 0.0 ? 1 : 0;
   }
-  for (double delay = kLeastDelay; delay < kMostDelay; delay += kDelayStep)
-    for (const bool always : {false, true})
-      all.push_back({ScanDefect::kDelayed, 0.0, 0.0, delay, always});
-  return all;
+  // A little delay explains much that is none: there all must agree.
+  const bool delayed = suspicion.defect == ScanDefect::kDelayed;
+  const size_t needed =
+      delayed ? doubts.size() : std::max(std::min<size_t>(2, doubts.size()), doubts.size() / 2);
+  return explained >= needed ? suspicion : ScanSuspicion{};
+}
+
+bool ScanMonitor::undecided(const ScanView& view, const std::vector<ScanDoubt>& doubts,
+                            const PoseAt& poseAt) const {
+  if (!newest_ || view.utime() - newest_->utime() > kUndecided || doubts.empty()) return false;
+  const ScanDoubt& nearest = doubts.front();
+  if (nearest.reference == &*newest_ && nearest.mostMissed()) return true;
+  const auto suspected = std::find_if(
+      recent_.rbegin(), recent_.rend(),
+      [](const ScanSuspicion& suspicion) { return suspicion.defect >= ScanDefect::kMirrored; });
+  if (suspected == recent_.rend()) return false;
+  const auto T_reference_scan = placed(*suspected, view, *nearest.reference, poseAt);
+  return T_reference_scan && balanceOf(*T_reference_scan, nearest) >= 0;
 }
 
 void ScanMonitor::keep(ScanView view) {
@@ -276,20 +271,10 @@ void ScanMonitor::keep(ScanView view) {
   if (moved) views_.push_back(view);
   if (views_.size() > kKept) views_.pop_front();
   newest_ = std::move(view);
+  unsettled_ = false;
 }
 
-bool ScanMonitor::agree(const Suspicion& a, const Suspicion& b) {
-  // What needs no motion to be sure may change: far ranges that repeat are frozen ones, too.
-  const auto plain = [](ScanDefect defect) {
-    return defect != ScanDefect::kNone && defect <= ScanDefect::kSeesThrough;
-  };
-  if (plain(a.defect) && plain(b.defect)) return true;
-  return a.defect == b.defect && a.always == b.always &&
-         std::abs(wrapAngle(a.angle - b.angle)) < 2.5 * kAngleStep &&
-         std::abs(a.delay - b.delay) < 1.5 * kDelayStep;
-}
-
-void ScanMonitor::judge(const Suspicion& suspicion, int64_t utime) {
+void ScanMonitor::judge(const ScanSuspicion& suspicion, int64_t utime) {
   recent_.push_back(suspicion);
   if (recent_.size() > kJudged) recent_.pop_front();
   if (suspicion.defect == ScanDefect::kNone) {
@@ -300,40 +285,19 @@ void ScanMonitor::judge(const Suspicion& suspicion, int64_t utime) {
   last_suspected_ = utime;
   if (verdict_ != ScanDefect::kNone ||
       std::count_if(recent_.begin(), recent_.end(),
-                    [&](const Suspicion& other) { return agree(suspicion, other); }) < kSure)
+                    [&](const ScanSuspicion& other) { return agree(suspicion, other); }) < kSure)
     return;
   verdict_ = suspicion.defect;
-  words_ = describe(suspicion);
+  words_ = wordsOf(suspicion);
 }
 
-std::string ScanMonitor::describe(const Suspicion& suspicion) const {
+std::string ScanMonitor::wordsOf(const ScanSuspicion& suspicion) const {
   std::ostringstream line;
-  line << std::fixed;
-  switch (suspicion.defect) {
-    case ScanDefect::kNone:
-      break;
-    case ScanDefect::kEmpty:
-      return "no beam of its scans measures anything: is it covered or dazzled, or broken?";
-    case ScanDefect::kSeesThrough:
-      return "its scans see nothing where something stood a moment ago: is it covered or broken?";
-    case ScanDefect::kMirrored:
-      return "its scans fit the motion only if they are mirrored: is it upside down, or does it "
-             "number its beams the other way round?";
-    case ScanDefect::kFrozen:
-      line << "it repeats bit for bit what it saw before the robot moved " << std::setprecision(2)
-           << bits_.back().moved << " m and turned " << std::setprecision(0)
-           << bits_.back().turned * 180.0 / kPi << " deg: it is frozen; restart it";
-      break;
-    case ScanDefect::kTurned:
-      line << "its scans fit the motion only if they are turned by about " << std::setprecision(0)
-           << std::abs(wrapAngle(suspicion.angle)) * 180.0 / kPi
-           << " deg: compare range_finder in robot.yaml with how it is mounted";
-      break;
-    case ScanDefect::kDelayed:
-      line << "its scans fit the motion of about " << std::setprecision(1) << suspicion.delay
-           << " s earlier: they are old ones under new times; restart it";
-      break;
-  }
+  line << std::fixed << describe(suspicion);
+  if (suspicion.defect == ScanDefect::kFrozen)
+    line << " " << std::setprecision(2) << bits_.back().moved << " m and turned "
+         << std::setprecision(0) << bits_.back().turned * 180.0 / kPi
+         << " deg: it is frozen; restart it";
   return line.str();
 }
 

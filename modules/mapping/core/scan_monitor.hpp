@@ -9,20 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "modules/mapping/core/scan_view.hpp"
+#include "modules/mapping/core/scan_suspicion.hpp"
 
 namespace tread::mapping {
-
-/// How the scans of a range finder can be wrong although they come.
-enum class ScanDefect {
-  kNone,
-  kEmpty,        ///< no beam measures anything
-  kFrozen,       ///< repeated bit for bit while the robot moves
-  kSeesThrough,  ///< nothing where something stood a moment ago
-  kMirrored,
-  kTurned,
-  kDelayed  ///< an old scan under a new time
-};
 
 /// One scan as it was told.
 struct ToldScan {
@@ -39,7 +28,11 @@ struct ToldScan {
        so and once as if all were. What then explains nearly all of the misfit with each of them,
        and hardly breaks what fitted, is the defect: points that fit both ways count for nothing
        (McNemar's test), so a corridor is no proof of anything, and moving things explain no whole
-       scan.
+       scan. A point proves most where an earlier scan saw through its place: what that one could
+       not see, behind a corner or a rise, may be new.
+    A scan that decides nothing, but that most of does not fit or that fits a recent suspicion as
+       well, counts for nothing and is compared with no later one for a while: else the first wrong
+       scans would vouch for the others.
     Three scans of the last five make a verdict. It stands until scans were good for a second. It
     cannot judge a range finder that sees nothing, and calls none good. */
 class ScanMonitor {
@@ -57,19 +50,6 @@ class ScanMonitor {
   const std::string& words() const { return words_; }
 
  private:
-  /// A suspicion with what it rests on.
-  struct Suspicion {
-    ScanDefect defect = ScanDefect::kNone;
-    double gain = 0.0;    ///< points that it explains more than it breaks
-    double angle = 0.0;   ///< [rad] turned by
-    double delay = 0.0;   ///< [s]
-    bool always = false;  ///< earlier scans were wrong in the same way
-  };
-  /// An earlier scan that much of the new one does not fit.
-  struct Doubt {
-    const ScanView* reference;
-    std::vector<Eigen::Vector2d> missed, matched;  ///< points of the new one
-  };
   /// Bits that were seen, and how far the robot has moved since.
   struct Bits {
     uint64_t fingerprint;
@@ -80,22 +60,31 @@ class ScanMonitor {
     double turned = 0.0;  ///< [rad]
   };
 
-  Suspicion suspect(const ToldScan& told, const PoseAt& poseAt);
+  /// What the scan is suspected of; nullopt if it decides nothing.
+  std::optional<ScanSuspicion> suspect(const ToldScan& told, const PoseAt& poseAt);
+  std::optional<ScanSuspicion> compare(const Scan& scan, const PoseAt& poseAt);
   bool repeats(const ToldScan& told);
+  int64_t returnsOf(const Scan& scan) const;  ///< from elsewhere than the robot itself
   bool seesThrough(const Scan& scan) const;
+  /// Whether the newest good scan is too old for a comparison.
+  bool apart(int64_t utime) const;
   std::vector<const ScanView*> references(const ScanView& view) const;
-  Suspicion explain(const ScanView& view, const PoseAt& poseAt) const;
-  std::vector<Doubt> doubts(const ScanView& view) const;
-  /// All that a scan may be suspected of, the simplest first.
-  static std::vector<Suspicion> hypotheses();
+  std::vector<ScanDoubt> doubts(const ScanView& view) const;
+  ScanSuspicion explain(const ScanView& view, const std::vector<ScanDoubt>& doubts,
+                        const PoseAt& poseAt) const;
+  /// With the points that the suspicion explains; none if it is no explanation.
+  ScanSuspicion weigh(ScanSuspicion suspicion, const ScanView& view,
+                      const std::vector<ScanDoubt>& doubts, const PoseAt& poseAt) const;
+  /// Whether the scan fits so badly, or a recent suspicion so well, that it may be a wrong one.
+  bool undecided(const ScanView& view, const std::vector<ScanDoubt>& doubts,
+                 const PoseAt& poseAt) const;
   /// Where the scan lies on an earlier one under a suspicion.
-  std::optional<PlaneMove> placed(const Suspicion& suspicion, const ScanView& view,
+  std::optional<PlaneMove> placed(const ScanSuspicion& suspicion, const ScanView& view,
                                   const ScanView& reference, const PoseAt& poseAt) const;
   std::optional<PlaneMove> sensorAt(int64_t utime, const PoseAt& poseAt) const;
   void keep(ScanView view);
-  static bool agree(const Suspicion& a, const Suspicion& b);
-  void judge(const Suspicion& suspicion, int64_t utime);
-  std::string describe(const Suspicion& suspicion) const;
+  void judge(const ScanSuspicion& suspicion, int64_t utime);
+  std::string wordsOf(const ScanSuspicion& suspicion) const;
 
   FootprintSize robot_;
   double height_;  ///< [m] of the robot
@@ -104,7 +93,8 @@ class ScanMonitor {
   std::deque<Bits> bits_;
   std::deque<ScanView> views_;      ///< good ones along the way
   std::optional<ScanView> newest_;  ///< the newest good one
-  std::deque<Suspicion> recent_;
+  bool unsettled_ = false;          ///< since then, scans decided nothing
+  std::deque<ScanSuspicion> recent_;
   int64_t last_suspected_ = 0;  ///< [us]
   ScanDefect verdict_ = ScanDefect::kNone;
   std::string words_;

@@ -40,6 +40,7 @@ int ScanView::binOf(const Eigen::Vector2d& p_sensor) {
 
 ScanView::ScanView(const Scan& scan, const FootprintSize& robot, double height)
     : utime_(scan.utime) {
+  seen_.fill(std::numeric_limits<double>::infinity());
   const Eigen::Isometry3d T_map_sensor = scan.T_map_body_last * scan.T_body_sensor;
   const Eigen::Vector3d ahead = T_map_sensor.linear().col(0);
   T_map_sensor_.linear() = Eigen::Rotation2Dd(std::atan2(ahead.y(), ahead.x())).matrix();
@@ -53,6 +54,7 @@ ScanView::ScanView(const Scan& scan, const FootprintSize& robot, double height)
     const Eigen::Vector3d p_body = scan.T_body_sensor * beam.end;
     const auto bin = static_cast<size_t>(binOf(beam.end.head<2>()));
     looked_[bin] = true;
+    seen_[bin] = std::min(seen_[bin], beam.end.head<2>().norm());
     hidden[bin] = hidden[bin] || (beam.hit && isOwnBody(p_body, robot, height));
     if (!beam.hit || p_body.z() < kGround) continue;
     const Eigen::Vector3d p_map =
@@ -102,7 +104,10 @@ ScanView::Fit ScanView::fit(const Eigen::Vector2d& p_sensor) const {
     for (uint32_t k = first_[at]; k < first_[at + 1]; ++k)
       if ((points_[k] - p_sensor).squaredNorm() < within * within) return Fit::kMatch;
   }
-  return Fit::kMiss;
+  double seen = std::numeric_limits<double>::infinity();
+  for (const int i : {bin - 1, bin, bin + 1})
+    seen = std::min(seen, seen_[static_cast<size_t>((i + kBins) % kBins)]);
+  return seen > range + within ? Fit::kMiss : Fit::kHidden;
 }
 
 ScanView::SeenThrough ScanView::seenThrough(const Scan& later) const {

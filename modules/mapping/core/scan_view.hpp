@@ -37,7 +37,12 @@ class ScanView {
   std::vector<Eigen::Vector2d> inPlane(const ScanView& other, size_t at_most) const;
 
   /// How a point of another scan lies to this one's.
-  enum class Fit { kUnknown, kMatch, kMiss };  ///< kUnknown: this one did not look there
+  enum class Fit {
+    kUnknown,  ///< this one did not look there
+    kMatch,
+    kHidden,  ///< behind what it saw, or where its range ends
+    kMiss     ///< it saw nothing there
+  };
   Fit fit(const Eigen::Vector2d& p_sensor) const;
 
   /// Points of this view that a later scan must have hit, and through how many of them it saw.
@@ -58,6 +63,7 @@ class ScanView {
   std::vector<Eigen::Vector3d> p_map_;       // the same points
   std::array<uint32_t, kBins + 1> first_{};  // point of each bin
   std::array<bool, kBins> looked_{};
+  std::array<double, kBins> seen_{};  ///< to where at each bearing [m]; infinite: it did not look
 };
 
 }  // namespace tread::mapping

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -20,6 +21,8 @@ namespace {
 using namespace tread;
 using namespace tread::faults;
 
+constexpr double kNamedWithin = 0.5;  // [s] of motion
+
 struct Arguments {
   int missions = 100;
   uint64_t seed = 1;
@@ -29,6 +32,7 @@ struct Arguments {
   bool lies = false;
   bool eyes = false;
   bool table = false;
+  std::string fault;
   RunOptions run;
 };
 
@@ -125,35 +129,61 @@ int goBack(const Arguments& arguments) {
   return collided == 0 && moving == 0 ? 0 : 1;
 }
 
+/// What came of the missions with one lie of the range finder.
+struct EyeFigures {
+  int missions = 0, moved = 0, brief = 0, collided = 0;
+  double farthest = 0.0;
+  std::vector<double> after;  ///< [s] until it was named
+
+  void count(const FaultyRun& run);
+  void print(const char* name);
+};
+
+/// A lie that is over before it must be named.
+bool isBrief(const FaultEffect& effect) {
+  return effect.lasted < kNamedWithin && !effect.named_after;
+}
+
+void EyeFigures::count(const FaultyRun& run) {
+  ++missions;
+  collided += run.collisions > 0 ? 1 : 0;
+  if (!run.effect.moved) return;
+  ++moved;
+  brief += isBrief(run.effect) ? 1 : 0;
+  if (!run.effect.named_after) return;
+  after.push_back(*run.effect.named_after);
+  farthest = std::max(farthest, run.effect.zero_way);
+}
+
+void EyeFigures::print(const char* name) {
+  std::sort(after.begin(), after.end());
+  const auto in_time = std::upper_bound(after.begin(), after.end(), kNamedWithin) - after.begin();
+  std::printf(
+      "%-26s %3d missions, moved under it in %3d, in %d for less than %.1f s; named in %3zu, in "
+      "time %3lld, after %.2f s (median) to %.2f s, stood after %.2f m at most; %d touched "
+      "something\n",
+      name, missions, moved, brief, kNamedWithin, after.size(), static_cast<long long>(in_time),
+      after.empty() ? 0.0 : after[after.size() / 2], after.empty() ? 0.0 : after.back(), farthest,
+      collided);
+}
+
 /// Missions whose range finder lies: is it named, and does the robot stop before it touches
 /// anything?
 int watchEyes(const Arguments& arguments) {
   const missions::RobotConfig robot = missions::readRobot(TREAD_CONFIG_DIR "/robots/teodor");
-  struct Figures {
-    int missions = 0, moved = 0, named = 0, collided = 0;
-    double slowest = 0.0, farthest = 0.0;
-    std::vector<double> after;
-  };
-  std::map<FaultKind, Figures> by_kind;
+  std::map<FaultKind, EyeFigures> by_kind;
   int collided = 0;
   for (int i = 0; i < (arguments.only ? 1 : arguments.missions); ++i) {
     const uint64_t seed = arguments.seed + static_cast<uint64_t>(i);
     const FaultSchedule schedule = scanScheduleOf(seed, arguments.run.duration);
+    const FaultKind kind = schedule.faults.front().kind;
+    if (!arguments.fault.empty() && arguments.fault != nameOf(kind)) continue;
     const FaultyRun run = runFaulty(robot, schedule, arguments.run);
     const FaultEffect& effect = run.effect;
-    Figures& figures = by_kind[schedule.faults.front().kind];
-    ++figures.missions;
-    figures.moved += effect.moved ? 1 : 0;
-    figures.named += effect.moved && effect.named_after ? 1 : 0;
-    figures.collided += run.collisions > 0 ? 1 : 0;
+    by_kind[kind].count(run);
     collided += run.collisions > 0 ? 1 : 0;
-    if (effect.named_after) {
-      figures.after.push_back(*effect.named_after);
-      figures.slowest = std::max(figures.slowest, *effect.named_after);
-      figures.farthest = std::max(figures.farthest, effect.zero_way);
-    }
-    const bool missed = effect.moved && !effect.named_after;
-    if (!missed && !run.violation && run.collisions == 0 && !arguments.only) continue;
+    const bool late = effect.moved && effect.named_after.value_or(effect.lasted) > kNamedWithin;
+    if (!late && !run.violation && run.collisions == 0 && !arguments.only) continue;
     printSeed(seed, schedule, run);
     std::printf("  named after %.2f s, %.2f m, %.0f deg; zero after %.2f s, %.2f m: %s\n",
                 effect.named_after.value_or(-1.0), effect.named_way,
@@ -161,15 +191,7 @@ int watchEyes(const Arguments& arguments) {
                 effect.zero_way, effect.reason.c_str());
     std::fflush(stdout);
   }
-  for (auto& [kind, figures] : by_kind) {
-    std::sort(figures.after.begin(), figures.after.end());
-    const double median = figures.after.empty() ? 0.0 : figures.after[figures.after.size() / 2];
-    std::printf(
-        "%-26s %3d missions, moved under it in %3d, named in %3d, after %.2f s (median) to %.2f s, "
-        "stood after %.2f m at most; %d touched something\n",
-        nameOf(kind), figures.missions, figures.moved, figures.named, median, figures.slowest,
-        figures.farthest, figures.collided);
-  }
+  for (auto& [kind, figures] : by_kind) figures.print(nameOf(kind));
   std::printf("%d touched something\n", collided);
   return collided == 0 ? 0 : 1;
 }
@@ -210,6 +232,8 @@ int main(int argc, char** argv) {
   app.add_flag("--eyes", arguments.eyes,
                "instead: only the range finder lies, from a drawn moment on; is it named?")
       ->excludes("--go-back");
+  app.add_option("--fault", arguments.fault, "with --eyes: missions with this one alone")
+      ->needs("--eyes");
   app.add_flag("--table", arguments.table,
                "instead: each lie of each input in so many missions, and how soon it stops")
       ->excludes("--go-back")

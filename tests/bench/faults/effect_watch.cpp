@@ -42,6 +42,7 @@ void EffectWatch::step(int64_t now, bool turns, const sim::RobotTruth& truth, bo
     yaw_ = truth.T_map_body.yaw;
     effect_.moved = true;
   }
+  if (since_ && active) effect_.lasted = seconds(now - *since_);
   if (!since_ || effect_.zero_after) return;
   if (named_ && !effect_.named_after) {
     effect_.named_after = seconds(now - *since_);

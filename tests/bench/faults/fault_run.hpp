@@ -21,6 +21,7 @@ struct Violation {
 /// moved.
 struct FaultEffect {
   bool moved = false;                 ///< the robot moved while it lasted
+  double lasted = 0.0;                ///< [s] from then on
   std::optional<double> named_after;  ///< [s] mapping told that a range finder is wrong
   std::optional<double> zero_after;   ///< [s] the motors were at zero, for half a second at least
   double named_way = 0.0;             ///< [m]

@@ -99,9 +99,7 @@ TEST_CASE("a range finder that lies while the robot drives is named and touches 
       CHECK(run.collisions == 0);
       REQUIRE(run.effect.moved);
       REQUIRE(run.effect.named_after);
-      // Mirrored or turned it may look alike for a while.
-      const bool alike = kind == FaultKind::kScanMirror || kind == FaultKind::kScanTurn;
-      CHECK(*run.effect.named_after < (alike ? 2.5 : 0.6));
+      CHECK(*run.effect.named_after < 0.6);
       REQUIRE(run.effect.zero_after);
       CHECK(*run.effect.zero_after < *run.effect.named_after + 0.15);
       CHECK(run.effect.reason == "disarmed by planner");
