@@ -4,34 +4,14 @@
 
 #include <algorithm>
 
+#include "common/drive/drive_clock_limits.hpp"
 #include "common/report/text.hpp"
 
 namespace tread {
+
+using namespace drive_clock;
+
 namespace {
-
-constexpr int64_t kSecond = 1'000'000;          // [us]
-constexpr int64_t kDay = 86'400 * kSecond;      // a pause that nothing confirms is shorter
-constexpr int64_t kUnconfirmed = 10 * kSecond;  // the same beside the robot's own times
-constexpr int64_t kSilence = kSecond;           // a running robot publishes at least this often
-constexpr int64_t kDelay = kSecond;             // of a recorder that is held up
-constexpr int64_t kStep = 250'000;              // [us] by which clocks differ before one was set
-constexpr int64_t kAlone = 3600 * kSecond;      // over which the robot's clock is believed alone
-constexpr int64_t kLongestPause = 7 * kDay;     // of a recording
-constexpr int64_t kLargestUtime = 10'000'000'000'000'000;  // three centuries
-constexpr int64_t kLargestRecorded = 4'000'000'000'000'000'000;
-constexpr int64_t kSlowest = 5 * kSecond;  // between messages of a running robot
-constexpr size_t kFollowers = 4;           // stamps that are asked about another one
-constexpr size_t kStampsAhead = 8;         // with which doubts are settled
-constexpr size_t kMostAhead = 4096;        // events
-constexpr int kSettled = 100;              // stamps after which a recorder has caught up
-
-bool isPossible(int64_t utime) {
-  return utime >= 0 && utime < kLargestUtime;
-}
-
-bool isMost(size_t part, size_t whole) {
-  return 3 * part >= 2 * whole;
-}
 
 std::string seconds(int64_t us) {
   return formatted("%.1f s", 1e-6 * static_cast<double>(us));
@@ -71,81 +51,18 @@ std::optional<DriveClock::Dated> DriveClock::next() {
   return dated;
 }
 
-/// Where both clocks are one (virtual time, imports), messages are still under way for a while.
+/// Whether both clocks are one (virtual time, imports): messages are still under way for a while.
+bool DriveClock::isOneClock() const {
+  return offset_ > -20'000 && offset_ < kStep;
+}
+
 int64_t DriveClock::timeOf(const Tick& tick) const {
-  const bool one_clock = offset_ > -20'000 && offset_ < kStep;
-  return tick.recorded - (one_clock ? 0 : offset_);
+  return tick.recorded - (one_clock_ ? 0 : offset_);
 }
 
 bool DriveClock::isNear(const Tick& stamp) const {
   const int64_t later = offsetOf(stamp) - offset_;
   return later > -kStep && later < kDelay;
-}
-
-/// Begins with the difference of the clocks on which most of the first stamps agree.
-void DriveClock::begin() {
-  begun_ = true;
-  convertNanoseconds();
-  std::vector<int64_t> offsets;
-  for (const Tick& tick : ticks_)
-    if (tick.utime && offsets.size() < 2 * kStampsAhead) offsets.push_back(offsetOf(tick));
-  if (offsets.empty()) return beginWithoutStamps();
-  const int64_t heard_first = offsets.front();
-  std::sort(offsets.begin(), offsets.end());
-  std::ptrdiff_t most = 0;
-  for (auto from = offsets.begin(); from != offsets.end(); ++from) {
-    const auto agreeing = std::upper_bound(from, offsets.end(), *from + kStep) - from;
-    const bool with_first = *from <= heard_first && heard_first <= *from + kStep;
-    if (agreeing > most || (agreeing == most && with_first)) offset_ = *from;
-    most = std::max(most, agreeing);
-  }
-  stamped_ = true;
-  // The first event of all may have a wrong time, too: it counts where another one follows soon.
-  const auto first =
-      std::adjacent_find(ticks_.begin(), ticks_.end(), [](const Tick& tick, const Tick& next) {
-        const int64_t gap = next.recorded - tick.recorded;
-        return gap > -kStep && gap < kUnconfirmed;
-      });
-  first_ = std::max<int64_t>(0, timeOf(first == ticks_.end() ? ticks_.front() : *first));
-  last_ = last_stamp_ = first_;
-}
-
-void DriveClock::beginWithoutStamps() {
-  const auto believed = std::find_if(ticks_.begin(), ticks_.end(), [&](const Tick& tick) {
-    const auto after =
-        static_cast<size_t>(std::count_if(ticks_.begin(), ticks_.end(), [&](const Tick& other) {
-          return std::abs(other.recorded - tick.recorded) < kDay;
-        }));
-    return 2 * after >= std::min(ticks_.size(), 2 * kFollowers);
-  });
-  const int64_t begin = believed == ticks_.end() ? ticks_.front().recorded : believed->recorded;
-  if (!isPossible(begin)) offset_ = begin;
-  first_ = last_ = begin - offset_;
-}
-
-/// Recorders of other projects count nanoseconds: their seconds last a thousand of the robot's.
-void DriveClock::convertNanoseconds() {
-  std::vector<const Tick*> stamps;
-  for (const Tick& tick : ticks_)
-    if (tick.utime && stamps.size() < 2 * kStampsAhead) stamps.push_back(&tick);
-  size_t paces = 0, thousandfold = 0, slow = 0;
-  for (size_t i = kFollowers; i < stamps.size(); ++i) {
-    const Tick &from = *stamps[i - kFollowers], &to = *stamps[i];
-    const int64_t passed = *to.utime - *from.utime;
-    const double pace = static_cast<double>(to.recorded - from.recorded) /
-                        static_cast<double>(std::max<int64_t>(1, passed));
-    ++paces;
-    slow += passed > static_cast<int64_t>(kFollowers) * kSlowest;
-    thousandfold += pace > 200.0 && pace < 5000.0 ? 1 : 0;
-  }
-  const bool too_large =
-      stamps.empty() && std::all_of(ticks_.begin(), ticks_.end(),
-                                    [](const Tick& tick) { return tick.recorded > kLargestUtime; });
-  // Where the robot's times are nanoseconds, too, only its rates tell it.
-  slow_ = paces >= kFollowers && isMost(slow, paces);
-  if (!too_large && (paces == 0 || !isMost(thousandfold, paces))) return;
-  scale_ = 1000;
-  for (Tick& tick : ticks_) tick.recorded /= scale_;
 }
 
 /// The time of an event about which there is no doubt.
@@ -173,7 +90,10 @@ bool DriveClock::agreesWithNext(size_t index) const {
     const int64_t offset_change = offsetOf(ticks_[i]) - offsetOf(stamp);
     const int64_t passed = *ticks_[i].utime - *stamp.utime;
     const bool both_back = isBack(ticks_[i]) || !isBack(stamp);
-    if (std::abs(offset_change) < kStep && passed > -kStep && both_back) ++agreeing;
+    // What a recorder writes at once may be of any time, pauses among it.
+    const bool at_once = std::abs(ticks_[i].recorded - stamp.recorded) < kAtOnce && passed >= 0 &&
+                         passed < kUnconfirmed;
+    if ((std::abs(offset_change) < kStep || at_once) && passed > -kStep && both_back) ++agreeing;
   }
   if (asked > 0) return isMost(agreeing, asked);
   const int64_t since = timeOf(stamp) - last_;
@@ -230,6 +150,7 @@ std::optional<int64_t> DriveClock::byRecorder(const Tick& tick) {
   if (asked == 0 || !isMost(back, asked)) return std::nullopt;
   jumps_.push_back({last_, time - last_});
   offset_ = tick.recorded - last_;
+  one_clock_ = isOneClock();
   return last_;
 }
 
@@ -253,6 +174,7 @@ void DriveClock::follow(int64_t offset) {
   if (step_ && std::abs(least_ - step_->before) > kStep)
     jumps_.push_back({step_->at, least_ - step_->before});
   step_.reset();
+  one_clock_ = isOneClock();
 }
 
 /// A recorder that was held up writes many events at once: they come ever less late.
@@ -277,6 +199,7 @@ void DriveClock::step(int64_t offset) {
     step_ = Step{last_, offset_};
   }
   offset_ = offset;
+  one_clock_ = isOneClock();
   counted_ = 0;
   last_stamp_ = *stamp.utime + shift_;
   follow(offset);

@@ -55,9 +55,13 @@ class DriveClock {
 
   bool knowsEnough() const;
   void begin();
+  bool beginWithBurst(const std::vector<const Tick*>& agreeing);
   void beginWithoutStamps();
+  static bool isThousandfold(int64_t recorded, int64_t passed);
+  static bool isThousandfoldWithoutLargestStep(const std::vector<const Tick*>& stamps);
   void convertNanoseconds();
   int64_t offsetOf(const Tick& stamp) const { return stamp.recorded - *stamp.utime - shift_; }
+  bool isOneClock() const;
   int64_t timeOf(const Tick& tick) const;
   bool isNear(const Tick& stamp) const;
   std::optional<int64_t> fitting(const Tick& tick);
@@ -82,6 +86,7 @@ class DriveClock {
   int64_t last_ = 0;        ///< [us] of the last event
   int64_t last_stamp_ = 0;  ///< [us] of the last stamp that was believed
   int64_t offset_ = 0;      ///< [us] recorder's clock ahead of the robot's, at least
+  bool one_clock_ = false;  ///< the recorder's clock is the robot's
   int64_t shift_ = 0;       ///< [us] that the robot's clock lost when it began anew
   int64_t earliest_ = 0;    ///< [us] offset of the first one of the last stamps
   int64_t least_ = 0;       ///< [us] and of the fastest one

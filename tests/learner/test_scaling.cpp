@@ -106,6 +106,22 @@ TEST_CASE("straight and in-place patterns are one-dimensional, arcs are not") {
   REQUIRE(roleOf(*set.find(kRight), {}).gives_scaling);
 }
 
+TEST_CASE("what moves in two dimensions gives scaling, whether it turns or not") {
+  const auto gives = [](const Pose2& end, const PoseCovariance& covariance = {}) {
+    MotionPattern one = pattern(1, "one", {1.0, 1.0}, {end});
+    one.end_covariance = covariance;
+    return roleOf(one, {}).gives_scaling;
+  };
+  CHECK(gives({0.10, 0.10, 0.0}));   // diagonal
+  CHECK(gives({-0.1, 0.03, 0.01}));  // backward and to the left
+  CHECK(gives({0.0, 0.10, 0.05}));   // sideways, turning
+  CHECK_FALSE(gives({0.2, 0.01, 0.02}));
+  CHECK_FALSE(gives({0.0, 0.2, 0.02}));
+  CHECK_FALSE(gives({0.01, 0.01, 0.5}));
+  // Three recorded deviations are more than the box: what it does sideways is noise.
+  CHECK_FALSE(gives({0.2, 0.1, 0.0}, {1e-4, 0.0, 0.0, 0.0016, 0.0, 1e-4}));
+}
+
 TEST_CASE("equation (2): memory is the weight of the old prediction") {
   // w = 0.3: 0.7 of the measurement and 0.3 of the prediction; the paper's line 13 would give the
   // reverse.

@@ -39,6 +39,9 @@ constexpr int kRefused = 2;
 constexpr int kNotWritten = 1;
 
 const std::string kConfig = std::string(TREAD_SOURCE_DIR) + "/config/";
+/// A few seconds of the whole robot, to a goal that lies near.
+const std::string kShortMission =
+    "tread-missions --goal 3 0 --simulator " + kConfig + "simulators/meadow.yaml";
 const std::string kData = std::string(TREAD_SOURCE_DIR) + "/tests/data/";
 
 /// A command that writes: IN and OUT stand for the paths of what it reads and writes, DIR for the
@@ -57,7 +60,7 @@ const std::vector<WritingCommand>& commands() {
   static const std::string kPlan =
       "tread-plan --patterns " + kSet + " --footprint 1.2,0.8 --map IN --deadline-ms 300 ";
   static const std::string kTask = kPlan + "--start 5,9,0 --goal 12,9,0 ";
-  static const std::string kMission = "tread-missions --length 25 --seed 3 --faults IN ";
+  static const std::string kMission = kShortMission + " --faults IN ";
   static const std::vector<WritingCommand> all{
       {"tread-import --format mcap IN -o OUT", "drive.mcap"},
       {"tread-export --format mcap IN -o OUT", "drive.lcmlog"},
@@ -110,13 +113,14 @@ class Inputs {
  public:
   Inputs() : drives_("writing_tools") {
     gap::samples::writeDrive(path("arcs.lcmlog"), 60.0);
-    gap::samples::writeDrive(path("long.lcmlog"), 205.0);
-    gap::samples::writeDrive(path("longer.lcmlog"), 210.0);
+    // What takes more than 200 s of driving is faster with fewer poses.
+    gap::samples::writeDrive(path("long.lcmlog"), 205.0, 0.49, "", 16);
+    gap::samples::writeDrive(path("longer.lcmlog"), 210.0, 0.49, "", 16);
     folder_.write("faults.yaml", "messages: []\n");
     folder_.write("small.yaml", experiment::testing::kSmallWorld);
     folder_.write("track.nmea", nmeaTrack());
     folder_.write("drive.clf", carmenDrive());
-    run("tread-missions --length 25 --seed 3 --log " + path("drive.lcmlog"));
+    run(kShortMission + " --log " + path("drive.lcmlog"));
     run("tread-export " + path("drive.lcmlog") + " -o " + path("drive.mcap"));
     fs::create_directories(path("corpus"));
     fs::copy_file(path("drive.lcmlog"), path("corpus/drive.lcmlog"));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "common/messages/ins_messages.hpp"
 #include "tools/gap/reading.hpp"
@@ -123,15 +124,29 @@ bool jumpAnnounced(const std::vector<ins_t>& ins, size_t index) {
   return false;
 }
 
-/// Whether MOTOR, too, is silent from `begin` to `end`, and misses no number.
-bool motorPauses(const std::vector<motor_t>& motor, int64_t begin, int64_t end) {
+/// MOTOR around the middle of a pause: the last message before it, and the next one.
+std::optional<std::pair<const motor_t*, const motor_t*>> motorAround(
+    const std::vector<motor_t>& motor, int64_t begin, int64_t end) {
   const auto after =
       std::lower_bound(motor.begin(), motor.end(), begin + (end - begin) / 2,
                        [](const motor_t& message, int64_t utime) { return message.utime < utime; });
-  if (after == motor.begin() || after == motor.end()) return false;
-  const motor_t& before = *(after - 1);
-  return isNext(after->seq, before.seq) && std::abs(before.utime - begin) <= kTogether &&
-         std::abs(after->utime - end) <= kTogether;
+  if (after == motor.begin() || after == motor.end()) return std::nullopt;
+  return std::pair(&*(after - 1), &*after);
+}
+
+/// Whether MOTOR, too, is silent from `begin` to `end`, and misses no number.
+bool motorPauses(const std::vector<motor_t>& motor, int64_t begin, int64_t end) {
+  const auto around = motorAround(motor, begin, end);
+  return around && isNext(around->second->seq, around->first->seq) &&
+         std::abs(around->first->utime - begin) <= kTogether &&
+         std::abs(around->second->utime - end) <= kTogether;
+}
+
+/// Whether MOTOR has no message in half of the pause: nothing was recorded. The streams of an
+/// import need not end together.
+bool isBreak(const std::vector<motor_t>& motor, int64_t begin, int64_t end) {
+  const auto around = motorAround(motor, begin, end);
+  return around && around->second->utime - around->first->utime >= (end - begin) / 2;
 }
 
 /// What happened in a pause.
@@ -179,11 +194,16 @@ std::string lineOf(const Pause& pause, const std::string& place, bool with_motor
 
 /// A pause after which the robot is where it was one message later, although it moves: time went
 /// on, the robot did not.
-void checkPauses(const SortedLog& log, Diagnostics& notes) {
+/** Where MOTOR pauses, too, only the numbers that the robot gave its messages tell such a jump from
+ * a time in which nothing was recorded. An import numbers the rows that it has: its pauses are
+ * breaks, whatever the poses are. A robot that turns on the spot may face the same way again. */
+void checkPauses(const SortedLog& log, Numbering numbering, Diagnostics& notes) {
   const std::vector<ins_t>& ins = log.ins;
   for (size_t i = 1; i < ins.size(); ++i) {
     const int64_t step = ins[i].utime - ins[i - 1].utime;
     if (step < kLongStep || !isNext(ins[i].seq, ins[i - 1].seq) || jumpAnnounced(ins, i)) continue;
+    if (numbering == Numbering::kByImport && isBreak(log.motor, ins[i - 1].utime, ins[i].utime))
+      continue;
     const bool with_motor = motorPauses(log.motor, ins[i - 1].utime, ins[i].utime);
     const Motion& least = with_motor ? kTogetherWithMotor : kAlone;
     const auto before = beside(ins, i - 1, -1);
@@ -206,10 +226,10 @@ void checkPauses(const SortedLog& log, Diagnostics& notes) {
 
 }  // namespace
 
-void checkClocks(const SortedLog& log, Diagnostics& notes) {
+void checkClocks(const SortedLog& log, Numbering numbering, Diagnostics& notes) {
   checkStamps("MOTOR", log.drive.motor_stamps, log, notes);
   checkStamps("INS", log.drive.ins_stamps, log, notes);
-  checkPauses(log, notes);
+  checkPauses(log, numbering, notes);
   int64_t last = log.origin;
   if (!log.motor.empty()) last = std::max(last, log.motor.back().utime);
   if (!log.ins.empty()) last = std::max(last, log.ins.back().utime);

@@ -138,7 +138,7 @@ Drive toDrive(const DriveLog& messages) {
   for (const std::string& note : messages.notes) notes.note(note);
   checkPublishers(log, notes);
   checkOffset(log, spans, notes);
-  checkClocks(log, notes);
+  checkClocks(log, drive.imported ? Numbering::kByImport : Numbering::kByRobot, notes);
   checkChannels(log, spans, notes);
   takeOutBroken(drive, notes);
   drive.notes = notes.notes();

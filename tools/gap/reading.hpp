@@ -107,8 +107,14 @@ inline constexpr int64_t kOvertaking = 200'000;  ///< [us] by which messages may
 /// poses.
 void checkChannels(const SortedLog& log, const std::vector<HeardSpan>& spans, Diagnostics& notes);
 
+/// Who gave the messages of a log their numbers.
+enum class Numbering {
+  kByRobot,   ///< a message that the recorder lost is missing in them
+  kByImport,  ///< they count what the recording has
+};
+
 /// Clocks that jump or go back, pauses over which the robot did not move among them.
-void checkClocks(const SortedLog& log, Diagnostics& notes);
+void checkClocks(const SortedLog& log, Numbering numbering, Diagnostics& notes);
 
 /// Commands and poses whose clocks differ, by how much.
 void checkOffset(const SortedLog& log, const std::vector<HeardSpan>& spans, Diagnostics& notes);

@@ -24,8 +24,8 @@ struct RobotLog {
   std::string name;  ///< file name without folder
   std::vector<TimedEvent> events;
   std::map<std::string, std::string> configs;  ///< by process: the first CONFIG
-  bool virtual_time = false;  ///< HEALTH without UTC
-  std::string problem;        ///< one clear line of what is wrong with the log, see DriveReader
+  bool virtual_time = false;                   ///< HEALTH without UTC
+  std::string problem;  ///< one clear line of what is wrong with the log, see DriveReader
   /// Messages that the log misses by seq, per channel.
   std::map<std::string, int64_t> missing;
 };
@@ -76,6 +76,12 @@ class LogBus : public Bus {
   void hear(const LogEvent& event) {
     receive(event.channel, event.bytes.data(), event.bytes.size());
   }
+  /// The same where the node overhears the event, which is no input of it.
+  void overhear(const LogEvent& event) {
+    overhearing_ = true;
+    hear(event);
+    overhearing_ = false;
+  }
 
   /// Messages published since the last call, at the time of publishing.
   std::vector<LogEvent> takePublished() { return std::move(published_); }
@@ -86,13 +92,14 @@ class LogBus : public Bus {
     return true;
   }
   void listen(const char* /*channel*/) override {}
-  bool hasCompany() const override { return false; }
+  bool hasCompany() const override { return overhearing_; }
   bool onReceipt(int64_t utime) override { return knowsTime() || start_->observe(utime, now_); }
 
  private:
   int64_t now_;
   int64_t boot_id_;
   std::optional<FollowedTime> start_;
+  bool overhearing_ = false;
   std::vector<LogEvent> published_;
 };
 

@@ -105,6 +105,32 @@ Step messagesOf(LogBus& bus, std::vector<LogEvent>& all) {
   return step;
 }
 
+/// Gives a planner what it overhears (HEALTH), between its inputs as they lie in the log.
+/** PROGRAM neither names nor counts these messages. */
+class Overhearing {
+ public:
+  Overhearing(const RobotLog& log, const Hearing& hearing, LogBus& bus)
+      : log_(log), hearing_(hearing), bus_(bus) {
+    if (hearing.from > 0) next_ = hearing.inputs[hearing.from - 1].event + 1;
+  }
+
+  /// What lies in the log before an input, and was received before a time.
+  void until(size_t input, int64_t utime) {
+    const bool at_end = input >= hearing_.inputs.size();
+    const size_t end = at_end ? log_.events.size() : hearing_.inputs[input].event;
+    for (; next_ < end && log_.events[next_].heard < utime; ++next_) {
+      const LogEvent& event = log_.events[next_].event;
+      if (bus_.overhears(event.channel) && !bus_.hears(event.channel)) bus_.overhear(event);
+    }
+  }
+
+ private:
+  const RobotLog& log_;
+  const Hearing& hearing_;
+  LogBus& bus_;
+  size_t next_ = 0;  ///< event
+};
+
 /// A life of the real planner, from the log.
 std::vector<Step> replayed(const RobotLog& log, const Life& life,
                            const planner::PlannerConfig& config, std::vector<LogEvent>& all) {
@@ -114,17 +140,20 @@ std::vector<Step> replayed(const RobotLog& log, const Life& life,
   planner::PlannerNode node(config, bus);
   int32_t cut = 0;
   node.setStop([&cut](int expansions) { return cut > 0 && expansions >= cut; });
+  Overhearing beside(log, hearing, bus);
   std::vector<Step> steps;
   size_t input = hearing.from;
   int64_t last = 0;
   for (size_t i = 0; i < life.steps.size(); ++i) {
     const int64_t utime = life.steps[i].program.utime;
     for (; input < hearing.until[i]; ++input) {
+      beside.until(input, INT64_MAX);
       const TimedEvent& timed = log.events[hearing.inputs[input].event];
       const bool knows = bus.knowsTime();
       bus.setNow(knows ? std::min(std::max(timed.heard, last), utime) : timed.heard);
       bus.hear(timed.event);
     }
+    beside.until(input, utime);
     cut = cutOf(life.steps[i], config.deadline);
     if (bus.knowsTime()) bus.setNow(utime);
     node.step(utime);

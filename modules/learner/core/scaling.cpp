@@ -76,7 +76,8 @@ PatternRole roleOf(const MotionPattern& shipped, const ScalingLimits& limits) {
     const double noise = known ? limits.min_box_sigmas * std::sqrt(variance[axis]) : 0.0;
     role.scalable[static_cast<size_t>(axis)] = box[axis] >= std::max(limits.min_box[axis], noise);
   }
-  role.gives_scaling = box[2] >= limits.min_turn && box[0] >= limits.min_length;
+  // Section IV: what moves in one dimension only (forward motions, turns in place) gives no V.
+  role.gives_scaling = std::count(role.scalable.begin(), role.scalable.end(), true) >= 2;
   return role;
 }
 

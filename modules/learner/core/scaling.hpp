@@ -65,8 +65,6 @@ struct ScalingLimits {
   Axes min_box{0.05, 0.02,
                0.03};           ///< [m], [m], [rad]: smaller boxes are noise; their factor stays 1
   double min_box_sigmas = 3.0;  ///< a box must also exceed this many recorded standard deviations
-  double min_turn = 0.05;       ///< [rad] a smaller yaw interval makes a pattern one-dimensional
-  double min_length = 0.10;     ///< [m] and so does a shorter box
   double min_factor = 0.5;      ///< [1] limits of each factor of V
   double max_factor = 2.0;
 };
@@ -77,7 +75,7 @@ Axes boundingBox(const ConstTrajectory& trajectory);
 /// What a pattern may give to the others and take from them.
 struct PatternRole {
   std::array<bool, 3> scalable{};  ///< x, y, yaw: its box is more than noise
-  bool gives_scaling = false;      ///< it moves in more than one dimension
+  bool gives_scaling = false;      ///< it moves in more than one dimension: two boxes are no noise
 };
 
 /// The role of a pattern, from its shipped prediction; standard deviations from its covariance

@@ -116,6 +116,21 @@ TEST_CASE("a recorder that was held up has not jumped") {
   }
 }
 
+TEST_CASE("what a recorder wrote at once after a minute is dated by the robot's own times") {
+  for (const size_t from : {0U, 1U, 2U, 5U, 10U, 500U})
+    for (const size_t after : {0U, 1000U})
+      for (const int64_t recorder : {int64_t{0}, kUtc, -40 * kSecond}) {
+        std::vector<Tick> ticks = drive(static_cast<int>(from + 6000 + after), recorder);
+        for (size_t i = from; i < from + 6000; ++i)
+          ticks[i].recorded = ticks[from + 5999].recorded + static_cast<int64_t>(i - from);
+        CAPTURE(from, after, recorder);
+        const Result result = dated(ticks);
+        CHECK(result.farthest <= 20 * kMs);
+        CHECK(result.notes.empty());
+        CHECK(result.wrong == 0);
+      }
+}
+
 TEST_CASE("any bit flipped in the recorder's time of any event moves no other one") {
   for (int bit = 0; bit < 64; ++bit)
     for (const size_t at : {0U, 1U, 2U, 500U, 501U, 998U, 999U}) {

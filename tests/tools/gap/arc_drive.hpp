@@ -13,9 +13,10 @@
 
 namespace tread::gap::samples {
 
-/// A log of a model that drives arcs at two speeds: track speeds, INS at 10 Hz.
+/// A log of a model that drives arcs at two speeds: track speeds at 20 Hz, INS with every so many
+/// of them.
 inline void writeDrive(const std::string& path, double seconds, double yaw_gain = 0.49,
-                       const std::string& note = "") {
+                       const std::string& note = "", int ins_every = 2) {
   VehicleModel truth = readModelFile(kModels + "warthog_asphalt.yaml");
   truth.yaw_gain = yaw_gain;
   std::mt19937_64 random(5);
@@ -33,7 +34,7 @@ inline void writeDrive(const std::string& path, double seconds, double yaw_gain 
     Pose2 T_map_body = kernel.pose();
     T_map_body.x += noise(random);
     T_map_body.y += noise(random);
-    if (i % 2 == 0) log.ins(time, T_map_body, kernel.twist().omega + noise(random));
+    if (i % ins_every == 0) log.ins(time, T_map_body, kernel.twist().omega + noise(random));
     if (i % 40 == 39) log.execution(++id, time - 1.95, time);
     kernel.step(command, kPeriod);
   }

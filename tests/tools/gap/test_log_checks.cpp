@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/tools/gap/small_log.hpp"
@@ -139,6 +140,47 @@ TEST_CASE("a silence in which time went on is no clock jump") {
       if (event.utime < at(15.0) || event.utime > at(22.0)) kept.push_back(event);
     CHECK(fatal(kept) == "");
   }
+}
+
+TEST_CASE("an import that has neither commands nor poses for a while has a break, no clock jump") {
+  // The robot turns once in the pause, and faces the same way behind it.
+  const Twist2 turning{0.02, 0.0, 1.0};
+  const double break_end = 15.0 + 2.0 * kPi;
+  SmallLog log;
+  const Pose2 there = drive(log, 0.0, 15.0, turning, {});
+  drive(log, break_end, break_end + 15.0, turning, there * integrate(turning, 2.0 * kPi));
+  CHECK(fatal(log.sorted()).find("clock jump: INS and MOTOR go on by 6.") == 0);
+  config_t config{};
+  config.utime = at(0.0);
+  config.config_process = "tread-import";
+  config.config_text = "format: csv\n";
+  log.add(kConfig, config);
+  CHECK(fatal(log.sorted()) == "");
+  CHECK(noted(log.sorted(), "MOTOR is silent for more than 0.3 s 1 times (first at 15.0 s"));
+
+  const Drive both_sides = toDrive(toDriveLog("a.lcmlog", log.sorted()));
+  REQUIRE(both_sides.segments.size() == 2);
+  CHECK(both_sides.segments[0].end == Approx(15.0).margin(0.06));
+  CHECK(both_sides.segments[1].begin() == Approx(break_end).margin(0.06));
+  const auto measured = [&](size_t segment) {
+    return std::count_if(both_sides.executions.begin(), both_sides.executions.end(),
+                         [&](const Execution& execution) { return execution.segment == segment; });
+  };
+  CHECK(measured(0) == 7);
+  CHECK(measured(1) >= 5);  // without encoders the first 3 s are not used
+  // Poses that come back a second after the commands; the robot has driven a circle.
+  SmallLog late;
+  Pose2 at_break = drive(late, 0.0, 15.0, {0.5, 0.0, 1.0}, {});
+  for (double time = break_end - 1.0; time < break_end; time += 0.05) late.motor(time, {0.0, 1.0});
+  drive(late, break_end, break_end + 15.0, {0.5, 0.0, 1.0}, at_break);
+  CHECK(fatal(late.sorted()).find("clock jump: INS goes on by 6.") == 0);
+  late.add(kConfig, config);
+  CHECK(fatal(late.sorted()) == "");
+  // One stream that jumps ahead beside the other one is the clock's fault in an import, too.
+  auto events = goodLog().sorted();
+  events.push_back(eventOf(kConfig, config));
+  shift(events, kIns, 15.0, 4.0, 4.0);
+  CHECK(fatal(events).find("clock jump: INS goes on by 4.10 s at 14.9 s") == 0);
 }
 
 TEST_CASE("an INS that was silent while the robot moved on is no clock jump") {

@@ -63,11 +63,12 @@ struct Told {
   std::vector<std::string> lines, problems;
 };
 
-/// The log of such a drive; commands are missing where `given` says no.
+/// The log of such a drive; commands are missing where `given` says no, and poses, too, if
+/// `both`.
 std::vector<LogEvent> logOf(
     const std::function<void(DriveRow&)>& change, const std::string& command = "unit: m/s",
     bool gyro = true, bool speeds = false,
-    const std::function<bool(double)>& given = [](double) { return true; }) {
+    const std::function<bool(double)>& given = [](double) { return true; }, bool both = false) {
   static const std::vector<DriveRow> kRows = drivenRows();
   std::string commands = "t,l,r,sl,sr\n";
   std::string poses = "t,x,y,yaw,gyro\n";
@@ -77,7 +78,8 @@ std::vector<LogEvent> logOf(
     if (given(time))
       commands += line("%.3f,%.4f,%.4f,%.4f,%.4f\n", time, row.left, row.right, row.speed_left,
                        row.speed_right);
-    poses += line("%.5f,%.5f,%.5f,%.6f,%.6f\n", row.t, row.x, row.y, row.yaw, row.gyro);
+    if (given(time) || !both)
+      poses += line("%.5f,%.5f,%.5f,%.6f,%.6f\n", row.t, row.x, row.y, row.yaw, row.gyro);
   }
   const std::string yaml =
       "baseline: 0.6\ntables:\n  - file: commands.csv\n    time: {column: t}\n    columns:\n"
@@ -259,7 +261,9 @@ TEST_CASE("where commands are missing nothing is predicted, executed or measured
   const auto isHole = [](double begin, double end) {  // [s] since the first message
     return std::floor((end + 5.9) / 50.0) > std::floor((begin + 0.05) / 50.0);
   };
-  const auto events = logOf([](DriveRow&) {}, "unit: m/s", true, false, given);
+  // The poses are there all the time, or they are missing with the commands.
+  const bool both = GENERATE(false, true);
+  const auto events = logOf([](DriveRow&) {}, "unit: m/s", true, false, given, both);
   const gap::Drive drive = gap::toDrive(toDriveLog("drive", events));
   for (const gap::LogNote& note : drive.notes) CHECK_FALSE(note.fatal);
   CHECK(drive.segments.size() == 6);

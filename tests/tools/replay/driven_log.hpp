@@ -19,9 +19,11 @@
 
 namespace tread::samples {
 
-/// The first seconds of a mission, everything on its bus recorded in memory.
-inline std::vector<LogEvent> drivenLog(double seconds, const FaultPlan& faults = {},
-                                       const char* rule = "collective") {
+/// The first seconds of a mission, everything on its bus recorded in memory; `prepare` spoils its
+/// devices.
+inline std::vector<LogEvent> drivenLog(
+    double seconds, const FaultPlan& faults = {}, const char* rule = "collective",
+    const std::function<void(missions::RobotSystem&)>& prepare = [](missions::RobotSystem&) {}) {
   constexpr int64_t kTick = 50'000;
   const missions::MissionWorld world = missions::makeMissionWorld(14, {0.65, 0.65, 0.34});
   missions::RobotSystem system(missions::readRobot(TREAD_SOURCE_DIR "/config/robots/teodor"),
@@ -31,6 +33,7 @@ inline std::vector<LogEvent> drivenLog(double seconds, const FaultPlan& faults =
     if (channel == std::string(kScan.name) || channel == std::string(kPlanTree.name)) return;
     events.push_back({utime, channel, {bytes, bytes + size}});
   });
+  prepare(system);
   missions::Operator person(system.bus().outside(), world.T_map_goal);
   const int64_t start = system.bus().now();
   for (int64_t tick = 1; static_cast<double>(tick * kTick) * 1e-6 < seconds; ++tick) {

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -107,6 +108,15 @@ std::vector<LogEvent> recordedInUtc(std::vector<LogEvent> events) {
   return events;
 }
 
+/// As a recorder would have written it that nobody listened to in these seconds of the drive.
+std::vector<LogEvent> recordedAtOnce(std::vector<LogEvent> events, double from, double to) {
+  const int64_t begin = events.front().utime + std::llround(from * 1e6);
+  const int64_t end = events.front().utime + std::llround(to * 1e6);
+  for (LogEvent& event : events)
+    if (event.utime > begin && event.utime < end) event.utime = end;
+  return events;
+}
+
 }  // namespace
 
 TEST_CASE("a robot's log through the learner gives the sets of the log, twice") {
@@ -160,6 +170,16 @@ TEST_CASE("a set that a newer one of the same execution overtook is no differenc
 
 TEST_CASE("a recorder whose clock is UTC, and is set forward by an hour, changes nothing") {
   REQUIRE(learnerCheck(recordedInUtc(plainDrive())).equal());
+}
+
+TEST_CASE("a recorder that was not listened to for a while changes nothing") {
+  for (const auto& [from, to] :
+       {std::pair(8.0, 28.0), std::pair(0.3, 25.0), std::pair(5.0, 31.0)}) {
+    CAPTURE(from, to);
+    const std::vector<LogEvent> events = recordedAtOnce(plainDrive(), from, to);
+    CHECK(learnerCheck(events).equal());
+    CHECK(plannerCheck(events).equal());
+  }
 }
 
 TEST_CASE("a log that begins in the middle is replayed from the first state that can be replayed") {
@@ -288,6 +308,37 @@ TEST_CASE("a robot's log through the planner gives the programs and plans of the
   REQUIRE(check.plans.equal >= 100);
   REQUIRE(check.same_twice);
   REQUIRE(check.equal());
+}
+
+TEST_CASE("a planner that mapping's HEALTH stopped is stopped in the replay, too") {
+  // The range finder lies for six seconds: mapping says so, and the planner overhears it.
+  const auto lies = [](missions::RobotSystem& system) {
+    const int64_t start = system.bus().now();
+    system.disturbScans([&system, start](lidar::RangeScan& scan) {
+      const int64_t driven = system.bus().now() - start;
+      if (driven > 12'000'000 && driven < 18'000'000)
+        std::fill(scan.ranges.begin(), scan.ranges.end(), 0.0F);
+    });
+  };
+  std::vector<LogEvent> events = drivenLog(25.0, {}, "collective", lies);
+  const auto stopped = std::count_if(events.begin(), events.end(), [](const LogEvent& event) {
+    plan_t plan;
+    return decode(event, kPlan, plan) && contains(plan.reason, "mapping: ");
+  });
+  REQUIRE(stopped >= 20);
+  const PlannerCheck check = plannerCheck(events);
+  REQUIRE(check.programs.equal == check.steps);
+  REQUIRE(check.plans.equal >= 100);
+  REQUIRE(check.equal());
+  // Without HEALTH nothing tells the replay why the robot stopped.
+  events.erase(std::remove_if(events.begin(), events.end(),
+                              [](const LogEvent& event) {
+                                health_t health;
+                                return decode(event, kHealth, health) &&
+                                       health.process == "mapping";
+                              }),
+               events.end());
+  REQUIRE_FALSE(plannerCheck(events).equal());
 }
 
 TEST_CASE("what a robot with a key did not take is not replayed, a stop is") {

@@ -17,11 +17,11 @@ namespace tread::learner {
  *    R_p <- (1 - w) V R_p + w R_p   for every other pattern p                     equation (2)
  * with w the weight of the old prediction (equation (2); line 13 of Algorithm 1 swaps the roles).
  * Guards, see scaling.hpp: an axis whose shipped box is noise keeps the factor 1 for good; a
- * pattern of one dimension gives no V; nor does a measurement that went the other way; V is kept
- * within limits. Known faults: on unchanged ground the patterns that are never driven drift,
- * because the mean of a quotient of noisy boxes is not 1 (Telescoping does not have it); and as
- * every pattern gets the same factor, the ratios between patterns stay those of the shipped set for
- * ever, also where all are measured exactly (telescoping has that, too). */
+ * pattern of one dimension, with noise on two axes, gives no V; nor does a measurement that went
+ * the other way; V is kept within limits. Known faults: on unchanged ground the patterns that are
+ * never driven drift, because the mean of a quotient of noisy boxes is not 1 (Telescoping does not
+ * have it); and as every pattern gets the same factor, the ratios between patterns stay those of
+ * the shipped set for ever, also where all are measured exactly (telescoping has that, too). */
 class Collective : public ScalingRule {
  public:
   using ScalingRule::ScalingRule;
