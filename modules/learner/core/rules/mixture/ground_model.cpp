@@ -23,6 +23,8 @@ constexpr double kYawBySpeedSpread = 0.3;
 constexpr double kBiasApart = 0.5;
 /// A turn on the spot moves half as much as a straight drive of the same speed of the tracks.
 constexpr double kTurnMoves = 0.5;
+/// Share of the recorded spread of ends in the noise, where there is one [1].
+constexpr double kRecorded = 0.9;
 /// A set that hardly turns is measured by what the vehicle could: [1] of v_ref / lever.
 constexpr double kLeastTurn = 0.2;
 
@@ -232,7 +234,7 @@ GroundModel::GroundModel(const GroundConfig& config, const PatternSet& shipped)
   for (const MotionPattern& pattern : shipped.patterns()) {
     profiles_.emplace_back(pattern, period_);
     const auto recorded = recordedNoise(pattern, profiles_.back());
-    recorded_share_.push_back(recorded ? config.recorded : 0.0);
+    recorded_share_.push_back(recorded ? kRecorded : 0.0);
     recorded_.push_back(recorded.value_or(Eigen::Matrix3d::Zero()));
   }
   measureScale(config.lever);

@@ -17,7 +17,7 @@ const Widths kYawGain{{0.05, 0.3}, {0.15, 0.4}, {0.35, 0.2}, {0.8, 0.1}};
 const Widths kYawBias{{0.003, 0.8}, {0.03, 0.15}, {0.1, 0.05}};  // [1] of both sides together
 const Widths kResidual{{0.01, 0.5}, {0.04, 0.3}, {0.1, 0.15}, {0.25, 0.05}};
 /// Executions may scatter more than expected, or nothing of a ground could be told by one of them.
-const Widths kNoise{{1.0, 0.8}, {2.45, 0.2}};
+const Widths kNoise{{1.0, 0.75}, {3.2, 0.25}};
 /// Where the gain changes patterns change otherwise by such a share of it [1].
 constexpr double kResidualOfGain = 0.12;
 

@@ -3,10 +3,8 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 namespace tread::learner::mixture {
@@ -32,69 +30,21 @@ class ScaleBank {
 
   explicit ScaleBank(const Scales& scales) : scales_(scales) {}
 
-  void regress(const Grams& grams, const Eigen::VectorXd& y, const Eigen::VectorXd& noise) {
-    const Eigen::Index n = y.size();
-    each_.resize(scales_.size());
-    Eigen::ArrayXd evidence(static_cast<Eigen::Index>(scales_.size()));
-    for (size_t s = 0; s < scales_.size(); ++s) {
-      One& one = each_[s];
-      one.factor = Eigen::VectorXd(scales_[s].noise * noise).asDiagonal();
-      for (size_t b = 0; b < kKinds; ++b) one.factor += scales_[s].variance[b] * grams[b];
-      Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> decomposed(one.factor);
-      one.alpha = decomposed.solve(y);
-      double& log = evidence[static_cast<Eigen::Index>(s)];
-      log = std::log(scales_[s].weight) - 0.5 * y.dot(one.alpha);
-      for (Eigen::Index i = 0; i < n; ++i) log -= std::log(one.factor(i, i));
-    }
-    const Eigen::ArrayXd weights = (evidence - evidence.maxCoeff()).exp();
-    const double total = weights.sum();
-    for (size_t b = 0; b < kKinds; ++b) mean_alpha_[b].setZero(n);
-    for (size_t s = 0; s < scales_.size(); ++s) {
-      each_[s].weight = weights[static_cast<Eigen::Index>(s)] / total;
-      for (size_t b = 0; b < kKinds; ++b)
-        mean_alpha_[b] += each_[s].weight * scales_[s].variance[b] * each_[s].alpha;
-    }
-  }
+  void regress(const Grams& grams, const Eigen::VectorXd& y, const Eigen::VectorXd& noise);
 
-  /// Of what was added to a mean: take(weight, mean, covariance, factor on the noise) for each
-  /// scale that weighs more than `least`; `cross` to what was measured, `own` of the mean itself.
-  template <class Take>
-  void predict(const Cross& cross, const Blocks& own, double least, Take&& take) const {
-    Eigen::Matrix<double, Eigen::Dynamic, kAxes> k;
-    for (size_t s = 0; s < scales_.size(); ++s) {
-      const double weight = each_.empty() ? scales_[s].weight : each_[s].weight;
-      if (weight < least) continue;
-      Block covariance = scales_[s].variance[0] * own[0];
-      for (size_t b = 1; b < kKinds; ++b) covariance += scales_[s].variance[b] * own[b];
-      Vector mean = Vector::Zero();
-      if (!each_.empty() && each_[s].alpha.size() > 0) {
-        k = scales_[s].variance[0] * cross[0];
-        for (size_t b = 1; b < kKinds; ++b) k += scales_[s].variance[b] * cross[b];
-        mean = k.transpose() * each_[s].alpha;
-        each_[s].factor.template triangularView<Eigen::Lower>().solveInPlace(k);
-        covariance -= k.transpose() * k;
-      }
-      take(weight, mean, covariance, scales_[s].noise);
-    }
-  }
+  /// What one scale expects to be added to a mean.
+  struct Predicted {
+    double weight;
+    Vector mean;
+    Block covariance;
+    double noise;  ///< [1] factor on the noise of what is measured
+  };
+  /// Of each scale that weighs more than `least`; `cross` to what was measured, `own` of the mean.
+  std::vector<Predicted> predict(const Cross& cross, const Blocks& own, double least) const;
 
   /// Variance of what was added to each measured mean, known with the noise that was given.
-  Eigen::VectorXd doubt(const Eigen::VectorXd& noise, double least) const {
-    Eigen::VectorXd doubt = Eigen::VectorXd::Zero(noise.size());
-    double total = 0.0;
-    for (size_t s = 0; s < each_.size(); ++s) {
-      const One& one = each_[s];
-      if (one.weight < least) continue;
-      const Eigen::ArrayXd N = scales_[s].noise * noise.array();
-      const Eigen::MatrixXd inverse = one.factor.template triangularView<Eigen::Lower>().solve(
-          Eigen::MatrixXd::Identity(noise.size(), noise.size()));
-      doubt +=
-          one.weight *
-          (N - N.square() * inverse.colwise().squaredNorm().transpose().array()).max(0.0).matrix();
-      total += one.weight;
-    }
-    return doubt / total;
-  }
+  /** Scales that weigh less than `least` do not count. */
+  Eigen::VectorXd doubt(const Eigen::VectorXd& noise, double least) const;
 
   /// sum over the scales of weight, s_b and (K + N)^-1 y: what a kind of spread adds is its cross
   /// covariance times that.

@@ -24,6 +24,8 @@ constexpr double kLeastHypothesis = 1e-3;
 constexpr double kReturned = 0.01;
 /// Grounds that are apart by less than this share of one execution's deviation are one [1].
 constexpr double kSame = 0.5;
+/// What is known of two grounds may differ by so many variances if they are one [1].
+constexpr double kAsDoubted = 1.5;
 /// Grounds that what is expected of scales counts for.
 constexpr double kScalePrior = 4.0;
 
@@ -226,17 +228,22 @@ bool ScaleMixture::settled(const Surface& surface) const {
   return surface.executions() >= static_cast<double>(config_.settled_after);
 }
 
-/// Whether two grounds do the same to all patterns, within half of what one execution tells.
+/// Whether a ground does the same to all patterns as one that is remembered, within half of what
+/// one execution tells.
 bool ScaleMixture::same(const Surface& a, const Surface& b) const {
-  double sum = 0.0;
+  Eigen::Array3d over_doubt = Eigen::Array3d::Zero();
+  Eigen::Array3d over_noise = Eigen::Array3d::Zero();
   for (size_t p = 0; p < model_->patterns(); ++p) {
     const PatternPart& part = model_->whole(p);
     const Moments of_a = a.expected(part), of_b = b.expected(part);
-    const Eigen::Vector3d apart = of_a.mean - of_b.mean;
-    const Eigen::Vector3d noise = b.executionNoise(part) + of_a.covariance.diagonal();
-    sum += apart.cwiseAbs2().cwiseQuotient(noise).sum() / 3.0;
+    const Eigen::Array3d apart = (of_a.mean - of_b.mean).array().square();
+    over_doubt += apart / (of_a.covariance + of_b.covariance).diagonal().array();
+    over_noise += apart / b.executionNoise(part).array();
   }
-  return sum < squared(kSame) * static_cast<double>(model_->patterns());
+  const auto patterns = static_cast<double>(model_->patterns());
+  // A ground on which little was driven is known by what was shipped: there it is all or nothing.
+  const bool near = over_noise.mean() < squared(kSame) * patterns;
+  return near && (settled(b) || (over_doubt < kAsDoubted * patterns).all());
 }
 
 bool ScaleMixture::rememberSettled() {

@@ -264,35 +264,30 @@ double Surface::logDensity(const TwistSample& sample, const Eigen::Vector3d& ret
   Eigen::Vector3d noise = returned;
   for (Eigen::Index axis = 0; axis < 3; ++axis) noise[axis] += noise_[axis] * R(part, axis);
   LogSum velocity, yaw;
-  posterior_->velocity.predict(
-      velocityCross(part), velocityOwn(*model_, part), kLeastInDensity,
-      [&](double weight, const Eigen::Vector2d& mean, const Eigen::Matrix2d& covariance,
-          double factor) {
-        const Eigen::Matrix2d scale =
-            covariance + Eigen::Matrix2d((factor * noise.head<2>()).asDiagonal());
-        velocity.add(std::log(weight) +
-                     logStudent<2>(y.head<2>() - mean, scale, certainty_[0] + certainty_[1]));
-      });
-  posterior_->yaw.predict(
-      yawCross(part), yawOwn(*model_, part), kLeastInDensity,
-      [&](double weight, const One& mean, const One& covariance, double factor) {
-        yaw.add(std::log(weight) + logStudent<1>(One(y[2] - mean[0]),
-                                                 One(covariance[0] + factor * noise[2]),
-                                                 2.0 * certainty_[2]));
-      });
+  for (const auto& scale : posterior_->velocity.predict(
+           velocityCross(part), velocityOwn(*model_, part), kLeastInDensity)) {
+    const Eigen::Matrix2d spread =
+        scale.covariance + Eigen::Matrix2d((scale.noise * noise.head<2>()).asDiagonal());
+    velocity.add(std::log(scale.weight) +
+                 logStudent<2>(y.head<2>() - scale.mean, spread, certainty_[0] + certainty_[1]));
+  }
+  for (const auto& scale :
+       posterior_->yaw.predict(yawCross(part), yawOwn(*model_, part), kLeastInDensity))
+    yaw.add(std::log(scale.weight) +
+            logStudent<1>(One(y[2] - scale.mean[0]),
+                          One(scale.covariance[0] + scale.noise * noise[2]), 2.0 * certainty_[2]));
   return velocity.value() + yaw.value();
 }
 
 Moments Surface::expected(const PatternPart& part) const {
   MomentSum<2> velocity;
   MomentSum<1> yaw;
-  posterior_->velocity.predict(velocityCross(part), velocityOwn(*model_, part), kLeastInMoments,
-                               [&](double weight, const auto& mean, const auto& C, double) {
-                                 velocity.add(weight, mean, C);
-                               });
-  posterior_->yaw.predict(
-      yawCross(part), yawOwn(*model_, part), kLeastInMoments,
-      [&](double weight, const auto& mean, const auto& C, double) { yaw.add(weight, mean, C); });
+  for (const auto& scale : posterior_->velocity.predict(
+           velocityCross(part), velocityOwn(*model_, part), kLeastInMoments))
+    velocity.add(scale.weight, scale.mean, scale.covariance);
+  for (const auto& scale :
+       posterior_->yaw.predict(yawCross(part), yawOwn(*model_, part), kLeastInMoments))
+    yaw.add(scale.weight, scale.mean, scale.covariance);
   Moments moments{expectation_.centre.added(part), Eigen::Matrix3d::Zero()};
   moments.mean.head<2>() += velocity.mean / velocity.total;
   moments.mean[2] += yaw.mean[0] / yaw.total;
