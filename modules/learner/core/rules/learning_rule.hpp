@@ -35,6 +35,7 @@ struct GroundConfig {
   static constexpr int64_t kMostSurfaces = 64;
 
   TwistNoise noise;            ///< expected where nothing was recorded
+  double lever = 0.3;          ///< [m] half the gauge, of `scale_mixture`: turning against driving
   double recorded = 0.3;       ///< [1] share of the recorded spread of ends in the noise
   double noise_prior = 5.0;    ///< [1] executions that the expected noise counts for
   double most_freedom = 40.0;  ///< [1] of Student's t: even a known surface has tails
@@ -111,6 +112,7 @@ void readGround(Reader& reader, GroundConfig& ground) {
   section.number("shape_noise", ground.noise.shape, {1e-4, 1.0}, "1");
   section.number("position_noise", ground.noise.position, {1e-4, 1.0}, "m");
   section.number("heading_noise", ground.noise.heading, {1e-4, 1.0}, "rad");
+  section.number("lever", ground.lever, {0.01, 10.0}, "m");
   section.number("recorded", ground.recorded, {0.0, 1.0}, "1");
   section.number("noise_prior", ground.noise_prior, {3.0, 100.0}, "1");
   section.number("most_freedom", ground.most_freedom, {4.0, 1000.0}, "1");

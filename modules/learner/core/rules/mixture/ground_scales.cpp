@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/learner/core/rules/mixture/ground_scales.hpp"
+
+namespace tread::learner::mixture {
+namespace {
+
+/// One width of what grounds differ in, and how probable it is beforehand.
+struct Width {
+  double deviation;
+  double weight;
+};
+using Widths = std::vector<Width>;
+
+const Widths kGain{{0.03, 0.4}, {0.1, 0.3}, {0.3, 0.2}, {0.6, 0.1}};
+const Widths kYawGain{{0.05, 0.3}, {0.15, 0.4}, {0.35, 0.2}, {0.8, 0.1}};
+const Widths kYawBias{{0.003, 0.8}, {0.03, 0.15}, {0.1, 0.05}};  // [1] of both sides together
+const Widths kResidual{{0.01, 0.5}, {0.04, 0.3}, {0.1, 0.15}, {0.25, 0.05}};
+/// Executions may scatter more than expected, or nothing of a ground could be told by one of them.
+const Widths kNoise{{1.0, 0.75}, {3.2, 0.25}};
+/// Where the gain changes patterns change otherwise by such a share of it [1].
+constexpr double kResidualOfGain = 0.12;
+
+const Widths kShippedGain{{0.02, 1.0}};
+const Widths kShippedBias{{0.003, 1.0}};
+const Widths kShippedResidual{{0.01, 0.7}, {0.05, 0.3}};
+
+double residual(const Width& gain, const Width& own) {
+  return squared(kResidualOfGain * gain.deviation) + squared(own.deviation);
+}
+
+VelocityBank::Scales velocityScales(const Widths& gains, const Widths& residuals, double share) {
+  VelocityBank::Scales scales;
+  for (const Width& gain : gains)
+    for (const Width& own : residuals)
+      for (const Width& noise : kNoise)
+        scales.push_back({{share * squared(gain.deviation), share * residual(gain, own)},
+                          squared(noise.deviation),
+                          gain.weight * own.weight * noise.weight});
+  return scales;
+}
+
+YawBank::Scales yawScales(const Widths& gains, const Widths& biases, const Widths& residuals,
+                          double lever, double share) {
+  YawBank::Scales scales;
+  for (const Width& gain : gains)
+    for (const Width& bias : biases)
+      for (const Width& own : residuals)
+        for (const Width& noise : kNoise)
+          scales.push_back({{share * squared(gain.deviation), share * residual(gain, own),
+                             share * squared(bias.deviation / lever)},
+                            squared(noise.deviation),
+                            gain.weight * bias.weight * own.weight * noise.weight});
+  return scales;
+}
+
+}  // namespace
+
+VelocityBank::Scales velocityScalesOfNewGround(double share) {
+  return velocityScales(kGain, kResidual, share);
+}
+
+YawBank::Scales yawScalesOfNewGround(double lever, double share) {
+  return yawScales(kYawGain, kYawBias, kResidual, lever, share);
+}
+
+VelocityBank::Scales velocityScalesAsShipped() {
+  return velocityScales(kShippedGain, kShippedResidual, 1.0);
+}
+
+YawBank::Scales yawScalesAsShipped(double lever) {
+  return yawScales(kShippedGain, kShippedBias, kShippedResidual, lever, 1.0);
+}
+
+}  // namespace tread::learner::mixture

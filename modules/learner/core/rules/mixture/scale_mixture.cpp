@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "modules/learner/core/rules/mixture/scale_mixture.hpp"
+#include "modules/learner/core/rules/mixture/ground_scales.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/LU>
+
+namespace tread::learner::mixture {
+namespace {
+
+/// A pattern that hardly drives may still cross a border [m].
+constexpr double kLeastMetres = 0.05;
+/// The centre of new ground is kept to this [1]: its digits stand in the state file.
+constexpr double kCentreStep = 1e-6;
+/// Beginnings are cut to quarters of a pattern, so that what is measured of them stays together.
+constexpr Eigen::Index kPartSteps = 4;
+/// Fresh ground that is less probable is forgotten: others begin with each execution [1].
+constexpr double kLeastHypothesis = 1e-3;
+/// A ground that comes back is never quite the same: deviation over the twist [1].
+constexpr double kReturned = 0.01;
+/// Grounds that are apart by less than this share of one execution's deviation are one [1].
+constexpr double kSame = 0.5;
+/// What is known of two grounds may differ by so many variances if they are one [1].
+constexpr double kAsDoubted = 1.5;
+/// Grounds that what is expected of scales counts for.
+constexpr double kScalePrior = 4.0;
+
+double rounded(double number, double step) {
+  return step * std::round(number / step);
+}
+
+std::string percent(double probability) {
+  return std::to_string(std::lround(100.0 * probability)) + " %";
+}
+
+/// Weights of what is expected, and of what grounds that were met had: `counted` says how many
+/// grounds what is expected counts for.
+template <class Scales, class Count>
+void learnWeights(Scales& scales, double counted, Count&& count) {
+  double total = 0.0;
+  for (size_t s = 0; s < scales.size(); ++s) {
+    scales[s].weight = counted * scales[s].weight + count(s);
+    total += scales[s].weight;
+  }
+  for (auto& scale : scales) scale.weight /= total;
+}
+
+}  // namespace
+
+ScaleMixture::ScaleMixture(const RuleConfig& config, const PatternSet& shipped)
+    : config_(config.ground),
+      model_(std::make_shared<GroundModel>(config.ground, shipped)),
+      scatter_(model_->patterns()),
+      expected_scatter_(scatter_.expected(config_.noise_prior)),
+      new_(model_, config_, expectNewGround()),
+      effects_(config_) {
+  SurfacePrior of_shipped = new_.expectation();
+  of_shipped.velocity = velocityScalesAsShipped();
+  of_shipped.yaw = yawScalesAsShipped(config_.lever);
+  surfaces_.push_back({Surface(model_, config_, of_shipped), 1.0 - config_.fresh, 0, 0});
+  fresh_.push_back({new_, config_.fresh, clock_, clock_});
+  mix();
+}
+
+SurfacePrior ScaleMixture::expectNewGround() const {
+  std::vector<const Surface*> met;
+  for (const Hypothesis& known : surfaces_)
+    // The shipped set's ground counts when the vehicle was really on it.
+    if (settled(known.surface)) met.push_back(&known.surface);
+  const double share = 1.0 / (1.0 + static_cast<double>(met.size()));
+  SurfacePrior prior;
+  prior.centre = SetCorrection::none(model_->patterns());
+  for (const Surface* surface : met) {
+    prior.centre.common += share * surface->correction().common;
+    prior.centre.own += share * surface->correction().own;
+  }
+  const auto cut = [](double number) { return rounded(number, kCentreStep); };
+  prior.centre.common = prior.centre.common.unaryExpr(cut).eval();
+  prior.centre.own = prior.centre.own.unaryExpr(cut).eval();
+  prior.velocity = velocityScalesOfNewGround(0.5 * (1.0 + share));
+  prior.yaw = yawScalesOfNewGround(config_.lever, 0.5 * (1.0 + share));
+  const auto counted = [&](const auto& weightOf) {
+    return [this, weightOf](size_t scale) {
+      double sum = 0.0;
+      for (size_t i = 1; i < surfaces_.size(); ++i) sum += weightOf(surfaces_[i].surface, scale);
+      return sum;
+    };
+  };
+  learnWeights(prior.velocity, kScalePrior, counted([](const Surface& surface, size_t scale) {
+                 return surface.velocity().weight(scale);
+               }));
+  learnWeights(prior.yaw, kScalePrior, counted([](const Surface& surface, size_t scale) {
+                 return surface.yaw().weight(scale);
+               }));
+  prior.scatter = expected_scatter_.topRows<3>();
+  return prior;
+}
+
+void ScaleMixture::expectNew() {
+  expected_scatter_ = scatter_.expected(config_.noise_prior);
+  new_ = Surface(model_, config_, expectNewGround());
+}
+
+double ScaleMixture::hazard(double metres) const {
+  const double rate =
+      (config_.change_prior + changes_) / (config_.change_prior * config_.change_metres + metres_);
+  return 1.0 - std::exp(-std::max(metres, kLeastMetres) * rate);
+}
+
+void ScaleMixture::countChange(double metres) {
+  metres_ += metres;
+  for (const auto* hypotheses : {&surfaces_, &fresh_})
+    for (const Hypothesis& hypothesis : *hypotheses) {
+      if (hypothesis.weight < config_.sure || hypothesis.since == ground_) continue;
+      ground_ = hypothesis.since;
+      changes_ += 1.0;
+    }
+  if (metres_ < kLongestWay) return;
+  changes_ *= kLongestWay / metres_;
+  metres_ = kLongestWay;
+}
+
+void ScaleMixture::expectChange(double metres) {
+  const double h = hazard(metres);
+  const double known = h * (1.0 - config_.fresh) / static_cast<double>(surfaces_.size());
+  changed_.clear();
+  for (Hypothesis& hypothesis : surfaces_) {
+    hypothesis.weight = (1.0 - h) * hypothesis.weight + known;
+    changed_.push_back(known / hypothesis.weight);
+  }
+  for (Hypothesis& hypothesis : fresh_) {
+    hypothesis.weight *= 1.0 - h;
+    changed_.push_back(0.0);
+  }
+  fresh_.push_back({new_, h * config_.fresh, clock_, clock_});
+  changed_.push_back(1.0);
+}
+
+void ScaleMixture::weigh(const TwistSample& sample) {
+  double highest = -std::numeric_limits<double>::infinity();
+  std::vector<double> logs;
+  const Eigen::Vector3d returned(squared(kReturned * sample.part.speed),
+                                 squared(kReturned * sample.part.speed),
+                                 squared(kReturned * sample.part.turning));
+  for (const auto* hypotheses : {&surfaces_, &fresh_})
+    for (const Hypothesis& hypothesis : *hypotheses) {
+      const bool back = hypotheses == &surfaces_ && hypothesis.weight < 0.5;
+      logs.push_back(hypothesis.surface.logDensity(
+          sample, back ? returned : Eigen::Vector3d(Eigen::Vector3d::Zero())));
+      if (hypothesis.weight > 0.0) highest = std::max(highest, logs.back());
+    }
+  double total = 0.0;
+  double changed = 0.0;
+  size_t i = 0;
+  for (auto* hypotheses : {&surfaces_, &fresh_})
+    for (Hypothesis& hypothesis : *hypotheses) {
+      if (hypothesis.weight > 0.0) hypothesis.weight *= std::exp(logs[i] - highest);
+      total += hypothesis.weight;
+      changed += hypothesis.weight * changed_[i++];
+    }
+  scaleWeights(total);
+  change_probability_ = changed / total;
+}
+
+void ScaleMixture::scaleWeights(double total) {
+  for (auto* hypotheses : {&surfaces_, &fresh_})
+    for (Hypothesis& hypothesis : *hypotheses) hypothesis.weight /= total;
+}
+
+void ScaleMixture::update(const TwistSample& sample) {
+  for (Hypothesis& hypothesis : fresh_) hypothesis.surface.add(config_, sample);
+  for (Hypothesis& hypothesis : surfaces_) {
+    if (hypothesis.weight < config_.sure) continue;
+    hypothesis.surface.add(config_, sample);
+    hypothesis.last_met = clock_;
+  }
+}
+
+const ScaleMixture::Hypothesis& ScaleMixture::likeliest() const {
+  const Hypothesis* likeliest = &surfaces_.front();
+  for (const auto* hypotheses : {&surfaces_, &fresh_})
+    for (const Hypothesis& hypothesis : *hypotheses)
+      if (hypothesis.weight > likeliest->weight) likeliest = &hypothesis;
+  return *likeliest;
+}
+
+void ScaleMixture::followScatter(const TwistSample& sample, const Eigen::Vector3d& effect,
+                                 const Pose2& end) {
+  const PatternPart& part = sample.part;
+  const TwistProfile& profile = model_->profile(part.pattern);
+  if (part.samples < profile.samples()) return;
+  const Surface& ground = likeliest().surface;
+  // Where this mean twist would end if it were steady beside the profile.
+  const Eigen::Vector3d apart =
+      sample.mean_twist + effect - part.mean - part.toBody() * ground.correction().added(part);
+  const Eigen::Vector3d moved = profile.endLever() * apart;
+  const Pose2 expected =
+      profile.integrateEnd(model_->scale(), ground.correction().of(part.pattern));
+  const double dx = end.x - expected.x - moved[0];
+  const double dy = end.y - expected.y - moved[1];
+  Eigen::Vector4d errors;
+  errors << ground.squaredError(sample), 0.5 * (dx * dx + dy * dy) / part.shape;
+  scatter_.add(part.pattern, errors.cwiseMin(kMostError), config_.longest_memory);
+}
+
+void ScaleMixture::forgetWeakest() {
+  for (auto each = fresh_.begin(); each != fresh_.end();)
+    each = each->weight < kLeastHypothesis ? fresh_.erase(each) : each + 1;
+  double total = 0.0;
+  for (auto* hypotheses : {&surfaces_, &fresh_})
+    for (Hypothesis& hypothesis : *hypotheses) total += hypothesis.weight;
+  scaleWeights(total);
+  while (static_cast<int64_t>(fresh_.size()) > config_.moments) {
+    const auto weakest = std::min_element(
+        fresh_.begin(), fresh_.end() - 1,
+        [](const Hypothesis& a, const Hypothesis& b) { return a.weight < b.weight; });
+    const double left = 1.0 - weakest->weight;
+    fresh_.erase(weakest);
+    scaleWeights(left);
+  }
+}
+
+bool ScaleMixture::settled(const Surface& surface) const {
+  return surface.executions() >= static_cast<double>(config_.settled_after);
+}
+
+/// Whether a ground does the same to all patterns as one that is remembered, within half of what
+/// one execution tells.
+bool ScaleMixture::same(const Surface& a, const Surface& b) const {
+  Eigen::Array3d over_doubt = Eigen::Array3d::Zero();
+  Eigen::Array3d over_noise = Eigen::Array3d::Zero();
+  for (size_t p = 0; p < model_->patterns(); ++p) {
+    const PatternPart& part = model_->whole(p);
+    const Moments of_a = a.expected(part), of_b = b.expected(part);
+    const Eigen::Array3d apart = (of_a.mean - of_b.mean).array().square();
+    over_doubt += apart / (of_a.covariance + of_b.covariance).diagonal().array();
+    over_noise += apart / b.executionNoise(part).array();
+  }
+  const auto patterns = static_cast<double>(model_->patterns());
+  // A ground on which little was driven is known by what was shipped: there it is all or nothing.
+  const bool near = over_noise.mean() < squared(kSame) * patterns;
+  return near && (settled(b) || (over_doubt < kAsDoubted * patterns).all());
+}
+
+bool ScaleMixture::rememberSettled() {
+  const auto lighter = [](const Hypothesis& a, const Hypothesis& b) { return a.weight < b.weight; };
+  const auto begin_settled = std::stable_partition(
+      fresh_.begin(), fresh_.end(),
+      [this](const Hypothesis& hypothesis) { return !settled(hypothesis.surface); });
+  double together = 0.0;
+  for (auto settled = begin_settled; settled != fresh_.end(); ++settled)
+    together += settled->weight;
+  if (together < config_.sure) return false;
+  Hypothesis likeliest = std::move(*std::max_element(begin_settled, fresh_.end(), lighter));
+  likeliest.weight = together;
+  likeliest.last_met = clock_;
+  fresh_.erase(begin_settled, fresh_.end());
+  for (Hypothesis& known : surfaces_) {
+    if (!same(likeliest.surface, known.surface)) continue;
+    known.weight += together;
+    known.last_met = clock_;
+    return false;
+  }
+  const auto most = static_cast<size_t>(config_.capacity) + 1;
+  while (surfaces_.size() >= most) {
+    const auto oldest = std::min_element(
+        surfaces_.begin() + 1, surfaces_.end(),
+        [](const Hypothesis& a, const Hypothesis& b) { return a.last_met < b.last_met; });
+    const double left = 1.0 - oldest->weight;
+    surfaces_.erase(oldest);
+    scaleWeights(left);
+  }
+  surfaces_.push_back(std::move(likeliest));
+  double total = 0.0;
+  for (auto* hypotheses : {&surfaces_, &fresh_})
+    for (Hypothesis& hypothesis : *hypotheses) total += hypothesis.weight;
+  scaleWeights(total);
+  return true;
+}
+
+void ScaleMixture::mix() {
+  mean_ = SetCorrection::none(model_->patterns());
+  for (const auto* hypotheses : {&surfaces_, &fresh_})
+    for (const Hypothesis& hypothesis : *hypotheses) {
+      mean_.common += hypothesis.weight * hypothesis.surface.correction().common;
+      mean_.own += hypothesis.weight * hypothesis.surface.correction().own;
+    }
+}
+
+void ScaleMixture::learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) {
+  const PatternPart& whole = model_->whole(executed);
+  // Few lengths of beginnings, so that what is measured of them stays together.
+  const Eigen::Index step = std::max<Eigen::Index>(1, whole.samples / kPartSteps);
+  const Eigen::Index samples = measured.rows() >= whole.samples ? whole.samples
+                               : measured.rows() >= step        ? measured.rows() / step * step
+                                                                : measured.rows();
+  const Eigen::Vector3d mean_twist = meanTwist(measured, samples, model_->period());
+  if (!mean_twist.allFinite()) return;  // beyond all numbers
+  TwistSample sample{samples == whole.samples ? whole : model_->part(executed, samples),
+                     mean_twist};
+  learner::PatternPart for_effects;
+  for_effects.mean = sample.part.mean;
+  for_effects.metres = sample.part.metres;
+  const ContextEffects::Inputs inputs =
+      effects_.inputs(for_effects, model_->period() * static_cast<double>(samples), context_);
+  const Eigen::Vector3d effect = effects_.effect(inputs);
+  sample.mean_twist = plausible(mean_twist - effect);
+  const Surface& before = likeliest().surface;
+  const int64_t ground = likeliest().since;
+  const Moments expected = before.expected(sample.part);
+  const Eigen::Matrix3d turn = sample.part.toBody();
+  const Eigen::Vector3d beyond = turn * (sample.deviation() - expected.mean);
+  Eigen::Matrix3d spread = expected.covariance;
+  spread.diagonal() += before.executionNoise(sample.part);
+  const Eigen::Vector3d variance = (turn * spread * turn.transpose()).diagonal();
+  if (samples == whole.samples) calibrate(sample);
+  ++clock_;
+  expectChange(sample.part.metres);
+  weigh(sample);
+  if (likeliest().since == ground) effects_.learn(inputs, beyond, variance, ground);
+  context_ = {};
+  countChange(sample.part.metres);
+  forgetWeakest();
+  update(sample);
+  const Eigen::Index last = samples - 1;
+  followScatter(sample, effect, {measured(last, 0), measured(last, 1), measured(last, 2)});
+  note.surface_stored = rememberSettled();
+  expectNew();
+  Surface& of_shipped = surfaces_.front().surface;
+  if (!settled(of_shipped)) of_shipped.expect(config_, new_.expectation().scatter);
+  mix();
+  note.change_probability = change_probability_;
+  note.surface = 0;
+  note.surface_probability = 0.0;
+  for (const Hypothesis& hypothesis : fresh_) note.surface_probability += hypothesis.weight;
+  for (size_t k = 0; k < surfaces_.size(); ++k) {
+    if (surfaces_[k].weight <= note.surface_probability) continue;
+    note.surface = static_cast<int>(k) + 1;
+    note.surface_probability = surfaces_[k].weight;
+  }
+}
+
+std::string ScaleMixture::reason(const RuleNote& note) const {
+  const std::string sure = " (" + percent(note.surface_probability) + ")";
+  if (note.surface_stored)
+    return "remembered as surface " + std::to_string(note.surface) + " from now on";
+  if (note.surface == 1) return "as shipped" + sure;
+  return note.surface > 0 ? "as surface " + std::to_string(note.surface) + sure
+                          : "unknown ground" + sure;
+}
+
+void ScaleMixture::predict(size_t pattern, Trajectory prediction) const {
+  TwistCorrection correction = mean_.of(pattern);
+  const Eigen::Vector2d gains = effects_.gainsNow();
+  correction.common[TwistCorrection::kGain] += gains[0];
+  correction.common[TwistCorrection::kYaw] += gains[1];
+  model_->profile(pattern).integrate(model_->scale(), correction, prediction);
+}
+
+Pose2 ScaleMixture::predictEnd(size_t pattern) const {
+  TwistCorrection correction = mean_.of(pattern);
+  const Eigen::Vector2d gains = effects_.gainsNow();
+  correction.common[TwistCorrection::kGain] += gains[0];
+  correction.common[TwistCorrection::kYaw] += gains[1];
+  return model_->profile(pattern).integrateEnd(model_->scale(), correction);
+}
+
+void ScaleMixture::assign(const LearningRule& other) {
+  *this = static_cast<const ScaleMixture&>(other);
+}
+
+}  // namespace tread::learner::mixture

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "modules/learner/core/rules/context_effects.hpp"
+#include "modules/learner/core/rules/learning_rule.hpp"
+#include "modules/learner/core/rules/mixture/surface.hpp"
+#include "modules/learner/core/rules/multi_model.hpp"
+
+namespace tread::learner::mixture {
+
+/// A factor on a 90 % region that follows how often it held (adaptive conformal prediction).
+struct Calibration {
+  static constexpr double kNarrowest = -0.7, kWidest = 1.2;
+
+  double log_factor = 0.0;  ///< logarithm of the factor on deviations
+  void follow(bool held);
+};
+
+/// A multiple-model filter over surfaces that is prepared for grounds that differ by 3 and by 60 %
+/// (own work).
+/** Hypotheses are, as those of MultiModel, the surfaces that it remembers, and fresh ones: since
+ * some moment the vehicle is on ground that it has not met. Each is a Surface, a regression whose
+ * width is a mixture over scales (scale_bank.hpp): what was measured tells how much grounds differ.
+ * After d metres and an execution z
+ *    w_i^- = (1 - h) w_i + h pi_i,   h = 1 - exp(-d r),   w_i ~ w_i^- p_i(z),
+ * r and pi as MultiModel has them. New ground is expected about sum x_k / (1 + K), x_k the
+ * corrections of the K surfaces met, with (2 + K) / (2 + 2 K) of the variances of the scales; the
+ * weights of the scales are learned from those surfaces. Fresh ground that proves to be one that is
+ * remembered, within half of what one execution tells, is that one.
+ * Predictions are the mixture's mean without the next change: sum_i w_i E[x_i]. The region of 90 %
+ * is found of the mixture itself, with a change at most so probable that a region of 90 % could
+ * hold it, and follows how often it held, apart while it knows the ground and while it searches. */
+class ScaleMixture : public LearningRule {
+ public:
+  ScaleMixture(const RuleConfig& config, const PatternSet& shipped);
+
+  void setContext(const Context& context) override { context_ = context; }
+  void learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) override;
+  bool learnsParts() const override { return true; }
+  std::string reason(const RuleNote& note) const override;
+  void predict(size_t pattern, Trajectory prediction) const override;
+  Pose2 predictEnd(size_t pattern) const override;
+  std::optional<PoseCovariance> endCovariance(size_t pattern) const override;
+  int remembered() const override { return static_cast<int>(surfaces_.size()); }
+  void assign(const LearningRule& other) override;
+  std::unique_ptr<LearningRule> clone() const override {
+    return std::make_unique<ScaleMixture>(*this);
+  }
+  std::vector<double> memory() const override;
+  bool restore(const TrajectoryTable& predictions, const std::vector<double>& memory) override;
+
+  const Surface& surface(size_t i) const { return surfaces_[i].surface; }
+
+ private:
+  static constexpr double kLongestWay = 2000.0;  ///< [m] after which older changes fade
+  static constexpr double kMostError = 1e3;      ///< [1] of an execution in the scatter
+
+  struct Hypothesis {
+    Surface surface;
+    double weight = 0.0;
+    int64_t last_met = 0;
+    int64_t since = 0;
+  };
+  SurfacePrior expectNewGround() const;
+  void expectNew();
+  double hazard(double metres) const;
+  void countChange(double metres);
+  void expectChange(double metres);
+  void weigh(const TwistSample& sample);
+  void scaleWeights(double total);
+  void update(const TwistSample& sample);
+  const Hypothesis& likeliest() const;
+  void followScatter(const TwistSample& sample, const Eigen::Vector3d& effect, const Pose2& end);
+  void forgetWeakest();
+  bool rememberSettled();
+  bool settled(const Surface& surface) const;
+  bool same(const Surface& a, const Surface& b) const;
+  void mix();
+  bool searching() const;
+  Moments region(const PatternPart& part) const;
+  void calibrate(const TwistSample& sample);
+  bool restoreHypotheses(std::vector<Hypothesis>& hypotheses, size_t most,
+                         const std::vector<double>& memory, size_t& at) const;
+
+  GroundConfig config_;
+  std::shared_ptr<const GroundModel> model_;
+  std::vector<Hypothesis> surfaces_;  ///< remembered; [0] of the shipped set
+  std::vector<Hypothesis> fresh_;     ///< since some moment; the one that begins now comes last
+  Scatter scatter_;
+  Scatter::Factors expected_scatter_;
+  Surface new_;
+  Context context_;
+  ContextEffects effects_;
+  std::vector<double> changed_;
+  double change_probability_ = 0.0;
+  double changes_ = 0.0;
+  double metres_ = 0.0;
+  int64_t ground_ = 0;
+  int64_t clock_ = 1;
+  Calibration calm_, searching_;
+  SetCorrection mean_;  ///< of the mixture, without the next change
+};
+
+}  // namespace tread::learner::mixture

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "modules/learner/core/rules/mixture/scale_mixture.hpp"
+
+// How sure the rule is of a prediction: regions, and the factors that keep what they say.
+namespace tread::learner::mixture {
+namespace {
+
+/// What weighs less adds nothing to a region [1].
+constexpr double kLeastWeight = 1e-4;
+/// A change that is rarer than one in ten is none that a region of 90 % could hold [1].
+constexpr double kRegionHazard = 0.03;
+/// Chi-square of three degrees of freedom, 90 %.
+constexpr double kQuantile = 6.251;
+constexpr double kLevel = 0.9;
+/// Step and bounds of the factors, in logarithms of a deviation.
+constexpr double kCalibrationStep = 0.03;
+/// So probable must young ground be, for the rule to be searching [1].
+constexpr double kSearching = 0.3;
+
+/// d2 of a component about the mixture's mean, in the mixture's covariance: a gamma of its mean and
+/// variance (Wilson-Hilferty), so that a 90 % quantile can be found.
+struct Distance {
+  double weight, mean, variance;
+  double below(double quantile) const {
+    const double k = mean * mean / variance;
+    const double u = (std::cbrt(quantile / mean) - (1.0 - 1.0 / (9.0 * k))) * 3.0 * std::sqrt(k);
+    return weight * 0.5 * std::erfc(-u / std::sqrt(2.0));
+  }
+};
+
+double quantileOf(const std::vector<Distance>& distances) {
+  double low = std::log(1e-4), high = std::log(1e3);
+  for (int i = 0; i < 30; ++i) {
+    const double middle = 0.5 * (low + high);
+    double below = 0.0;
+    for (const Distance& distance : distances) below += distance.below(std::exp(middle));
+    (below < kLevel ? low : high) = middle;
+  }
+  return std::exp(low);
+}
+
+PoseCovariance upperTriangle(const Eigen::Matrix3d& c) {
+  return {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)};
+}
+
+}  // namespace
+
+void Calibration::follow(bool held) {
+  log_factor = std::clamp(log_factor + kCalibrationStep * ((held ? 0.0 : 1.0) - (1.0 - kLevel)),
+                          kNarrowest, kWidest);
+}
+
+/// Whether it may be on ground that it has just begun to learn.
+bool ScaleMixture::searching() const {
+  double young = 0.0;
+  for (const Hypothesis& hypothesis : fresh_)
+    if (!settled(hypothesis.surface)) young += hypothesis.weight;
+  return young > kSearching;
+}
+
+/// Mean of the mixture, and a covariance whose ellipsoid of 90 % holds the next execution in 90 %.
+Moments ScaleMixture::region(const PatternPart& part) const {
+  struct Component {
+    double weight;
+    Moments moments;
+  };
+  const double h = std::min(hazard(part.metres), kRegionHazard);
+  std::vector<Component> components;
+  double total = 0.0;
+  const auto put = [&](double weight, const Surface& surface) {
+    if (weight < kLeastWeight) return;
+    Moments moments = surface.expected(part);
+    moments.covariance.diagonal() += surface.executionNoise(part);
+    components.push_back({weight, moments});
+    total += weight;
+  };
+  for (const Hypothesis& known : surfaces_)
+    put((1.0 - h) * known.weight +
+            h * (1.0 - config_.fresh) / static_cast<double>(surfaces_.size()),
+        known.surface);
+  for (const Hypothesis& fresh : fresh_) put((1.0 - h) * fresh.weight, fresh.surface);
+  put(h * config_.fresh, new_);
+  Moments all{mean_.added(part), Eigen::Matrix3d::Zero()};
+  for (Component& component : components) {
+    component.weight /= total;
+    component.moments.mean -= all.mean;
+    const Eigen::Vector3d& d = component.moments.mean;
+    all.covariance += component.weight * (component.moments.covariance + d * d.transpose());
+  }
+  const Eigen::Matrix3d inverse = all.covariance.inverse();
+  std::vector<Distance> distances;
+  for (const Component& component : components) {
+    const Eigen::Vector3d& d = component.moments.mean;
+    const Eigen::Matrix3d share = inverse * component.moments.covariance;
+    const Eigen::Vector3d scaled = inverse * d;
+    distances.push_back(
+        {component.weight, share.trace() + d.dot(scaled),
+         2.0 * (share * share).trace() + 4.0 * scaled.dot(component.moments.covariance * scaled)});
+  }
+  const Calibration& calibration = searching() ? searching_ : calm_;
+  all.covariance *= quantileOf(distances) / kQuantile * std::exp(2.0 * calibration.log_factor);
+  return all;
+}
+
+void ScaleMixture::calibrate(const TwistSample& sample) {
+  const Moments expected = region(sample.part);
+  const Eigen::Vector3d d = sample.deviation() - expected.mean;
+  const bool held = d.dot(expected.covariance.inverse() * d) <= kQuantile;
+  (searching() ? searching_ : calm_).follow(held);
+}
+
+std::optional<PoseCovariance> ScaleMixture::endCovariance(size_t pattern) const {
+  const PatternPart& part = model_->whole(pattern);
+  const Eigen::Matrix3d lever = model_->profile(pattern).endLever() * part.toBody();
+  Eigen::Matrix3d covariance = lever * region(part).covariance * lever.transpose();
+  covariance.diagonal().head<2>().array() +=
+      part.shape * expected_scatter_(3, static_cast<Eigen::Index>(pattern));
+  return upperTriangle(0.5 * (covariance + covariance.transpose()));
+}
+
+}  // namespace tread::learner::mixture

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "modules/learner/core/rules/mixture/ground_model.hpp"
+#include "modules/learner/core/rules/mixture/scale_bank.hpp"
+#include "modules/learner/core/rules/surface.hpp"
+
+namespace tread::learner::mixture {
+
+/// The mean twist of one execution, or of its beginning.
+struct TwistSample {
+  PatternPart part;
+  Eigen::Vector3d mean_twist;  ///< measured, body frame [m/s, m/s, rad/s]
+
+  /// z - m, in the frame of the path.
+  Eigen::Vector3d deviation() const {
+    Eigen::Vector3d d = mean_twist - part.mean;
+    d.head<2>() = part.to_path * d.head<2>();
+    return d;
+  }
+};
+
+/// Corrections of all patterns of a set.
+struct SetCorrection {
+  Eigen::Matrix<double, TwistCorrection::kCommon, 1> common;
+  Eigen::Matrix<double, TwistCorrection::kOwn, Eigen::Dynamic> own;  ///< a column for each pattern
+
+  static SetCorrection none(size_t patterns);
+  TwistCorrection of(size_t pattern) const {
+    return {common, own.col(static_cast<Eigen::Index>(pattern))};
+  }
+  /// What they add to the mean twist of a part, in the frame of its path.
+  Eigen::Vector3d added(const PatternPart& part) const;
+};
+
+/// What is expected of a surface before anything was measured on it: corrections about a centre,
+/// how far is a mixture of scales; and how executions scatter.
+struct SurfacePrior {
+  SetCorrection centre;
+  VelocityBank::Scales velocity;
+  YawBank::Scales yaw;
+  /// Variances along, across and of yaw over the model's, a column for each pattern [1].
+  Eigen::Matrix3Xd scatter;
+};
+
+/// Mean and covariance of a mean twist, in the frame of its path.
+struct Moments {
+  Eigen::Vector3d mean;
+  Eigen::Matrix3d covariance;
+};
+
+/// One surface: all that was measured on it, and what follows from that.
+/** Measured: for each pattern (or beginning of one) the number n, sum and sum of squares of the
+ * deviations z - m of its mean twist from the shipped one, along and across its path and in yaw.
+ * From the means two banks of regressions (scale_bank.hpp), of velocity and of yaw; the noise of a
+ * mean is q R / n, R the model's noise times what the expectation says of this pattern, q the
+ * surface's own factor for each axis:
+ *    q = b / a,   a = a0 + sum n / 2,   b = a0 + sum E[(z - m - h' x)^2] / (2 R)
+ * with a0 half the executions that the expected noise counts for; in the regression q is that of
+ * the step before (one step of expectation-maximisation an execution). A next execution is expected
+ * from a mixture over the scales of Student's t with 2 a degrees of freedom. */
+class Surface {
+ public:
+  Surface(std::shared_ptr<const GroundModel> model, const GroundConfig& config,
+          SurfacePrior expectation);
+
+  /// Learns from an execution. The oldest fade beyond config.longest_memory executions.
+  void add(const GroundConfig& config, const TwistSample& sample);
+  /// Executions are expected to scatter otherwise than when it began.
+  void expect(const GroundConfig& config, const Eigen::Matrix3Xd& scatter);
+  /// Logarithm of the density of an execution; `returned`: variance beyond that, of each axis.
+  double logDensity(const TwistSample& sample, const Eigen::Vector3d& returned) const;
+  /// Of the mean twist's correction, of which one execution scatters by executionNoise().
+  Moments expected(const PatternPart& part) const;
+  /// Variance of one execution's mean twist, along, across and of yaw.
+  Eigen::Vector3d executionNoise(const PatternPart& part) const;
+  /// E[(z - m - h' x)^2] of an execution over the model's noise.
+  Eigen::Vector3d squaredError(const TwistSample& sample) const;
+
+  const SetCorrection& correction() const { return correction_; }
+  const Eigen::Vector3d& noise() const { return noise_; }
+  double executions() const { return executions_; }
+  const SurfacePrior& expectation() const { return expectation_; }
+  const VelocityBank& velocity() const { return posterior_->velocity; }
+  const YawBank& yaw() const { return posterior_->yaw; }
+
+  /// Numbers, all of them finite; restore() returns false if they do not fit.
+  void save(std::vector<double>& memory) const;
+  bool restore(const GroundConfig& config, const std::vector<double>& memory, size_t& at);
+
+ private:
+  struct Measured {
+    PatternPart part;
+    double count = 0.0;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+  };
+  struct Posterior {
+    VelocityBank velocity;
+    YawBank yaw;
+  };
+  Measured& measuredOf(const PatternPart& part);
+  double R(const PatternPart& part, Eigen::Index axis) const {
+    return part.noise[axis] * expectation_.scatter(axis, static_cast<Eigen::Index>(part.pattern));
+  }
+  void follow(const GroundConfig& config);
+  void regress();
+  void correct();
+  void estimateNoise(const GroundConfig& config);
+  VelocityBank::Cross velocityCross(const PatternPart& part) const;
+  YawBank::Cross yawCross(const PatternPart& part) const;
+  bool restoreMeasured(const std::vector<double>& memory, size_t& at);
+
+  std::shared_ptr<const GroundModel> model_;
+  SurfacePrior expectation_;
+  std::vector<Measured> measured_;
+  double executions_ = 0.0;
+  std::shared_ptr<const Posterior> posterior_;  ///< immutable, so that copies share it
+  Eigen::Matrix2Xd velocity_noise_;             ///< q R / n, by measured part
+  Eigen::VectorXd yaw_noise_;
+  SetCorrection correction_;
+  Eigen::Vector3d expected_noise_ = Eigen::Vector3d::Ones();  ///< q before the last execution
+  Eigen::Vector3d noise_ = Eigen::Vector3d::Ones();           ///< q
+  Eigen::Vector3d certainty_;                                 ///< a
+};
+
+}  // namespace tread::learner::mixture
