@@ -14,7 +14,7 @@ namespace {
 /// So many scans are remembered by their bits: a device may repeat a few in turn.
 constexpr size_t kRemembered = 32;
 /// Repeated bits with so many returns are a defect after so little motion [m, rad] ...
-constexpr int kManyReturns = 20;
+constexpr size_t kManyReturns = 20;
 constexpr double kLittleWay = 0.15;
 constexpr double kLittleTurn = 3.0 / 180.0 * kPi;
 /// ... and with fewer after this; with fewer still they prove nothing: something may move along.
@@ -56,6 +56,8 @@ constexpr int64_t kUndecided = 1'500'000;
 constexpr size_t kJudged = 5;
 constexpr int kSure = 3;
 constexpr int64_t kGoodAgain = 1'000'000;  // [us]
+/// So long after a verdict one suspicion makes the next [us].
+constexpr int64_t kProbation = 60'000'000;
 
 bool beyond(double way, double turn, double least_way, double least_turn) {
   return way > least_way || turn > least_turn;
@@ -91,7 +93,11 @@ std::optional<ScanSuspicion> ScanMonitor::suspect(const ToldScan& told, const Po
 
 std::optional<ScanSuspicion> ScanMonitor::compare(const Scan& scan, const PoseAt& poseAt) {
   ScanView view(scan, robot_, height_);
+  const bool sees = !view.points().empty();
   if (!apart(scan.utime)) {
+    // No place goes from many returns to none at once.
+    if (!sees && newest_ && newest_->points().size() >= kManyReturns)
+      return ScanSuspicion{ScanDefect::kSeesThrough};
     const std::vector<ScanDoubt> doubts = this->doubts(view);
     const ScanSuspicion best = explain(view, doubts, poseAt);
     if (best.defect != ScanDefect::kNone) return best;
@@ -100,6 +106,8 @@ std::optional<ScanSuspicion> ScanMonitor::compare(const Scan& scan, const PoseAt
       unsettled_ = true;
       return std::nullopt;
     }
+    // Who was doubted and sees nothing has not proved to be good.
+    if (!sees && doubted()) return std::nullopt;
   }
   keep(std::move(view));
   return ScanSuspicion{};
@@ -122,7 +130,8 @@ bool ScanMonitor::repeats(const ToldScan& told) {
   ++bits.repeats;
   bits_.push_back(bits);
   const auto returns = returnsOf(told.scan);
-  if (returns >= kManyReturns) return beyond(bits.moved, bits.turned, kLittleWay, kLittleTurn);
+  if (returns >= static_cast<int64_t>(kManyReturns))
+    return beyond(bits.moved, bits.turned, kLittleWay, kLittleTurn);
   return returns >= kFewReturns && beyond(bits.moved, bits.turned, kWay, kTurn);
 }
 
@@ -132,10 +141,13 @@ int64_t ScanMonitor::returnsOf(const Scan& scan) const {
   });
 }
 
+bool ScanMonitor::doubted() const {
+  return unsettled_ || verdict_ != ScanDefect::kNone ||
+         (!recent_.empty() && recent_.back().defect != ScanDefect::kNone);
+}
+
 bool ScanMonitor::apart(int64_t utime) const {
-  const bool doubted =
-      unsettled_ || (!recent_.empty() && recent_.back().defect != ScanDefect::kNone);
-  return newest_ && !doubted && utime - newest_->utime() > kMoment;
+  return newest_ && !doubted() && utime - newest_->utime() > kMoment;
 }
 
 bool ScanMonitor::seesThrough(const Scan& scan) const {
@@ -283,10 +295,14 @@ void ScanMonitor::judge(const ScanSuspicion& suspicion, int64_t utime) {
     return words_.clear();
   }
   last_suspected_ = utime;
-  if (verdict_ != ScanDefect::kNone ||
+  // Old or mirrored scans are good while the robot stands: who was convicted has less credit.
+  const bool again = convicted_ && utime - *convicted_ < kProbation;
+  const auto agreeing =
       std::count_if(recent_.begin(), recent_.end(),
-                    [&](const ScanSuspicion& other) { return agree(suspicion, other); }) < kSure)
-    return;
+                    [&](const ScanSuspicion& other) { return agree(suspicion, other); });
+  if (verdict_ == ScanDefect::kNone && agreeing < (again ? 1 : kSure)) return;
+  convicted_ = utime;
+  if (verdict_ != ScanDefect::kNone) return;
   verdict_ = suspicion.defect;
   words_ = wordsOf(suspicion);
 }

@@ -33,8 +33,8 @@ struct ToldScan {
     A scan that decides nothing, but that most of does not fit or that fits a recent suspicion as
        well, counts for nothing and is compared with no later one for a while: else the first wrong
        scans would vouch for the others.
-    Three scans of the last five make a verdict. It stands until scans were good for a second. It
-    cannot judge a range finder that sees nothing, and calls none good. */
+    Three scans of the last five make a verdict, one in the minute after another verdict. It stands
+    until scans were good for a second; one that sees nothing is none of them. */
 class ScanMonitor {
  public:
   /// The body's pose at a time [us], where it is known.
@@ -66,6 +66,8 @@ class ScanMonitor {
   bool repeats(const ToldScan& told);
   int64_t returnsOf(const Scan& scan) const;  ///< from elsewhere than the robot itself
   bool seesThrough(const Scan& scan) const;
+  /// Whether the range finder was not good of late.
+  bool doubted() const;
   /// Whether the newest good scan is too old for a comparison.
   bool apart(int64_t utime) const;
   std::vector<const ScanView*> references(const ScanView& view) const;
@@ -95,7 +97,8 @@ class ScanMonitor {
   std::optional<ScanView> newest_;  ///< the newest good one
   bool unsettled_ = false;          ///< since then, scans decided nothing
   std::deque<ScanSuspicion> recent_;
-  int64_t last_suspected_ = 0;  ///< [us]
+  int64_t last_suspected_ = 0;        ///< [us]
+  std::optional<int64_t> convicted_;  ///< [us] when a verdict was last made or confirmed
   ScanDefect verdict_ = ScanDefect::kNone;
   std::string words_;
 };
