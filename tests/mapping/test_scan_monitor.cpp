@@ -201,3 +201,39 @@ TEST_CASE("old scans under new times are named as such") {
       CHECK_THAT(named.words, Contains("old ones under new times"));
     }
 }
+
+TEST_CASE(
+    "nothing in sight is no proof that a range finder is good again, wherever the robot turned") {
+  ScanDrive drive(yard());
+  drive.drive(0.7, 0.1, 2.0);
+  drive.disturb = [](scan_t& scan) {
+    std::fill(scan.ranges.begin(), scan.ranges.end(), std::numeric_limits<float>::infinity());
+  };
+  drivenUntilNamed(drive, 0.7, 0.1);
+  // Somebody arms again and drives: the place of the last good scan is left.
+  for (int i = 0; i < 8; ++i) {
+    drive.drive(0.3, 0.6, 1.0);
+    REQUIRE(drive.monitor.verdict() == ScanDefect::kSeesThrough);
+  }
+  drive.disturb = nullptr;
+  drive.drive(0.0, 0.0, 2.0);
+  CHECK(drive.monitor.verdict() == ScanDefect::kNone);
+}
+
+TEST_CASE("who was named a moment ago is named at the first scan that shows it again") {
+  ScanDrive drive(yard());
+  Past past;
+  size_t lag = 0;
+  drive.disturb = [&](scan_t& scan) { past.show(scan, lag); };
+  drive.drive(0.8, 0.2, 2.0);
+  lag = 5;
+  const Named first = drivenUntilNamed(drive, 0.8, 0.2);
+  REQUIRE(first.defect == ScanDefect::kDelayed);
+  // Old scans of a robot that stands are as good as new ones.
+  drive.drive(0.0, 0.0, 4.0);
+  REQUIRE(drive.monitor.verdict() == ScanDefect::kNone);
+  const Named again = drivenUntilNamed(drive, 0.8, 0.2);
+  CAPTURE(first.way, again.way);
+  CHECK(again.defect != ScanDefect::kNone);
+  CHECK(again.way < 0.4);
+}

@@ -146,6 +146,10 @@ bool ScanMonitor::doubted() const {
          (!recent_.empty() && recent_.back().defect != ScanDefect::kNone);
 }
 
+bool ScanMonitor::onProbation(int64_t utime) const {
+  return convicted_ && utime - *convicted_ < kProbation;
+}
+
 bool ScanMonitor::apart(int64_t utime) const {
   return newest_ && !doubted() && utime - newest_->utime() > kMoment;
 }
@@ -225,8 +229,9 @@ ScanSuspicion ScanMonitor::explain(const ScanView& view, const std::vector<ScanD
                                    const PoseAt& poseAt) const {
   ScanSuspicion best;
   if (doubts.empty()) return best;
-  // What begins now fits the newest good scan worst.
-  const bool sudden = doubts.front().reference == &*newest_;
+  // What begins now fits the newest good scan worst; a robot that starts under old scans does not
+  // show it so, and has less credit after a verdict.
+  const bool sudden = doubts.front().reference == &*newest_ || onProbation(view.utime());
   const double least_sudden = doubts.size() > 1 ? kLeastMissed : kLeastAlone;
   static const std::vector<ScanSuspicion> kAll = scanHypotheses();
   for (const ScanSuspicion& hypothesis : kAll) {
@@ -296,11 +301,10 @@ void ScanMonitor::judge(const ScanSuspicion& suspicion, int64_t utime) {
   }
   last_suspected_ = utime;
   // Old or mirrored scans are good while the robot stands: who was convicted has less credit.
-  const bool again = convicted_ && utime - *convicted_ < kProbation;
   const auto agreeing =
       std::count_if(recent_.begin(), recent_.end(),
                     [&](const ScanSuspicion& other) { return agree(suspicion, other); });
-  if (verdict_ == ScanDefect::kNone && agreeing < (again ? 1 : kSure)) return;
+  if (verdict_ == ScanDefect::kNone && agreeing < (onProbation(utime) ? 1 : kSure)) return;
   convicted_ = utime;
   if (verdict_ != ScanDefect::kNone) return;
   verdict_ = suspicion.defect;

@@ -68,6 +68,8 @@ class ScanMonitor {
   bool seesThrough(const Scan& scan) const;
   /// Whether the range finder was not good of late.
   bool doubted() const;
+  /// Whether there was a verdict a moment ago.
+  bool onProbation(int64_t utime) const;
   /// Whether the newest good scan is too old for a comparison.
   bool apart(int64_t utime) const;
   std::vector<const ScanView*> references(const ScanView& view) const;
