@@ -83,7 +83,8 @@ class ScaleMixture : public LearningRule {
   bool searching() const;
   Moments region(const PatternPart& part) const;
   void calibrate(const TwistSample& sample);
-  bool restoreHypotheses(std::vector<Hypothesis>& hypotheses, size_t most,
+  /// `first`: what the first of them is like before it takes its numbers.
+  bool restoreHypotheses(std::vector<Hypothesis>& hypotheses, const Surface& first, size_t most,
                          const std::vector<double>& memory, size_t& at) const;
 
   GroundConfig config_;

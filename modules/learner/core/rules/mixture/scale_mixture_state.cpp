@@ -25,15 +25,15 @@ std::vector<double> ScaleMixture::memory() const {
   return memory;
 }
 
-bool ScaleMixture::restoreHypotheses(std::vector<Hypothesis>& hypotheses, size_t most,
-                                     const std::vector<double>& memory, size_t& at) const {
+bool ScaleMixture::restoreHypotheses(std::vector<Hypothesis>& hypotheses, const Surface& first,
+                                     size_t most, const std::vector<double>& memory,
+                                     size_t& at) const {
   if (at >= memory.size() || !isCount(memory[at], static_cast<double>(most))) return false;
   const auto count = static_cast<size_t>(memory[at++]);
-  const bool known = &hypotheses != &fresh_ && most > static_cast<size_t>(config_.moments);
   hypotheses.clear();
   for (size_t i = 0; i < count; ++i) {
     if (memory.size() < at + 3) return false;
-    Hypothesis hypothesis{known && i == 0 ? surfaces_.front().surface : new_, memory[at]};
+    Hypothesis hypothesis{i == 0 ? first : new_, memory[at]};
     if (!(hypothesis.weight >= 0.0 && hypothesis.weight <= 1.0 + 1e-9)) return false;
     if (!isCount(memory[at + 1], static_cast<double>(clock_))) return false;
     if (!isCount(memory[at + 2], static_cast<double>(clock_))) return false;
@@ -70,8 +70,10 @@ bool ScaleMixture::restore(const TrajectoryTable&, const std::vector<double>& me
       rule.scatter_.sums.maxCoeff() > kMostError * kMostExecutions)
     return false;
   if (!rule.effects_.restore(memory, at)) return false;
-  if (!rule.restoreHypotheses(rule.surfaces_, GroundConfig::kMostSurfaces + 1, memory, at) ||
-      !rule.restoreHypotheses(rule.fresh_, static_cast<size_t>(config_.moments), memory, at) ||
+  if (!rule.restoreHypotheses(rule.surfaces_, surfaces_.front().surface,
+                              GroundConfig::kMostSurfaces + 1, memory, at) ||
+      !rule.restoreHypotheses(rule.fresh_, new_, static_cast<size_t>(config_.moments), memory,
+                              at) ||
       at != memory.size() || rule.surfaces_.empty())
     return false;
   double total = 0.0;
