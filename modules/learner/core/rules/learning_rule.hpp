@@ -87,6 +87,8 @@ void readScaling(Reader& reader, RuleConfig& rule) {
   section.numbers("min_box", box, 3, {0.001, 1.0}, "m, m, rad");
   limits.min_box = {box[0], box[1], box[2]};
   section.number("min_box_sigmas", limits.min_box_sigmas, {0.0, 10.0}, "1");
+  section.number("min_turn", limits.min_turn, {0.0, 1.0}, "rad");
+  section.number("min_length", limits.min_length, {0.0, 1.0}, "m");
   section.number("min_factor", limits.min_factor, {0.1, 1.0}, "1");
   section.number("max_factor", limits.max_factor, {1.0, 10.0}, "1");
   section.number("sign_sigmas", rule.sign_sigmas, {0.0, 10.0}, "1");
