@@ -61,6 +61,7 @@ TEST_CASE("every rule is what it was without a history, and has learned with one
     CHECK(methods.predictEnd(0, 1).yaw == shipped.yaw);
     CHECK(methods.predictEnd(1, 1).yaw != shipped.yaw);
     CHECK(methods.predictEnd(2, 1).yaw != methods.predictEnd(1, 1).yaw);
+    if (rule == "constant" || rule == "gp") continue;  // what they have met stays
     // The last surface is the one that the transition starts from.
     const double away = grounds[1].averaged_ends[1].yaw;
     CHECK(std::abs(methods.predictEnd(2, 1).yaw - shipped.yaw) <
