@@ -13,12 +13,13 @@ namespace {
 
 /// What weighs less adds nothing to a region [1].
 constexpr double kLeastWeight = 1e-4;
-/// A change that is rarer than one in ten is none that a region of 90 % could hold [1].
+/// Most probable change ahead that a region counts [1]: what is rarer than one in ten lies outside
+/// of 90 % anyway.
 constexpr double kRegionHazard = 0.03;
 /// Chi-square of three degrees of freedom, 90 %.
 constexpr double kQuantile = 6.251;
 constexpr double kLevel = 0.9;
-/// Step and bounds of the factors, in logarithms of a deviation.
+/// Step of the factors, in logarithms of a deviation.
 constexpr double kCalibrationStep = 0.03;
 /// So probable must young ground be, for the rule to be searching [1].
 constexpr double kSearching = 0.3;
