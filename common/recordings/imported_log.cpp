@@ -134,13 +134,12 @@ class ImportMaker {
     }
   }
 
-  void addMotor(CommandKind kind, const std::vector<DriveSample>& drive,
-                const std::vector<Planned>& executions) {
+  void addMotor(const RecordedDrive& recording, const std::vector<Planned>& executions) {
     size_t at = 0;
-    for (const DriveSample& sample : drive) {
+    for (const DriveSample& sample : recording.drive) {
       auto motor = blank<motor_t>();
       motor.utime = utimeOf(sample.time);
-      fill(motor, kind, sample);
+      fill(motor, recording.channels, sample);
       while (at < executions.size() && executions[at].end <= motor.utime + kPeriodUs / 2) ++at;
       if (at < executions.size()) place(motor, executions[at]);
       log_.add(kMotor, motor);
@@ -185,18 +184,16 @@ class ImportMaker {
     if (std::isfinite(fix.unix_time)) ins.device_utc = std::llround(fix.unix_time * 1e6);
   }
 
-  static void fill(motor_t& motor, CommandKind kind, const DriveSample& sample) {
+  static void fill(motor_t& motor, const CommandChannels& channels, const DriveSample& sample) {
     motor.bridge_state = sample.automatic ? motor_t::STATE_DRIVING : motor_t::STATE_DISARMED;
     motor.state_reason = sample.automatic ? "" : "idle or driven by the operator";
-    if (sample.automatic)
-      motor.channel_kind[0] = motor.channel_kind[1] = static_cast<int16_t>(kind);
-    motor.command[0] = static_cast<float>(sample.command.left);
-    motor.command[1] = static_cast<float>(sample.command.right);
     motor.battery_voltage = static_cast<float>(sample.voltage);
-    motor.current[0] = static_cast<float>(sample.current.left);
-    motor.current[1] = static_cast<float>(sample.current.right);
-    motor.measured[0] = static_cast<float>(sample.speed.left);
-    motor.measured[1] = static_cast<float>(sample.speed.right);
+    for (size_t c = 0; c < channels.size(); ++c) {
+      if (sample.automatic) motor.channel_kind[c] = static_cast<int16_t>(channels[c].kind);
+      motor.command[c] = static_cast<float>(sample.command[c]);
+      motor.current[c] = static_cast<float>(sample.current[c]);
+      motor.measured[c] = static_cast<float>(sample.speed[c]);
+    }
   }
 
   /// Names the execution that a sample belongs to, if it does.
@@ -237,7 +234,7 @@ std::vector<LogEvent> makeLog(const RecordedDrive& recording, const Session& ses
   ImportMaker maker(counts);
   maker.addNotes(session, format, !recording.gyro.empty(), layout, begin);
   maker.addIns(recording.fixes, recording.gyro, 3.0 * step);
-  maker.addMotor(recording.kind, recording.drive, executions);
+  maker.addMotor(recording, executions);
   maker.addScans(recording.scans);
   maker.addExecutions(executions);
   return maker.sorted();

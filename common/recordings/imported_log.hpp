@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "common/geometry/se2.hpp"
 #include "common/drive/drive_log.hpp"
+#include "common/geometry/se2.hpp"
 #include "common/pattern/pattern.hpp"
 #include "common/recordings/sessions.hpp"
 
@@ -40,15 +40,22 @@ struct Fix {
   bool new_track = false;       ///< not connected with the fix before
 };
 
+/// No channel was measured.
+inline Command allUnknown() {
+  Command none;
+  for (size_t channel = 0; channel < Command::kMaxChannels; ++channel) none[channel] = kUnknown;
+  return none;
+}
+
 /// One sample of the drive.
 struct DriveSample {
-  double time = 0.0;                         ///< [s]
-  TrackCommand command;                      ///< [m/s]
-  TrackCommand speed;                        ///< [m/s] of the wheels' rims
-  bool automatic = true;                     ///< false: idle or driven by the operator
-  bool apart = false;                        ///< recorded apart from the sample before
-  double voltage = kUnknown;                 ///< [V]
-  TrackCommand current{kUnknown, kUnknown};  ///< [A]
+  double time = 0.0;               ///< [s]
+  Command command;                 ///< by channel, in the units of their kinds
+  Command speed;                   ///< [m/s] of the wheels' rims, by channel
+  bool automatic = true;           ///< false: idle or driven by the operator
+  bool apart = false;              ///< recorded apart from the sample before
+  double voltage = kUnknown;       ///< [V]
+  Command current = allUnknown();  ///< [A] by channel
 };
 
 /// One command held for a while.
@@ -78,18 +85,20 @@ struct TimedScan {
 };
 
 struct RecordedDrive {
-  CommandKind kind = CommandKind::kTrackSpeed;  ///< what the commands are
-  std::vector<Fix> fixes;                       ///< in order of time
-  std::vector<GyroReading> gyro;                ///< in order of time; only where all are kept
-  std::vector<DriveSample> drive;               ///< in order of time
-  std::vector<CommandRun> runs;                 ///< in order of time
-  std::vector<TimedScan> scans;                 ///< in order of time
+  CommandChannels channels = trackChannels(CommandKind::kTrackSpeed);  ///< of the commands
+  std::vector<Fix> fixes;                                              ///< in order of time
+  std::vector<GyroReading> gyro;   ///< in order of time; only where all are kept
+  std::vector<DriveSample> drive;  ///< in order of time
+  std::vector<CommandRun> runs;    ///< in order of time
+  std::vector<TimedScan> scans;    ///< in order of time
 };
 
 /// Silence between steps that were recorded apart [s].
 inline constexpr double kSilence = 2.0;
 /// Period of the recordings [s].
 inline constexpr double kPeriod = 0.05;
+/// Longest gap between poses that is interpolated [s].
+inline constexpr double kMaxInterpolated = 0.3;
 /// A command is taken to hold until the next one for no longer than this [s].
 inline constexpr double kLongestHold = 0.3;
 /// Why a command ended where the recording has none.

@@ -22,9 +22,6 @@ double angle(const CsvTable& table, size_t row, std::string_view column) {
   return table.numberWithin(row, column, -kMostTurned, kMostTurned);
 }
 
-/// Longest gap that is interpolated as if the INS had been there [s].
-constexpr double kMaxInterpolated = 0.3;
-
 /// Rows [first, last) of one step and the time [s] of its t_s = 0 in the recording.
 struct StepRows {
   size_t first;
@@ -150,7 +147,7 @@ class RunFinder {
   explicit RunFinder(std::vector<CommandRun>& runs) : runs_(runs) {}
 
   void add(int step, const DriveSample& sample) {
-    const bool moves = sample.command != TrackCommand{};
+    const bool moves = sample.command != Command{};
     const bool continues =
         open_ && sample.automatic && step == runs_.back().step && sample.command == command_;
     if (open_ && !continues)
@@ -166,7 +163,7 @@ class RunFinder {
 
  private:
   std::vector<CommandRun>& runs_;
-  TrackCommand command_;
+  Command command_;
   bool open_ = false;
 };
 

@@ -69,16 +69,17 @@ class Series {
 /// What a number that is too large for a vehicle may be instead.
 std::string unitHint(const std::string& quantity, double limit) {
   if (quantity == "yaw_rate") return "; are these degrees per second?";
-  const bool side = quantity.rfind("left_", 0) == 0 || quantity.rfind("right_", 0) == 0;
-  if (side && limit == 1.0) return "; is this per cent, or a speed?";
-  return side && limit == 100.0 ? "; are these mm/s, or revolutions a minute?" : "";
+  const bool channel = quantity.find("_command") != std::string::npos ||
+                       quantity.find("_speed") != std::string::npos;
+  if (channel && limit == 1.0) return "; is this per cent, or a speed?";
+  return channel && limit == 100.0 ? "; are these mm/s, or revolutions a minute?" : "";
 }
 
 /// All quantities of a recording.
 class CsvContent {
  public:
   CsvContent(const std::string& path, const CsvMapping& mapping, ForeignDrive& result)
-      : result_(result) {
+      : result_(result), silence_(recordings::kSilence + mapping.command_hold.value_or(0.0)) {
     const std::filesystem::path place(path);
     for (const CsvSource& source : mapping.sources) {
       const bool folder = std::filesystem::is_directory(place);
@@ -88,6 +89,7 @@ class CsvContent {
       read(source.file.empty() ? path : (parent / source.file).string(), source);
     }
     for (auto& [name, series] : series_) series.shift(-begin_);
+    for (double& drive : drives_) drive -= begin_;
   }
 
   const Series& of(const std::string& quantity) const {
@@ -97,6 +99,11 @@ class CsvContent {
   }
   double at(const std::string& quantity, double time, double age) const {
     return of(quantity).at(time, age);
+  }
+  /// Whether another drive begins after one time and not after another.
+  bool isApart(double time, double later) const {
+    const auto next = std::upper_bound(drives_.begin(), drives_.end(), time);
+    return next != drives_.end() && *next <= later;
   }
   /// "file:line" of a quantity's i-th measurement, for messages.
   std::string placeOf(const std::string& quantity, size_t i) const {
@@ -125,7 +132,7 @@ class CsvContent {
     for (const std::string& words : table.units())
       ++result_.left_out[file + ": units below the header: " + words];
     checkTable(table, source);
-    std::vector<Row> rows = rowsOf(table, source);
+    std::vector<Row> rows = rowsOf(table, file, source);
     const auto same = [&](const Row& a, const Row& b) {
       return std::all_of(source.columns.begin(), source.columns.end(), [&](const auto& column) {
         return table.text(a.row, column.second.column) == table.text(b.row, column.second.column);
@@ -134,27 +141,64 @@ class CsvContent {
     sortByTime(rows, "rows of " + file, same, result_);
     for (const Row& row : rows)
       for (const auto& [quantity, column] : source.columns)
-        take(table, row.row, row.time, quantity, column, file);
+        take(table, row, quantity, column, file);
     if (!rows.empty()) begin_ = std::min(begin_, rows.front().time);
   }
 
-  /// The rows as they stand in the table.
-  static std::vector<Row> rowsOf(const CsvTable& table, const CsvSource& source) {
+  /// The rows as they stand in the table, those of a drive behind the ones of the drive before.
+  std::vector<Row> rowsOf(const CsvTable& table, const std::string& file, const CsvSource& source) {
     std::vector<Row> rows;
-    std::vector<double> raw;
-    for (size_t row = 0; row < table.rows(); ++row) {
-      if (!source.time.empty()) raw.push_back(table.number(row, source.time));
-      rows.push_back({timeOf(table, row, source), row});
+    size_t others = 0;
+    for (size_t row = 0; row < table.rows();) {
+      const size_t first = row;
+      std::vector<Row> drive;
+      for (; row < table.rows() && isSameDrive(table, first, row, source); ++row) {
+        if (isWanted(table, row, source))
+          drive.push_back({timeOf(table, row, source), row});
+        else
+          ++others;
+      }
+      if (drive.empty()) continue;
+      checkTimes(table, source, drive);
+      if (!rows.empty()) follow(rows.back().time, drive);
+      rows.insert(rows.end(), drive.begin(), drive.end());
     }
-    if (const auto problem = timeUnitProblem(raw, source.time_unit))
-      throw table.error(0, "column " + source.time + ": " + *problem);
-    checkTimes(table, source, rows);
+    if (others > 0) result_.left_out[file + ": rows that are not asked for"] += others;
+    if (rows.empty() && others > 0)
+      throw table.headerError("no row has what the mapping asks for (only:)");
     return rows;
   }
 
+  /// Times of a drive go on, after a silence, from those of the drive before.
+  void follow(double last, std::vector<Row>& drive) {
+    const double shift = last + silence_ - drive.front().time;
+    for (Row& row : drive) row.time += shift;
+    drives_.push_back(drive.front().time);
+  }
+
+  static bool isSameDrive(const CsvTable& table, size_t first, size_t row,
+                          const CsvSource& source) {
+    return source.run.empty() || table.text(row, source.run) == table.text(first, source.run);
+  }
+
+  static bool isWanted(const CsvTable& table, size_t row, const CsvSource& source) {
+    constexpr double kSame = 1e-9;
+    return std::all_of(source.only.begin(), source.only.end(), [&](const auto& only) {
+      const double number = table.number(row, only.first);
+      return std::any_of(only.second.begin(), only.second.end(),
+                         [&](double wanted) { return std::abs(number - wanted) <= kSame; });
+    });
+  }
+
+  /// Of one drive.
   static void checkTimes(const CsvTable& table, const CsvSource& source,
                          const std::vector<Row>& rows) {
-    double newest = rows.empty() ? 0.0 : rows.front().time;
+    std::vector<double> raw;
+    if (!source.time.empty())
+      for (const Row& row : rows) raw.push_back(table.number(row.row, source.time));
+    if (const auto problem = timeUnitProblem(raw, source.time_unit))
+      throw table.error(rows.front().row, "column " + source.time + ": " + *problem);
+    double newest = rows.front().time;
     for (const Row& row : rows) {
       const double since = row.time - rows.front().time;
       if (since > kLongest)
@@ -163,7 +207,8 @@ class CsvContent {
       if (row.time < newest - kOvertaking)
         throw table.error(row.row, "column " + source.time + " goes back by " +
                                        formatNumber(newest - row.time) +
-                                       " s; are these two drives? cut the file there");
+                                       " s; are these two drives? cut the file there, or name "
+                                       "the column that tells them apart (run:)");
       newest = std::max(newest, row.time);
     }
   }
@@ -173,8 +218,9 @@ class CsvContent {
     return source.time_unit * table.number(row, source.time) + source.time_offset;
   }
 
-  void take(const CsvTable& table, size_t row, double time, const std::string& quantity,
+  void take(const CsvTable& table, const Row& place, const std::string& quantity,
             const CsvColumn& column, const std::string& file) {
+    const size_t row = place.row;
     if (table.missing(row, column.column)) {
       ++result_.left_out[file + ": no " + quantity];
       return;
@@ -184,12 +230,14 @@ class CsvContent {
       throw table.error(row, "column " + column.column + " (" + quantity + ") is " +
                                  formatNumber(value) + " after unit and scale; allowed is up to " +
                                  formatNumber(column.limit) + unitHint(quantity, column.limit));
-    series_[quantity].add(time, value, table.line(row));
+    series_[quantity].add(place.time, value, table.line(row));
   }
 
   ForeignDrive& result_;
   std::map<std::string, Series> series_;
   std::map<std::string, std::string> files_;
+  double silence_;              ///< [s] between the drives of a table
+  std::vector<double> drives_;  ///< [s] where drives begin, the first one left out
   double begin_ = std::numeric_limits<double>::max();
 };
 
@@ -273,6 +321,10 @@ void takePoses(const CsvContent& content, const CsvMapping& mapping, ForeignDriv
     fix.time = times.time(i);
     const Eigen::Vector3d p_map = placing.at(fix.time);
     if (!p_map.allFinite()) continue;
+    if (content.at("pose_new", fix.time, 0.0) == 0.0) {
+      ++result.left_out["poses that are the one before (pose_new: 0)"];
+      continue;
+    }
     if (p_map.head<2>().norm() > kFarthest)
       throw RecordingError(content.placeOf(along, i) + ": column of " + along +
                            ": the position is " + formatNumber(std::round(p_map.head<2>().norm())) +
@@ -291,33 +343,56 @@ void takePoses(const CsvContent& content, const CsvMapping& mapping, ForeignDriv
       ++result.left_out["poses without a heading"];
       continue;
     }
-    fix.new_track = result.drive.fixes.empty();
-    result.drive.fixes.push_back(fix);
+    std::vector<Fix>& taken = result.drive.fixes;
+    fix.new_track = taken.empty() || content.isApart(taken.back().time, fix.time);
+    taken.push_back(fix);
   }
 }
 
-void takeCommands(const CsvContent& content, const CsvMapping& mapping, RecordedDrive& drive) {
-  const double period = content.of("left_command").period();
-  const double hold = mapping.command_hold.value_or(holdOf(period));
+/// What the columns of all channels say at a time, no older than `age` [s]: "speed" and so on.
+Command channelsAt(const CsvContent& content, const CommandChannels& channels, const char* what,
+                   double time, double age) {
+  Command values;
+  for (size_t c = 0; c < channels.size(); ++c)
+    values[c] = content.at(channels[c].name + "_" + what, time, age);
+  return values;
+}
+
+/// Commands as they came: each time one of the channels got a new one.
+std::vector<DriveSample> commandsOf(const CsvContent& content, const CommandChannels& channels,
+                                    double hold) {
+  std::vector<double> times;
+  for (const CommandChannel& channel : channels) {
+    const Series& series = content.of(channel.name + "_command");
+    for (size_t i = 0; i < series.size(); ++i) times.push_back(series.time(i));
+  }
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
   std::vector<DriveSample> commands;
-  for (const char* side : {"left_command", "right_command"})
-    for (size_t i = 0; i < content.of(side).size(); ++i) {
-      DriveSample sample;
-      sample.time = content.of(side).time(i);
-      sample.command = {content.at("left_command", sample.time, hold),
-                        content.at("right_command", sample.time, hold)};
-      if (std::isfinite(sample.command.left + sample.command.right)) commands.push_back(sample);
-    }
-  std::stable_sort(commands.begin(), commands.end(),
-                   [](const auto& a, const auto& b) { return a.time < b.time; });
-  drive.kind = mapping.kind;
-  holdCommands(commands, period, hold, drive);
-  for (DriveSample& sample : drive.drive) {
-    sample.speed = {content.at("left_speed", sample.time, kSpeedAge),
-                    content.at("right_speed", sample.time, kSpeedAge)};
+  for (const double time : times) {
+    DriveSample sample;
+    sample.time = time;
+    sample.command = channelsAt(content, channels, "command", time, hold);
+    bool whole = true;
+    for (size_t c = 0; c < channels.size(); ++c) whole = whole && std::isfinite(sample.command[c]);
+    if (whole) commands.push_back(sample);
+  }
+  return commands;
+}
+
+void takeCommands(const CsvContent& content, const CsvMapping& mapping, RecordedDrive& drive) {
+  // Where nothing is commanded the log is as of a vehicle with tracks.
+  if (!mapping.channels.empty()) drive.channels = mapping.channels;
+  const CommandChannels& channels = drive.channels;
+  const double period = content.of(channels.front().name + "_command").period();
+  const double hold = mapping.command_hold.value_or(holdOf(period));
+  holdCommands(commandsOf(content, channels, hold), period, hold, drive);
+  for (size_t i = 0; i < drive.drive.size(); ++i) {
+    DriveSample& sample = drive.drive[i];
+    sample.apart = i > 0 && content.isApart(drive.drive[i - 1].time, sample.time);
+    sample.speed = channelsAt(content, channels, "speed", sample.time, kSpeedAge);
     sample.voltage = content.at("voltage", sample.time, kBatteryAge);
-    sample.current = {content.at("left_current", sample.time, kBatteryAge),
-                      content.at("right_current", sample.time, kBatteryAge)};
+    sample.current = channelsAt(content, channels, "current", sample.time, kBatteryAge);
   }
   findRuns(drive);
 }

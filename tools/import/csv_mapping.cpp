@@ -24,23 +24,12 @@ struct Quantity {
 };
 
 const std::map<std::string, Quantity>& quantities() {
-  static const Quantity kCommand{
-      {{"1", 1.0}, {"percent", 0.01}, {"m/s", 1.0}, {"rad/s", 1.0}, {"rpm", 2.0 * kPi / 60.0}},
-      1.0};
-  static const Quantity kSpeed{{{"m/s", 1.0}, {"rad/s", 1.0}, {"rpm", 2.0 * kPi / 60.0}}, 100.0};
-  static const Quantity kCurrent{{{"A", 1.0}, {"mA", 0.001}}, 10'000.0};
   // UTM northings are up to 10 000 km; they need an origin.
   static const Quantity kLength{{{"m", 1.0}, {"mm", 0.001}, {"cm", 0.01}}, 1.1e7};
   static const Quantity kAngle{{{"rad", 1.0}, {"deg", toRadians(1.0)}}, 10'000.0};
   static const Quantity kOne{{{"1", 1.0}}, 1.001};
   static const std::map<std::string, Quantity> kAll{
-      {"left_command", kCommand},
-      {"right_command", kCommand},
-      {"left_speed", kSpeed},
-      {"right_speed", kSpeed},
       {"voltage", {{{"V", 1.0}, {"mV", 0.001}}, 1000.0}},
-      {"left_current", kCurrent},
-      {"right_current", kCurrent},
       {"x", kLength},
       {"y", kLength},
       {"z", kLength},
@@ -54,8 +43,47 @@ const std::map<std::string, Quantity>& quantities() {
       {"qw", kOne},
       {"qx", kOne},
       {"qy", kOne},
-      {"qz", kOne}};
+      {"qz", kOne},
+      {"pose_new", kOne}};
   return kAll;
+}
+
+const std::string kCommandOf = "_command";
+
+/// What stands before an ending; nothing where that is not the ending or nothing stands before it.
+std::optional<std::string> before(const std::string& name, const std::string& ending) {
+  if (name.size() <= ending.size() ||
+      name.compare(name.size() - ending.size(), ending.size(), ending) != 0)
+    return std::nullopt;
+  return name.substr(0, name.size() - ending.size());
+}
+
+bool isSide(const std::string& channel) {
+  return channel == "left" || channel == "right";
+}
+
+/// Of a channel of the commands, by the ending of its name, or one of quantities().
+std::optional<Quantity> quantityNamed(const std::string& name) {
+  const Quantity speed{{{"m/s", 1.0}, {"rad/s", 1.0}, {"rpm", 2.0 * kPi / 60.0}}, 100.0};
+  const auto found = quantities().find(name);
+  if (found != quantities().end()) return found->second;
+  if (before(name, "_speed")) return speed;
+  if (before(name, "_current")) return Quantity{{{"A", 1.0}, {"mA", 0.001}}, 10'000.0};
+  const std::optional<std::string> channel = before(name, kCommandOf);
+  if (!channel) return std::nullopt;
+  Quantity command{{{"1", 1.0}, {"percent", 0.01}}, 1.0};
+  command.units.insert(command.units.end(), speed.units.begin(), speed.units.end());
+  if (!isSide(*channel)) {
+    command.units.push_back({"rad", 1.0});
+    command.units.push_back({"deg", toRadians(1.0)});
+  }
+  return command;
+}
+
+/// What a command in a unit commands.
+CommandKind kindIn(const std::string& unit) {
+  if (unit == "rad" || unit == "deg") return CommandKind::kSteeringAngle;
+  return unit == "1" || unit == "percent" ? CommandKind::kPower : CommandKind::kTrackSpeed;
 }
 
 std::vector<std::string> namesOf(const std::vector<Unit>& units) {
@@ -95,6 +123,7 @@ class MappingReader {
     for (ConfigReader& table : reader_.sections("tables", true))
       mapping_.sources.push_back(readSource(table));
     reader_.finish();
+    orderChannels();
     check();
     if (!mapping_.origin && !mapping_.origin_at_first_fix)
       for (CsvSource& source : mapping_.sources)
@@ -136,10 +165,14 @@ class MappingReader {
     table.flag("header", source.layout.header);
     table.flag("decimal_comma", source.layout.decimal_comma);
     readTime(table.section("time", true), source);
+    table.text("run", source.run);
+    ConfigReader only = table.section("only");
+    for (const std::string& column : only.keys())
+      only.numbers(column, source.only[column], 0, {-1e15, 1e15}, "as in the column");
     ConfigReader columns = table.section("columns", true);
     for (const std::string& quantity : columns.keys()) {
-      if (quantities().count(quantity) == 0) {
-        std::vector<std::string> known;
+      if (!quantityNamed(quantity)) {
+        std::vector<std::string> known{"NAME_command", "NAME_speed", "NAME_current"};
         for (const auto& [name, what] : quantities()) known.push_back(name);
         throw columns.error(quantity, "is no quantity; known are " + joinWords(known));
       }
@@ -155,6 +188,8 @@ class MappingReader {
   static void nameColumns(CsvSource& source) {
     std::vector<std::string>& names = source.layout.columns;
     if (!source.time.empty()) names.push_back(source.time);
+    if (!source.run.empty()) names.push_back(source.run);
+    for (const auto& [column, numbers] : source.only) names.push_back(column);
     for (const auto& [quantity, column] : source.columns) names.push_back(column.column);
     const auto is_number = [](const std::string& name) { return parseInteger(name).has_value(); };
     names.erase(std::remove_if(names.begin(), names.end(), is_number), names.end());
@@ -174,7 +209,7 @@ class MappingReader {
   }
 
   CsvColumn readColumn(ConfigReader section, const std::string& name) {
-    const Quantity& quantity = quantities().at(name);
+    const Quantity quantity = quantityNamed(name).value();
     CsvColumn column;
     section.text("column", column.column, true);
     std::string unit = quantity.units.front().name;
@@ -188,14 +223,27 @@ class MappingReader {
     if (wheels && wheel_radius_ == 0.0)
       throw section.error("unit", "needs wheel_radius, the metres from axle to rim");
     if (wheels) column.factor *= wheel_radius_;
-    if (name == "left_command" || name == "right_command") {
-      const bool speed = wheels || unit == "m/s";
-      mapping_.kind = speed ? CommandKind::kTrackSpeed : CommandKind::kPower;
-      if (speed) column.limit = 100.0;
-      if (speeds_.emplace(speed, name).second && speeds_.size() > 1)
+    const std::optional<std::string> channel = before(name, kCommandOf);
+    if (!channel) return column;
+    const CommandKind kind = kindIn(unit);
+    column.limit = kind == CommandKind::kTrackSpeed ? 100.0 : commandLimit(kind);
+    for (const CommandChannel& other : mapping_.channels)
+      if (isSide(*channel) && isSide(other.name) && other.kind != kind)
         throw section.error("unit", "one side is power, the other a speed");
-    }
+    if (mapping_.channels.size() == Command::kMaxChannels)
+      throw section.error(
+          "column", "commands have up to " + std::to_string(Command::kMaxChannels) + " channels");
+    mapping_.channels.push_back({*channel, kind, -commandLimit(kind), commandLimit(kind)});
     return column;
+  }
+
+  /// Left and right come first, wherever they stand; the others in the order of their columns.
+  void orderChannels() {
+    const auto place = [](const CommandChannel& channel) {
+      return channel.name == "left" ? 0 : channel.name == "right" ? 1 : 2;
+    };
+    std::stable_sort(mapping_.channels.begin(), mapping_.channels.end(),
+                     [&](const auto& a, const auto& b) { return place(a) < place(b); });
   }
 
   void require(bool good, const std::string& problem) const {
@@ -221,19 +269,33 @@ class MappingReader {
     require(
         !(metres || degrees) || headings == 1,
         "a pose needs one heading: yaw, a quaternion (qw, qx, qy, qz), or heading.course_above");
+    for (const CsvSource& source : mapping_.sources)
+      for (const auto& [quantity, column] : source.columns) requireChannelOf(quantity);
     require(
         !mapping_.course_above || mapping_.has("left_command") || mapping_.has("left_speed"),
         "heading.course_above needs commands or speeds, which tell whether it drives backwards");
-    require(metres || degrees || mapping_.has("left_command"), "neither positions nor commands");
-    for (const CsvSource& source : mapping_.sources)
+    require(metres || degrees || !mapping_.channels.empty(), "neither positions nor commands");
+    for (const CsvSource& source : mapping_.sources) {
       require(mapping_.sources.size() == 1 || source.rate == 0.0,
               "rows without a time of their own cannot be placed beside those of another table");
+      require(mapping_.sources.size() == 1 || source.run.empty(),
+              "run: drives of one table cannot be placed beside those of another");
+    }
+  }
+
+  /// A speed or current of a channel is its own where that channel is commanded. Speeds of two
+  /// sides are known without, too.
+  void requireChannelOf(const std::string& quantity) const {
+    for (const char* ending : {"_speed", "_current"}) {
+      const std::optional<std::string> channel = before(quantity, ending);
+      require(!channel || isSide(*channel) || mapping_.has(*channel + kCommandOf),
+              quantity + ": there is no " + channel.value_or("") + kCommandOf);
+    }
   }
 
   ConfigReader& reader_;
   CsvMapping mapping_;
-  double wheel_radius_ = 0.0;           ///< [m] 0 = not given
-  std::map<bool, std::string> speeds_;  ///< whether commands are speeds
+  double wheel_radius_ = 0.0;  ///< [m] 0 = not given
 };
 
 }  // namespace

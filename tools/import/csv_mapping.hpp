@@ -30,17 +30,20 @@ struct CsvSource {
   std::string time;        ///< column of the time; empty: rows come at `rate`
   double time_unit = 1.0;  ///< [s]
   std::vector<std::string> other_time_units;
-  double time_offset = 0.0;                  ///< [s] added, where its clock is another one
-  double rate = 0.0;                         ///< [Hz]
-  std::map<std::string, CsvColumn> columns;  ///< by quantity, see csv_mapping.cpp
+  double time_offset = 0.0;  ///< [s] added, where its clock is another one
+  double rate = 0.0;         ///< [Hz]
+  std::string run;           ///< column: another value begins another drive, with a time of its own
+  std::map<std::string, std::vector<double>> only;  ///< columns: rows with other numbers are no
+                                                    ///< part of the drive
+  std::map<std::string, CsvColumn> columns;         ///< by quantity, see csv_mapping.cpp
 };
 
 /// What a recording in CSV means: a mapping file.
 struct CsvMapping {
   std::string robot = "robot of a CSV file";
-  std::string surface = "unknown";
-  double baseline = 0.0;  ///< [m] between the tracks; 0 = unknown
-  CommandKind kind = CommandKind::kPower;
+  std::string surface;       ///< empty: not said
+  double baseline = 0.0;     ///< [m] between the tracks; 0 = unknown
+  CommandChannels channels;  ///< in the order of the columns; left and right first
   /// [s] a command is known to hold where none follows; nothing: as its period allows.
   std::optional<double> command_hold;
   std::vector<CsvSource> sources;
@@ -54,13 +57,15 @@ struct CsvMapping {
   std::optional<double> course_above;
 
   bool has(const std::string& quantity) const;
+  bool isOfTracks() const { return kindOfTracks(channels).has_value(); }
 };
 
 /// Reads a mapping file; throws ConfigError with file:line.
-/** Quantities: left_command, right_command, left_speed, right_speed, voltage, left_current,
- *  right_current, x, y, z, latitude, longitude, height, yaw, roll, pitch, qw, qx, qy, qz (of
- *  R_map_body), yaw_rate. Roll, pitch and quaternion are those of a body with x forward, y left and
- *  z up. A position and its heading stand in one file. */
+/** Quantities: NAME_command, NAME_speed and NAME_current of each channel of the commands (left and
+ *  right of a vehicle with tracks), voltage, x, y, z, latitude, longitude, height, yaw, roll,
+ *  pitch, qw, qx, qy, qz (of R_map_body), yaw_rate, and pose_new: 0 where a row repeats a pose.
+ *  Roll, pitch and quaternion are those of a body with x forward, y left and z up. A position and
+ *  its heading stand in one file. The unit of a command says what kind it is of. */
 CsvMapping readCsvMapping(ConfigReader& reader);
 
 }  // namespace tread::import

@@ -14,6 +14,12 @@ using recordings::kLongestHold;
 using recordings::kPeriod;
 using recordings::RecordedDrive;
 
+bool CommandOrder::operator()(const Command& a, const Command& b) const {
+  for (size_t c = 0; c < Command::kMaxChannels; ++c)
+    if (a[c] != b[c]) return a[c] < b[c];
+  return false;
+}
+
 double largestShare(const std::vector<Loss>& losses) {
   std::map<std::string, double> shares;
   double largest = 0.0;
@@ -95,22 +101,21 @@ void holdCommands(const std::vector<DriveSample>& commands, double period, doubl
 }
 
 void findRuns(RecordedDrive& drive) {
-  std::map<std::pair<double, double>, int> numbers;
+  std::map<Command, int, CommandOrder> numbers;
   const std::vector<DriveSample>& samples = drive.drive;
   const auto follows = [&](size_t i) {
     return samples[i].time - samples[i - 1].time <= kLongestHold;
   };
   for (size_t first = 0; first < samples.size();) {
-    const TrackCommand& command = samples[first].command;
+    const Command& command = samples[first].command;
     size_t end = first + 1;
     while (end < samples.size() && samples[end].command == command && follows(end)) ++end;
-    if (command != TrackCommand{}) {
+    if (command != Command{}) {
       const auto next = static_cast<int>(numbers.size()) + 1;
-      const int number =
-          numbers.emplace(std::pair(command.left, command.right), next).first->second;
-      const char* const why = end == samples.size() ? "the log ended"
-                              : follows(end)        ? "the command changed"
-                                                    : recordings::kCommandsMissing;
+      const int number = numbers.emplace(command, next).first->second;
+      const char* const why = end == samples.size() || samples[end].apart ? "the log ended"
+                              : follows(end)                              ? "the command changed"
+                                             : recordings::kCommandsMissing;
       drive.runs.push_back({number, samples[first].time, samples[end - 1].time + kPeriod, why});
     }
     first = end;

@@ -20,6 +20,11 @@ struct Loss {
   std::string unit;  ///< of both: "rows of a.csv", "poses", "bytes", "s"
 };
 
+/// Commands in an order of no meaning, for maps.
+struct CommandOrder {
+  bool operator()(const Command& a, const Command& b) const;
+};
+
 /// The largest share that was lost: the losses of a unit together.
 double largestShare(const std::vector<Loss>& losses);
 /// "1234 of 5678 rows (22 %): the same time as the one before".

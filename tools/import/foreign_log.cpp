@@ -232,7 +232,7 @@ std::vector<DriveSample> commandsOf(const std::string& path, LogContent& log, do
     DriveSample& sample = samples.emplace_back();
     sample.time = message.time;
     sample.command = command;
-    sample.speed = {recordings::kUnknown, recordings::kUnknown};
+    sample.speed = recordings::allUnknown();
     return sample;
   };
   kind = CommandKind::kPower;
@@ -287,7 +287,9 @@ ForeignDrive readForeignLog(const std::string& path, const ForeignRobot& robot) 
   LogContent log(path, result);
   RecordedDrive& drive = result.drive;
   takePoses(path, log.poses(robot.pose_channel), result);
-  takeCommands(commandsOf(path, log, robot.baseline, drive.kind), result);
+  CommandKind kind = CommandKind::kPower;
+  takeCommands(commandsOf(path, log, robot.baseline, kind), result);
+  drive.channels = trackChannels(kind);
   for (const Timed& laser : log.all("lidar_t")) {
     if (auto scan = scanOf(laser, robot.lidar_height))
       drive.scans.push_back(std::move(*scan));

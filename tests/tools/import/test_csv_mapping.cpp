@@ -71,15 +71,15 @@ TEST_CASE("the example mapping: units, scales, compass, degrees of latitude, pow
   const ForeignDrive read = readMappedCsv(folder.file("a.csv", csv), shipped("example.yaml"));
   const recordings::RecordedDrive& drive = read.drive;
   REQUIRE(read.left_out.empty());
-  REQUIRE(drive.kind == CommandKind::kPower);
+  REQUIRE(drive.channels == trackChannels(CommandKind::kPower));
   REQUIRE(drive.drive.size() == 100);
   const recordings::DriveSample& sample = drive.drive[50];
-  CHECK(sample.command.left == Approx(0.4));
-  CHECK(sample.command.right == Approx(0.3));
-  CHECK(sample.speed.left == Approx(2.0 * kPi * 0.12));
-  CHECK(sample.speed.right == Approx(2.0 * kPi * 0.12));
+  CHECK(sample.command[0] == Approx(0.4));
+  CHECK(sample.command[1] == Approx(0.3));
+  CHECK(sample.speed[0] == Approx(2.0 * kPi * 0.12));
+  CHECK(sample.speed[1] == Approx(2.0 * kPi * 0.12));
   CHECK(sample.voltage == Approx(24.5));
-  CHECK(sample.current.right == Approx(4.5));
+  CHECK(sample.current[1] == Approx(4.5));
   REQUIRE(drive.fixes.size() == 100);
   const recordings::Fix& fix = drive.fixes.back();
   CHECK(fix.time == Approx(4.95));
@@ -149,8 +149,8 @@ TEST_CASE("a spreadsheet's table gives the drive that the plain one gives") {
     REQUIRE(read.drive.fixes.size() == 100);
     CHECK(read.drive.fixes.back().time == Approx(4.95));
     CHECK(read.drive.fixes.back().T_map_body.x == Approx(3.0));
-    CHECK(read.drive.drive.at(50).command.left == Approx(0.6));
-    CHECK(read.drive.drive.at(50).command.right == Approx(0.5));
+    CHECK(read.drive.drive.at(50).command[0] == Approx(0.6));
+    CHECK(read.drive.drive.at(50).command[1] == Approx(0.5));
     const bool units = csv.find("m/s") != std::string::npos;
     CHECK(read.left_out.size() == (units ? 1 : 0));
     if (units)
@@ -210,7 +210,8 @@ TEST_CASE("refusals name file, line and column") {
   CHECK(complaint("t,x,y,yaw\n0,1,2,0\n100,1e10,2,0\n", kPoses) ==
         "drive.csv:3: column x (x) is 1e+10 after unit and scale; allowed is up to 1e+05");
   CHECK(complaint("t,x,y,yaw\n0,1,2,0\n-300,1,2,0\n", kPoses) ==
-        "drive.csv:3: column t goes back by 0.3 s; are these two drives? cut the file there");
+        "drive.csv:3: column t goes back by 0.3 s; are these two drives? cut the file there, or "
+        "name the column that tells them apart (run:)");
   CHECK(complaint("t,x,y,yaw\n0,1,2,0\n1e12,1,2,0\n", kPoses) ==
         "drive.csv:3: column t is 1e+09 s after the first row; is the unit of the time right?");
   CHECK(complaint("t,x,z,yaw\n0,1,2,0\n", kPoses) ==
@@ -271,7 +272,7 @@ TEST_CASE("between two commands that are further apart than their period allows 
   REQUIRE(drive.drive.size() == 280);
   for (const recordings::DriveSample& sample : drive.drive) {
     CHECK(sample.automatic);
-    CHECK(sample.command.left == 0.5);
+    CHECK(sample.command[0] == 0.5);
     CHECK((sample.time < 5.0 || sample.time > 10.99));
   }
   REQUIRE(drive.runs.size() == 2);
@@ -349,7 +350,7 @@ TEST_CASE(
   writeFomo(folder);
   const ForeignDrive read = readMappedCsv(folder.file(""), shipped("fomo.yaml"));
   const recordings::RecordedDrive& drive = read.drive;
-  REQUIRE(drive.kind == CommandKind::kTrackSpeed);
+  REQUIRE(drive.channels == trackChannels(CommandKind::kTrackSpeed));
   CHECK(read.left_out.at("poses without a heading") < 35);
   REQUIRE(drive.fixes.size() > 90);
   // Ahead and back with the nose to the east.
@@ -357,15 +358,15 @@ TEST_CASE(
     CHECK(std::abs(wrapAngle(fix.T_map_body.yaw)) < 1e-6);
   CHECK(drive.fixes.front().T_map_body.x < 0.5);
   CHECK(drive.fixes.front().time == Approx(3.0).margin(0.15));
-  CHECK(drive.drive.at(100).command.left == Approx(1.5));
-  CHECK(drive.drive.at(100).speed.right == Approx(1.5));
+  CHECK(drive.drive.at(100).command[0] == Approx(1.5));
+  CHECK(drive.drive.at(100).speed[1] == Approx(1.5));
   CHECK(drive.drive.at(100).voltage == Approx(46.5));
-  CHECK(drive.drive.at(100).current.left == Approx(50.0).margin(1.0));
+  CHECK(drive.drive.at(100).current[0] == Approx(50.0).margin(1.0));
   REQUIRE(drive.runs.size() == 2);
   CHECK(drive.runs[0].end - drive.runs[0].begin == Approx(6.0).margin(0.11));
   const ForeignDrive tracks =
       readMappedCsv(folder.file(""), shipped("fomo.yaml", {"wheel_radius=0.18"}));
-  CHECK(tracks.drive.drive.at(100).command.left == Approx(0.9));
+  CHECK(tracks.drive.drive.at(100).command[0] == Approx(0.9));
   std::filesystem::remove(folder.file("metadata/current_right.csv"));
   CHECK_THROWS_WITH(readMappedCsv(folder.file(""), shipped("fomo.yaml")),
                     Catch::Contains("current_right.csv: cannot be read"));

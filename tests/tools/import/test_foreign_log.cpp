@@ -114,12 +114,12 @@ TEST_CASE("held commands of a foreign log become executions, body speeds become 
   const ForeignDrive foreign = log.read(robot);
   REQUIRE(foreign.drive.fixes.size() == 400);
   REQUIRE(foreign.drive.fixes[100].time == Approx(2.0));
-  REQUIRE(foreign.drive.kind == CommandKind::kTrackSpeed);
+  REQUIRE(foreign.drive.channels == trackChannels(CommandKind::kTrackSpeed));
   REQUIRE(foreign.drive.runs.size() == 3);
   REQUIRE(foreign.drive.runs[1].begin == Approx(1.0).margin(0.051));
   REQUIRE(foreign.drive.runs[1].end == Approx(7.0).margin(0.051));
-  REQUIRE(foreign.drive.drive[40].command.left == Approx(0.3));
-  REQUIRE(foreign.drive.drive[40].command.right == Approx(0.5));
+  REQUIRE(foreign.drive.drive[40].command[0] == Approx(0.3));
+  REQUIRE(foreign.drive.drive[40].command[1] == Approx(0.5));
   recordings::Session session;
   session.pose_rate = 50.0;
   recordings::LogCounts counts;
@@ -138,10 +138,10 @@ TEST_CASE("power of two wheels stays power, and where no command came there is n
   for (int i = 0; i < 20; ++i) tell(0.05 * i, 0.25);
   for (int i = 0; i < 20; ++i) tell(3.0 + 0.05 * i, 0.25);
   const recordings::RecordedDrive drive = log.read().drive;
-  REQUIRE(drive.kind == CommandKind::kPower);
-  REQUIRE(drive.drive.front().command.left == 0.25);
-  REQUIRE(drive.drive.front().command.right == -0.5);
-  REQUIRE(std::isnan(drive.drive.front().speed.left));
+  REQUIRE(drive.channels == trackChannels(CommandKind::kPower));
+  REQUIRE(drive.drive.front().command[0] == 0.25);
+  REQUIRE(drive.drive.front().command[1] == -0.5);
+  REQUIRE(std::isnan(drive.drive.front().speed[0]));
   REQUIRE(drive.drive.size() == 40);
   REQUIRE(drive.drive[20].time == Approx(3.0));
   for (const recordings::DriveSample& sample : drive.drive) REQUIRE(sample.automatic);
@@ -183,8 +183,7 @@ TEST_CASE("bytes of a foreign log that are damaged are counted with the seconds 
   const std::vector<recordings::CommandHole> holes = recordings::commandHoles(foreign.drive.drive);
   REQUIRE(holes.size() == 1);
   CHECK(holes[0].end - holes[0].begin == Approx(3.0).margin(0.06));
-  for (const recordings::DriveSample& sample : foreign.drive.drive)
-    CHECK(sample.command.left == 0.5);
+  for (const recordings::DriveSample& sample : foreign.drive.drive) CHECK(sample.command[0] == 0.5);
 }
 
 TEST_CASE("poses out of order are sorted, repeated ones and a clock that goes back are counted") {
@@ -274,7 +273,7 @@ TEST_CASE("real logs of other robots are read: poses, scans, commands") {
   REQUIRE(square.drive.scans[5].message.duration > 150'000);
   REQUIRE(square.drive.drive.size() > 450);
   const ForeignDrive open = readForeignLog(logs + "mbot2021_haotsunglee/openloop_50.log", {});
-  REQUIRE(open.drive.kind == CommandKind::kPower);
+  REQUIRE(open.drive.channels == trackChannels(CommandKind::kPower));
   REQUIRE(open.drive.fixes.empty());
   REQUIRE(open.drive.drive.size() > 270);
 }

@@ -65,7 +65,7 @@ class StepJoiner {
       place(run);
       gap::Segment& segment = segments_.back();
       for (size_t i = sample_; i < samples_end; ++i)
-        segment.commands.push_back({drive_.drive[i].time + shift_, drive_.drive[i].command});
+        segment.commands.push_back({drive_.drive[i].time + shift_, drive_.drive[i].command.tracks()});
       segment.end = segment.commands.back().time + kPeriod;
       const bool ok = ok_.count(run.step) > 0 && ok_[run.step];
       for (size_t i = fix_; i < fixes_end && ok; ++i)
@@ -84,11 +84,11 @@ class StepJoiner {
     const recordings::DriveSample& first = drive_.drive[sample_];
     const bool joined =
         follows_ && run.step == step_ + 1 && sample_ > 0 &&
-        std::abs(first.speed.left - drive_.drive[sample_ - 1].speed.left) < kSameSpeed &&
-        std::abs(first.speed.right - drive_.drive[sample_ - 1].speed.right) < kSameSpeed;
+        std::abs(first.speed[0] - drive_.drive[sample_ - 1].speed[0]) < kSameSpeed &&
+        std::abs(first.speed[1] - drive_.drive[sample_ - 1].speed[1]) < kSameSpeed;
     if (!joined) {
       segments_.emplace_back();
-      segments_.back().command_before = first.speed;  // the wheels follow commands closely
+      segments_.back().command_before = first.speed.tracks();  // the wheels follow commands closely
       shift_ = 0.0;
       T_segment_step_ = {};
       return;
@@ -129,7 +129,7 @@ std::vector<gap::Segment> automaticSegments(const RecordedDrive& drive,
     const bool goes_on = i > 0 && drive.drive[i - 1].automatic &&
                          sample.time - drive.drive[i - 1].time < 2.0 * kPeriod;
     if (!goes_on) segments.emplace_back();
-    segments.back().commands.push_back({sample.time, sample.command});
+    segments.back().commands.push_back({sample.time, sample.command.tracks()});
     segments.back().end = sample.time + kPeriod;
   }
   const auto isBad = [&](double time) {
