@@ -82,6 +82,8 @@ int runShell(int argc, char** argv, const std::string& name, const std::string& 
     BusAccess access{arguments.lcm_url, hostSealer(arguments.key)};
     if (arguments.check) {
       if (body.trial) body.trial();
+      for (const std::string& warning : body.warnings)
+        std::cout << "# warning: " << warning << '\n';
       std::cout << reader.effective();
     } else {
       body.run(std::move(access), stop);

@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <sys/types.h>
 
@@ -22,6 +23,8 @@ struct ShellBody {
       : run(std::move(body)), trial(std::move(attempt)) {}
 
   Run run;
+  /// With --check: one line each, of what is allowed and has no effect.
+  std::vector<std::string> warnings;
   /// With --check: tries what must be free, a port for instance; throws with one clear line.
   std::function<void()> trial;
 };
@@ -35,10 +38,10 @@ const std::atomic<bool>& stopRequest(pid_t parent);
 /// The main function of a process.
 /** Command line: --config FILE, --set KEY=VALUE (again and again), --lcm-url URL, --key FILE (only
  * sealed messages), --check (only reads the configuration and the key, tries what must be
- * free, and prints what holds, defaults included), --with-parent (ends as by SIGINT when the
- * process that started it is gone: a supervisor that is killed leaves nothing driving), --help.
- * stopRequest() becomes `stop`. Where something throws, one clear line and code 1; usage errors end
- * with code 2. */
+ * free, and prints what holds, defaults included, below warnings as comments), --with-parent (ends
+ * as by SIGINT when the process that started it is gone: a supervisor that is killed leaves nothing
+ * driving), --help. stopRequest() becomes `stop`. Where something throws, one clear line and code
+ * 1; usage errors end with code 2. */
 int runShell(int argc, char** argv, const std::string& name, const std::string& description,
              const ShellPreparation& prepare);
 

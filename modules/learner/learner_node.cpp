@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/config/scalars.hpp"
 #include "common/messages/blank.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/vehicle/robot_description.hpp"
@@ -59,6 +60,25 @@ learning_t reportOf(const execution_record_t& record, Rule rule) {
   return message;
 }
 
+/// One line for each key that was given and that the rule does not read.
+std::vector<std::string> unreadKeys(const ConfigReader& reader, const Rule& rule) {
+  const auto reads = [](const Rule& one, const char* key) {
+    const std::vector<std::string> keys = keysReadBy(one);
+    return std::find(keys.begin(), keys.end(), key) != keys.end();
+  };
+  std::vector<std::string> lines;
+  for (const char* key : {"memory", "scaling", "ground"}) {
+    if (!reader.has(key) || reads(rule, key)) continue;
+    std::vector<std::string> readers;
+    for (const Rule& other : ruleNames())
+      if (reads(other, key)) readers.push_back(other);
+    const std::string problem =
+        "rule " + rule + " does not read it, " + joinWords(readers) + " would; take it out";
+    lines.emplace_back(reader.error(key, problem).what());
+  }
+  return lines;
+}
+
 /// A vehicle's largest speed that is not given is the largest of its patterns.
 LearnerNodeConfig withSpeed(LearnerNodeConfig config) {
   if (config.limits.max_speed <= 0.0) config.limits.max_speed = largestSpeed(config.shipped);
@@ -66,6 +86,13 @@ LearnerNodeConfig withSpeed(LearnerNodeConfig config) {
 }
 
 }  // namespace
+
+std::vector<std::string> keysReadBy(const Rule& rule) {
+  if (rule == "off") return {};
+  if (rule == "single") return {"memory"};
+  if (rule == "collective" || rule == "telescoping") return {"memory", "scaling"};
+  return {"ground"};
+}
 
 LearnerNodeConfig readLearnerConfig(ConfigReader& reader) {
   std::string patterns;
@@ -89,6 +116,7 @@ void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config) {
   // w = 1 would never learn and never say why: `off` is the word for that.
   reader.number("memory", config.rule.memory, {0.0, 0.999}, "1");
   readRules(reader, config.rule);
+  config.warnings = unreadKeys(reader, config.rule.rule);
   readGates(reader, config.limits);
   // Not shorter: the publisher sends a portion a step, and LCM loses more than 100 kB in 20 ms.
   reader.seconds("period", config.period_us, {0.02, 0.1});

@@ -101,11 +101,15 @@ struct LearnerNodeConfig {
   int64_t remembered_versions = 50;  ///< sets kept to score executions with the version they name
 
   std::string store = "state/learner";  ///< folder of the state; used by the process
+  std::vector<std::string> warnings;    ///< of keys that were given and that the rule does not read
 
   explicit LearnerNodeConfig(PatternSet set) : shipped(std::move(set)) {}
   /// The configuration with its defaults, for CONFIG.
   std::string effective() const;
 };
+
+/// Which of the keys memory, scaling and ground a rule reads.
+std::vector<std::string> keysReadBy(const Rule& rule);
 
 /// Reads the configuration and the pattern file that it names; throws ConfigError with file:line.
 LearnerNodeConfig readLearnerConfig(ConfigReader& reader);

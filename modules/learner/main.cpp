@@ -9,12 +9,14 @@ int main(int argc, char** argv) {
     learner::LearnerNodeConfig config = learner::readLearnerConfig(reader);
     // A little more than the period of HEALTH.
     config.listen_us = 1'200'000;
-    return [config](BusAccess access, const std::atomic<bool>& stop) {
+    ShellBody body = [config](BusAccess access, const std::atomic<bool>& stop) {
       LcmBus bus(std::move(access), TimeSource::kFollow);
       FileStore store(config.store);
       learner::LearnerNode node(config, bus, store);
       bus.run(node, stop);
     };
+    body.warnings = config.warnings;
+    return body;
   };
   return runShell(argc, argv, "tread-learner",
                   "Learns what the ground makes of the motion patterns, and publishes them.",

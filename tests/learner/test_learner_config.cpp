@@ -2,7 +2,15 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <map>
+#include <regex>
+#include <sstream>
+
+#include "common/config/scalars.hpp"
 #include "modules/learner/learner_node.hpp"
+#include "tests/helpers.hpp"
+#include "tests/learner/rule_bench.hpp"
 
 using namespace tread;
 using namespace tread::learner;
@@ -15,6 +23,80 @@ const std::string kPatterns =
 LearnerNodeConfig read(const std::string& text) {
   ConfigReader reader = ConfigReader::fromText(kPatterns + text, "learner.yaml");
   return readLearnerConfig(reader);
+}
+
+/// Values by key (SECTION.KEY); numbers as they are written shortest.
+using Values = std::map<std::string, std::string>;
+
+/// "[0.05, 2]" with each number to nine digits, so that 0.2 and 0.19999999999999998 are one.
+std::string plain(const std::string& value) {
+  static const std::regex kNumber("[-+0-9.e]+");
+  std::string text;
+  auto rest = value.begin();
+  for (std::sregex_iterator number(value.begin(), value.end(), kNumber), end; number != end;
+       ++number) {
+    text.append(rest, (*number)[0].first);
+    const std::optional<double> parsed = parseNumber(number->str());
+    std::ostringstream digits;
+    digits.precision(9);
+    if (parsed)
+      digits << *parsed;
+    else
+      digits << number->str();
+    text += digits.str();
+    rest = (*number)[0].second;
+  }
+  return text.append(rest, value.end());
+}
+
+/// What the program reads, with its defaults.
+Values readKeys() {
+  Values values;
+  std::istringstream lines(read("").effective());
+  static const std::regex kLine("( *)([a-z_]+):(?: (.*))?");
+  std::string section;
+  std::smatch match;
+  for (std::string line; std::getline(lines, line);) {
+    REQUIRE(std::regex_match(line, match, kLine));
+    if (match[1].length() == 0) section.clear();
+    if (!match[3].matched)
+      section = match[2].str() + ".";
+    else if (match[2].str().rfind("shipped_", 0) != 0 || !section.empty())
+      values[section + match[2].str()] = plain(match[3]);
+  }
+  return values;
+}
+
+/// What the manual says: its tables, a section each.
+Values writtenKeys() {
+  Values values;
+  std::istringstream lines(
+      tread::testing::contentOf(std::string(TREAD_SOURCE_DIR) + "/modules/learner/keys.md"));
+  static const std::regex kRow(R"(\| `([a-z_]+)` \| ([^|]*) \| ([^|]*) ?\| [^|]+ \|)");
+  static const std::regex kHeading("## ([a-z]+):.*");
+  std::string section;
+  std::smatch match;
+  for (std::string line; std::getline(lines, line);) {
+    if (std::regex_match(line, match, kHeading)) section = match[1].str() + ".";
+    if (!std::regex_match(line, match, kRow)) continue;
+    CAPTURE(line);
+    CHECK(values.emplace(section + match[1].str(), plain(match[2])).second);
+  }
+  // Files that are named, not read from a default.
+  CHECK(values.erase("patterns") + values.erase("robot") == 2);
+  return values;
+}
+
+/// All predictions of a rule that has learned from executions with another gain and a turn.
+std::vector<double> learned(const RuleConfig& config) {
+  samples::Pupil pupil(config, samples::smallSet());
+  for (const double gain : {0.8, 0.7, 0.75})
+    for (size_t p = 0; p < 3; ++p) {
+      std::vector<Pose2> measured = pupil.shipped(p);
+      for (Pose2& pose : measured) pose = {gain * pose.x, gain * pose.y, 0.6 * gain * pose.yaw};
+      pupil.learn(p, measured);
+    }
+  return pupil.everything();
 }
 
 }  // namespace
@@ -48,6 +130,53 @@ TEST_CASE("a mistyped key, rule or value of the learner is one line with file an
   REQUIRE_THROWS_WITH(read("memory: 1.0\n"), StartsWith("learner.yaml:2: "));
   // Below 20 ms the set would be sent faster than LCM can take it.
   REQUIRE_THROWS_WITH(read("period: 0.01\n"), StartsWith("learner.yaml:2: "));
+}
+
+TEST_CASE("the manual of the learner's keys names each key that is read, with its default") {
+  const Values read = readKeys(), written = writtenKeys();
+  CHECK(read.size() > 50);
+  for (const auto& [key, value] : read) {
+    CAPTURE(key);
+    const bool there = written.count(key) == 1;
+    CHECK(there);
+    if (there) CHECK(written.at(key) == value);
+  }
+  for (const auto& [key, value] : written) {
+    CAPTURE(key);
+    CHECK(read.count(key) == 1);
+  }
+}
+
+TEST_CASE("a rule reads the keys that it is said to read, and no other ones") {
+  for (const Rule& rule : ruleNames()) {
+    RuleConfig config = samples::ruleConfig(rule);
+    const std::vector<double> usual = learned(config);
+    std::map<std::string, RuleConfig> changed{{"memory", config}, {"scaling", config}};
+    changed["ground"] = config;
+    changed["memory"].memory = 0.9;
+    changed["scaling"].scaling.min_factor = 0.95;
+    changed["ground"].ground.noise.forward = 0.2;
+    const std::vector<std::string> keys = keysReadBy(rule);
+    for (const auto& [key, other] : changed) {
+      CAPTURE(rule, key);
+      const bool said = std::find(keys.begin(), keys.end(), key) != keys.end();
+      CHECK((learned(other) != usual) == said);
+    }
+  }
+}
+
+TEST_CASE("a key that the rule does not read is a warning that names the rules that would") {
+  CHECK(read("rule: single\nmemory: 0.3\n").warnings.empty());
+  CHECK(read("rule: collective\nscaling: {max_factor: 1.5}\n").warnings.empty());
+  CHECK(read("").warnings.empty());
+  const std::vector<std::string> lines =
+      read("rule: single\nmemory: 0.3\nground: {sure: 0.8}\nscaling: {max_factor: 1.5}\n").warnings;
+  REQUIRE(lines.size() == 2);
+  CHECK(lines[0] ==
+        "learner.yaml:5: scaling: rule single does not read it, collective, telescoping would; "
+        "take it out");
+  CHECK_THAT(lines[1], Catch::StartsWith("learner.yaml:4: ground: rule single does not read it, "));
+  CHECK(read("rule: off\nmemory: 0.3\n").warnings.size() == 1);
 }
 
 TEST_CASE("the effective configuration is itself YAML and names the shipped set") {

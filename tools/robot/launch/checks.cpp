@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <sstream>
 #include <stdexcept>
 
@@ -156,6 +157,13 @@ std::vector<HostFinding> checkProcess(const ProcessFacts& facts) {
                                  ? "--check ended with code " + std::to_string(facts.check_code)
                                  : facts.check_line),
                         facts.config.empty() ? "correct the launch file" : "edit " + facts.config});
+  constexpr const char* kWarning = "# warning: ";
+  std::istringstream lines(facts.configuration);
+  for (std::string line; std::getline(lines, line);)
+    if (line.rfind(kWarning, 0) == 0)
+      findings.push_back(
+          {false, facts.name + ": " + line.substr(std::strlen(kWarning)),
+           facts.config.empty() ? "correct the launch file" : "edit " + facts.config});
   const std::string device = facts.name + ": device " + facts.device;
   if (facts.device.empty()) return findings;
   if (!facts.device_present)

@@ -167,6 +167,10 @@ TEST_CASE("a process's program, configuration and device are named when they are
   CHECK(oneLine(checkProcess(facts)) ==
         "robot: planner: p.yaml:3: lease is 9 s; allowed 0.05..1 s; fix: edit p.yaml\n");
   facts.check_code = 0;
+  facts.configuration = "# warning: p.yaml:4: memory: nothing reads it\nlease: 1\n";
+  CHECK(oneLine(checkProcess(facts)) ==
+        "robot: advice: planner: p.yaml:4: memory: nothing reads it; fix: edit p.yaml\n");
+  facts.configuration.clear();
   facts.device = "/dev/ttyUSB0";
   facts.device_present = false;
   CHECK_FALSE(anyCritical(checkProcess(facts)));
