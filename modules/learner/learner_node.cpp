@@ -60,8 +60,18 @@ learning_t reportOf(const execution_record_t& record, Rule rule) {
   return message;
 }
 
+/// One line for each key of a section that was given and that no rule reads any more.
+template <size_t kCount>
+void addRetired(ConfigReader& reader, const char* section_name, const char* const (&keys)[kCount],
+                std::vector<std::string>& lines) {
+  ConfigReader section = reader.section(section_name);
+  for (const char* key : keys)
+    if (section.has(key))
+      lines.emplace_back(section.error(key, "has no effect any more; take it out").what());
+}
+
 /// One line for each key that was given and that the rule does not read.
-std::vector<std::string> unreadKeys(const ConfigReader& reader, const Rule& rule) {
+std::vector<std::string> unreadKeys(ConfigReader& reader, const Rule& rule) {
   const auto reads = [](const Rule& one, const char* key) {
     const std::vector<std::string> keys = keysReadBy(one);
     return std::find(keys.begin(), keys.end(), key) != keys.end();
@@ -76,6 +86,8 @@ std::vector<std::string> unreadKeys(const ConfigReader& reader, const Rule& rule
         "rule " + rule + " does not read it, " + joinWords(readers) + " would; take it out";
     lines.emplace_back(reader.error(key, problem).what());
   }
+  addRetired(reader, "scaling", kRetiredScalingKeys, lines);
+  addRetired(reader, "ground", kRetiredGroundKeys, lines);
   return lines;
 }
 

@@ -15,15 +15,20 @@ namespace tread::learner::samples {
 
 /// A ground as the ground model describes them: corrections and how much executions differ.
 struct DrawnGround {
-  ByVelocity<Eigen::VectorXd> x;
+  SetCorrection x;
   double noise = 1.0;  ///< [1] variance of one execution over the expected one
+};
+
+/// How far drawn grounds differ, moderately: deviations of what a scale has [1].
+struct DrawnWidths {
+  double gain = 0.06, residual = 0.04, yaw = 0.16, yaw_residual = 0.06, yaw_bias = 0.02;
 };
 
 inline double chanceOf(std::mt19937_64& random) {
   return std::normal_distribution<double>(0.0, 1.0)(random);
 }
 
-/// Grounds drawn from the very distribution that the rule expects, and executions on them.
+/// Grounds drawn from a distribution that the rule expects among others, and executions on them.
 class DrawnWorld {
  public:
   explicit DrawnWorld(PatternSet set = richSet(), const GroundConfig& config = {})
@@ -35,12 +40,23 @@ class DrawnWorld {
 
   /// A ground about a centre; `share` of the variance that grounds have.
   DrawnGround ground(std::mt19937_64& random, double share, const DrawnGround& centre) const {
+    const DrawnWidths widths;
     DrawnGround drawn = centre;
-    for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
-      const Eigen::LLT<Eigen::MatrixXd> root(share * model_.spread(velocity));
-      Eigen::VectorXd chance(model_.dimension());
+    for (Eigen::Index i = 0; i < TwistCorrection::kCommon; ++i) {
+      const double width = i < TwistCorrection::kVelocity ? widths.gain
+                           : i < TwistCorrection::kBiasX  ? widths.yaw
+                                                          : widths.yaw_bias;
+      drawn.x.common[i] += width * std::sqrt(share * model_.spread()[i]) * chanceOf(random);
+    }
+    for (int own = 0; own < TwistCorrection::kOwn; ++own) {
+      const double width = own < TwistCorrection::kYawOwn    ? widths.residual
+                           : own == TwistCorrection::kYawOwn ? widths.yaw_residual
+                                                             : 0.5 * widths.yaw_bias;
+      const Eigen::LLT<Eigen::MatrixXd> root(share * width * width *
+                                             model_.alike(static_cast<TwistCorrection::Own>(own)));
+      Eigen::VectorXd chance(static_cast<Eigen::Index>(patterns()));
       for (double& number : chance) number = chanceOf(random);
-      drawn.x[velocity] += root.matrixL() * chance;
+      drawn.x.own.row(own) += (root.matrixL() * chance).transpose();
     }
     return drawn;
   }
@@ -48,29 +64,24 @@ class DrawnWorld {
     return ground(random, share, shipped());
   }
   /// That of the shipped set.
-  DrawnGround shipped() const {
-    DrawnGround ground;
-    for (size_t velocity = 0; velocity < kVelocities; ++velocity)
-      ground.x[velocity] = Eigen::VectorXd::Zero(model_.dimension());
-    return ground;
-  }
+  DrawnGround shipped() const { return {SetCorrection::none(patterns())}; }
 
   /// What the ground makes of a pattern without chance.
   std::vector<Pose2> expected(const DrawnGround& ground, size_t pattern) const {
     const auto samples = model_.profile(pattern).samples();
     std::vector<double> numbers(static_cast<size_t>(3 * samples));
-    model_.profile(pattern).integrate(correctionOf(ground, pattern),
+    model_.profile(pattern).integrate(model_.scale(), ground.x.of(pattern),
                                       Trajectory(numbers.data(), samples, 3));
     return posesOf(ConstTrajectory(numbers.data(), samples, 3));
   }
   /// One execution: the same, and a twist by chance for all of it.
   std::vector<Pose2> execution(const DrawnGround& ground, size_t pattern,
                                std::mt19937_64& random) const {
-    Twist2 chance;
-    const Eigen::Vector3d variance = ground.noise * model_.whole(pattern).noise;
-    chance.v_x = std::sqrt(variance[0]) * chanceOf(random);
-    chance.v_y = std::sqrt(variance[1]) * chanceOf(random);
-    chance.omega = std::sqrt(variance[2]) * chanceOf(random);
+    const PatternPart& part = model_.whole(pattern);
+    Eigen::Vector3d by_chance = (ground.noise * part.noise).cwiseSqrt();
+    for (double& number : by_chance) number *= chanceOf(random);
+    by_chance = part.toBody() * by_chance;
+    const Twist2 chance{by_chance[0], by_chance[1], by_chance[2]};
     std::vector<Pose2> driven = expected(ground, pattern);
     Pose2 at;
     Pose2 last;
@@ -104,17 +115,6 @@ class DrawnWorld {
   }
 
  private:
-  static CorrectionVector correctionOf(const DrawnGround& ground, size_t pattern) {
-    CorrectionVector correction;
-    for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
-      for (Eigen::Index i = 0; i < kTerms; ++i)
-        correction[kTerms * static_cast<Eigen::Index>(velocity) + i] = ground.x[velocity][i];
-      correction[TwistCorrection::kCommon + static_cast<Eigen::Index>(velocity)] =
-          ground.x[velocity][kTerms + static_cast<Eigen::Index>(pattern)];
-    }
-    return correction;
-  }
-
   PatternSet set_;
   GroundModel model_;
 };

@@ -119,6 +119,17 @@ inline std::vector<Pose2> under(const GroundEffect& ground, const std::vector<Po
   return driven;
 }
 
+/// Any patterns on a ground; returns the note of the last execution.
+inline RuleNote driveAny(Pupil& pupil, const GroundEffect& ground, const EffectSpread& spread,
+                         int executions, std::mt19937_64& random) {
+  RuleNote note;
+  for (int i = 0; i < executions; ++i) {
+    const size_t p = random() % pupil.patterns();
+    note = pupil.learn(p, under(drawn(ground, spread, random), pupil.shipped(p)));
+  }
+  return note;
+}
+
 /// Indices of richSet().
 enum Index : size_t { kAhead, kTurnLeft, kTurnRight, kHardLeft, kHardRight, kTurning, kBack };
 

@@ -15,78 +15,88 @@ using namespace tread::learner::samples;
 namespace {
 
 /// Mean twist of the first samples under a correction.
-Eigen::Vector3d meanUnder(const TwistProfile& profile, const CorrectionVector& correction,
-                          Eigen::Index samples) {
+Eigen::Vector3d meanUnder(const GroundModel& model, size_t pattern,
+                          const TwistCorrection& correction, Eigen::Index samples) {
+  const TwistProfile& profile = model.profile(pattern);
   std::vector<double> numbers(static_cast<size_t>(3 * profile.samples()));
   Trajectory all(numbers.data(), profile.samples(), 3);
-  profile.integrate(correction, all);
+  profile.integrate(model.scale(), correction, all);
   const Eigen::Array<double, Eigen::Dynamic, 3> beginning = all.topRows(samples);
   return meanTwist(ConstTrajectory(beginning.data(), samples, 3), samples, 0.05);
+}
+
+/// One correction of all, the common ones first.
+TwistCorrection only(int which, double value) {
+  TwistCorrection correction;
+  if (which < TwistCorrection::kCommon)
+    correction.common[which] = value;
+  else
+    correction.own[which - TwistCorrection::kCommon] = value;
+  return correction;
 }
 
 }  // namespace
 
 TEST_CASE("a twist profile without a correction is the shipped prediction") {
   const PatternSet set = windingSet();
-  for (const MotionPattern& pattern : set.patterns()) {
-    const TwistProfile profile(pattern, 0.05);
-    std::vector<double> numbers(3 * pattern.trajectory.size());
-    const auto samples = static_cast<Eigen::Index>(pattern.trajectory.size());
-    profile.integrate(CorrectionVector::Zero(), Trajectory(numbers.data(), samples, 3));
+  const GroundModel model(GroundConfig{}, set);
+  for (size_t p = 0; p < model.patterns(); ++p) {
+    const std::vector<Pose2>& shipped = set.patterns()[p].trajectory;
+    std::vector<double> numbers(3 * shipped.size());
+    const auto samples = static_cast<Eigen::Index>(shipped.size());
+    model.profile(p).integrate(model.scale(), {}, Trajectory(numbers.data(), samples, 3));
     const std::vector<Pose2> poses = posesOf(ConstTrajectory(numbers.data(), samples, 3));
     for (size_t t = 0; t < poses.size(); ++t) {
-      REQUIRE(distance(poses[t], pattern.trajectory[t]) < 1e-12);
-      REQUIRE(poses[t].yaw == Approx(pattern.trajectory[t].yaw).margin(1e-12));
+      REQUIRE(distance(poses[t], shipped[t]) < 1e-12);
+      REQUIRE(poses[t].yaw == Approx(shipped[t].yaw).margin(1e-12));
     }
-    REQUIRE(distance(profile.integrateEnd(CorrectionVector::Zero()), poses.back()) < 1e-12);
-  }
-}
-
-TEST_CASE("a twist profile responds to its corrections as its derivatives say") {
-  const PatternSet set = windingSet();
-  for (const MotionPattern& pattern : set.patterns()) {
-    const TwistProfile profile(pattern, 0.05);
-    for (int i = 0; i < TwistCorrection::kAll; ++i) {
-      INFO(pattern.name << ", correction " << i);
-      constexpr double kStep = 1e-5;
-      CorrectionVector step = CorrectionVector::Zero();
-      step[i] = kStep;
-      const Pose2 up = profile.integrateEnd(step);
-      const Pose2 down = profile.integrateEnd(-step);
-      // To first order in the turn of one sample.
-      const auto column = profile.endResponse().col(i);
-      REQUIRE(column[0] == Approx((up.x - down.x) / (2.0 * kStep)).margin(3e-4));
-      REQUIRE(column[1] == Approx((up.y - down.y) / (2.0 * kStep)).margin(3e-4));
-      REQUIRE(column[2] == Approx((up.yaw - down.yaw) / (2.0 * kStep)).margin(3e-4));
-    }
+    REQUIRE(distance(model.profile(p).integrateEnd(model.scale(), {}), poses.back()) < 1e-12);
   }
 }
 
 TEST_CASE("the mean twist of any part of a pattern is corrected exactly, also far from zero") {
   const PatternSet set = windingSet();
   const GroundModel model(GroundConfig{}, set);
-  for (size_t p = 0; p < model.patterns(); ++p) {
-    const TwistProfile& profile = model.profile(p);
-    for (Eigen::Index samples = 1; samples <= profile.samples(); samples += 6) {
+  for (size_t p = 0; p < model.patterns(); ++p)
+    for (Eigen::Index samples = 1; samples <= model.profile(p).samples(); samples += 6) {
       const PatternPart part = model.part(p, samples);
       REQUIRE(part.samples == samples);
-      REQUIRE((part.mean - meanUnder(profile, CorrectionVector::Zero(), samples)).norm() < 1e-12);
-      for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
-        INFO(set.patterns()[p].name << ", samples " << samples << ", velocity " << velocity);
-        const Eigen::Index own = kTerms + static_cast<Eigen::Index>(p);
-        for (Eigen::Index i = 0; i <= kTerms; ++i) {
-          CorrectionVector step = CorrectionVector::Zero();
-          Eigen::VectorXd x = Eigen::VectorXd::Zero(model.dimension());
-          x[i < kTerms ? i : own] = 0.3;
-          step[i < kTerms ? kTerms * static_cast<Eigen::Index>(velocity) + i
-                          : TwistCorrection::kCommon + static_cast<Eigen::Index>(velocity)] = 0.3;
-          Eigen::Vector3d expected = part.mean;
-          expected[static_cast<Eigen::Index>(velocity)] += response(part, velocity, x);
-          REQUIRE((meanUnder(profile, step, samples) - expected).norm() < 1e-12);
-        }
+      REQUIRE((part.mean - meanUnder(model, p, {}, samples)).norm() < 1e-12);
+      for (int i = 0; i < TwistCorrection::kCommon + TwistCorrection::kOwn; ++i) {
+        INFO(set.patterns()[p].name << ", samples " << samples << ", correction " << i);
+        const TwistCorrection step = only(i, 0.3);
+        SetCorrection all = SetCorrection::none(model.patterns());
+        all.common = step.common;
+        all.own.col(static_cast<Eigen::Index>(p)) = step.own;
+        const Eigen::Vector3d expected = part.mean + part.toBody() * all.added(part);
+        REQUIRE((meanUnder(model, p, step, samples) - expected).norm() < 1e-12);
       }
     }
-  }
+}
+
+TEST_CASE("the lever of a pattern's end is the change that a steady twist makes to it") {
+  const PatternSet set = windingSet();
+  const GroundModel model(GroundConfig{}, set);
+  constexpr double kStep = 1e-5;
+  for (size_t p = 0; p < model.patterns(); ++p)
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto moved = [&](double step) {
+        Pose2 at, last;
+        for (const Pose2& pose : set.patterns()[p].trajectory) {
+          Twist2 twist = twistTo(between(last, pose), 0.05);
+          last = pose;
+          (axis == 0 ? twist.v_x : axis == 1 ? twist.v_y : twist.omega) += step;
+          at = at * integrate(twist, 0.05);
+        }
+        return at;
+      };
+      const Pose2 up = moved(kStep), down = moved(-kStep);
+      const auto column = model.profile(p).endLever().col(axis);
+      // To first order in the turn of one sample.
+      REQUIRE(column[0] == Approx((up.x - down.x) / (2.0 * kStep)).margin(3e-4));
+      REQUIRE(column[1] == Approx((up.y - down.y) / (2.0 * kStep)).margin(3e-4));
+      REQUIRE(column[2] == Approx((up.yaw - down.yaw) / (2.0 * kStep)).margin(3e-4));
+    }
 }
 
 TEST_CASE("the noise of a part grows with its shortness, the whole is its longest part") {
@@ -113,7 +123,7 @@ TEST_CASE("the noise of a part grows with its shortness, the whole is its longes
 TEST_CASE("noise of an execution is as configured, and partly as recorded where that is known") {
   PatternSetContent content = richContent();
   content.patterns[kAhead].end_covariance = {0.01, 0.0, 0.0, 0.01, 0.0, 0.01};
-  GroundConfig config;
+  const GroundConfig config;
   const GroundModel plain(config, richSet());
   const auto at = [](double share, double of, double seconds) {
     return share * share + of * of / (seconds * seconds);
@@ -126,10 +136,8 @@ TEST_CASE("noise of an execution is as configured, and partly as recorded where 
   REQUIRE(plain.whole(kTurning).noise[2] == Approx(at(0.08 * 1.2, 0.01, 1.0)));
   // 0.1 m in a second of driving straight.
   const GroundModel recorded(config, checked(content));
-  REQUIRE(recorded.whole(kAhead).noise[0] == Approx(0.7 * ahead[0] + 0.3 * 0.01));
+  REQUIRE(recorded.whole(kAhead).noise[0] == Approx(0.1 * ahead[0] + 0.9 * 0.01));
   REQUIRE(recorded.whole(kTurnLeft).noise == plain.whole(kTurnLeft).noise);
-  config.recorded = 0.0;
-  REQUIRE(GroundModel(config, checked(content)).whole(kAhead).noise == ahead);
 }
 
 TEST_CASE("a recorded spread of nothing makes no execution exact") {
@@ -137,8 +145,7 @@ TEST_CASE("a recorded spread of nothing makes no execution exact") {
   // As recorded where a simulator never turned.
   for (MotionPattern& pattern : content.patterns)
     pattern.end_covariance = {7e-4, 0.0, 0.0, 1e-3, 0.0, 0.0};
-  RuleConfig config = ruleConfig("multi_model");
-  config.ground.recorded = 1.0;
+  const RuleConfig config = ruleConfig("multi_model");
   const GroundModel model(config.ground, checked(content));
   for (size_t p = 0; p < model.patterns(); ++p) REQUIRE(model.whole(p).noise.minCoeff() > 0.0);
   Pupil pupil(config, checked(content));
@@ -149,41 +156,43 @@ TEST_CASE("a recorded spread of nothing makes no execution exact") {
   for (const double number : pupil.rule().memory()) REQUIRE(std::isfinite(number));
 }
 
-TEST_CASE("the spread of grounds is a covariance, with neighbours and mirror images alike") {
-  const GroundConfig config;
-  const GroundModel model(config, windingSet());
-  for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
-    const Eigen::MatrixXd& Q = model.spread(velocity);
-    REQUIRE(Q == Q.transpose());
-    REQUIRE(Q.llt().info() == Eigen::Success);
-    for (Eigen::Index i = 0; i < kTerms; ++i)
-      REQUIRE(std::sqrt(Q(i, i)) == Approx(config.common[3 * velocity + static_cast<size_t>(i)]));
-    const auto own = [&](size_t p, size_t q) {
-      return Q(kTerms + static_cast<Eigen::Index>(p), kTerms + static_cast<Eigen::Index>(q));
+TEST_CASE("patterns are alike as neighbours and mirror images are, where the set has one axis") {
+  const GroundModel model(GroundConfig{}, windingSet());
+  REQUIRE(model.scale().isotropy < 0.1);
+  for (int own = 0; own < TwistCorrection::kOwn; ++own) {
+    const Eigen::MatrixXd& alike = model.alike(static_cast<TwistCorrection::Own>(own));
+    REQUIRE((alike - alike.transpose()).norm() < 1e-12);
+    REQUIRE(alike.llt().info() == Eigen::Success);
+    const auto of = [&](size_t p, size_t q) {
+      return alike(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(q));
     };
-    REQUIRE(std::sqrt(own(kHardLeft, kHardLeft)) == Approx(config.residual[velocity]));
     // What slips to one side in a left turn slips to the other in a right one.
-    const double mirrored = own(kHardLeft, kHardRight) / own(kHardLeft, kHardLeft);
-    if (velocity == 1) REQUIRE(mirrored < -0.5);
-    if (velocity != 1) REQUIRE(mirrored == Approx(0.7).margin(0.03));
-    REQUIRE(own(kTurnLeft, kHardLeft) > own(kTurnLeft, kBack));
+    const double mirrored = of(kHardLeft, kHardRight) / of(kHardLeft, kHardLeft);
+    if (own == TwistCorrection::kAcross || own == TwistCorrection::kBiasOwn)
+      REQUIRE(mirrored < -0.5);
+    else
+      REQUIRE(mirrored == Approx(0.7).margin(0.03));
+    REQUIRE(of(kTurnLeft, kHardLeft) > of(kTurnLeft, kBack));
   }
 }
 
 TEST_CASE("whatever the corrections are, a predicted pattern stays one that can be driven") {
   const PatternSet set = windingSet();
+  const GroundModel model(GroundConfig{}, set);
   std::mt19937_64 random(9);
+  const auto wild = [&] { return chanceOf(random) * std::pow(10.0, 4.0 * chanceOf(random)); };
+  const double turn = model.scale().speed / model.scale().turn;
   for (int i = 0; i < 2000; ++i) {
-    CorrectionVector correction;
-    for (int k = 0; k < TwistCorrection::kAll; ++k)
-      correction[k] = chanceOf(random) * std::pow(10.0, 4.0 * chanceOf(random));
-    for (const MotionPattern& pattern : set.patterns()) {
-      const TwistProfile profile(pattern, 0.05);
-      const Pose2 end = profile.integrateEnd(correction);
-      const double seconds = 0.05 * static_cast<double>(profile.samples());
-      const Eigen::Vector2d speed = profile.meanSpeed(profile.samples());
-      REQUIRE(std::hypot(end.x, end.y) <= (5.1 * speed[0] + 1.0 * speed[1]) * seconds + 1e-9);
-      REQUIRE(std::abs(end.yaw) <= (3.0 * speed[1] + 0.5 * speed[0]) * seconds + 1e-9);
+    TwistCorrection correction;
+    for (double& number : correction.common) number = wild();
+    for (double& number : correction.own) number = wild();
+    for (size_t p = 0; p < model.patterns(); ++p) {
+      const Pose2 end = model.profile(p).integrateEnd(model.scale(), correction);
+      const PatternPart& whole = model.whole(p);
+      const double seconds = 0.05 * static_cast<double>(whole.samples);
+      REQUIRE(std::hypot(end.x, end.y) <=
+              (8.0 * whole.speed + 4.0 * turn * whole.turning) * seconds + 1e-9);
+      REQUIRE(std::abs(end.yaw) <= (3.0 * whole.turning + 2.0 * whole.speed) * seconds + 1e-9);
     }
   }
 }

@@ -153,7 +153,8 @@ TEST_CASE("a command on the motors that is no number is another command, whichev
     motor.command[1] = static_cast<float>(on_left ? left.commands[0][1] : nan);
     CommandWatch watch;
     watch.add(motor);
-    REQUIRE_FALSE(watch.unexpectedCommand({5, 1}, left, trackChannels(CommandKind::kPower)).empty());
+    REQUIRE_FALSE(
+        watch.unexpectedCommand({5, 1}, left, trackChannels(CommandKind::kPower)).empty());
   }
 }
 

@@ -75,28 +75,33 @@ enum Place : size_t {
   kChangesAt,
   kMetresAt,
   kGroundAt,
+  kCalmAt,
+  kSearchingAt,
   kScatterAt,
   kEffectsAt = kScatterAt + 5 * 7,
   kSurfacesAt = kEffectsAt + 5 * 6 + 4,
-  kWeightAt,
-  kLastMetAt,
-  kSinceAt,
-  kShareAt,
-  kVariancesAt,
-  kCentreAt = kVariancesAt + 9,
-  kFactorsAt = kCentreAt + 3 * (3 + 7),
-  kNoiseAt = kFactorsAt + 3 * 7,
-  kExecutionsAt = kNoiseAt + 3,
-  kPartsAt,
-  kPartAt,  ///< pattern, samples, count, three sums, three of squares
+  kFirstAt,  ///< the hypothesis of the shipped set's ground
 };
 constexpr size_t kEachPart = 9;
 
-/// Where the next hypothesis, or the number of fresh ones, begins.
-size_t after(const std::vector<double>& memory, size_t weight_at) {
-  const size_t parts_at = weight_at - kWeightAt + kPartsAt;
-  return parts_at + 1 + kEachPart * static_cast<size_t>(memory[parts_at]);
-}
+/// The same within a hypothesis, whose banks have so many scales.
+struct Hypothesis {
+  explicit Hypothesis(size_t at, const Surface& surface)
+      : weight(at),
+        velocity(at + 3 + TwistCorrection::kCommon + TwistCorrection::kOwn * 7),
+        yaw(velocity + 4 * surface.velocity().scales().size()),
+        factors(yaw + 5 * surface.yaw().scales().size()) {}
+
+  size_t weight, velocity, yaw, factors;
+  size_t last_met = weight + 1, since = weight + 2, centre = weight + 3;
+  size_t noise = factors + 3 * 7, executions = noise + 3, parts = executions + 1;
+  size_t part = parts + 1;  ///< pattern, samples, count, three sums, three of squares
+
+  /// Where the next hypothesis, or the number of fresh ones, begins.
+  size_t end(const std::vector<double>& memory) const {
+    return part + kEachPart * static_cast<size_t>(memory[parts]);
+  }
+};
 
 }  // namespace
 
@@ -132,7 +137,7 @@ TEST_CASE("a restored rule goes on to the bit, after any number of executions") 
 TEST_CASE("a memory that is cut off anywhere, or longer, is refused whole") {
   const std::vector<double> memory = memoryOf(experienced());
   REQUIRE(restores(memory));
-  for (size_t length = 0; length < memory.size(); ++length)
+  for (size_t length = 0; length < memory.size(); length += length < 200 ? 1 : 7)
     REQUIRE_FALSE(restores({memory.begin(), memory.begin() + static_cast<std::ptrdiff_t>(length)}));
   std::vector<double> longer = memory;
   longer.push_back(0.0);
@@ -165,6 +170,8 @@ TEST_CASE("a memory with a number that cannot be is refused whole") {
   refused(kChangesAt, {-1.0, 1e300});
   refused(kMetresAt, {-1.0, 1e5});
   refused(kGroundAt, {-1.0, 0.5, 58.0, 1e300});
+  refused(kCalmAt, {-2.0, 2.0, 1e300});
+  refused(kSearchingAt, {-2.0, 2.0, 1e300});
   refused(kScatterAt, {-1.0, 1e300});
   refused(kScatterAt + 1, {-1.0, 1e300});
   refused(kEffectsAt, {-1e4, 1e300});            // an effect
@@ -177,30 +184,32 @@ TEST_CASE("a memory with a number that cannot be is refused whole") {
   refused(kEffectsAt + 32, {-1.0, 1e300});       // first voltage
   refused(kEffectsAt + 33, {-1.0, 1.0, 1e300});  // sag
   refused(kSurfacesAt, {-1.0, 0.0, 0.5, 1.0, 3.0, 66.0, 1e9, 1e300});
-  const size_t second = after(memory, kWeightAt);
-  const size_t fresh = after(memory, second);
+  Pupil knowing(experienced());
+  const Surface &shipped = asMultiModel(knowing).surface(0),
+                &other = asMultiModel(knowing).surface(1);
+  const Hypothesis first(kFirstAt, shipped), second(first.end(memory), other);
+  const size_t fresh = second.end(memory);
   REQUIRE(memory[fresh] >= 1.0);
   REQUIRE(memory[fresh] <= 8.0);
   refused(fresh, {-1.0, 0.5, memory[fresh] - 1.0, memory[fresh] + 1.0, 9.0, 1e300});
-  for (const size_t weight : {size_t{kWeightAt}, second, fresh + 1}) {
-    const size_t base = weight - kWeightAt;
-    refused(weight, {-0.5, memory[weight] + 0.01, 2.0, 1e300});
-    refused(base + kLastMetAt, {-1.0, 0.5, 58.0, 1e300});
-    refused(base + kSinceAt, {-1.0, 0.5, 58.0, 1e300});
-    refused(base + kShareAt, {-0.1, 0.0, 1.1, 1e300});
-    refused(base + kVariancesAt, {-0.1, 0.0, 1e300});
-    refused(base + kCentreAt, {1e300, -1e300});
-    refused(base + kFactorsAt, {0.0, -1.0, 51.0, 1e300});
-    refused(base + kNoiseAt, {0.0, -1.0, 51.0, 1e300});
-    refused(base + kExecutionsAt, {-1.0, memory[base + kExecutionsAt] + 1.0, 1e300});
-    refused(base + kPartsAt, {-1.0, 0.5, memory[base + kPartsAt] + 1.0, 1e9, 1e300});
-    if (memory[base + kPartsAt] < 1.0) continue;
-    const size_t part = base + kPartAt;
-    refused(part, {-1.0, 0.5, 7.0, 1e300});
-    refused(part + 1, {-1.0, 0.0, 0.5, 21.0, 1e300});
-    refused(part + 2, {-1.0, 0.0, memory[part + 2] + 0.5, 1e300});
-    refused(part + 3, {1e300, -1e300});
-    refused(part + 6, {-1e-3});
+  for (const Hypothesis& each : {first, second, Hypothesis(fresh + 1, other)}) {
+    refused(each.weight, {-0.5, memory[each.weight] + 0.01, 2.0, 1e300});
+    refused(each.last_met, {-1.0, 0.5, 58.0, 1e300});
+    refused(each.since, {-1.0, 0.5, 58.0, 1e300});
+    refused(each.centre, {1e300, -1e300});
+    refused(each.velocity, {-0.1, 0.0, 1e300});      // a variance
+    refused(each.velocity + 2, {-1.0, 0.0, 1e300});  // a factor on the noise
+    refused(each.yaw + 4, {-0.1, 0.0, 2.0});         // a weight
+    refused(each.factors, {0.0, -1.0, 51.0, 1e300});
+    refused(each.noise, {0.0, -1.0, 51.0, 1e300});
+    refused(each.executions, {-1.0, memory[each.executions] + 1.0, 1e300});
+    refused(each.parts, {-1.0, 0.5, memory[each.parts] + 1.0, 1e9, 1e300});
+    if (memory[each.parts] < 1.0) continue;
+    refused(each.part, {-1.0, 0.5, 7.0, 1e300});
+    refused(each.part + 1, {-1.0, 0.0, 0.5, 21.0, 1e300});
+    refused(each.part + 2, {-1.0, 0.0, memory[each.part + 2] + 0.5, 1e300});
+    refused(each.part + 3, {1e300, -1e300});
+    refused(each.part + 6, {-1e-3});
   }
 }
 
@@ -238,8 +247,9 @@ TEST_CASE("more surfaces than there is room for now are kept until the next one 
 
 TEST_CASE("more surfaces than there is room for whatever the configuration are refused") {
   const std::vector<double> memory = memoryOf(experienced());
-  const size_t second = after(memory, kWeightAt);
-  const size_t fresh = after(memory, second);
+  Pupil knowing(experienced());
+  const size_t second = Hypothesis(kFirstAt, asMultiModel(knowing).surface(0)).end(memory);
+  const size_t fresh = Hypothesis(second, asMultiModel(knowing).surface(1)).end(memory);
   // The second surface again and again, of no weight.
   const auto with = [&](int64_t copies) {
     std::vector<double> more(memory.begin(), memory.begin() + static_cast<std::ptrdiff_t>(fresh));

@@ -147,7 +147,7 @@ TEST_CASE("repetitions of the learner's rules allocate nothing but hypotheses of
   for (const std::string& rule : methodNames()) {
     const std::string of = methodOf(rule)->rule;
     const bool rival = !of.empty() && std::find(rules.begin(), rules.end(), of) == rules.end();
-    if (of == "multi_model" || of == "scale_mixture" || rival) continue;
+    if (of == "multi_model" || rival) continue;
     for (const bool change_inside : {false, true}) {
       const auto allocationsOf = [&](int64_t repetitions) {
         Methods methods({rule}, settings.config, grounds, 0, 1, {});

@@ -4,18 +4,33 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <optional>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 namespace tread::learner {
 namespace {
 
-using Index = TwistCorrection::Index;
-constexpr int kOwnForward = TwistCorrection::kCommon;
-constexpr int kOwnLateral = TwistCorrection::kCommon + 1;
-constexpr int kOwnYaw = TwistCorrection::kCommon + 2;
+// How corrections are distributed on a ground of scale 1, relative to gain and yaw gain [1].
+constexpr double kCrabSpread = 0.2;
+constexpr double kShearSpread = 0.3;  // times isotropy: along one axis it is gain and crab
+constexpr double kTurnLossSpread = 0.7;
+constexpr double kSideslipSpread = 0.7;
+constexpr double kShiftSpread = 0.5;
+constexpr double kYawBySpeedSpread = 0.3;
+/// Of yaw bias, how much patterns differ in it [1].
+constexpr double kBiasApart = 0.5;
+/// A turn on the spot moves half as much as a straight drive of the same speed of the tracks.
+constexpr double kTurnMoves = 0.5;
+/// Share of the recorded spread of ends in the noise, where there is one [1].
+constexpr double kRecorded = 0.9;
+/// A set that hardly turns is measured by what the vehicle could: [1] of v_ref / lever.
+constexpr double kLeastTurn = 0.2;
+
+/// A correction beyond these is none that ground makes; predictions stay drivable.
+constexpr double kLargestFactor = 3.0;
+constexpr double kLargestBias = 0.5;  // [rad/m]
 
 /// sin(x) / x and cos(x); the series are exact to 1e-16 where they are used.
 struct HalfTurn {
@@ -42,7 +57,7 @@ double chordShare(double half, double sinc) {
   return std::abs(half) < 1.5 ? sinc : 1.0;
 }
 
-/// The motion of one sample, (v, s, w) times the period.
+/// The motion of one sample, its twist times the period.
 Eigen::Vector3d sampleMotion(const Pose2& from, const Pose2& to) {
   const double half = 0.5 * (to.yaw - from.yaw);
   const double c = std::cos(from.yaw + half);
@@ -53,65 +68,37 @@ Eigen::Vector3d sampleMotion(const Pose2& from, const Pose2& to) {
   return {arc_over_chord * (c * dx + s * dy), arc_over_chord * (c * dy - s * dx), 2.0 * half};
 }
 
-/// A correction beyond these is none that ground makes; predictions stay drivable.
-constexpr double kLargestFactor = 3.0;
-constexpr double kLargestBias = 0.5;  // [rad/m]; [m] of push and shift
-
-double clamped(double value, double low, double high) {
-  return value < low ? low : (value > high ? high : value);
-}
-
-constexpr double kKernelRange = 0.6;  // [1] of the largest |v|, |w|
-constexpr double kNear = 0.1, kMirrored = 0.7, kAlone = 0.2;
-
-double squared(double value) {
-  return value * value;
-}
-
-/// Kernels of the distance of two patterns, and of one to the other's mirror image.
-struct Kernels {
-  Eigen::MatrixXd near;
-  Eigen::MatrixXd mirrored;
+/// Change of a sample's twist per unit of each correction.
+struct Response {
+  Response(const BodyScale& scale, const Eigen::Vector3d& twist) {
+    const Eigen::Vector2d V = twist.head<2>();
+    const Eigen::Vector2d left(-V[1], V[0]);  // J V
+    const double w = twist[2];
+    const double speed = V.norm();
+    velocity.col(TwistCorrection::kGain) = V;
+    velocity.col(TwistCorrection::kCrab) = left;
+    velocity.col(TwistCorrection::kShear) << V[0], -V[1];
+    velocity.col(TwistCorrection::kShearAcross) << V[1], V[0];
+    velocity.col(TwistCorrection::kTurnLoss) = -std::abs(w) / scale.turn * V;
+    velocity.col(TwistCorrection::kSideslip) = w / scale.turn * left;
+    velocity.col(TwistCorrection::kShiftX) << w * scale.speed / scale.turn, 0.0;
+    velocity.col(TwistCorrection::kShiftY) << 0.0, w * scale.speed / scale.turn;
+    const double moves = std::hypot(speed, kTurnMoves * scale.speed / scale.turn * w);
+    own.col(0) = moves * scale.axis;
+    own.col(1) = moves * Eigen::Vector2d(-scale.axis[1], scale.axis[0]);
+    yaw << w, w * speed / scale.speed, V[0], V[1];
+    yaw_own = w;
+    bias_own = speed;
+  }
+  Eigen::Matrix<double, 2, TwistCorrection::kVelocity> velocity;
+  Eigen::Matrix2d own;
+  Eigen::Matrix<double, 1, TwistCorrection::kTurning> yaw;
+  double yaw_own, bias_own;
 };
 
-Kernels kernelsOf(const std::vector<PatternPart>& patterns) {
-  double v_max = 1e-6;
-  double w_max = 1e-6;
-  for (const PatternPart& pattern : patterns) {
-    v_max = std::max(v_max, std::abs(pattern.mean[0]));
-    w_max = std::max(w_max, std::abs(pattern.mean[2]));
-  }
-  const auto n = static_cast<Eigen::Index>(patterns.size());
-  Kernels kernels{Eigen::MatrixXd(n, n), Eigen::MatrixXd(n, n)};
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const Eigen::Vector3d& a = patterns[static_cast<size_t>(i)].mean;
-      const Eigen::Vector3d& b = patterns[static_cast<size_t>(j)].mean;
-      const double dv2 = squared((a[0] - b[0]) / (kKernelRange * v_max));
-      kernels.near(i, j) = std::exp(-0.5 * (dv2 + squared((a[2] - b[2]) / (kKernelRange * w_max))));
-      kernels.mirrored(i, j) =
-          std::exp(-0.5 * (dv2 + squared((a[2] + b[2]) / (kKernelRange * w_max))));
-    }
-  }
-  return kernels;
-}
-
-/// Correlations of one axis' residuals; sign +1: equal in mirrored patterns, -1: opposite.
-Eigen::MatrixXd correlations(const Kernels& kernels, double sign) {
-  constexpr double kLeastSpread = 0.05;  // the odd kernel has no spread in straight patterns
-  const Eigen::MatrixXd sum = kernels.near + sign * kernels.mirrored;
-  const Eigen::ArrayXd scale = sum.diagonal().array().max(kLeastSpread).sqrt();
-  Eigen::MatrixXd result = kNear * kernels.near;
-  for (Eigen::Index i = 0; i < sum.rows(); ++i)
-    for (Eigen::Index j = 0; j < sum.cols(); ++j)
-      result(i, j) += kMirrored * sum(i, j) / (scale[i] * scale[j]);
-  result.diagonal().array() += kAlone;
-  return result;
-}
-
-/// Variances of the mean twist that explain the recorded spread of a pattern's end; nothing where
+/// Covariance of the mean twist that explains the recorded spread of a pattern's end; nothing where
 /// it is unknown.
-std::optional<Eigen::Vector3d> recordedNoise(const MotionPattern& pattern,
+std::optional<Eigen::Matrix3d> recordedNoise(const MotionPattern& pattern,
                                              const TwistProfile& profile) {
   const PoseCovariance& known = pattern.end_covariance;
   if (!isKnown(known)) return std::nullopt;
@@ -121,135 +108,124 @@ std::optional<Eigen::Vector3d> recordedNoise(const MotionPattern& pattern,
   const Eigen::FullPivLU<Eigen::Matrix3d> lever(profile.endLever());
   if (!lever.isInvertible()) return std::nullopt;
   const Eigen::Matrix3d inverse = lever.inverse();
-  const Eigen::Vector3d noise = (inverse * covariance * inverse.transpose()).diagonal();
+  const Eigen::Matrix3d noise = inverse * covariance * inverse.transpose();
   // A file may hold any six numbers.
-  if (!noise.allFinite() || noise.minCoeff() < 0.0) return std::nullopt;
+  if (!noise.allFinite() || noise.diagonal().minCoeff() < 0.0) return std::nullopt;
   return noise;
 }
 
 }  // namespace
 
+Eigen::Vector3d TwistCorrection::added(const PatternPart& part) const {
+  Eigen::Vector3d added;
+  added.head<2>() = part.velocity * common.head<kVelocity>() + part.own * own.head<2>();
+  added[2] = part.yaw * common.tail<kTurning>();
+  added[2] += part.yaw_own * own[kYawOwn] + part.bias_own * own[kBiasOwn];
+  return added;
+}
+
 TwistProfile::TwistProfile(const MotionPattern& shipped, double period) : period_(period) {
-  Pose2 last;
+  std::vector<Pose2> poses{{}};
   for (const Pose2& pose : shipped.trajectory) {
-    const Eigen::Vector3d twist = sampleMotion(last, pose) / period;
-    forward_.push_back(twist[0]);
-    lateral_.push_back(twist[1]);
-    yaw_.push_back(twist[2]);
-    last = pose;
+    twists_.emplace_back(sampleMotion(poses.back(), pose) / period);
+    poses.push_back(pose);
   }
-  measureResponses();
-}
-
-/// Change of a sample's twist per unit of each correction.
-Eigen::Matrix<double, 3, TwistCorrection::kAll> sampleResponse(double v, double w) {
-  Eigen::Matrix<double, 3, TwistCorrection::kAll> response;
-  response.setZero();
-  response(0, Index::kForward) = response(0, kOwnForward) = v;
-  response(0, Index::kTurnLoss) = -std::abs(w) * v;
-  response(0, Index::kPush) = response(1, Index::kShift) = w;
-  response(1, Index::kSideslip) = std::abs(v) * w;
-  response(1, Index::kCrab) = response(1, kOwnLateral) = v;
-  response(2, Index::kYaw) = response(2, kOwnYaw) = w;
-  response(2, Index::kYawBySpeed) = std::abs(v) * w;
-  response(2, Index::kYawBias) = v;
-  return response;
-}
-
-void TwistProfile::measureResponses() {
-  end_response_.setZero();
+  // A change of a sample's twist moves the end: the step itself, and the turn about its place.
   end_lever_.setZero();
-  const CorrectionVector none = CorrectionVector::Zero();
-  std::vector<Pose2> poses;
-  const Pose2 end = walk(none, [&](size_t, const Pose2& pose) { poses.push_back(pose); });
-  Pose2 at;
-  for (size_t t = 0; t < forward_.size(); ++t) {
-    // A change of this sample's twist moves the end: the step itself, and the turn about its place.
-    const double middle = at.yaw + 0.5 * yaw_[t] * period_;
+  for (size_t t = 0; t < twists_.size(); ++t) {
+    const double middle = poses[t].yaw + 0.5 * twists_[t][2] * period_;
     const double c = std::cos(middle);
     const double s = std::sin(middle);
-    const Pose2& next = poses[t];
-    const double x_rest = end.x - 0.5 * (at.x + next.x);
-    const double y_rest = end.y - 0.5 * (at.y + next.y);
     Eigen::Matrix3d lever;
-    lever << c, -s, -y_rest, s, c, x_rest, 0.0, 0.0, 1.0;
-    end_response_ += period_ * lever * sampleResponse(forward_[t], yaw_[t]);
+    lever << c, -s, -(poses.back().y - 0.5 * (poses[t].y + poses[t + 1].y)), s, c,
+        poses.back().x - 0.5 * (poses[t].x + poses[t + 1].x), 0.0, 0.0, 1.0;
     end_lever_ += period_ * lever;
-    at = next;
   }
 }
 
-PatternPart TwistProfile::part(Eigen::Index samples) const {
+PatternPart TwistProfile::part(const BodyScale& scale, Eigen::Index samples) const {
   PatternPart part;
   part.samples = samples;
   part.mean.setZero();
-  Eigen::Matrix<double, 3, TwistCorrection::kAll> response;
-  response.setZero();
-  for (size_t t = 0; t < static_cast<size_t>(samples); ++t) {
-    part.mean += Eigen::Vector3d(forward_[t], lateral_[t], yaw_[t]);
-    response += sampleResponse(forward_[t], yaw_[t]);
-    part.metres += period_ * std::abs(forward_[t]);
-  }
+  part.velocity.setZero();
+  part.own.setZero();
+  part.yaw.setZero();
   const double share = 1.0 / static_cast<double>(samples);
-  part.mean *= share;
-  for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
-    const auto row = static_cast<Eigen::Index>(velocity);
-    part.own[velocity] = share * response(row, TwistCorrection::kCommon + row);
-    for (Eigen::Index i = 0; i < kTerms; ++i)
-      part.common[velocity][static_cast<size_t>(i)] = share * response(row, kTerms * row + i);
+  for (size_t t = 0; t < static_cast<size_t>(samples); ++t) {
+    const Response response(scale, twists_[t]);
+    part.mean += share * twists_[t];
+    part.velocity += share * response.velocity;
+    part.own += share * response.own;
+    part.yaw += share * response.yaw;
+    part.yaw_own += share * response.yaw_own;
+    part.bias_own += share * response.bias_own;
+    part.turning += share * std::abs(twists_[t][2]);
   }
+  part.speed = part.bias_own;
+  part.metres = part.speed * period_ * static_cast<double>(samples);
+  const double length = part.mean.head<2>().norm();
+  const Eigen::Vector2d along =
+      length > 1e-9 ? Eigen::Vector2d(part.mean.head<2>() / length) : scale.axis;
+  part.to_path << along[0], along[1], -along[1], along[0];
+  part.velocity = part.to_path * part.velocity;
+  part.own = part.to_path * part.own;
   return part;
 }
 
-Eigen::Vector2d TwistProfile::meanSpeed(Eigen::Index samples) const {
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (size_t t = 0; t < static_cast<size_t>(samples); ++t)
-    sum += Eigen::Vector2d(std::abs(forward_[t]), std::abs(yaw_[t]));
-  return sum / static_cast<double>(samples);
-}
-
-Eigen::Vector3d TwistProfile::change(Eigen::Index samples) const {
-  const auto last = static_cast<size_t>(samples - 1);
-  return {forward_[last] - forward_[0], lateral_[last] - lateral_[0], yaw_[last] - yaw_[0]};
-}
-
 template <typename Put>
-Pose2 TwistProfile::walk(const CorrectionVector& x, Put&& put) const {
-  const double gain = 1.0 + x[Index::kForward] + x[kOwnForward];
-  const double crab = clamped(x[Index::kCrab] + x[kOwnLateral], -1.0, 1.0);
-  const double turn = 1.0 + x[Index::kYaw] + x[kOwnYaw];
-  const double bias = clamped(x[Index::kYawBias], -kLargestBias, kLargestBias);
-  const double push = clamped(x[Index::kPush], -kLargestBias, kLargestBias);
-  const double shift = clamped(x[Index::kShift], -kLargestBias, kLargestBias);
+Pose2 TwistProfile::walk(const BodyScale& scale, const TwistCorrection& x, Put&& put) const {
+  const auto& c = x.common;
+  const auto within = [](double value, double most) { return std::clamp(value, -most, most); };
+  const double crab = within(c[TwistCorrection::kCrab], 1.0);
+  const double shear = within(c[TwistCorrection::kShear], 1.0);
+  const double across = within(c[TwistCorrection::kShearAcross], 1.0);
+  const Eigen::Vector2d shift(within(c[TwistCorrection::kShiftX], 1.0),
+                              within(c[TwistCorrection::kShiftY], 1.0));
+  const Eigen::Vector2d bias(within(c[TwistCorrection::kBiasX], kLargestBias),
+                             within(c[TwistCorrection::kBiasY], kLargestBias));
+  const double bias_own = within(x.own[TwistCorrection::kBiasOwn], kLargestBias);
+  const double r_along = within(x.own[TwistCorrection::kAlong], 1.0);
+  const double r_across = within(x.own[TwistCorrection::kAcross], 1.0);
+  const Eigen::Vector2d own(scale.axis[0] * r_along - scale.axis[1] * r_across,
+                            scale.axis[1] * r_along + scale.axis[0] * r_across);
+  const double turn = scale.speed / scale.turn;
   Pose2 at;
   double c_at = 1.0, s_at = 0.0;  // of at.yaw, turned along instead of computed anew
-  for (size_t t = 0; t < forward_.size(); ++t) {
-    const double v = forward_[t];
-    const double w = yaw_[t];
-    const double forward = clamped(gain - x[Index::kTurnLoss] * std::abs(w), 0.0, kLargestFactor);
-    const double yaw = clamped(turn + x[Index::kYawBySpeed] * std::abs(v), 0.0, kLargestFactor);
-    const double slip = clamped(x[Index::kSideslip] * w, -1.0, 1.0);
-    const double v_new = forward * v + push * w;
-    const double s_new = lateral_[t] + slip * std::abs(v) + crab * v + shift * w;
-    const double w_new = yaw * w + bias * v;
+  for (size_t t = 0; t < twists_.size(); ++t) {
+    const double v = twists_[t][0], s = twists_[t][1], w = twists_[t][2];
+    const double speed = std::sqrt(v * v + s * s);
+    const double gain = std::clamp(
+        1.0 + c[TwistCorrection::kGain] - c[TwistCorrection::kTurnLoss] * std::abs(w) / scale.turn,
+        0.0, kLargestFactor);
+    const double side = within(crab + c[TwistCorrection::kSideslip] * w / scale.turn, 1.0);
+    const double moves = std::sqrt(speed * speed + squared(kTurnMoves * turn * w));
+    const double v_new =
+        v * gain - s * side + shear * v + across * s + turn * w * shift[0] + moves * own[0];
+    const double s_new =
+        s * gain + v * side - shear * s + across * v + turn * w * shift[1] + moves * own[1];
+    const double yaw = std::clamp(1.0 + c[TwistCorrection::kYaw] + x.own[TwistCorrection::kYawOwn] +
+                                      c[TwistCorrection::kYawBySpeed] * speed / scale.speed,
+                                  0.0, kLargestFactor);
+    const double w_new = yaw * w + bias[0] * v + bias[1] * s + bias_own * speed;
     const double half = 0.5 * w_new * period_;
     const HalfTurn turned(half);
     const double chord = chordShare(half, turned.sinc) * period_;
     const double sine = half * turned.sinc;
-    const double c = c_at * turned.cosine - s_at * sine;
-    const double s = s_at * turned.cosine + c_at * sine;
-    c_at = c * turned.cosine - s * sine;
-    s_at = s * turned.cosine + c * sine;
-    at.x += chord * (c * v_new - s * s_new);
-    at.y += chord * (s * v_new + c * s_new);
+    const double c_mid = c_at * turned.cosine - s_at * sine;
+    const double s_mid = s_at * turned.cosine + c_at * sine;
+    c_at = c_mid * turned.cosine - s_mid * sine;
+    s_at = s_mid * turned.cosine + c_mid * sine;
+    at.x += chord * (c_mid * v_new - s_mid * s_new);
+    at.y += chord * (s_mid * v_new + c_mid * s_new);
     at.yaw += 2.0 * half;
     put(t, at);
   }
   return at;
 }
 
-void TwistProfile::integrate(const CorrectionVector& correction, Trajectory prediction) const {
-  walk(correction, [&](size_t t, const Pose2& pose) {
+void TwistProfile::integrate(const BodyScale& scale, const TwistCorrection& correction,
+                             Trajectory prediction) const {
+  walk(scale, correction, [&](size_t t, const Pose2& pose) {
     const auto row = static_cast<Eigen::Index>(t);
     prediction(row, 0) = pose.x;
     prediction(row, 1) = pose.y;
@@ -257,8 +233,8 @@ void TwistProfile::integrate(const CorrectionVector& correction, Trajectory pred
   });
 }
 
-Pose2 TwistProfile::integrateEnd(const CorrectionVector& correction) const {
-  return walk(correction, [](size_t, const Pose2&) {});
+Pose2 TwistProfile::integrateEnd(const BodyScale& scale, const TwistCorrection& correction) const {
+  return walk(scale, correction, [](size_t, const Pose2&) {});
 }
 
 Eigen::Vector3d meanTwist(const ConstTrajectory& trajectory, Eigen::Index samples, double period) {
@@ -277,51 +253,132 @@ GroundModel::GroundModel(const GroundConfig& config, const PatternSet& shipped)
   for (const MotionPattern& pattern : shipped.patterns()) {
     profiles_.emplace_back(pattern, period_);
     const auto recorded = recordedNoise(pattern, profiles_.back());
-    recorded_share_.push_back(recorded ? config.recorded : 0.0);
-    recorded_.push_back(recorded.value_or(Eigen::Vector3d::Zero()));
+    recorded_share_.push_back(recorded ? kRecorded : 0.0);
+    recorded_.push_back(recorded.value_or(Eigen::Matrix3d::Zero()));
   }
+  measureScale(config.lever);
   for (size_t p = 0; p < profiles_.size(); ++p) whole_.push_back(part(p, profiles_[p].samples()));
-  fillSpread(config);
+  fillAlike();
+  const double shear = kShearSpread * scale_.isotropy;
+  const double bias = 1.0;
+  spread_ << 1.0, kCrabSpread, shear, shear, kTurnLossSpread, kSideslipSpread, kShiftSpread,
+      kShiftSpread, 1.0, kYawBySpeedSpread, bias, bias;
+  spread_ = spread_.cwiseAbs2().eval();
+}
+
+/// References, and along which axis the set moves: half the angle of the sum of squared velocities.
+void GroundModel::measureScale(double lever) {
+  scale_ = {1e-3, 0.0, lever, {1.0, 0.0}, 0.0};
+  std::complex<double> sum;
+  double length = 1e-12;
+  for (const TwistProfile& profile : profiles_) {
+    const PatternPart all = profile.part({}, profile.samples());
+    scale_.speed = std::max(scale_.speed, all.speed);
+    scale_.turn = std::max(scale_.turn, all.turning);
+    const std::complex<double> mean(all.mean[0], all.mean[1]);
+    sum += mean * mean;
+    length += std::norm(mean);
+  }
+  scale_.turn = std::max(scale_.turn, kLeastTurn * scale_.speed / lever);
+  scale_.isotropy = std::clamp(1.0 - std::abs(sum) / length, 0.0, 1.0);
+  if (std::abs(sum) > 1e-9 * length) {
+    const double angle = 0.5 * std::arg(sum);
+    scale_.axis = {std::cos(angle), std::sin(angle)};
+  }
 }
 
 PatternPart GroundModel::part(size_t pattern, Eigen::Index samples) const {
   const TwistProfile& profile = profiles_[pattern];
-  PatternPart part = profile.part(samples);
+  PatternPart part = profile.part(scale_, samples);
   part.pattern = pattern;
-  const Eigen::Vector2d speed = profile.meanSpeed(samples);
   const double seconds = period_ * static_cast<double>(samples);
-  const double moved = squared(noise_.position / seconds) + squared(noise_.turning * speed[1]);
+  const double moved = squared(noise_.position / seconds) + squared(noise_.turning * part.turning);
+  Eigen::Matrix3d to_path = Eigen::Matrix3d::Identity();
+  to_path.topLeftCorner<2, 2>() = part.to_path;
   // A profile that comes later by dt loses dt of its change: no gain of ground explains that.
-  const Eigen::Vector3d late = noise_.lag / seconds * profile.change(samples);
+  const Eigen::Vector3d change =
+      profile.twists()[static_cast<size_t>(samples - 1)] - profile.twists().front();
+  const Eigen::Vector3d late = noise_.lag / seconds * (to_path * change);
   const Eigen::Vector3d expected =
-      Eigen::Vector3d(squared(noise_.forward * speed[0]) + moved,
-                      squared(noise_.lateral * speed[0]) + moved,
-                      squared(noise_.yaw * speed[1]) + squared(noise_.wander * speed[0]) +
+      Eigen::Vector3d(squared(noise_.forward * part.speed) + moved,
+                      squared(noise_.lateral * part.speed) + moved,
+                      squared(noise_.yaw * part.turning) + squared(noise_.wander * part.speed) +
                           squared(noise_.heading / seconds)) +
       late.cwiseAbs2();
   // A turn on the spot moves, too: half a metre for a radian.
   constexpr double kMetresPerRadian = 0.5;
-  part.shape = squared(noise_.shape * (part.metres + kMetresPerRadian * speed[1] * seconds)) +
+  part.shape = squared(noise_.shape * (part.metres + kMetresPerRadian * part.turning * seconds)) +
                squared(noise_.position);
   const double share = recorded_share_[pattern];
+  const Eigen::Vector3d recorded = (to_path * recorded_[pattern] * to_path.transpose()).diagonal();
   constexpr double kLeast = 0.05;
   // A recording of nothing is no proof that an execution is exact.
-  part.noise = ((1.0 - share) * expected + share * recorded_[pattern]).cwiseMax(kLeast * expected);
+  part.noise = ((1.0 - share) * expected + share * recorded).cwiseMax(kLeast * expected);
   return part;
 }
 
-void GroundModel::fillSpread(const GroundConfig& config) {
-  const Kernels kernels = kernelsOf(whole_);
-  const auto n = static_cast<Eigen::Index>(profiles_.size());
-  for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
-    Eigen::MatrixXd& spread = spread_[velocity];
-    spread = Eigen::MatrixXd::Zero(kTerms + n, kTerms + n);
-    for (Eigen::Index i = 0; i < kTerms; ++i)
-      spread(i, i) =
-          squared(config.common[static_cast<size_t>(kTerms) * velocity + static_cast<size_t>(i)]);
-    spread.bottomRightCorner(n, n) =
-        squared(config.residual[velocity]) * correlations(kernels, velocity == 1 ? -1.0 : 1.0);
+void GroundModel::fillAlike() {
+  constexpr double kRange = 0.6;         // [1] of v_ref, w_ref
+  constexpr double kLeastSpread = 0.05;  // the odd kernel has no spread in straight patterns
+  const auto n = static_cast<Eigen::Index>(whole_.size());
+  Eigen::MatrixXd near(n, n), mirrored(n, n);
+  const auto scaled = [&](const PatternPart& part, double mirror) {
+    const Eigen::Vector2d& a = scale_.axis;
+    const double along = a[0] * part.mean[0] + a[1] * part.mean[1];
+    const double across = a[0] * part.mean[1] - a[1] * part.mean[0];
+    return Eigen::Vector3d(along / (kRange * scale_.speed),
+                           mirror * across / (kRange * scale_.speed),
+                           mirror * part.mean[2] / (kRange * scale_.turn));
+  };
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const Eigen::Vector3d a = scaled(whole_[static_cast<size_t>(i)], 1.0);
+      const PatternPart& other = whole_[static_cast<size_t>(j)];
+      near(i, j) = std::exp(-0.5 * (a - scaled(other, 1.0)).squaredNorm());
+      mirrored(i, j) = std::exp(-0.5 * (a - scaled(other, -1.0)).squaredNorm());
+    }
+  for (int own = 0; own < TwistCorrection::kOwn; ++own) {
+    const double sign =
+        own == TwistCorrection::kAcross || own == TwistCorrection::kBiasOwn ? -1.0 : 1.0;
+    const Eigen::MatrixXd sum = near + sign * mirrored;
+    const Eigen::ArrayXd size = sum.diagonal().array().max(kLeastSpread).sqrt();
+    const double i = scale_.isotropy;
+    Eigen::MatrixXd& alike = alike_[static_cast<size_t>(own)];
+    alike = ((1.0 - i) * 0.1 + i * 0.6) * near;
+    alike += (1.0 - i) * 0.7 *
+             (sum.array() / (size.matrix() * size.matrix().transpose()).array()).matrix();
+    alike.diagonal().array() += (1.0 - i) * 0.2 + i * 0.4;
   }
+}
+
+namespace {
+
+double entry(const Eigen::MatrixXd& matrix, const PatternPart& a, const PatternPart& b) {
+  return matrix(static_cast<Eigen::Index>(a.pattern), static_cast<Eigen::Index>(b.pattern));
+}
+
+}  // namespace
+
+VelocityBank::Blocks GroundModel::velocity(const PatternPart& a, const PatternPart& b) const {
+  const Eigen::Vector2d alike(entry(alike_[TwistCorrection::kAlong], a, b),
+                              entry(alike_[TwistCorrection::kAcross], a, b));
+  return {
+      a.velocity * spread_.head<TwistCorrection::kVelocity>().asDiagonal() * b.velocity.transpose(),
+      a.own * alike.asDiagonal() * b.own.transpose()};
+}
+
+double GroundModel::biasApart() const {
+  return squared(kBiasApart);
+}
+
+YawBank::Blocks GroundModel::yaw(const PatternPart& a, const PatternPart& b) const {
+  using One = YawBank::Block;
+  return {
+      One(a.yaw[0] * b.yaw[0] * spread_[TwistCorrection::kYaw] +
+          a.yaw[1] * b.yaw[1] * spread_[TwistCorrection::kYawBySpeed]),
+      One(a.yaw[2] * b.yaw[2] + a.yaw[3] * b.yaw[3] +
+          biasApart() * a.bias_own * b.bias_own * entry(alike_[TwistCorrection::kBiasOwn], a, b)),
+      One(a.yaw_own * b.yaw_own * entry(alike_[TwistCorrection::kYawOwn], a, b))};
 }
 
 }  // namespace tread::learner

@@ -9,95 +9,118 @@
 
 #include "common/pattern/pattern.hpp"
 #include "modules/learner/core/rules/learning_rule.hpp"
+#include "modules/learner/core/rules/scale_bank.hpp"
 #include "modules/learner/core/scaling.hpp"
 
 namespace tread::learner {
 
-/// What ground may do to the body twist of a pattern: corrections relative to the shipped
-/// prediction.
-/** With v, s, w the shipped forward, lateral and yaw velocity of a sample [m/s, m/s, rad/s]:
- *    forward   v' = v (1 + f + r_x - tau |w|) + e w
- *    lateral   s' = s + kappa |v| w + (c + r_y) v + o w
- *    yaw       w' = w (1 + g + r_w + eta |v|) + b v
- * f forward gain [1], tau turn loss [s], e push [m] (one track holds better than the other), kappa
- * sideslip [s], c crab [1], o shift of the point about which it turns [m], g yaw gain [1], eta yaw
- * gain by speed [s/m], b yaw bias [rad/m] are common to all patterns; r_x, r_y, r_w [1] are the
- * pattern's own. Linear in the twelve, so that a mean twist is corrected exactly by a matrix; only
- * predictions are kept within what ground can do (factors 0..3, lateral +-|v|, bias +-0.5 rad/m,
- * push and shift +-0.5 m). */
-struct TwistCorrection {
-  enum Index {
-    kForward,
-    kTurnLoss,
-    kPush,
-    kSideslip,
-    kCrab,
-    kShift,
-    kYaw,
-    kYawBySpeed,
-    kYawBias,
-    kCommon
-  };
-  static constexpr int kOwn = 3;               ///< r_x, r_y, r_w, after the common ones
-  static constexpr int kAll = kCommon + kOwn;  ///< twelve
-};
-using CorrectionVector = Eigen::Matrix<double, TwistCorrection::kAll, 1>;
+inline double squared(double value) {
+  return value * value;
+}
+
 /// The velocities of a body twist: forward, lateral, yaw.
 inline constexpr size_t kVelocities = 3;
 
-/// Of each velocity three common corrections, in the order of TwistCorrection: of velocity i those
-/// from 3 i on. Its state is those three, then its r of each pattern.
-/** No correction acts on two velocities, so that the three are learned apart. */
-inline constexpr Eigen::Index kTerms = 3;
+/// What makes corrections free of units: the largest mean speed and turn rate of the set, and half
+/// the gauge.
+struct BodyScale {
+  double speed = 1.0;              ///< [m/s] v_ref
+  double turn = 1.0;               ///< [rad/s] w_ref, at least .2 v_ref / lever
+  double lever = 0.3;              ///< [m]
+  Eigen::Vector2d axis{1.0, 0.0};  ///< along which the set moves
+  double isotropy = 0.0;           ///< [1] 0: along one axis only; 1: as much in all directions
+};
+
+struct PatternPart;
+
+/// What ground may do to the body twist of a pattern, relative to the shipped prediction.
+/** With V the shipped velocity (forward, lateral) [m/s] and w the turn rate [rad/s] of a sample, J
+ * the turn by 90 degrees, B = [[b1, b2], [b2, -b1]]:
+ *    V' = V (1 + a - tau |w|/w_ref) + J V (c + kappa w/w_ref) + B V + (v_ref/w_ref) w e + o A r
+ *    w' = w (1 + g + eta |V|/v_ref + r_g) + b . V + |V| r_b
+ * a gain, c crab, b1 and b2 shear, tau turn loss, kappa sideslip, e shift of the point about which
+ * it turns, g yaw gain, eta yaw gain by speed, all [1], b yaw bias [rad/m] are common to all
+ * patterns; r [1], along and across the set's axis A, r_g [1] and r_b [rad/m] are the pattern's
+ * own; o = hypot(|V|, v_ref |w| / (2 w_ref)). No term knows which way is forward: in a frame that
+ * is turned everything turns along. Predictions are kept within what ground can do. */
+struct TwistCorrection {
+  enum Common {
+    kGain,
+    kCrab,
+    kShear,
+    kShearAcross,
+    kTurnLoss,
+    kSideslip,
+    kShiftX,
+    kShiftY,
+    kYaw,
+    kYawBySpeed,
+    kBiasX,
+    kBiasY,
+    kCommon
+  };
+  static constexpr int kVelocity = 8;  ///< of them act on V, the others on w
+  static constexpr int kTurning = kCommon - kVelocity;
+  enum Own { kAlong, kAcross, kYawOwn, kBiasOwn, kOwn };
+
+  Eigen::Matrix<double, kCommon, 1> common = Eigen::Matrix<double, kCommon, 1>::Zero();
+  Eigen::Matrix<double, kOwn, 1> own = Eigen::Matrix<double, kOwn, 1>::Zero();
+
+  /// What they add to the mean twist of a part, in the frame of its path.
+  Eigen::Vector3d added(const PatternPart& part) const;
+};
 
 /// The beginning of a pattern, or the whole of it, as what one measurement of it tells.
+/** Twists are in the frame of its path: along the shipped mean velocity, across it, yaw. */
 struct PatternPart {
   size_t pattern = 0;
   Eigen::Index samples = 0;
-  Eigen::Vector3d mean;   ///< shipped mean twist [m/s, m/s, rad/s]
-  Eigen::Vector3d noise;  ///< variance of one execution's mean twist on even ground
-  double metres = 0.0;    ///< driven, as shipped
-  double shape = 0.0;     ///< [m2] variance of x and of y of its end beyond that of the mean twist
-  /// Change of each mean velocity per unit of its common corrections and of the pattern's own.
-  std::array<std::array<double, kTerms>, kVelocities> common{};
-  std::array<double, kVelocities> own{};
+  Eigen::Vector3d mean;               ///< shipped mean twist, body frame [m/s, m/s, rad/s]
+  Eigen::Matrix2d to_path;            ///< turns a body vector into the frame of the path
+  Eigen::Vector3d noise;              ///< variance of one execution's mean twist
+  double metres = 0.0;                ///< driven, as shipped
+  double speed = 0.0, turning = 0.0;  ///< mean |V| [m/s], mean |w| [rad/s]
+  double shape = 0.0;                 ///< [m2] variance of x and y of its end beyond that
+  /// Change of the mean velocity per unit of each correction of it, and of the pattern's own.
+  Eigen::Matrix<double, 2, TwistCorrection::kVelocity> velocity;
+  Eigen::Matrix2d own;
+  Eigen::Matrix<double, 1, TwistCorrection::kTurning> yaw;  ///< the same of the mean turn rate
+  double yaw_own = 0.0, bias_own = 0.0;
+
+  /// Turns a twist in the frame of the path into the body frame.
+  Eigen::Matrix3d toBody() const {
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+    turn.topLeftCorner<2, 2>() = to_path.transpose();
+    return turn;
+  }
 };
 
 /// The body twists of a pattern's shipped prediction, sample by sample.
 /** A sample's twist is the constant one that leads from a pose to the next (SE(2) logarithm).
  * Corrected profiles are integrated again exactly: in a sample of dt the pose moves by the chord
- *    dt sinc(w' dt / 2) (v', s'),   turned by the yaw in the middle of the sample. */
+ *    dt sinc(w' dt / 2) V',   turned by the yaw in the middle of the sample. */
 class TwistProfile {
  public:
   TwistProfile(const MotionPattern& shipped, double period);
 
   /// R under a correction. Allocates nothing.
-  void integrate(const CorrectionVector& correction, Trajectory prediction) const;
+  void integrate(const BodyScale& scale, const TwistCorrection& correction,
+                 Trajectory prediction) const;
   /// Its last pose alone.
-  Pose2 integrateEnd(const CorrectionVector& correction) const;
-
-  /// Mean twist (v, s, w) of the first samples, and its responses; no noise yet.
-  PatternPart part(Eigen::Index samples) const;
-  /// Change of the last pose (x, y, yaw) per unit of each correction, at the shipped prediction.
-  const Eigen::Matrix<double, 3, TwistCorrection::kAll>& endResponse() const {
-    return end_response_;
-  }
-  /// Change of the last pose per unit of a constant twist (v, s, w) added to all samples [s, m s].
+  Pose2 integrateEnd(const BodyScale& scale, const TwistCorrection& correction) const;
+  /// Mean twist of the first samples, and its responses; no noise yet.
+  PatternPart part(const BodyScale& scale, Eigen::Index samples) const;
+  /// Change of the last pose per unit of a constant twist added to all samples [s, m s].
   const Eigen::Matrix3d& endLever() const { return end_lever_; }
-  Eigen::Index samples() const { return static_cast<Eigen::Index>(forward_.size()); }
-  /// Mean |v| and |w| of the first samples: how large they are, also there and back.
-  Eigen::Vector2d meanSpeed(Eigen::Index samples) const;
-  /// Twist (v, s, w) of the last of the first samples less that of the first one.
-  Eigen::Vector3d change(Eigen::Index samples) const;
+  Eigen::Index samples() const { return static_cast<Eigen::Index>(twists_.size()); }
+  const std::vector<Eigen::Vector3d>& twists() const { return twists_; }
 
  private:
   template <typename Put>
-  Pose2 walk(const CorrectionVector& correction, Put&& put) const;
-  void measureResponses();
+  Pose2 walk(const BodyScale& scale, const TwistCorrection& correction, Put&& put) const;
 
   double period_;
-  std::vector<double> forward_, lateral_, yaw_;  ///< [m/s, m/s, rad/s] by sample
-  Eigen::Matrix<double, 3, TwistCorrection::kAll> end_response_;
+  std::vector<Eigen::Vector3d> twists_;  ///< [m/s, m/s, rad/s]
   Eigen::Matrix3d end_lever_;
 };
 
@@ -105,47 +128,50 @@ class TwistProfile {
 /// nothing.
 Eigen::Vector3d meanTwist(const ConstTrajectory& trajectory, Eigen::Index samples, double period);
 
-/// What is known before anything is measured: patterns as body twists, how far surfaces lie apart,
-/// and how exact one execution is. Immutable; all hypotheses share it.
-/** State of a velocity: x = (its common corrections, then its r of each pattern). Residuals of
- * different patterns are correlated by 0.1 k(i, j) + 0.7 e(i, j) + 0.2 [i = j],
- * k = exp(-d(i, j)^2 / 2), d the distance of the patterns' mean (v, w) over 0.6 of the largest |v|,
- * |w| in the set; e the same kernel made even (r_x, r_w) or odd (r_y) under mirroring w -> -w and
- * brought to a unit diagonal: mirrored patterns are correlated by 0.7, neighbours by 0.8. */
+/// Patterns as body twists, how alike they are, and how exact one execution is. Immutable.
 class GroundModel {
  public:
   GroundModel(const GroundConfig& config, const PatternSet& shipped);
 
   size_t patterns() const { return profiles_.size(); }
   double period() const { return period_; }
+  const BodyScale& scale() const { return scale_; }
   const TwistProfile& profile(size_t pattern) const { return profiles_[pattern]; }
-  /// Length of each velocity's state.
-  Eigen::Index dimension() const { return kTerms + static_cast<Eigen::Index>(profiles_.size()); }
-  /// Q: covariance of a velocity's corrections over the surfaces that there are.
-  const Eigen::MatrixXd& spread(size_t velocity) const { return spread_[velocity]; }
-  /// The first samples of a pattern; `samples` is at least 1 and at most those of the pattern.
   PatternPart part(size_t pattern, Eigen::Index samples) const;
   const PatternPart& whole(size_t pattern) const { return whole_[pattern]; }
 
+  /// Correlation of what two patterns have of their own: along the set's axis, across it, of yaw
+  /// gain and of yaw bias.
+  /** .1 k + .7 m + .2 [i = j] where the set moves along one axis: k = exp(-d^2 / 2), d the distance
+   * of the mean twists over .6 of v_ref and w_ref, m the same kernel made even or odd under
+   * mirroring at the axis (V_across, w) -> -(V_across, w), with a unit diagonal; towards
+   * .6 k + .4 [i = j] as it moves in all directions, where nothing is a mirror. */
+  const Eigen::MatrixXd& alike(TwistCorrection::Own own) const { return alike_[own]; }
+
+  // Covariances of what ground adds to the mean twists of two parts, for a ground of scale 1
+  // without residuals, and per unit of residuals; spreads of the corrections: see ground_model.cpp.
+  VelocityBank::Blocks velocity(const PatternPart& a, const PatternPart& b) const;
+  YawBank::Blocks yaw(const PatternPart& a, const PatternPart& b) const;
+
+  /// Share of the variance of yaw bias by which patterns differ in it [1].
+  double biasApart() const;
+  /// Variances of the common corrections on a ground of scale 1 (velocity and yaw gains), and of
+  /// yaw bias 1 rad/m.
+  const Eigen::Matrix<double, TwistCorrection::kCommon, 1>& spread() const { return spread_; }
+
  private:
-  void fillSpread(const GroundConfig& config);
+  void measureScale(double lever);
+  void fillAlike();
 
   double period_;
   TwistNoise noise_;
+  BodyScale scale_;
   std::vector<TwistProfile> profiles_;
-  std::vector<double> recorded_share_;     ///< by pattern; 0 where no spread was recorded
-  std::vector<Eigen::Vector3d> recorded_;  ///< variance of the mean twist, by pattern
+  std::vector<double> recorded_share_;
+  std::vector<Eigen::Matrix3d> recorded_;  ///< covariance of the mean twist, body frame
   std::vector<PatternPart> whole_;
-  std::array<Eigen::MatrixXd, kVelocities> spread_;
+  std::array<Eigen::MatrixXd, TwistCorrection::kOwn> alike_;
+  Eigen::Matrix<double, TwistCorrection::kCommon, 1> spread_;
 };
-
-/// h' x: what corrections of a velocity do to its mean in a part of a pattern.
-template <class Vector>
-double response(const PatternPart& part, size_t velocity, const Vector& x) {
-  double sum = part.own[velocity] * x[kTerms + static_cast<Eigen::Index>(part.pattern)];
-  for (Eigen::Index i = 0; i < kTerms; ++i)
-    sum += part.common[velocity][static_cast<size_t>(i)] * x[i];
-  return sum;
-}
 
 }  // namespace tread::learner

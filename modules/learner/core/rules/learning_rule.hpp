@@ -34,29 +34,16 @@ struct TwistNoise {
 struct GroundConfig {
   static constexpr int64_t kMostSurfaces = 64;
 
-  TwistNoise noise;            ///< expected where nothing was recorded
-  double lever = 0.3;          ///< [m] half the gauge, of `scale_mixture`: turning against driving
-  double recorded = 0.3;       ///< [1] share of the recorded spread of ends in the noise
-  double noise_prior = 5.0;    ///< [1] executions that the expected noise counts for
-  double most_freedom = 40.0;  ///< [1] of Student's t: even a known surface has tails
-  /// Standard deviations from surface to surface, in the order of TwistCorrection: forward gain
-  /// [1], turn loss [s], push [m], sideslip [s], crab [1], shift [m], yaw gain [1], yaw by speed
-  /// [s/m], yaw bias [rad/m].
-  std::array<double, 9> common{0.06, 0.09, 0.03, 0.09, 0.012, 0.05, 0.16, 0.047, 0.012};
-  /// The same of a vehicle that differs from its shipped set, on all grounds alike.
-  std::array<double, 9> vehicle{0.07, 0.07, 0.04, 0.07, 0.02, 0.07, 0.18, 0.07, 0.07};
-  /// Of a pattern's own residual: of v_x, of v_y over v_x, of omega [1].
-  std::array<double, 3> residual{0.067, 0.05, 0.10};
-  double shared = 0.5;            ///< [1] share of that variance that all surfaces have in common
-  double shipped_spread = 0.05;   ///< [1] the same of the shipped set's own ground, over Q
+  TwistNoise noise;               ///< expected where nothing was recorded
+  double lever = 0.3;             ///< [m] half the gauge: turning against driving
+  double noise_prior = 5.0;       ///< [1] executions that the expected noise counts for
+  double most_freedom = 40.0;     ///< [1] of Student's t: even a known surface has tails
   double change_prior = 10.0;     ///< [1] changes that the expected way to the next one counts for
   double change_metres = 10.0;    ///< [m] mean way to the next change of ground
   double fresh = 0.5;             ///< [1] probability that a change leads to ground not met before
-  double far = 0.03;              ///< [1] that such ground is unlike all others
   double slope_effect = 1.0;      ///< [1] deviation of a velocity over |v|, per rise of the ground
   double voltage_effect = 1.0;    ///< [1] the same, relative, per relative change of voltage
   double context_evidence = 5.0;  ///< [nat] from which on slope or voltage counts; 1000: never
-  double ahead = 2.0;             ///< [m] way that predictions look ahead
   double sure = 0.9;              ///< [1] probability from which on a surface counts as recognized
   int64_t settled_after = 10;     ///< executions on fresh ground until it is remembered
   double longest_memory = 100.0;  ///< executions after which the oldest on a surface fade
@@ -79,6 +66,11 @@ struct RuleConfig {
 // The keys of learner.yaml, a section for each kind of rule. The reader is a ConfigReader; a core
 // does not know it by name.
 
+/// Keys that files of earlier versions have, and the configurations in their logs; without effect.
+inline constexpr const char* kRetiredScalingKeys[] = {"min_turn", "min_length"};
+inline constexpr const char* kRetiredGroundKeys[] = {
+    "recorded", "common", "vehicle", "residual", "shared", "shipped_spread", "far", "ahead"};
+
 template <class Reader>
 void readScaling(Reader& reader, RuleConfig& rule) {
   Reader section = reader.section("scaling");
@@ -87,19 +79,10 @@ void readScaling(Reader& reader, RuleConfig& rule) {
   section.numbers("min_box", box, 3, {0.001, 1.0}, "m, m, rad");
   limits.min_box = {box[0], box[1], box[2]};
   section.number("min_box_sigmas", limits.min_box_sigmas, {0.0, 10.0}, "1");
-  section.number("min_turn", limits.min_turn, {0.0, 1.0}, "rad");
-  section.number("min_length", limits.min_length, {0.0, 1.0}, "m");
+  for (const char* key : kRetiredScalingKeys) section.has(key);
   section.number("min_factor", limits.min_factor, {0.1, 1.0}, "1");
   section.number("max_factor", limits.max_factor, {1.0, 10.0}, "1");
   section.number("sign_sigmas", rule.sign_sigmas, {0.0, 10.0}, "1");
-}
-
-template <class Reader, size_t kCount>
-void readDeviations(Reader& section, const char* key, std::array<double, kCount>& deviations,
-                    const char* unit) {
-  std::vector<double> numbers(deviations.begin(), deviations.end());
-  section.numbers(key, numbers, kCount, {1e-4, 10.0}, unit);
-  std::copy(numbers.begin(), numbers.end(), deviations.begin());
 }
 
 template <class Reader>
@@ -115,27 +98,20 @@ void readGround(Reader& reader, GroundConfig& ground) {
   section.number("position_noise", ground.noise.position, {1e-4, 1.0}, "m");
   section.number("heading_noise", ground.noise.heading, {1e-4, 1.0}, "rad");
   section.number("lever", ground.lever, {0.01, 10.0}, "m");
-  section.number("recorded", ground.recorded, {0.0, 1.0}, "1");
   section.number("noise_prior", ground.noise_prior, {3.0, 100.0}, "1");
   section.number("most_freedom", ground.most_freedom, {4.0, 1000.0}, "1");
-  readDeviations(section, "common", ground.common, "1, s, m, s, 1, m, 1, s/m, rad/m");
-  readDeviations(section, "vehicle", ground.vehicle, "1, s, m, s, 1, m, 1, s/m, rad/m");
-  readDeviations(section, "residual", ground.residual, "1");
-  section.number("shared", ground.shared, {0.0, 0.95}, "1");
-  section.number("shipped_spread", ground.shipped_spread, {1e-4, 1.0}, "1");
   section.number("change_prior", ground.change_prior, {0.1, 1e9}, "1");
   section.number("change_metres", ground.change_metres, {0.1, 1e5}, "m");
   section.number("fresh", ground.fresh, {0.01, 0.99}, "1");
-  section.number("far", ground.far, {0.001, 0.999}, "1");
   section.number("slope_effect", ground.slope_effect, {1e-3, 10.0}, "1");
   section.number("voltage_effect", ground.voltage_effect, {1e-3, 10.0}, "1");
   section.number("context_evidence", ground.context_evidence, {1.0, 1000.0}, "nat");
-  section.number("ahead", ground.ahead, {0.0, 100.0}, "m");
   section.number("sure", ground.sure, {0.6, 0.999}, "1");
   section.integer("settled_after", ground.settled_after, {2, 1000}, "1");
   section.number("longest_memory", ground.longest_memory, {10.0, 1e6}, "1");
   section.integer("moments", ground.moments, {3, 64}, "1");
   section.integer("capacity", ground.capacity, {1, GroundConfig::kMostSurfaces}, "1");
+  for (const char* key : kRetiredGroundKeys) section.has(key);
 }
 
 template <class Reader>

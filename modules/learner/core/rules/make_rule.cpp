@@ -3,7 +3,6 @@
 #include <stdexcept>
 
 #include "modules/learner/core/rules/collective.hpp"
-#include "modules/learner/core/rules/mixture/scale_mixture.hpp"
 #include "modules/learner/core/rules/multi_model.hpp"
 #include "modules/learner/core/rules/off.hpp"
 #include "modules/learner/core/rules/single.hpp"
@@ -29,7 +28,6 @@ const NamedRule kRules[] = {
     {"collective", &make<Collective>},
     {"telescoping", &make<Telescoping>},
     {"multi_model", &make<MultiModel>},
-    {"scale_mixture", &make<mixture::ScaleMixture>},
 };
 
 }  // namespace

@@ -6,61 +6,49 @@
 #include <vector>
 
 #include "modules/learner/core/rules/context_effects.hpp"
-#include "modules/learner/core/rules/ground_model.hpp"
 #include "modules/learner/core/rules/learning_rule.hpp"
+#include "modules/learner/core/rules/scatter.hpp"
 #include "modules/learner/core/rules/surface.hpp"
 
 namespace tread::learner {
 
-/// How far executions of each pattern scatter about what is known of the ground, whatever ground:
-/// v_x, v_y and omega of the mean twist, and the end beyond it (a path that is not steady ends
-/// elsewhere than one of the same mean twist that is).
-struct Scatter {
-  static constexpr Eigen::Index kQuantities = 4;
-  using Factors = Eigen::Matrix<double, kQuantities, Eigen::Dynamic>;
+/// A factor on a 90 % region that follows how often it held (adaptive conformal prediction).
+struct Calibration {
+  static constexpr double kNarrowest = -0.7, kWidest = 1.2;
 
-  explicit Scatter(size_t patterns)
-      : sums(Eigen::MatrixXd::Zero(1 + kQuantities, static_cast<Eigen::Index>(patterns))) {}
-
-  /// Squared errors of an execution over the ground model's variances.
-  void add(size_t pattern, const Eigen::Vector4d& squared_error, double longest_memory);
-  /// Expected factors on the variances, a column for each pattern: its mean, drawn by `prior`
-  /// executions towards that of all patterns, which is drawn by as many towards 1.
-  /** A rough ground tells nothing of the next: where the velocities of all patterns together
-   * scatter more than expected, only how patterns differ counts. The next ground would look like
-   * any, were it expected to be as rough; how rough it is itself is its own q. */
-  Factors expected(double prior) const;
-
-  Eigen::MatrixXd sums;  ///< a column for each pattern: executions, then their squared errors
+  double log_factor = 0.0;  ///< logarithm of the factor on deviations
+  void follow(bool held);
 };
 
-/// A multiple-model filter over surfaces (own work). The default rule.
+/// A multiple-model filter over surfaces, prepared for grounds that differ by 3 and by 60 % (own
+/// work). The default rule.
 /** On which ground is the vehicle? The hypotheses are the surfaces that it remembers, the first of
  * them the ground of the shipped set, and *fresh* ones: since some moment it is on ground that it
- * has not met, two hypotheses (near, far) for each recent moment. Each is a Surface: a regression
- * of what was measured, with a noise of its own. After d metres and an execution z
- *    w_i^- = (1 - h) w_i + h pi_i,   h = 1 - exp(-d r),
- *    w_i ~ w_i^- p_i(z).
+ * has not met. Each is a Surface, a regression whose width is a mixture over scales
+ * (scale_bank.hpp): what was measured tells how much grounds differ. After d metres and an
+ * execution z
+ *    w_i^- = (1 - h) w_i + h pi_i,   h = 1 - exp(-d r),   w_i ~ w_i^- p_i(z).
  * r: changes a metre, learned from those that were sure in the end; what is expected counts for
- * change_prior changes in as many times change_metres. pi: `fresh` for the new hypotheses that
- * begin with this execution, the rest in equal shares for the remembered surfaces. Every fresh one
+ * change_prior changes in as many times change_metres. pi: `fresh` for the new hypothesis that
+ * begins with this execution, the rest in equal shares for the remembered surfaces. Every fresh one
  * learns from z, a remembered one only while it is sure, so that doubtful executions blur none. Of
  * the fresh ones that have settled and are sure together the likeliest is remembered. The weakest
  * fresh ones and the surface that was met longest ago make room.
  *
- * A new surface is expected about what the K surfaces met so far have in common. Of a correction,
- * with x_k = mu + d_k, mu ~ N(0, m), d_k ~ N(0, d), and x_k known by P_k,
- *    g = m / (d + K m),   E[mu] = g sum x_k,   Var[x_new] = d (1 + g) + g^2 sum P_k.
- * Near: m = shared Q, d = (1 - shared) Q, the vehicle is about as its set says. Far: m = vehicle^2,
- * d = Q for the common corrections: it differs from its set on every ground, which is kept where
- * the ground changes; or, before anything was met, it may be anything. Executions are expected to
- * scatter on it as they have so far (Scatter), and also on the shipped set's ground until the
- * vehicle has settled there.
+ * New ground is expected about m = sum x_k / (1 + K), x_k the corrections of the K surfaces met; of
+ * yaw and residuals less, as those surfaces contradict each other, by the factor (James and Stein)
+ *    max(0, 1 - (|m|^2 + sum |x_k - m|^2) / (K (K + 1) |m|^2)),
+ * with (2 + K) / (2 + 2 K) of the variances of the scales; the weights of the scales are learned
+ * from those surfaces. Fresh ground that proves to be one that is
+ * remembered, within half of what one execution tells, is that one. Executions are expected to
+ * scatter on new ground as they have so far (Scatter). Effects of slope and battery are subtracted
+ * from each execution (ContextEffects); predictions are for level ground and the voltage of the
+ * last one.
  *
- * Effects of slope and battery are subtracted from each execution (ContextEffects). Predictions are
- * for level ground, the voltage of the last execution and the next `ahead` metres, on which the
- * ground may change, too: the shipped profile under sum_i w_i^- E[x_i], the covariance that of the
- * mixture. */
+ * Predictions are the mixture's mean, (1 - h / 2) sum_i w_i E[x_i] + (h / 2) sum_i pi_i E[x_i] for
+ * a pattern in which the ground changes by h. The region of 90 % is found of the mixture itself,
+ * with a change at most so probable that a region of 90 % could hold it, and follows how often it
+ * held, apart while it knows the ground and while it searches. */
 class MultiModel : public LearningRule {
  public:
   MultiModel(const RuleConfig& config, const PatternSet& shipped);
@@ -85,25 +73,20 @@ class MultiModel : public LearningRule {
   const ContextEffects& effects() const { return effects_; }
 
  private:
+  static constexpr double kLongestWay = 2000.0;  ///< [m] after which older changes fade
+  static constexpr double kMostError = 1e3;      ///< [1] of an execution in the scatter
+
   struct Hypothesis {
     Surface surface;
     double weight = 0.0;
     int64_t last_met = 0;  ///< in executions that the rule has learned from since it began
     int64_t since = 0;     ///< the same, when it was first considered
   };
-  /// A hypothesis with its weight after some more metres.
-  struct Weighed {
-    double weight;
-    const Surface* surface;
-  };
-
-  /// Of a new surface from the others.
-  enum class Distance { kNear, kFar };
-  SurfacePrior priorOfNew(Distance distance) const;
+  SetCorrection commonOf(const std::vector<const Surface*>& met) const;
+  SurfacePrior expectNewGround() const;
   void expectNew();
   double hazard(double metres) const;
   void countChange(double metres);
-  double freshShare() const;
   void expectChange(double metres);
   void weigh(const TwistSample& sample);
   void scaleWeights(double total);
@@ -111,33 +94,37 @@ class MultiModel : public LearningRule {
   const Hypothesis& likeliest() const;
   void followScatter(const TwistSample& sample, const Eigen::Vector3d& effect, const Pose2& end);
   void forgetWeakest();
-  std::vector<Hypothesis>::iterator metLongestAgo();
-  void forgetOldest();
   bool rememberSettled();
-  void predictMixture();
-  template <class Take>
-  void forEachAhead(Take&& take) const;
-  CorrectionVector correctionOf(const ByVelocity<Eigen::VectorXd>& x, size_t pattern) const;
-  bool restoreHypotheses(std::vector<Hypothesis>& hypotheses, size_t most,
+  bool settled(const Surface& surface) const;
+  bool same(const Surface& a, const Surface& b) const;
+  void mix();
+  /// E[x] of a pattern, in which the ground may change, too.
+  TwistCorrection expected(const PatternPart& part) const;
+  bool searching() const;
+  Moments region(const PatternPart& part) const;
+  void calibrate(const TwistSample& sample);
+  /// `first`: what the first of them is like before it takes its numbers.
+  bool restoreHypotheses(std::vector<Hypothesis>& hypotheses, const Surface& first, size_t most,
                          const std::vector<double>& memory, size_t& at) const;
 
   GroundConfig config_;
   std::shared_ptr<const GroundModel> model_;
   std::vector<Hypothesis> surfaces_;  ///< remembered; [0] of the shipped set
-  std::vector<Hypothesis> fresh_;     ///< since some moment; the two that begin now come last
+  std::vector<Hypothesis> fresh_;     ///< since some moment; the one that begins now comes last
   Scatter scatter_;
-  Scatter::Factors expected_scatter_;  ///< of the next execution
-  Surface near_, far_;                 ///< what a new surface would be
-  Context context_;                    ///< of the execution that comes next
+  Scatter::Factors expected_scatter_;
+  Surface new_;      ///< what a new surface would be
+  Context context_;  ///< of the execution that comes next
   ContextEffects effects_;
   std::vector<double> changed_;  ///< share of w_i^- that came by a change, remembered ones first
   double change_probability_ = 0.0;
-  double changes_ = 0.0;                    ///< of ground that were sure in the end
-  double metres_ = 0.0;                     ///< driven meanwhile
-  int64_t ground_ = 0;                      ///< `since` of the hypothesis that was sure last
-  int64_t clock_ = 1;                       ///< 0 is when the shipped set was made
-  ByVelocity<Eigen::VectorXd> mean_;        ///< of the mixture ahead
-  ByVelocity<Eigen::MatrixXd> covariance_;  ///< the same
+  double changes_ = 0.0;  ///< of ground that were sure in the end
+  double metres_ = 0.0;   ///< driven meanwhile
+  int64_t ground_ = 0;    ///< `since` of the hypothesis that was sure last
+  int64_t clock_ = 1;     ///< 0 is when the shipped set was made
+  Calibration calm_, searching_;
+  SetCorrection mean_;          ///< of the mixture, without the next change
+  SetCorrection changed_mean_;  ///< behind the next change
 };
 
 }  // namespace tread::learner

@@ -3,42 +3,64 @@
 #include "modules/learner/core/rules/surface.hpp"
 
 #include <algorithm>
+#include <limits>
+
+#include <Eigen/LU>
+
+#include "common/geometry/se2.hpp"
 
 namespace tread::learner {
 namespace {
 
 constexpr double kLargestTwist = 100.0;
-/// No ground's corrections are beyond this, of whatever unit.
+/// What weighs less adds nothing: to moments, to a density, to the noise [1].
+constexpr double kLeastInMoments = 1e-3;
+constexpr double kLeastInDensity = 1e-6;
+constexpr double kLeastInNoise = 0.03;
+/// No ground's corrections are beyond this.
 constexpr double kLargestCorrection = 1e9;
-constexpr double kLargestVariance = 1e3;
 
-/// P h.
-void timesResponse(const PatternPart& part, size_t velocity, const Eigen::MatrixXd& P,
-                   Eigen::VectorXd& Ph) {
-  Ph.noalias() = part.own[velocity] * P.col(kTerms + static_cast<Eigen::Index>(part.pattern));
-  for (Eigen::Index i = 0; i < kTerms; ++i)
-    Ph.noalias() += part.common[velocity][static_cast<size_t>(i)] * P.col(i);
+/// Logarithm of Student's density of y: centre 0, scale matrix, degrees of freedom.
+template <int kAxes>
+double logStudent(const Eigen::Matrix<double, kAxes, 1>& y,
+                  const Eigen::Matrix<double, kAxes, kAxes>& scale, double freedom) {
+  const double half = 0.5 * (freedom + kAxes);
+  return std::lgamma(half) - std::lgamma(0.5 * freedom) - 0.5 * kAxes * std::log(freedom * kPi) -
+         0.5 * std::log(scale.determinant()) -
+         half * std::log1p(y.dot(scale.inverse() * y) / freedom);
 }
 
-/// h' P h.
-double variance(const PatternPart& part, size_t velocity, const Eigen::MatrixXd& P) {
-  const Eigen::Index own = kTerms + static_cast<Eigen::Index>(part.pattern);
-  const auto& common = part.common[velocity];
-  double sum = part.own[velocity] * part.own[velocity] * P(own, own);
-  for (Eigen::Index i = 0; i < kTerms; ++i) {
-    const double h = common[static_cast<size_t>(i)];
-    sum += 2.0 * h * part.own[velocity] * P(i, own);
-    for (Eigen::Index j = 0; j < kTerms; ++j) sum += h * common[static_cast<size_t>(j)] * P(i, j);
+/// Of a mixture, log sum exp, and moments.
+class LogSum {
+ public:
+  void add(double log) {
+    const double high = std::max(highest_, log);
+    sum_ = sum_ * std::exp(highest_ - high) + std::exp(log - high);
+    highest_ = high;
   }
-  return sum;
-}
+  double value() const { return highest_ + std::log(sum_); }
 
-/// Logarithm of Student's density of y: centre 0, scale^2, degrees of freedom.
-double logStudent(double y, double scale2, double freedom) {
-  const double half = 0.5 * (freedom + 1.0);
-  return std::lgamma(half) - std::lgamma(0.5 * freedom) - 0.5 * std::log(freedom * kPi * scale2) -
-         half * std::log1p(y * y / (freedom * scale2));
-}
+ private:
+  double highest_ = -std::numeric_limits<double>::max();
+  double sum_ = 0.0;
+};
+
+template <int kAxes>
+struct MomentSum {
+  using Vector = Eigen::Matrix<double, kAxes, 1>;
+  using Block = Eigen::Matrix<double, kAxes, kAxes>;
+  void add(double weight, const Vector& m, const Block& C) {
+    total += weight;
+    mean += weight * m;
+    square += weight * (C + m * m.transpose());
+  }
+  Block covariance() const { return square / total - mean * mean.transpose() / (total * total); }
+  double total = 0.0;
+  Vector mean = Vector::Zero();
+  Block square = Block::Zero();
+};
+
+using One = Eigen::Matrix<double, 1, 1>;
 
 }  // namespace
 
@@ -46,9 +68,17 @@ Eigen::Vector3d plausible(const Eigen::Vector3d& twist) {
   return twist.cwiseMax(-kLargestTwist).cwiseMin(kLargestTwist);
 }
 
-Surface::Surface(const GroundModel& model, const GroundConfig& config, const SurfacePrior& prior)
-    : prior_(prior) {
-  follow(model, config);
+SetCorrection SetCorrection::none(size_t patterns) {
+  SetCorrection none;
+  none.common.setZero();
+  none.own.setZero(TwistCorrection::kOwn, static_cast<Eigen::Index>(patterns));
+  return none;
+}
+
+Surface::Surface(std::shared_ptr<const GroundModel> model, const GroundConfig& config,
+                 SurfacePrior expectation)
+    : model_(std::move(model)), expectation_(std::move(expectation)) {
+  follow(config);
 }
 
 Surface::Measured& Surface::measuredOf(const PatternPart& part) {
@@ -59,9 +89,9 @@ Surface::Measured& Surface::measuredOf(const PatternPart& part) {
   return measured_.back();
 }
 
-void Surface::add(const GroundModel& model, const GroundConfig& config, const TwistSample& sample) {
+void Surface::add(const GroundConfig& config, const TwistSample& sample) {
   Measured& measured = measuredOf(sample.part);
-  const Eigen::Vector3d deviation = sample.mean_twist - sample.part.mean;
+  const Eigen::Vector3d deviation = sample.deviation();
   expected_noise_ = noise_;
   measured.count += 1.0;
   measured.sum += deviation;
@@ -76,143 +106,246 @@ void Surface::add(const GroundModel& model, const GroundConfig& config, const Tw
     }
     executions_ = config.longest_memory;
   }
-  follow(model, config);
+  follow(config);
 }
 
-void Surface::expect(const GroundModel& model, const GroundConfig& config,
-                     const Eigen::Matrix3Xd& scatter) {
-  prior_.scatter = scatter;
-  follow(model, config);
+void Surface::expect(const GroundConfig& config, const Eigen::Matrix3Xd& scatter) {
+  expectation_.scatter = scatter;
+  follow(config);
 }
 
-void Surface::follow(const GroundModel& model, const GroundConfig& config) {
-  regress(model);
+void Surface::follow(const GroundConfig& config) {
+  regress();
+  correct();
   estimateNoise(config);
 }
 
-Eigen::MatrixXd Surface::priorCovariance(const GroundModel& model, size_t velocity) const {
-  Eigen::MatrixXd Q = prior_.residual * model.spread(velocity);
-  Q.topLeftCorner<kTerms, kTerms>() =
-      prior_.common.col(static_cast<Eigen::Index>(velocity)).asDiagonal();
-  return Q;
+namespace {
+
+/// Covariances of what was measured with a part, by kind of spread.
+template <class Bank, class Measured, class Covariance>
+typename Bank::Cross crossOf(const std::vector<Measured>& measured, Covariance&& covariance) {
+  constexpr Eigen::Index kAxes = Bank::Block::RowsAtCompileTime;
+  typename Bank::Cross cross;
+  const auto n = static_cast<Eigen::Index>(measured.size());
+  for (auto& one : cross) one.resize(kAxes * n, kAxes);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto blocks = covariance(measured[static_cast<size_t>(i)].part);
+    for (size_t kind = 0; kind < cross.size(); ++kind)
+      cross[kind].template middleRows<kAxes>(kAxes * i) = blocks[kind];
+  }
+  return cross;
 }
 
-void Surface::regress(const GroundModel& model) {
-  Eigen::VectorXd Ph;
-  for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
-    const auto axis = static_cast<Eigen::Index>(velocity);
-    Eigen::VectorXd& x = x_[velocity];
-    Eigen::MatrixXd& P = P_[velocity];
-    x = prior_.centre[velocity];
-    P = priorCovariance(model, velocity);
-    // All executions of a part at once, part by part: cheaper than an inverse, and P stays
-    // symmetric to the bit.
-    for (const Measured& measured : measured_) {
-      const double n = measured.count;
-      timesResponse(measured.part, velocity, P, Ph);
-      const double S = response(measured.part, velocity, Ph) +
-                       expected_noise_[axis] * R(measured.part, axis) / n;
-      const double y = measured.sum[axis] / n - response(measured.part, velocity, x);
-      x += y / S * Ph;
-      for (Eigen::Index j = 0; j < P.cols(); ++j) P.col(j) -= Ph[j] * Ph / S;
+}  // namespace
+
+VelocityBank::Cross Surface::velocityCross(const PatternPart& part) const {
+  return crossOf<VelocityBank>(
+      measured_, [&](const PatternPart& other) { return model_->velocity(other, part); });
+}
+
+YawBank::Cross Surface::yawCross(const PatternPart& part) const {
+  return crossOf<YawBank>(measured_,
+                          [&](const PatternPart& other) { return model_->yaw(other, part); });
+}
+
+void Surface::regress() {
+  auto posterior = std::make_shared<Posterior>(
+      Posterior{VelocityBank(expectation_.velocity), YawBank(expectation_.yaw)});
+  const auto n = static_cast<Eigen::Index>(measured_.size());
+  velocity_noise_.resize(2, n);
+  yaw_noise_.resize(n);
+  Eigen::VectorXd velocity(2 * n), yaw(n);
+  VelocityBank::Grams velocity_grams;
+  YawBank::Grams yaw_grams;
+  for (auto& gram : velocity_grams) gram.resize(2 * n, 2 * n);
+  for (auto& gram : yaw_grams) gram.resize(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Measured& measured = measured_[static_cast<size_t>(i)];
+    const Eigen::Vector3d mean =
+        measured.sum / measured.count - expectation_.centre.added(measured.part);
+    velocity.segment<2>(2 * i) = mean.head<2>();
+    yaw[i] = mean[2];
+    for (Eigen::Index axis = 0; axis < 2; ++axis)
+      velocity_noise_(axis, i) = expected_noise_[axis] * R(measured.part, axis) / measured.count;
+    yaw_noise_[i] = expected_noise_[2] * R(measured.part, 2) / measured.count;
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      const PatternPart& a = measured.part;
+      const PatternPart& b = measured_[static_cast<size_t>(j)].part;
+      const VelocityBank::Blocks of_velocity = model_->velocity(a, b);
+      const YawBank::Blocks of_yaw = model_->yaw(a, b);
+      for (size_t kind = 0; kind < of_velocity.size(); ++kind)
+        velocity_grams[kind].block<2, 2>(2 * i, 2 * j) = of_velocity[kind];
+      for (size_t kind = 0; kind < of_yaw.size(); ++kind)
+        yaw_grams[kind](i, j) = of_yaw[kind](0, 0);
     }
   }
+  // Decompositions read the lower triangle only.
+  posterior->velocity.regress(velocity_grams, velocity, velocity_noise_.reshaped());
+  posterior->yaw.regress(yaw_grams, yaw, yaw_noise_);
+  posterior_ = std::move(posterior);
+}
+
+/// The expectation of all corrections: what each kind of spread adds.
+void Surface::correct() {
+  correction_ = expectation_.centre;
+  const auto& spread = model_->spread();
+  const Eigen::VectorXd& gain = posterior_->velocity.meanAlpha(0);
+  const Eigen::VectorXd& own = posterior_->velocity.meanAlpha(1);
+  const Eigen::VectorXd& yaw = posterior_->yaw.meanAlpha(0);
+  const Eigen::VectorXd& bias = posterior_->yaw.meanAlpha(1);
+  const Eigen::VectorXd& yaw_own = posterior_->yaw.meanAlpha(2);
+  Eigen::Matrix<double, TwistCorrection::kCommon, 1> common;
+  common.setZero();
+  const double bias_apart = model_->biasApart();
+  for (size_t i = 0; i < measured_.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const PatternPart& part = measured_[i].part;
+    const auto column = static_cast<Eigen::Index>(part.pattern);
+    common.head<TwistCorrection::kVelocity>() +=
+        part.velocity.transpose() * gain.segment<2>(2 * at);
+    common.segment<2>(TwistCorrection::kYaw) += part.yaw.head<2>().transpose() * yaw[at];
+    common.tail<2>() += part.yaw.tail<2>().transpose() * bias[at];
+    const Eigen::Vector2d towards = part.own.transpose() * own.segment<2>(2 * at);
+    for (int k = 0; k < 2; ++k)
+      correction_.own.row(k) +=
+          towards[k] * model_->alike(static_cast<TwistCorrection::Own>(k)).col(column).transpose();
+    correction_.own.row(TwistCorrection::kYawOwn) +=
+        part.yaw_own * yaw_own[at] *
+        model_->alike(TwistCorrection::kYawOwn).col(column).transpose();
+    correction_.own.row(TwistCorrection::kBiasOwn) +=
+        bias_apart * part.bias_own * bias[at] *
+        model_->alike(TwistCorrection::kBiasOwn).col(column).transpose();
+  }
+  correction_.common += spread.cwiseProduct(common);
 }
 
 void Surface::estimateNoise(const GroundConfig& config) {
-  for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
-    const auto axis = static_cast<Eigen::Index>(velocity);
-    double a = 0.5 * config.noise_prior;
-    double b = a;
-    for (const Measured& measured : measured_) {
-      const double moved = response(measured.part, velocity, x_[velocity]);
-      const double expected =
-          measured.squares[axis] - 2.0 * moved * measured.sum[axis] +
-          measured.count * (moved * moved + variance(measured.part, velocity, P_[velocity]));
-      a += 0.5 * measured.count;
-      b += 0.5 * std::max(0.0, expected) / R(measured.part, axis);
+  const double a0 = 0.5 * config.noise_prior;
+  certainty_.setConstant(a0);
+  Eigen::Vector3d b = Eigen::Vector3d::Constant(a0);
+  if (!measured_.empty()) {
+    const Eigen::VectorXd velocity =
+        posterior_->velocity.doubt(velocity_noise_.reshaped(), kLeastInNoise);
+    const Eigen::VectorXd yaw = posterior_->yaw.doubt(yaw_noise_, kLeastInNoise);
+    for (size_t i = 0; i < measured_.size(); ++i) {
+      const Measured& measured = measured_[i];
+      const auto at = static_cast<Eigen::Index>(i);
+      const Eigen::Vector3d moved = correction_.added(measured.part);
+      const Eigen::Vector3d doubt(velocity[2 * at], velocity[2 * at + 1], yaw[at]);
+      const Eigen::Vector3d error = measured.squares - 2.0 * moved.cwiseProduct(measured.sum) +
+                                    measured.count * (moved.cwiseAbs2() + doubt);
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        certainty_[axis] += 0.5 * measured.count;
+        b[axis] += 0.5 * std::max(0.0, error[axis]) / R(measured.part, axis);
+      }
     }
-    noise_[axis] = std::clamp(b / a, kLeastNoise, kMostNoise);
-    certainty_[axis] = std::min(a, 0.5 * config.most_freedom);
+  }
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    noise_[axis] = std::clamp(b[axis] / certainty_[axis], kLeastNoise, kMostNoise);
+    certainty_[axis] = std::min(certainty_[axis], 0.5 * config.most_freedom);
   }
 }
 
-Eigen::Vector3d Surface::squaredError(const TwistSample& sample) const {
-  Eigen::Vector3d error;
-  for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
-    const auto axis = static_cast<Eigen::Index>(velocity);
-    const double y = sample.mean_twist[axis] - sample.part.mean[axis] -
-                     response(sample.part, velocity, x_[velocity]);
-    error[axis] = (y * y + variance(sample.part, velocity, P_[velocity])) / sample.part.noise[axis];
+double Surface::logDensity(const TwistSample& sample, const Eigen::Vector3d& returned) const {
+  const PatternPart& part = sample.part;
+  const Eigen::Vector3d y = sample.deviation() - expectation_.centre.added(part);
+  Eigen::Vector3d noise = returned;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) noise[axis] += noise_[axis] * R(part, axis);
+  LogSum velocity, yaw;
+  for (const auto& scale : posterior_->velocity.predict(
+           velocityCross(part), model_->velocity(part, part), kLeastInDensity)) {
+    const Eigen::Matrix2d spread =
+        scale.covariance + Eigen::Matrix2d((scale.noise * noise.head<2>()).asDiagonal());
+    velocity.add(std::log(scale.weight) +
+                 logStudent<2>(y.head<2>() - scale.mean, spread, certainty_[0] + certainty_[1]));
   }
-  return error;
+  for (const auto& scale :
+       posterior_->yaw.predict(yawCross(part), model_->yaw(part, part), kLeastInDensity))
+    yaw.add(std::log(scale.weight) +
+            logStudent<1>(One(y[2] - scale.mean[0]),
+                          One(scale.covariance[0] + scale.noise * noise[2]), 2.0 * certainty_[2]));
+  return velocity.value() + yaw.value();
 }
 
-double Surface::logDensity(const TwistSample& sample) const {
-  double log_density = 0.0;
-  for (size_t velocity = 0; velocity < kVelocities; ++velocity) {
-    const auto axis = static_cast<Eigen::Index>(velocity);
-    const double y = sample.mean_twist[axis] - sample.part.mean[axis] -
-                     response(sample.part, velocity, x_[velocity]);
-    const double scale2 =
-        variance(sample.part, velocity, P_[velocity]) + noise_[axis] * R(sample.part, axis);
-    log_density += logStudent(y, scale2, 2.0 * certainty_[axis]);
-  }
-  return log_density;
-}
-
-Eigen::Vector3d Surface::added(const PatternPart& part) const {
-  return {response(part, 0, x_[0]), response(part, 1, x_[1]), response(part, 2, x_[2])};
-}
-
-Eigen::Vector3d Surface::doubt(const PatternPart& part) const {
-  return {variance(part, 0, P_[0]), variance(part, 1, P_[1]), variance(part, 2, P_[2])};
+Moments Surface::expected(const PatternPart& part) const {
+  MomentSum<2> velocity;
+  MomentSum<1> yaw;
+  for (const auto& scale : posterior_->velocity.predict(
+           velocityCross(part), model_->velocity(part, part), kLeastInMoments))
+    velocity.add(scale.weight, scale.mean, scale.covariance);
+  for (const auto& scale :
+       posterior_->yaw.predict(yawCross(part), model_->yaw(part, part), kLeastInMoments))
+    yaw.add(scale.weight, scale.mean, scale.covariance);
+  Moments moments{expectation_.centre.added(part), Eigen::Matrix3d::Zero()};
+  moments.mean.head<2>() += velocity.mean / velocity.total;
+  moments.mean[2] += yaw.mean[0] / yaw.total;
+  moments.covariance.topLeftCorner<2, 2>() = velocity.covariance();
+  moments.covariance(2, 2) = yaw.covariance()(0, 0);
+  return moments;
 }
 
 Eigen::Vector3d Surface::executionNoise(const PatternPart& part) const {
   // The variance of Student's t over its scale^2: freedom / (freedom - 2).
-  const Eigen::Array3d a = certainty_.array();
-  return noise_.array() * part.noise.array() *
-         prior_.scatter.col(static_cast<Eigen::Index>(part.pattern)).array() * a / (a - 1.0);
+  Eigen::Vector3d noise;
+  for (Eigen::Index axis = 0; axis < 3; ++axis)
+    noise[axis] = noise_[axis] * R(part, axis) * certainty_[axis] / (certainty_[axis] - 1.0);
+  noise.head<2>() *= posterior_->velocity.meanNoise();
+  noise[2] *= posterior_->yaw.meanNoise();
+  return noise;
+}
+
+Eigen::Vector3d Surface::squaredError(const TwistSample& sample) const {
+  const Moments moments = expected(sample.part);
+  const Eigen::Vector3d y = sample.deviation() - moments.mean;
+  return (y.cwiseAbs2() + moments.covariance.diagonal()).cwiseQuotient(sample.part.noise);
 }
 
 void Surface::save(std::vector<double>& memory) const {
-  memory.push_back(prior_.residual);
-  memory.insert(memory.end(), prior_.common.data(), prior_.common.data() + prior_.common.size());
-  for (const Eigen::VectorXd& centre : prior_.centre)
-    memory.insert(memory.end(), centre.data(), centre.data() + centre.size());
-  memory.insert(memory.end(), prior_.scatter.data(), prior_.scatter.data() + prior_.scatter.size());
-  memory.insert(memory.end(), expected_noise_.data(), expected_noise_.data() + 3);
+  const auto put = [&](const auto& numbers) {
+    for (Eigen::Index i = 0; i < numbers.size(); ++i) memory.push_back(numbers.reshaped()[i]);
+  };
+  put(expectation_.centre.common);
+  put(expectation_.centre.own);
+  for (const auto& scale : expectation_.velocity) {
+    memory.insert(memory.end(), scale.variance.begin(), scale.variance.end());
+    memory.insert(memory.end(), {scale.noise, scale.weight});
+  }
+  for (const auto& scale : expectation_.yaw) {
+    memory.insert(memory.end(), scale.variance.begin(), scale.variance.end());
+    memory.insert(memory.end(), {scale.noise, scale.weight});
+  }
+  put(expectation_.scatter);
+  put(expected_noise_);
   memory.push_back(executions_);
   memory.push_back(static_cast<double>(measured_.size()));
   for (const Measured& measured : measured_) {
     memory.insert(memory.end(), {static_cast<double>(measured.part.pattern),
                                  static_cast<double>(measured.part.samples), measured.count});
-    memory.insert(memory.end(), measured.sum.data(), measured.sum.data() + 3);
-    memory.insert(memory.end(), measured.squares.data(), measured.squares.data() + 3);
+    put(measured.sum);
+    put(measured.squares);
   }
 }
 
-bool Surface::restoreMeasured(const GroundModel& model, const std::vector<double>& memory,
-                              size_t& at) {
+bool Surface::restoreMeasured(const std::vector<double>& memory, size_t& at) {
   constexpr size_t kEach = 9;
   const double parts = memory[at++];
   if (!isCount(parts, static_cast<double>((memory.size() - at) / kEach))) return false;
   measured_.clear();
   double executions = 0.0;
   for (size_t i = 0; i < static_cast<size_t>(parts); ++i, at += kEach) {
-    if (!isCount(memory[at], static_cast<double>(model.patterns()) - 1.0)) return false;
+    if (!isCount(memory[at], static_cast<double>(model_->patterns()) - 1.0)) return false;
     const auto pattern = static_cast<size_t>(memory[at]);
     const double samples = memory[at + 1];
-    if (samples < 1.0 || !isCount(samples, static_cast<double>(model.profile(pattern).samples())))
+    if (samples < 1.0 || !isCount(samples, static_cast<double>(model_->profile(pattern).samples())))
       return false;
-    Measured measured{model.part(pattern, static_cast<Eigen::Index>(samples))};
+    Measured measured{model_->part(pattern, static_cast<Eigen::Index>(samples))};
     measured.count = memory[at + 2];
     measured.sum = Eigen::Map<const Eigen::Vector3d>(&memory[at + 3]);
     measured.squares = Eigen::Map<const Eigen::Vector3d>(&memory[at + 6]);
     if (!(measured.count > 0.0 && measured.count <= kMostExecutions) ||
         measured.squares.minCoeff() < 0.0 ||
-        measured.sum.cwiseAbs().maxCoeff() > kLargestTwist * 2.0 * measured.count)
+        measured.sum.cwiseAbs().maxCoeff() > kLargestTwist * 3.0 * measured.count)
       return false;
     executions += measured.count;
     measured_.push_back(measured);
@@ -220,30 +353,44 @@ bool Surface::restoreMeasured(const GroundModel& model, const std::vector<double
   return std::abs(executions - executions_) <= 1e-6 * (1.0 + executions_);
 }
 
-bool Surface::restore(const GroundModel& model, const GroundConfig& config,
-                      const std::vector<double>& memory, size_t& at) {
-  size_t numbers = 15 + static_cast<size_t>(prior_.scatter.size());
-  for (const Eigen::VectorXd& centre : prior_.centre) numbers += static_cast<size_t>(centre.size());
+bool Surface::restore(const GroundConfig& config, const std::vector<double>& memory, size_t& at) {
+  SurfacePrior& e = expectation_;
+  const size_t numbers =
+      static_cast<size_t>(e.centre.common.size() + e.centre.own.size() + e.scatter.size() + 5) +
+      4 * e.velocity.size() + 5 * e.yaw.size();
   if (memory.size() < at + numbers) return false;
-  prior_.residual = memory[at++];
-  for (double& variance : prior_.common.reshaped()) variance = memory[at++];
-  double largest = 0.0;
-  for (Eigen::VectorXd& centre : prior_.centre)
-    for (double& number : centre) {
-      number = memory[at++];
-      largest = std::max(largest, std::abs(number));
+  const auto take = [&](auto& matrix) {
+    for (double& number : matrix.reshaped()) number = memory[at++];
+  };
+  const auto takeScales = [&](auto& scales) {
+    bool good = true;
+    double total = 0.0;
+    for (auto& scale : scales) {
+      for (double& variance : scale.variance) {
+        variance = memory[at++];
+        good = good && variance >= 1e-9 && variance <= 1e3;
+      }
+      scale.noise = memory[at++];
+      good = good && scale.noise >= 0.01 && scale.noise <= 100.0;
+      scale.weight = memory[at++];
+      good = good && scale.weight > 0.0 && scale.weight <= 1.0;
+      total += scale.weight;
     }
-  for (double& scatter : prior_.scatter.reshaped()) scatter = memory[at++];
-  for (double& noise : expected_noise_) noise = memory[at++];
+    return good && std::abs(total - 1.0) < 1e-6;
+  };
+  take(e.centre.common);
+  take(e.centre.own);
+  if (!takeScales(e.velocity) || !takeScales(e.yaw)) return false;
+  take(e.scatter);
+  take(expected_noise_);
   executions_ = memory[at++];
-  if (!(prior_.residual > 0.0 && prior_.residual <= 1.0) || prior_.common.minCoeff() <= 0.0 ||
-      prior_.common.maxCoeff() > kLargestVariance || largest > kLargestCorrection ||
-      prior_.scatter.minCoeff() < kLeastNoise || prior_.scatter.maxCoeff() > kMostNoise ||
+  if (e.centre.common.cwiseAbs().maxCoeff() > kLargestCorrection ||
+      e.centre.own.cwiseAbs().maxCoeff() > kLargestCorrection ||
+      e.scatter.minCoeff() < kLeastNoise || e.scatter.maxCoeff() > kMostNoise ||
       expected_noise_.minCoeff() < kLeastNoise || expected_noise_.maxCoeff() > kMostNoise ||
-      !(executions_ >= 0.0 && executions_ <= kMostExecutions) ||
-      !restoreMeasured(model, memory, at))
+      !(executions_ >= 0.0 && executions_ <= kMostExecutions) || !restoreMeasured(memory, at))
     return false;
-  follow(model, config);
+  follow(config);
   return true;
 }
 

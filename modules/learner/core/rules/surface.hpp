@@ -2,20 +2,17 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "modules/learner/core/rules/ground_model.hpp"
+#include "modules/learner/core/rules/scale_bank.hpp"
 
 namespace tread::learner {
-
-/// A number for each of forward, lateral and yaw velocity.
-template <class T>
-using ByVelocity = std::array<T, kVelocities>;
 
 /// No count of executions is beyond this; a double holds all whole numbers up to it.
 inline constexpr double kMostExecutions = 9e15;
@@ -32,85 +29,114 @@ inline constexpr double kMostNoise = 50.0;
 /// The mean twist of one execution, or of its beginning.
 struct TwistSample {
   PatternPart part;
-  Eigen::Vector3d mean_twist;  ///< measured [m/s, m/s, rad/s]
+  Eigen::Vector3d mean_twist;  ///< measured, body frame [m/s, m/s, rad/s]
+
+  /// z - m, in the frame of the path.
+  Eigen::Vector3d deviation() const {
+    Eigen::Vector3d d = mean_twist - part.mean;
+    d.head<2>() = part.to_path * d.head<2>();
+    return d;
+  }
 };
 
-/// What is expected of a surface before anything was measured on it: x ~ N(centre, Q), and how
-/// executions scatter.
+/// Corrections of all patterns of a set.
+struct SetCorrection {
+  Eigen::Matrix<double, TwistCorrection::kCommon, 1> common;
+  Eigen::Matrix<double, TwistCorrection::kOwn, Eigen::Dynamic> own;  ///< a column for each pattern
+
+  static SetCorrection none(size_t patterns);
+  TwistCorrection of(size_t pattern) const {
+    return {common, own.col(static_cast<Eigen::Index>(pattern))};
+  }
+  Eigen::Vector3d added(const PatternPart& part) const { return of(part.pattern).added(part); }
+};
+
+/// What is expected of a surface before anything was measured on it: corrections about a centre,
+/// how far is a mixture of scales; and how executions scatter.
 struct SurfacePrior {
-  ByVelocity<Eigen::VectorXd> centre;
-  Eigen::Matrix3d common;  ///< variances of the common corrections, a column for each velocity
-  double residual = 1.0;   ///< [1] covariance of the residuals over the ground model's
-  /// Variances of v_x, v_y and omega over the ground model's, a column for each pattern [1].
+  SetCorrection centre;
+  VelocityBank::Scales velocity;
+  YawBank::Scales yaw;
+  /// Variances along, across and of yaw over the model's, a column for each pattern [1].
   Eigen::Matrix3Xd scatter;
+};
+
+/// Mean and covariance of a mean twist, in the frame of its path.
+struct Moments {
+  Eigen::Vector3d mean;
+  Eigen::Matrix3d covariance;
 };
 
 /// One surface: all that was measured on it, and what follows from that.
 /** Measured: for each pattern (or beginning of one) the number n, sum and sum of squares of the
- * deviations z - m of its mean twist from the shipped one. From that, for each velocity on its own,
- * a linear regression z = m + h' x + e, e ~ N(0, q R), R the ground model's noise times what the
- * prior says of this pattern, q the surface's own factor [1]:
- *    P = (1 / Q + sum n h h' / (q R))^-1
- *    x = centre + P sum h sum(z - m - h' centre) / (q R)
+ * deviations z - m of its mean twist from the shipped one, along and across its path and in yaw.
+ * From the means two banks of regressions (scale_bank.hpp), of velocity and of yaw; the noise of a
+ * mean is q R / n, R the model's noise times what the expectation says of this pattern, q the
+ * surface's own factor for each axis:
  *    q = b / a,   a = a0 + sum n / 2,   b = a0 + sum E[(z - m - h' x)^2] / (2 R)
- * with a0 half the executions that the expected noise counts for; where P is computed q is that of
+ * with a0 half the executions that the expected noise counts for; in the regression q is that of
  * the step before (one step of expectation-maximisation an execution). A next execution is expected
- * from Student's t with 2 a degrees of freedom about m + h' x, scale^2 = h' P h + q R. */
+ * from a mixture over the scales of Student's t with 2 a degrees of freedom. */
 class Surface {
  public:
-  Surface(const GroundModel& model, const GroundConfig& config, const SurfacePrior& prior);
+  Surface(std::shared_ptr<const GroundModel> model, const GroundConfig& config,
+          SurfacePrior expectation);
 
   /// Learns from an execution. The oldest fade beyond config.longest_memory executions.
-  void add(const GroundModel& model, const GroundConfig& config, const TwistSample& sample);
+  void add(const GroundConfig& config, const TwistSample& sample);
   /// Executions are expected to scatter otherwise than when it began.
-  void expect(const GroundModel& model, const GroundConfig& config,
-              const Eigen::Matrix3Xd& scatter);
-  /// E[(z - m - h' x)^2] of an execution that it has learned from, over the ground model's noise.
-  Eigen::Vector3d squaredError(const TwistSample& sample) const;
-  /// Logarithm of the density of an execution on this surface.
-  double logDensity(const TwistSample& sample) const;
-
-  const ByVelocity<Eigen::VectorXd>& mean() const { return x_; }
-  const ByVelocity<Eigen::MatrixXd>& covariance() const { return P_; }
-  /// What it adds to the mean twist of an execution, and the variance of that.
-  Eigen::Vector3d added(const PatternPart& part) const;
-  Eigen::Vector3d doubt(const PatternPart& part) const;
-  /// Variance of the mean twist of one execution: that of the next one, not of its expectation.
+  void expect(const GroundConfig& config, const Eigen::Matrix3Xd& scatter);
+  /// Logarithm of the density of an execution; `returned`: variance beyond that, of each axis.
+  double logDensity(const TwistSample& sample, const Eigen::Vector3d& returned) const;
+  /// Of the mean twist's correction, of which one execution scatters by executionNoise().
+  Moments expected(const PatternPart& part) const;
+  /// Variance of one execution's mean twist, along, across and of yaw.
   Eigen::Vector3d executionNoise(const PatternPart& part) const;
-  /// q: variance of one execution over R, for v_x, v_y and omega.
+  /// E[(z - m - h' x)^2] of an execution over the model's noise.
+  Eigen::Vector3d squaredError(const TwistSample& sample) const;
+
+  const SetCorrection& correction() const { return correction_; }
   const Eigen::Vector3d& noise() const { return noise_; }
   double executions() const { return executions_; }
-  const SurfacePrior& prior() const { return prior_; }
+  const SurfacePrior& expectation() const { return expectation_; }
+  const VelocityBank& velocity() const { return posterior_->velocity; }
+  const YawBank& yaw() const { return posterior_->yaw; }
 
-  /// Numbers, all of them finite; restore() returns false if they do not fit, and the surface is of
-  /// no use then.
+  /// Numbers, all of them finite; restore() returns false if they do not fit.
   void save(std::vector<double>& memory) const;
-  bool restore(const GroundModel& model, const GroundConfig& config,
-               const std::vector<double>& memory, size_t& at);
+  bool restore(const GroundConfig& config, const std::vector<double>& memory, size_t& at);
 
  private:
-  /// Executions of one part of a pattern.
   struct Measured {
     PatternPart part;
     double count = 0.0;
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();      ///< of z - m
-    Eigen::Vector3d squares = Eigen::Vector3d::Zero();  ///< of (z - m)^2
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+  };
+  struct Posterior {
+    VelocityBank velocity;
+    YawBank yaw;
   };
   Measured& measuredOf(const PatternPart& part);
-  double R(const PatternPart& part, Eigen::Index velocity) const {
-    return part.noise[velocity] * prior_.scatter(velocity, static_cast<Eigen::Index>(part.pattern));
+  double R(const PatternPart& part, Eigen::Index axis) const {
+    return part.noise[axis] * expectation_.scatter(axis, static_cast<Eigen::Index>(part.pattern));
   }
-  void follow(const GroundModel& model, const GroundConfig& config);
-  Eigen::MatrixXd priorCovariance(const GroundModel& model, size_t velocity) const;
-  void regress(const GroundModel& model);
+  void follow(const GroundConfig& config);
+  void regress();
+  void correct();
   void estimateNoise(const GroundConfig& config);
-  bool restoreMeasured(const GroundModel& model, const std::vector<double>& memory, size_t& at);
+  VelocityBank::Cross velocityCross(const PatternPart& part) const;
+  YawBank::Cross yawCross(const PatternPart& part) const;
+  bool restoreMeasured(const std::vector<double>& memory, size_t& at);
 
-  SurfacePrior prior_;
+  std::shared_ptr<const GroundModel> model_;
+  SurfacePrior expectation_;
   std::vector<Measured> measured_;
   double executions_ = 0.0;
-  ByVelocity<Eigen::VectorXd> x_;
-  ByVelocity<Eigen::MatrixXd> P_;
+  std::shared_ptr<const Posterior> posterior_;  ///< immutable, so that copies share it
+  Eigen::Matrix2Xd velocity_noise_;             ///< q R / n, by measured part
+  Eigen::VectorXd yaw_noise_;
+  SetCorrection correction_;
   Eigen::Vector3d expected_noise_ = Eigen::Vector3d::Ones();  ///< q before the last execution
   Eigen::Vector3d noise_ = Eigen::Vector3d::Ones();           ///< q
   Eigen::Vector3d certainty_;                                 ///< a

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "modules/learner/core/rules/mixture/scale_mixture.hpp"
+#include "modules/learner/core/rules/multi_model.hpp"
 
 // What the rule writes into the state file, and what it takes back from there.
-namespace tread::learner::mixture {
+namespace tread::learner {
 
-std::vector<double> ScaleMixture::memory() const {
+std::vector<double> MultiModel::memory() const {
   std::vector<double> memory{static_cast<double>(clock_),  changes_,         metres_,
                              static_cast<double>(ground_), calm_.log_factor, searching_.log_factor};
   memory.insert(memory.end(), scatter_.sums.data(), scatter_.sums.data() + scatter_.sums.size());
@@ -25,9 +25,9 @@ std::vector<double> ScaleMixture::memory() const {
   return memory;
 }
 
-bool ScaleMixture::restoreHypotheses(std::vector<Hypothesis>& hypotheses, const Surface& first,
-                                     size_t most, const std::vector<double>& memory,
-                                     size_t& at) const {
+bool MultiModel::restoreHypotheses(std::vector<Hypothesis>& hypotheses, const Surface& first,
+                                   size_t most, const std::vector<double>& memory,
+                                   size_t& at) const {
   if (at >= memory.size() || !isCount(memory[at], static_cast<double>(most))) return false;
   const auto count = static_cast<size_t>(memory[at++]);
   hypotheses.clear();
@@ -46,12 +46,12 @@ bool ScaleMixture::restoreHypotheses(std::vector<Hypothesis>& hypotheses, const 
   return true;
 }
 
-bool ScaleMixture::restore(const TrajectoryTable&, const std::vector<double>& memory) {
+bool MultiModel::restore(const TrajectoryTable&, const std::vector<double>& memory) {
   for (const double number : memory)
     if (!std::isfinite(number)) return false;
   size_t at = 6 + static_cast<size_t>(scatter_.sums.size());
   if (memory.size() < at || !isCount(memory[0], kMostExecutions)) return false;
-  ScaleMixture rule = *this;
+  MultiModel rule = *this;
   rule.clock_ = static_cast<int64_t>(memory[0]);
   rule.changes_ = memory[1];
   rule.metres_ = memory[2];
@@ -86,4 +86,4 @@ bool ScaleMixture::restore(const TrajectoryTable&, const std::vector<double>& me
   return true;
 }
 
-}  // namespace tread::learner::mixture
+}  // namespace tread::learner

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/learner/core/rules/mixture/scale_bank.hpp"
+#include "modules/learner/core/rules/scale_bank.hpp"
 
 #include <cmath>
 
 #include <Eigen/Cholesky>
 
-namespace tread::learner::mixture {
+namespace tread::learner {
 
 template <int kAxes, int kKinds>
 void ScaleBank<kAxes, kKinds>::regress(const Grams& grams, const Eigen::VectorXd& y,
@@ -78,4 +78,4 @@ Eigen::VectorXd ScaleBank<kAxes, kKinds>::doubt(const Eigen::VectorXd& noise, do
 template class ScaleBank<2, 2>;
 template class ScaleBank<1, 3>;
 
-}  // namespace tread::learner::mixture
+}  // namespace tread::learner

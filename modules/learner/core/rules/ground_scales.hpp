@@ -2,9 +2,9 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include "modules/learner/core/rules/mixture/surface.hpp"
+#include "modules/learner/core/rules/surface.hpp"
 
-namespace tread::learner::mixture {
+namespace tread::learner {
 
 // How far a ground may lie from the one that is expected is itself not known: every combination of
 // these is a scale of a bank, weighted by what is expected beforehand. Chosen on the simulated
@@ -19,4 +19,4 @@ YawBank::Scales yawScalesOfNewGround(double lever, double share);
 VelocityBank::Scales velocityScalesAsShipped();
 YawBank::Scales yawScalesAsShipped(double lever);
 
-}  // namespace tread::learner::mixture
+}  // namespace tread::learner

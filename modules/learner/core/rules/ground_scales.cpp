@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/learner/core/rules/mixture/ground_scales.hpp"
+#include "modules/learner/core/rules/ground_scales.hpp"
 
-namespace tread::learner::mixture {
+namespace tread::learner {
 namespace {
 
 /// One width of what grounds differ in, and how probable it is beforehand.
@@ -16,8 +16,9 @@ const Widths kGain{{0.03, 0.4}, {0.1, 0.3}, {0.3, 0.2}, {0.6, 0.1}};
 const Widths kYawGain{{0.05, 0.3}, {0.15, 0.4}, {0.35, 0.2}, {0.8, 0.1}};
 const Widths kYawBias{{0.003, 0.8}, {0.03, 0.15}, {0.1, 0.05}};  // [1] of both sides together
 const Widths kResidual{{0.01, 0.5}, {0.04, 0.3}, {0.1, 0.15}, {0.25, 0.05}};
-/// Executions may scatter more than expected, or nothing of a ground could be told by one of them.
-const Widths kNoise{{1.0, 0.75}, {3.2, 0.25}};
+/// Velocities of executions may scatter more than expected: else one of them told of any ground.
+/// Turn rates are measured well enough.
+const Widths kVelocityNoise{{1.0, 0.8}, {3.2, 0.2}};
 /// Where the gain changes patterns change otherwise by such a share of it [1].
 constexpr double kResidualOfGain = 0.12;
 
@@ -33,7 +34,7 @@ VelocityBank::Scales velocityScales(const Widths& gains, const Widths& residuals
   VelocityBank::Scales scales;
   for (const Width& gain : gains)
     for (const Width& own : residuals)
-      for (const Width& noise : kNoise)
+      for (const Width& noise : kVelocityNoise)
         scales.push_back({{share * squared(gain.deviation), share * residual(gain, own)},
                           squared(noise.deviation),
                           gain.weight * own.weight * noise.weight});
@@ -46,11 +47,10 @@ YawBank::Scales yawScales(const Widths& gains, const Widths& biases, const Width
   for (const Width& gain : gains)
     for (const Width& bias : biases)
       for (const Width& own : residuals)
-        for (const Width& noise : kNoise)
-          scales.push_back({{share * squared(gain.deviation), share * residual(gain, own),
-                             share * squared(bias.deviation / lever)},
-                            squared(noise.deviation),
-                            gain.weight * bias.weight * own.weight * noise.weight});
+        scales.push_back({{share * squared(gain.deviation), share * squared(bias.deviation / lever),
+                           share * residual(gain, own)},
+                          1.0,
+                          gain.weight * bias.weight * own.weight});
   return scales;
 }
 
@@ -72,4 +72,4 @@ YawBank::Scales yawScalesAsShipped(double lever) {
   return yawScales(kShippedGain, kShippedBias, kShippedResidual, lever, 1.0);
 }
 
-}  // namespace tread::learner::mixture
+}  // namespace tread::learner

@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-namespace tread::learner::mixture {
+namespace tread::learner {
 
 /// A regression whose width is not known: of each of several scales one, weighted by its evidence.
 /** Measured are means y of kAxes numbers each, y ~ N(0, sum_b s_b G_b + N), G_b the Gram matrix of
@@ -75,7 +75,7 @@ class ScaleBank {
 
 /// Gain and residuals of the velocity.
 using VelocityBank = ScaleBank<2, 2>;
-/// Gain, residuals and bias of the turn rate.
+/// Gain, bias and residuals of the turn rate.
 using YawBank = ScaleBank<1, 3>;
 
-}  // namespace tread::learner::mixture
+}  // namespace tread::learner

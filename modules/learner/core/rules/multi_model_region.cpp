@@ -5,10 +5,10 @@
 
 #include <Eigen/LU>
 
-#include "modules/learner/core/rules/mixture/scale_mixture.hpp"
+#include "modules/learner/core/rules/multi_model.hpp"
 
 // How sure the rule is of a prediction: regions, and the factors that keep what they say.
-namespace tread::learner::mixture {
+namespace tread::learner {
 namespace {
 
 /// What weighs less adds nothing to a region [1].
@@ -58,7 +58,7 @@ void Calibration::follow(bool held) {
 }
 
 /// Whether it may be on ground that it has just begun to learn.
-bool ScaleMixture::searching() const {
+bool MultiModel::searching() const {
   double young = 0.0;
   for (const Hypothesis& hypothesis : fresh_)
     if (!settled(hypothesis.surface)) young += hypothesis.weight;
@@ -66,7 +66,7 @@ bool ScaleMixture::searching() const {
 }
 
 /// Mean of the mixture, and a covariance whose ellipsoid of 90 % holds the next execution in 90 %.
-Moments ScaleMixture::region(const PatternPart& part) const {
+Moments MultiModel::region(const PatternPart& part) const {
   struct Component {
     double weight;
     Moments moments;
@@ -87,7 +87,7 @@ Moments ScaleMixture::region(const PatternPart& part) const {
         known.surface);
   for (const Hypothesis& fresh : fresh_) put((1.0 - h) * fresh.weight, fresh.surface);
   put(h * config_.fresh, new_);
-  Moments all{mean_.added(part), Eigen::Matrix3d::Zero()};
+  Moments all{expected(part).added(part), Eigen::Matrix3d::Zero()};
   for (Component& component : components) {
     component.weight /= total;
     component.moments.mean -= all.mean;
@@ -109,14 +109,14 @@ Moments ScaleMixture::region(const PatternPart& part) const {
   return all;
 }
 
-void ScaleMixture::calibrate(const TwistSample& sample) {
+void MultiModel::calibrate(const TwistSample& sample) {
   const Moments expected = region(sample.part);
   const Eigen::Vector3d d = sample.deviation() - expected.mean;
   const bool held = d.dot(expected.covariance.inverse() * d) <= kQuantile;
   (searching() ? searching_ : calm_).follow(held);
 }
 
-std::optional<PoseCovariance> ScaleMixture::endCovariance(size_t pattern) const {
+std::optional<PoseCovariance> MultiModel::endCovariance(size_t pattern) const {
   const PatternPart& part = model_->whole(pattern);
   const Eigen::Matrix3d lever = model_->profile(pattern).endLever() * part.toBody();
   Eigen::Matrix3d covariance = lever * region(part).covariance * lever.transpose();
@@ -125,4 +125,4 @@ std::optional<PoseCovariance> ScaleMixture::endCovariance(size_t pattern) const 
   return upperTriangle(0.5 * (covariance + covariance.transpose()));
 }
 
-}  // namespace tread::learner::mixture
+}  // namespace tread::learner
