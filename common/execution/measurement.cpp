@@ -227,14 +227,17 @@ Measurement measure(const TrackHistory& history, const ExecutionCut& cut,
 
 namespace {
 
-/// Mean of the speeds that a command asks of tracks or wheels [m/s]; 0 if it asks for none.
+/// Mean of the speeds that a command asks of tracks or wheels [m/s]; 0 if it asks for none. Wheels
+/// around a holonomic base turn against each other wherever it goes: the fastest of them.
 double commandedSpeed(const Command& command, const CommandChannels& channels) {
-  double sum = 0.0, count = 0.0;
+  double sum = 0.0, count = 0.0, fastest = 0.0;
   for (size_t i = 0; i < channels.size(); ++i) {
     if (channels[i].kind != CommandKind::kTrackSpeed) continue;
     sum += command[i];
     count += 1.0;
+    fastest = std::max(fastest, std::abs(command[i]));
   }
+  if (count > 2.0) return fastest;
   return count > 0.0 ? std::abs(sum) / count : 0.0;
 }
 

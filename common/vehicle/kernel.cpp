@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include <Eigen/Core>
 
 #include "common/vehicle/effects.hpp"
+#include "common/vehicle/omni_kernel.hpp"
 
 namespace tread {
 
@@ -27,13 +29,30 @@ TrackState enteredTrack(const EffectValues& effects, double speed, double ramp, 
   return {speed, ramp, speed < 0.0 ? effects.track_backlash : 0.0, heat};
 }
 
+using EndUnder = std::function<Pose2(const ExecutionNoise&)>;
+
 /// Change of the end pose per standard deviation of one noise.
-Eigen::Vector3d sensitivity(const VehicleModel& model, const std::vector<TrackCommand>& commands,
-                            double period, const EntryState& entry, const ExecutionNoise& low,
+Eigen::Vector3d sensitivity(const EndUnder& end, const ExecutionNoise& low,
                             const ExecutionNoise& high) {
-  const Pose2 from = simulate(model, commands, period, entry, low).back();
-  const Pose2 to = simulate(model, commands, period, entry, high).back();
+  const Pose2 from = end(low);
+  const Pose2 to = end(high);
   return Eigen::Vector3d(to.x - from.x, to.y - from.y, to.yaw - from.yaw) / 2.0;
+}
+
+PoseCovariance endCovariance(const ExecutionSpread& spread, const EndUnder& end) {
+  const std::array<ExecutionNoise, 3> low{ExecutionNoise{1.0 - spread.forward, 1.0, 0.0},
+                                          ExecutionNoise{1.0, 1.0 - spread.yaw, 0.0},
+                                          ExecutionNoise{1.0, 1.0, -spread.crab}};
+  const std::array<ExecutionNoise, 3> high{ExecutionNoise{1.0 + spread.forward, 1.0, 0.0},
+                                           ExecutionNoise{1.0, 1.0 + spread.yaw, 0.0},
+                                           ExecutionNoise{1.0, 1.0, spread.crab}};
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (size_t i = 0; i < low.size(); ++i) {
+    const Eigen::Vector3d change = sensitivity(end, low[i], high[i]);
+    covariance += change * change.transpose();
+  }
+  return {covariance(0, 0), covariance(0, 1), covariance(0, 2),
+          covariance(1, 1), covariance(1, 2), covariance(2, 2)};
 }
 
 }  // namespace
@@ -196,33 +215,43 @@ std::vector<Pose2> simulate(const VehicleModel& model, const std::vector<TrackCo
 PoseCovariance endCovariance(const VehicleModel& model, const std::vector<TrackCommand>& commands,
                              double period, const EntryState& entry) {
   if (commands.empty()) return kUnknownCovariance;
-  const ExecutionSpread& spread = model.spread;
-  const std::array<ExecutionNoise, 3> low{ExecutionNoise{1.0 - spread.forward, 1.0, 0.0},
-                                          ExecutionNoise{1.0, 1.0 - spread.yaw, 0.0},
-                                          ExecutionNoise{1.0, 1.0, -spread.crab}};
-  const std::array<ExecutionNoise, 3> high{ExecutionNoise{1.0 + spread.forward, 1.0, 0.0},
-                                           ExecutionNoise{1.0, 1.0 + spread.yaw, 0.0},
-                                           ExecutionNoise{1.0, 1.0, spread.crab}};
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (size_t i = 0; i < low.size(); ++i) {
-    const Eigen::Vector3d change = sensitivity(model, commands, period, entry, low[i], high[i]);
-    covariance += change * change.transpose();
-  }
-  return {covariance(0, 0), covariance(0, 1), covariance(0, 2),
-          covariance(1, 1), covariance(1, 2), covariance(2, 2)};
+  return endCovariance(model.spread, [&](const ExecutionNoise& noise) {
+    return simulate(model, commands, period, entry, noise).back();
+  });
 }
 
-MotionClass classOf(const VehicleModel& model, const std::string& name,
-                    const TrackCommand& steady) {
-  return {name, steadyTwist(model, steady), steady};
+std::vector<Pose2> simulateFrom(const VehicleModel& model, const Command& entry,
+                                const std::vector<Command>& commands, double period,
+                                const ExecutionNoise& noise) {
+  if (!model.isOmni())
+    return simulate(model, tracksOf(commands), period, steadyEntry(model, entry.tracks()), noise);
+  OmniKernel kernel(model, entry, noise);
+  std::vector<Pose2> poses;
+  poses.reserve(commands.size());
+  for (const Command& command : commands) {
+    kernel.step(command, period);
+    poses.push_back(kernel.pose());
+  }
+  return poses;
+}
+
+MotionClass classOf(const VehicleModel& model, const std::string& name, const Command& steady) {
+  const Twist2 twist =
+      model.isOmni() ? OmniKernel(model, steady).twist() : steadyTwist(model, steady.tracks());
+  return {name, twist, steady};
 }
 
 void predict(const VehicleModel& model, double period, const MotionClass& entry,
              MotionPattern& pattern) {
-  const EntryState state = steadyEntry(model, entry.steady.tracks());
-  const std::vector<TrackCommand> commands = tracksOf(pattern.commands);
-  pattern.trajectory = simulate(model, commands, period, state);
-  pattern.end_covariance = endCovariance(model, commands, period, state);
+  const auto simulated = [&](const ExecutionNoise& noise) {
+    return simulateFrom(model, entry.steady, pattern.commands, period, noise);
+  };
+  pattern.trajectory = simulated({});
+  pattern.end_covariance = pattern.commands.empty()
+                               ? kUnknownCovariance
+                               : endCovariance(model.spread, [&](const ExecutionNoise& noise) {
+                                   return simulated(noise).back();
+                                 });
 }
 
 namespace {

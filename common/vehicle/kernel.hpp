@@ -115,8 +115,13 @@ std::vector<Pose2> simulate(const VehicleModel& model, const std::vector<TrackCo
 PoseCovariance endCovariance(const VehicleModel& model, const std::vector<TrackCommand>& commands,
                              double period, const EntryState& entry);
 
+/// The same for a vehicle of any kind, entered in the steady motion of a command.
+std::vector<Pose2> simulateFrom(const VehicleModel& model, const Command& entry,
+                                const std::vector<Command>& commands, double period,
+                                const ExecutionNoise& noise = {});
+
 /// The motion class that a steady command keeps up, with the model's twist.
-MotionClass classOf(const VehicleModel& model, const std::string& name, const TrackCommand& steady);
+MotionClass classOf(const VehicleModel& model, const std::string& name, const Command& steady);
 
 /// Fills trajectory and end covariance of a pattern that was never driven, entered in a steady
 /// motion.

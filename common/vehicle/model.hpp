@@ -9,6 +9,7 @@
 
 #include "common/geometry/se2.hpp"
 #include "common/pattern/pattern.hpp"
+#include "common/vehicle/omni_wheels.hpp"
 
 // A vehicle on one ground: its numbers, the values of its effects, and what they do to a motion. A
 // new vehicle effect is a value and a line in this file, and its entry in the catalogue.
@@ -119,7 +120,9 @@ struct DriveContext {
  * Its commands are throttle or speed, and steering angle, in the places of left and right.
  *
  * v_x = forward_gain (vl + vr) / 2, omega = yaw_gain (vr - vl) / gauge, v_y = 0; track speeds
- * follow the commands after a delay with a first-order lag; then the effects act. */
+ * follow the commands after a delay with a first-order lag; then the effects act.
+ *
+ * A holonomic base has wheels, and a kernel of its own (omni_kernel.hpp). */
 struct VehicleModel {
   std::string name;
   CommandKind kind = CommandKind::kPower;
@@ -128,16 +131,22 @@ struct VehicleModel {
   double delay = 0.0;       ///< [s] before a command begins to act
   double gauge = 1.0;       ///< [m] between the middles of the tracks, of a car's rear wheels
   double wheelbase = 0.0;   ///< [m] of a car, whose body origin is on its rear axle; 0 = two tracks
-  double steering_lag = 0.0;  ///< [s] time constant of a car's steering
-  double forward_gain = 1.0;  ///< [1] ground speed over mean track speed
-  double yaw_gain = 1.0;      ///< [1] yaw rate over that of the track speeds
-  double step = 0.005;        ///< [s] longest step of integration
+  double steering_lag = 0.0;   ///< [s] time constant of a car's steering
+  double forward_gain = 1.0;   ///< [1] ground speed over mean track speed
+  double yaw_gain = 1.0;       ///< [1] yaw rate over that of the track speeds
+  OmniWheels wheels;           ///< of a holonomic base; else none
+  double sideways_gain = 1.0;  ///< [1] of a holonomic base: ground speed over that of the rims
+  double step = 0.005;         ///< [s] longest step of integration
   EffectValues effects;
   ExecutionSpread spread;
 
   bool isCar() const { return wheelbase > 0.0; }
+  bool isOmni() const { return !wheels.empty(); }
   /// What its commands consist of, each channel in its whole range.
-  CommandChannels channels() const { return isCar() ? carChannels(kind) : trackChannels(kind); }
+  CommandChannels channels() const {
+    if (isOmni()) return omniChannels(kind, wheels.size());
+    return isCar() ? carChannels(kind) : trackChannels(kind);
+  }
   /// Track speeds that a command asks for, left and right [m/s]; of a car those of its drive.
   TrackCommand trackSpeeds(const TrackCommand& command) const {
     const double unit = kind == CommandKind::kTrackSpeed ? 1.0 : full_speed;

@@ -108,6 +108,9 @@ ModelDocument readModelDocument(const std::string& path);
 /// The same from text; `name` stands for the file in messages.
 ModelDocument parseModelDocument(const std::string& text, const std::string& name);
 
+/// The same for what computes with two tracks or a car; a holonomic base is refused.
+ModelDocument readTrackModelDocument(const std::string& path);
+
 /// Only the vehicle of a model file.
 VehicleModel readModelFile(const std::string& path);
 

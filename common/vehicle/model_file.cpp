@@ -4,6 +4,7 @@
 #include "common/vehicle/model_document.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <set>
 #include <sstream>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "common/config/scalars.hpp"
+#include "common/geometry/degrees.hpp"
 
 namespace tread {
 namespace {
@@ -20,6 +22,16 @@ constexpr Range kSpread{0.0, 1.0};
 constexpr Range kAnything{-1e300, 1e300};
 constexpr double kNoLimit = 1e9;
 
+/// Of a holonomic base, whose wheels stand where robot.yaml says.
+void readOmni(ConfigReader& reader, VehicleModel& model) {
+  for (const char* key : {"gauge", "wheelbase", "effects"})
+    if (reader.has(key))
+      throw reader.error(key, "is of a vehicle with two tracks; a model with wheels has none");
+  model.wheels = readOmniWheels(reader);
+  model.gauge = 2.0 * model.wheels.radius();
+  reader.number("sideways_gain", model.sideways_gain, kGain, "");
+}
+
 void readTracks(ConfigReader& reader, VehicleModel& model) {
   std::string kind;
   reader.choice("kind", kind, {"power", "track_speed"}, true);
@@ -28,8 +40,12 @@ void readTracks(ConfigReader& reader, VehicleModel& model) {
     reader.number("full_speed", model.full_speed, {0.01, 20.0}, "m/s", true);
   else if (reader.has("full_speed"))
     throw reader.error("full_speed", "is for power commands; track_speed commands are in m/s");
-  reader.number("gauge", model.gauge, {0.05, 10.0}, "m", true);
-  reader.number("wheelbase", model.wheelbase, {0.2, 10.0}, "m");
+  if (reader.has("wheels")) {
+    readOmni(reader, model);
+  } else {
+    reader.number("gauge", model.gauge, {0.05, 10.0}, "m", true);
+    reader.number("wheelbase", model.wheelbase, {0.2, 10.0}, "m");
+  }
   if (reader.has("steering_lag") && !model.isCar())
     throw reader.error("steering_lag", "is for a car; give its wheelbase, too");
   reader.number("steering_lag", model.steering_lag, {0.0, 2.0}, "s");
@@ -212,12 +228,35 @@ void writeEffects(std::ostringstream& out, const ModelDocument& document, Effect
   }
 }
 
+/// An angle [rad] in degrees that reads back as the same one.
+std::string degrees(double angle) {
+  const double nearest = toDegrees(angle);
+  for (double up = nearest, down = nearest; up - down < 1e-9;
+       up = std::nextafter(up, 1e3), down = std::nextafter(down, -1e3))
+    for (const double value : {up, down})
+      if (toRadians(value) == angle) return formatNumber(value);
+  return formatNumber(nearest);
+}
+
+void writeWheels(std::ostringstream& out, const OmniWheels& wheels) {
+  out << "wheels:  # m, deg\n";
+  for (const OmniWheel& wheel : wheels.wheels())
+    out << "  - {position: [" << formatNumber(wheel.x) << ", " << formatNumber(wheel.y)
+        << "], heading: " << degrees(wheel.heading) << ", rollers: " << degrees(wheel.rollers)
+        << "}\n";
+}
+
 void writeNominal(std::ostringstream& out, const VehicleModel& model) {
   const bool power = model.kind == CommandKind::kPower;
   out << "name: " << formatText(model.name) << '\n';
   out << "kind: " << (power ? "power" : "track_speed") << '\n';
   if (power) line(out, "full_speed", model.full_speed, "m/s, track speed at power 1");
-  line(out, "gauge", model.gauge, "m, between the middles of the tracks");
+  if (model.isOmni()) {
+    writeWheels(out, model.wheels);
+    line(out, "sideways_gain", model.sideways_gain, "ground speed over that of the rims");
+  } else {
+    line(out, "gauge", model.gauge, "m, between the middles of the tracks");
+  }
   if (model.isCar()) {
     line(out, "wheelbase", model.wheelbase,
          "m, of a car; the second command is its steering angle");
@@ -309,6 +348,14 @@ ModelDocument readModelDocument(const std::string& path) {
 
 ModelDocument parseModelDocument(const std::string& text, const std::string& name) {
   return readDocument(ConfigReader::fromText(text, name));
+}
+
+ModelDocument readTrackModelDocument(const std::string& path) {
+  ModelDocument document = readModelDocument(path);
+  if (document.vehicle.isOmni())
+    throw ConfigError(path +
+                      ": is a model of a holonomic base (wheels); give one of two tracks or a car");
+  return document;
 }
 
 VehicleModel readModelFile(const std::string& path) {

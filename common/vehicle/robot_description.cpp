@@ -11,6 +11,14 @@
 namespace tread {
 namespace {
 
+/// Of whom two tracks know nothing, and who knows nothing of two tracks.
+void readWheels(ConfigReader& reader, DriveDescription& drive) {
+  for (const char* key : {"left_channel", "invert_left", "invert_right"})
+    if (reader.has(key))
+      throw reader.error(key, "is of two tracks; layout omni has wheels: {invert: true} in one");
+  drive.wheels = readOmniWheels(reader, &drive.invert_wheels);
+}
+
 /// Wheelbase and steering of a car.
 void readSteering(ConfigReader& reader, DriveDescription& drive) {
   reader.number("wheelbase", drive.wheelbase, {0.2, 10.0}, "m", true);
@@ -23,9 +31,10 @@ void readSteering(ConfigReader& reader, DriveDescription& drive) {
 DriveDescription readDrive(ConfigReader reader) {
   DriveDescription drive;
   std::string layout = "tracks";
-  reader.choice("layout", layout, {"tracks", "skid_steer_4", "throttle_steering"});
+  reader.choice("layout", layout, {"tracks", "skid_steer_4", "throttle_steering", "omni"});
   if (layout == "skid_steer_4") drive.layout = DriveLayout::kSkidSteer4;
   if (layout == "throttle_steering") drive.layout = DriveLayout::kThrottleSteering;
+  if (layout == "omni") drive.layout = DriveLayout::kOmni;
   std::string kind;
   reader.choice("kind", kind, {"power", "track_speed"}, true);
   drive.kind = kind == "power" ? CommandKind::kPower : CommandKind::kTrackSpeed;
@@ -34,6 +43,10 @@ DriveDescription readDrive(ConfigReader reader) {
                 kind == "power" ? "1" : "m/s", true);
   if (drive.isCar()) {
     readSteering(reader, drive);
+    return drive;
+  }
+  if (drive.isOmni()) {
+    readWheels(reader, drive);
     return drive;
   }
   int64_t left_channel = drive.left_channel;
@@ -114,8 +127,14 @@ RobotDescription readDescription(ConfigReader& reader) {
       robot.footprint.half_width < robot.outline.half_width)
     throw reader.error("footprint", "must not be smaller than the outline");
   reader.number("height", robot.height, {0.1, 5.0}, "m", true);
-  reader.number("gauge", robot.gauge, {0.05, 10.0}, "m", true);
   robot.drive = readDrive(reader.section("drive", true));
+  if (!robot.drive.isOmni()) {
+    reader.number("gauge", robot.gauge, {0.05, 10.0}, "m", true);
+  } else if (reader.has("gauge")) {
+    throw reader.error("gauge", "is of two tracks; of layout omni the wheels' places say it");
+  } else {
+    robot.gauge = 2.0 * robot.drive.wheels.radius();
+  }
   robot.ins = readMounting(reader.section("ins", true), "antenna");
   robot.range_finder = readMounting(reader.section("range_finder", true), "position");
   if (reader.has("ground_finder"))
@@ -143,7 +162,9 @@ FootprintSize readFootprint(ConfigReader reader) {
 }
 
 CommandChannels DriveDescription::channels() const {
-  CommandChannels channels = isCar() ? carChannels(kind) : trackChannels(kind);
+  CommandChannels channels = isCar()    ? carChannels(kind)
+                             : isOmni() ? omniChannels(kind, wheels.size())
+                                        : trackChannels(kind);
   for (CommandChannel& channel : channels) {
     channel.highest = channel.kind == CommandKind::kSteeringAngle ? max_steering : max_command;
     channel.lowest = -channel.highest;

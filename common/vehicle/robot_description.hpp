@@ -12,6 +12,7 @@
 #include "common/geometry/se2.hpp"
 #include "common/geometry/se3.hpp"
 #include "common/pattern/pattern.hpp"
+#include "common/vehicle/omni_wheels.hpp"
 
 namespace tread {
 
@@ -19,24 +20,32 @@ class ConfigReader;
 
 /// What a vehicle stands on and is moved by.
 enum class DriveLayout {
-  kTracks,           ///< two, a motor each
-  kSkidSteer4,       ///< four wheels that are not steered, a motor each
-  kThrottleSteering  ///< a car: rear wheels driven together, front wheels steered
+  kTracks,            ///< two, a motor each
+  kSkidSteer4,        ///< four wheels that are not steered, a motor each
+  kThrottleSteering,  ///< a car: rear wheels driven together, front wheels steered
+  kOmni  ///< three or more wheels with rollers, a motor each: it goes in all directions
 };
 
 /// What drives the tracks or wheels, and how it is wired.
 struct DriveDescription {
   DriveLayout layout = DriveLayout::kTracks;
   CommandKind kind = CommandKind::kPower;  ///< of the tracks or the throttle
-  double full_speed = 0.0;   ///< [m/s] of a track at full command; of a car straight ahead
+  /// [m/s] of a track, or of a wheel's rim, at full command; of a car straight ahead.
+  double full_speed = 0.0;
   double max_command = 0.0;  ///< largest magnitude of a command: power [1] or track speed [m/s]
   int left_channel = 1;      ///< 1 or 2, of the motor controller; the right track has the other one
   bool invert_left = false;  ///< the left motor is mounted the other way round; a car's throttle
   bool invert_right = false;  ///< a car's steering
   double wheelbase = 0.0;  ///< [m] of a car, between its axles; the body origin is on the rear one
-  double max_steering = 0.0;  ///< [rad] of a car, to either side
+  double max_steering = 0.0;        ///< [rad] of a car, to either side
+  OmniWheels wheels;                ///< of a holonomic base; else none
+  std::vector<bool> invert_wheels;  ///< whether each one's motor is mounted the other way round
 
   bool isCar() const { return layout == DriveLayout::kThrottleSteering; }
+  bool isOmni() const { return layout == DriveLayout::kOmni; }
+  /// [m/s] of the fastest point between the wheels: wheels that push together move a base faster
+  /// than their rims.
+  double topSpeed() const { return isOmni() ? full_speed * wheels.reach() : full_speed; }
   /// Command at which the controller gives all it can: power 1, or the full track speed [m/s].
   double fullCommand() const { return kind == CommandKind::kPower ? 1.0 : full_speed; }
   /// What a command to the drive consists of, in the range that max_command allows.
@@ -74,7 +83,9 @@ struct RobotDescription {
   FootprintSize outline;    ///< the body seen from above
   FootprintSize footprint;  ///< what plans keep free: the outline, and what turns swing beyond it
   double height = 0.0;      ///< [m] above the ground
-  double gauge = 0.0;       ///< [m] between the middles of the tracks, or of a car's rear wheels
+  /// [m] between the middles of the tracks, or of a car's rear wheels; of a holonomic base, the
+  /// diameter of the circle around its wheels.
+  double gauge = 0.0;
   DriveDescription drive;
   Mounting ins;  ///< p_body: the point whose position the INS reports
   Mounting range_finder;

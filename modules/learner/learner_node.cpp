@@ -112,6 +112,11 @@ LearnerNodeConfig readLearnerConfig(ConfigReader& reader) {
   LearnerNodeConfig config(readPatternFile(patterns));
   if (reader.has("robot")) {
     const RobotDescription robot = readRobot(reader);
+    const CommandChannels given = config.shipped.content().channels, taken = robot.drive.channels();
+    if (kindsOf(given) != kindsOf(taken))
+      throw reader.error("patterns", patterns + " commands " + describe(given) +
+                                         ", the robot takes " + describe(taken) +
+                                         "; give a set of the same vehicle");
     config.limits.max_slope = robot.max_tilt.value_or(config.limits.max_slope);
     config.front = robot.outline.front;
   }

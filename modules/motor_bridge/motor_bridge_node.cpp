@@ -29,7 +29,8 @@ MotionLimits readMotion(ConfigReader section, const RobotDescription& robot) {
   const bool power = robot.drive.kind == CommandKind::kPower;
   motion.gauge = robot.gauge;
   motion.wheelbase = robot.drive.wheelbase;
-  motion.full_speed = robot.drive.full_speed;
+  motion.wheels = robot.drive.wheels;
+  motion.full_speed = robot.drive.topSpeed();
   motion.speed_per_command = power ? robot.drive.full_speed : 1.0;
   motion.dead_band = power ? 0.15 : 0.05;
   section.number("dead_band", motion.dead_band, {0.0, 0.4}, "of full_speed");
@@ -43,8 +44,11 @@ MotionLimits readMotion(ConfigReader section, const RobotDescription& robot) {
   return motion;
 }
 
-ManualLimits readManual(ConfigReader section, const DriveDescription& drive) {
+ManualLimits readManual(ConfigReader section, const RobotDescription& robot) {
+  const DriveDescription& drive = robot.drive;
   ManualLimits manual;
+  manual.wheels = drive.wheels;
+  manual.gauge = robot.gauge;
   manual.max_command = 0.5 * drive.max_command;
   manual.slew = drive.max_command;
   manual.max_steering = drive.max_steering;
@@ -132,7 +136,7 @@ MotorBridgeConfig readMotorBridgeConfig(ConfigReader& reader) {
   config.bridge.tilt = robot.tilt;
   config.bridge.fences = {robot.fences, robot.outline, robot.stopping_time};
   config.bridge.motion = readMotion(reader.section("motion_monitor"), robot);
-  config.bridge.manual = readManual(reader.section("manual"), drive);
+  config.bridge.manual = readManual(reader.section("manual"), robot);
   config.bridge.gate.slot.channels = drive.channels();
   config.make_controller = readMotorController(reader, drive, config.controller);
   reader.finish();

@@ -79,6 +79,10 @@ MakeMotorController readMotorController(ConfigReader& reader, const DriveDescrip
         name +
             " cannot steer a car (drive.layout: "
             "throttle_steering); take vesc, which has a servo output, or line_protocol");
+  if (drive.isOmni() && name != "vesc" && name != "vesc_can" && name != "line_protocol")
+    throw reader.error("controller", name + " drives two tracks (drive.layout: omni has " +
+                                         std::to_string(drive.wheels.size()) +
+                                         " wheels); take vesc, vesc_can or line_protocol");
   return kControllers.at(name)(reader, drive);
 }
 

@@ -28,7 +28,7 @@ void readRobotInto(ConfigReader& reader, bool logged, PlannerConfig& config) {
   if (leases) config.operators = robot.operators;
   config.map.fences = robot.fences;
   config.max_slope = robot.max_slope;
-  config.map.full_speed = robot.drive.full_speed;
+  config.map.full_speed = robot.drive.topSpeed();
   config.map.stopping_time = robot.stopping_time;
 }
 

@@ -123,8 +123,10 @@ void readBody(ConfigReader& reader, VehicleParameters& vehicle, bool required) {
   reader.number("mass", vehicle.mass, {100.0, 2000.0}, "kg", required);
   reader.number("yaw_inertia", vehicle.yaw_inertia, {5.0, 500.0}, "kg m2", required);
   reader.number("gauge", vehicle.gauge, {0.2, 2.0}, "m");
-  reader.number("contact_length", vehicle.contact_length, {0.2, 3.0}, "m", required);
-  reader.number("centre", vehicle.centre, {-0.5, 0.5}, "m", required);
+  if (vehicle.wheels.empty()) {
+    reader.number("contact_length", vehicle.contact_length, {0.2, 3.0}, "m", required);
+    reader.number("centre", vehicle.centre, {-0.5, 0.5}, "m", required);
+  }
   reader.number("mass_height", vehicle.mass_height, {0.0, 2.0}, "m", required);
   if (vehicle.wheelbase > 0.0)
     reader.number("steering_rate", vehicle.steering_rate, {0.1, 10.0}, "rad/s");
@@ -218,11 +220,16 @@ void readSimulatedRobot(ConfigReader& reader, RobotSettings& settings) {
   settings.vehicle.gauge = robot.gauge;
   settings.vehicle.wheelbase = robot.drive.wheelbase;
   settings.vehicle.max_steering = robot.drive.max_steering;
+  for (const OmniWheel& wheel : robot.drive.wheels.wheels())
+    settings.vehicle.wheels.push_back({wheel.x, wheel.y, wheel.heading, wheel.rollers});
+  // What bumps the base lies on.
+  if (robot.drive.isOmni()) settings.vehicle.contact_length = robot.gauge;
   if (robot.drive.isCar() && robot.drive.kind == CommandKind::kTrackSpeed)
     throw reader.error("robot", "a simulated car takes power, not speeds: drive.kind power");
   settings.vehicle.drive.free_speed = robot.drive.full_speed;
   settings.wiring = {
-      robot.drive.left_channel, robot.drive.invert_left, robot.drive.invert_right, {}};
+      robot.drive.left_channel, robot.drive.invert_left, robot.drive.invert_right, {}, false,
+      robot.drive.invert_wheels};
   settings.wiring.four_motors = robot.drive.layout == DriveLayout::kSkidSteer4;
   if (robot.drive.kind == CommandKind::kTrackSpeed)
     settings.wiring.top_speed = robot.drive.fullCommand();
@@ -245,7 +252,7 @@ TruthRecord::TruthRecord(const std::string& path)
   out_.write(std::string(kHeader) + "\n");
 }
 
-void TruthRecord::note(const RobotTruth& truth, const std::array<double, 2>& power) {
+void TruthRecord::note(const RobotTruth& truth, const MotorValues& power) {
   const bool due = last_row_ == INT64_MIN || truth.utime - last_row_ >= kRowEvery;
   if (!due && power == power_) return;
   power_ = power;

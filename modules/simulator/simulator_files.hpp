@@ -42,20 +42,21 @@ RobotSettings readSimulatedRobot(const std::string& folder);
 /// What really happened, as CSV for reports and tests; the robot's processes never see it.
 /** One row when the power on the motors changes, else every 20 ms:
  * utime_us,x_m,y_m,yaw_rad,v_mps,left,right,surface,contacts,distance_m. Yaw is unwrapped, power
- * is what the controller puts on the motors (-1..1). */
+ * is what the controller puts on the motors (-1..1); of a holonomic base, that of the first two
+ * wheels stands there. */
 class TruthRecord {
  public:
   /// Makes the file with its header; an earlier record becomes PATH.1 or the next free name. Throws
   /// WriteError, as all do.
   explicit TruthRecord(const std::string& path);
 
-  void note(const RobotTruth& truth, const std::array<double, 2>& power);
+  void note(const RobotTruth& truth, const MotorValues& power);
   /// Hands over the rows of the last moments, too.
   void flush() { out_.flush(); }
 
  private:
   OutputFile out_;
-  std::array<double, 2> power_{0.0, 0.0};
+  MotorValues power_{};
   int64_t last_row_ = INT64_MIN;
   int64_t last_flush_ = INT64_MIN;
 };

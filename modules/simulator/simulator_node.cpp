@@ -32,7 +32,7 @@ std::optional<ModelDocument> readModel(ConfigReader& reader, bool holds_speeds) 
     throw reader.error("vehicle",
                        "is of the dynamic vehicle, model: of the vehicle in its place; "
                        "give one of them");
-  ModelDocument document = readModelDocument(path);
+  ModelDocument document = readTrackModelDocument(path);
   if (document.vehicle.kind == CommandKind::kTrackSpeed && !holds_speeds)
     throw reader.error("model", path +
                                     " takes track speeds, the simulated robot's controller gives "

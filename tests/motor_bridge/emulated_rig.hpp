@@ -82,7 +82,7 @@ struct EmulatedRig {
     run(400'000);
   }
   bool turning() {
-    const std::array<double, 2> power = device.output(now);
+    const sim::MotorValues power = device.output(now);
     return power[0] != 0.0 || power[1] != 0.0;
   }
   int64_t lastMotionWithin(int64_t us) {

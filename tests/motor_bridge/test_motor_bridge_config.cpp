@@ -52,7 +52,7 @@ TEST_CASE("a car is steered through vesc only, and a hand at the stick drives it
   CHECK(commandOf({0.5, 0.5}, config.bridge.manual) == Command(0.5, 0.0));
   CHECK(commandOf({0.0, 0.5}, config.bridge.manual) == Command(0.25, 0.25));
   CHECK(commandOf({0.0, 0.5}, read("{}").bridge.manual) == Command(0.0, 0.5));
-  const TrackCommand wheels = motion.tracks({1.0, 0.5});
+  const TrackCommand wheels = motion.motion({1.0, 0.5}).tracks();
   CHECK(wheels.left == Approx(1.0 - 0.35 * std::tan(0.5) / 0.9));
   CHECK(wheels.left + wheels.right == Approx(2.0));
 }

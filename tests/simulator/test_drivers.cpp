@@ -112,7 +112,7 @@ TEST_CASE("motor_bridge starts the emulated controller up, drives it and reads i
   while (!loop.motor.ready() && loop.now < kStart + 1000000) loop.step({});
   REQUIRE(loop.motor.ready());
   for (int i = 0; i < 1000; ++i) loop.step({0.7, 0.7});
-  CHECK(loop.devices.motor().output(loop.now) == std::array<double, 2>{0.7, 0.7});
+  CHECK(loop.devices.motor().output(loop.now) == MotorValues{0.7, 0.7});
   CHECK(loop.devices.robot().truth().distance > 1.0);
   const auto telemetry = loop.motor.telemetry();
   CHECK(telemetry.battery_voltage ==
@@ -125,7 +125,7 @@ TEST_CASE(
   Loop loop;
   for (int i = 0; i < 500; ++i) loop.step({0.7, 0.7});
   dynamic_cast<RoboteqEmulator&>(loop.devices.motor()).reboot(loop.now);
-  CHECK(loop.devices.motor().output(loop.now) == std::array<double, 2>{0.0, 0.0});
+  CHECK(loop.devices.motor().output(loop.now) == MotorValues{0.0, 0.0});
   bool lost = false;
   for (int i = 0; i < 2000; ++i) {
     loop.step({0.7, 0.7});
@@ -133,7 +133,7 @@ TEST_CASE(
   }
   CHECK(lost);
   CHECK(loop.motor.ready());
-  CHECK(loop.devices.motor().output(loop.now) == std::array<double, 2>{0.7, 0.7});
+  CHECK(loop.devices.motor().output(loop.now) == MotorValues{0.7, 0.7});
 }
 
 TEST_CASE("every emulated controller lets its driver drive the simulated robot, by its name") {

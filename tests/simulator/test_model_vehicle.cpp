@@ -104,7 +104,7 @@ class Bench {
         const std::array<int, 2> command = commandAt(now - kStart);
         say("!M " + std::to_string(command[0]) + " " + std::to_string(command[1]) + "\r");
       }
-      const std::array<double, 2> power = devices_.motor().output(now);
+      const MotorValues power = devices_.motor().output(now);
       powers.push_back({power[0], power[1]});
       bus_.runUntil(now + kSlice);
       hear(*motor_);

@@ -19,13 +19,13 @@ class Terminal {
   }
   /// Echo off, so that only replies come back.
   void quiet() { ask("^ECHOF 1\r"); }
-  std::array<double, 2> output() { return controller.output(now); }
+  MotorValues output() { return controller.output(now); }
 
   RoboteqEmulator controller;
   int64_t now = 1000000;
 };
 
-using Output = std::array<double, 2>;
+using Output = MotorValues;
 
 }  // namespace
 

@@ -31,11 +31,16 @@ CommandKind kindOf(const SortedLog& log) {
   return counts[speed] > counts[power] ? CommandKind::kTrackSpeed : CommandKind::kPower;
 }
 
-void refuseCars(const SortedLog& log, const std::string& name) {
-  for (const motor_t& motor : log.motor)
+void refuseOthers(const SortedLog& log, const std::string& name) {
+  for (const motor_t& motor : log.motor) {
     if (motor.channel_kind[1] == static_cast<int16_t>(CommandKind::kSteeringAngle))
       throw std::runtime_error(name +
                                ": its commands steer a car; tread-gap takes two tracks only");
+    if (motor.channel_kind[2] != 0)
+      throw std::runtime_error(name +
+                               ": its commands drive the wheels of a holonomic base; tread-gap "
+                               "takes two tracks only");
+  }
 }
 
 std::vector<HeardSpan> heardSpans(const SortedLog& log) {
@@ -122,7 +127,7 @@ std::optional<ImportNote> importNoteOf(const config_t& config) {
 
 Drive toDrive(const DriveLog& messages) {
   const SortedLog log(messages);
-  refuseCars(log, messages.name);
+  refuseOthers(log, messages.name);
   const std::vector<HeardSpan> spans = heardSpans(log);
   Drive drive;
   drive.name = messages.name;

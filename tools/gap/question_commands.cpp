@@ -167,7 +167,7 @@ int plan(const PlanOptions& options) {
   if (options.truth == options.rival)
     throw std::runtime_error("plan: twice " + options.truth + "; name two effects");
   DesignTask task;
-  task.model = readModelDocument(options.model);
+  task.model = readTrackModelDocument(options.model);
   task.first = options.truth;
   task.second = options.rival;
   if (options.speed > 0.0 && task.model.vehicle.kind == CommandKind::kPower)
@@ -235,7 +235,7 @@ void whatIf(const WhatIfOptions& options) {
   const bool svg = endsWith(options.out, ".svg");
   if (!options.out.empty() && !svg && !endsWith(options.out, ".html"))
     throw std::runtime_error(options.out + ": what kind of file? end it with .html or .svg");
-  const ModelDocument model = readModelDocument(options.model);
+  const ModelDocument model = readTrackModelDocument(options.model);
   const ModelDocument other = changed(model, options.change);
   const std::vector<ManoeuvreComparison> comparisons =
       compareModels(model, other, circumstancesOf(options));

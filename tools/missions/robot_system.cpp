@@ -167,6 +167,11 @@ RobotConfig readRobot(const std::string& folder, const std::vector<std::string>&
   config.planner = files.read("planner", planner::readPlannerConfig);
   config.motor_bridge = files.read("motor_bridge", motor::readMotorBridgeConfig);
   config.simulated = sim::readSimulatedRobot(folder);
+  const CommandChannels& given = config.learner.shipped.content().channels;
+  const CommandChannels& taken = config.motor_bridge.bridge.gate.slot.channels;
+  if (kindsOf(given) != kindsOf(taken))
+    throw ConfigError(folder + "/learner.yaml: its patterns command " + describe(given) +
+                      ", the robot takes " + describe(taken) + "; give a set of the same vehicle");
   config.timing = usualTiming();
   return config;
 }

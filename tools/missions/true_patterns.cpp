@@ -9,6 +9,7 @@
 
 #include "modules/simulator/core/car.hpp"
 #include "modules/simulator/core/noise.hpp"
+#include "modules/simulator/core/speed_loop.hpp"
 
 namespace tread::missions {
 namespace {
@@ -22,15 +23,22 @@ constexpr double kCommandDelay = 0.010;  // [s]
 constexpr int kDisturbed = 60;           // executions that a covariance is taken of
 
 /// Velocities of the body through an execution, step by step, without chance.
-std::vector<Twist2> velocitiesOf(const MotionPattern& pattern, const Command& entry, double period,
+std::vector<Twist2> velocitiesOf(const MotionPattern& pattern, const Command& entry,
+                                 CommandKind kind, double period,
                                  const sim::VehicleParameters& parameters,
                                  const sim::SurfaceParameters& surface) {
   const std::unique_ptr<sim::Plant> vehicle = sim::makeVehicle(parameters);
   const double steering = parameters.wheelbase > 0.0 ? parameters.max_steering : 1.0;
   const sim::Ground ground = sim::levelGround(surface);
-  const auto run = [&](const Command& power, double seconds, std::vector<Twist2>* kept) {
+  // Where a controller holds speeds it does so as the simulated one that has no loop of its own.
+  std::vector<sim::SpeedLoop> loops(vehicle->motors(), sim::SpeedLoop(parameters.drive.free_speed));
+  const auto run = [&](const Command& command, double seconds, std::vector<Twist2>* kept) {
     for (int i = 0; i < static_cast<int>(std::lround(seconds / kStep)); ++i) {
-      vehicle->step({power[0], power[1] / steering}, ground, kStep);
+      sim::MotorValues power{command[0], command[1] / steering};
+      for (size_t k = 2; k < vehicle->motors(); ++k) power[k] = command[k];
+      for (size_t k = 0; k < loops.size() && kind == CommandKind::kTrackSpeed; ++k)
+        power[k] = loops[k].step(command[k], vehicle->motor(k).speed, kStep);
+      vehicle->step(sim::MotorPower::of(power), ground, kStep);
       if (kept != nullptr) kept->push_back(vehicle->velocity());
     }
   };
@@ -74,9 +82,10 @@ PoseCovariance covarianceOf(const std::vector<Twist2>& velocities,
   return covariance;
 }
 
-void makeTrue(MotionPattern& pattern, const Command& entry, double period,
+void makeTrue(MotionPattern& pattern, const Command& entry, CommandKind kind, double period,
               const sim::VehicleParameters& vehicle, const sim::SurfaceParameters& surface) {
-  const std::vector<Twist2> velocities = velocitiesOf(pattern, entry, period, vehicle, surface);
+  const std::vector<Twist2> velocities =
+      velocitiesOf(pattern, entry, kind, period, vehicle, surface);
   const size_t per_sample = velocities.size() / pattern.commands.size();
   Pose2 pose;
   for (size_t i = 0; i < velocities.size(); ++i) {
@@ -89,14 +98,15 @@ void makeTrue(MotionPattern& pattern, const Command& entry, double period,
 PatternSetContent trueSet(const PatternSet& shipped, const sim::VehicleParameters& vehicle,
                           const sim::SurfaceParameters& surface) {
   PatternSetContent content = shipped.content();
+  const CommandKind kind = content.channels.front().kind;
   for (MotionClass& motion : content.classes) {
     MotionPattern held;
     held.commands.assign(1, motion.steady);
     motion.twist =
-        velocitiesOf(held, motion.steady, shipped.periodSeconds(), vehicle, surface).back();
+        velocitiesOf(held, motion.steady, kind, shipped.periodSeconds(), vehicle, surface).back();
   }
   for (MotionPattern& pattern : content.patterns)
-    makeTrue(pattern, shipped.classNamed(pattern.entry_class).steady, shipped.periodSeconds(),
+    makeTrue(pattern, shipped.classNamed(pattern.entry_class).steady, kind, shipped.periodSeconds(),
              vehicle, surface);
   return content;
 }

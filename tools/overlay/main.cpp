@@ -52,7 +52,7 @@ int run(const Arguments& arguments) {
   std::vector<ModelDocument> models;
   std::vector<std::string> names;
   for (const std::string& file : arguments.models) {
-    models.push_back(readModelDocument(file));
+    models.push_back(readTrackModelDocument(file));
     const size_t slash = file.rfind('/');
     names.push_back(slash == std::string::npos ? file : file.substr(slash + 1));
   }

@@ -12,6 +12,7 @@
 
 #include "common/report/text.hpp"
 #include "common/vehicle/kernel.hpp"
+#include "common/vehicle/omni_kernel.hpp"
 #include "tools/patterns/set_text.hpp"
 
 namespace tread::patterns {
@@ -32,14 +33,42 @@ double sixDigits(double value) {
   return std::stod(formatted("%.5e", value)) + 0.0;  // -0 becomes 0
 }
 
+/// Of a holonomic base people think in twists: its wheels' commands for forward and sideways speed
+/// [m/s] and yaw rate [rad/s].
+Command wheelCommand(const VehicleModel& model, const Twist2& v_body) {
+  Command command = model.wheels.speeds(v_body);
+  const double unit = model.kind == CommandKind::kTrackSpeed ? 1.0 : model.full_speed;
+  for (size_t i = 0; i < model.wheels.size(); ++i) command[i] = roundedTo(command[i] / unit, 1e-6);
+  return command;
+}
+
+/// Numbers of a command in a recipe.
+size_t columnsOf(const VehicleModel& model) {
+  return model.isOmni() ? 3 : 2;
+}
+
+Command commandOf(const VehicleModel& model, const std::vector<double>& row) {
+  if (model.isOmni()) return wheelCommand(model, {row[0], row[1], row[2]});
+  return {row[0], row[1]};
+}
+
+/// Left and right exchanged.
+Command mirroredBy(const VehicleModel& model, const Command& command) {
+  if (!model.isOmni()) return mirroredCommand(command, model.channels());
+  const double unit = model.kind == CommandKind::kTrackSpeed ? 1.0 : model.full_speed;
+  const Twist2 twist = model.wheels.twist(command);
+  return wheelCommand(model, {unit * twist.v_x, -unit * twist.v_y, -unit * twist.omega});
+}
+
 MotionClass readClass(ConfigReader& reader, const VehicleModel& model) {
   std::string name;
   reader.text("name", name, true);
   std::vector<double> steady;
   const CommandChannels channels = model.channels();
-  const double limit = std::max(channels[0].highest, channels[1].highest);
-  reader.numbers("steady", steady, 2, {-limit, limit}, "", true);
-  MotionClass motion = classOf(model, name, {steady[0], steady[1]});
+  const double limit = model.isOmni() ? PatternLimits::kMaxSpeed
+                                      : std::max(channels[0].highest, channels[1].highest);
+  reader.numbers("steady", steady, columnsOf(model), {-limit, limit}, "", true);
+  MotionClass motion = classOf(model, name, commandOf(model, steady));
   motion.twist = {roundedTo(motion.twist.v_x, 1e-6), roundedTo(motion.twist.v_y, 1e-6),
                   roundedTo(motion.twist.omega, 1e-6)};
   return motion;
@@ -57,18 +86,18 @@ const MotionClass& classNamed(ConfigReader& reader, const std::string& key,
   throw reader.error(key, "unknown class '" + name + "'; allowed are the classes of the recipe");
 }
 
-std::vector<Command> readCommands(ConfigReader& reader, double period) {
+std::vector<Command> readCommands(ConfigReader& reader, const VehicleModel& model, double period) {
   std::vector<std::vector<double>> rows;
-  reader.table("commands", rows, 3, {-PatternLimits::kMaxSpeed, PatternLimits::kMaxSpeed}, "",
-               true);
+  reader.table("commands", rows, columnsOf(model) + 1,
+               {-PatternLimits::kMaxSpeed, PatternLimits::kMaxSpeed}, "", true);
   std::vector<Command> commands;
   for (const std::vector<double>& row : rows) {
-    const double samples = std::round(row[2] / period);
-    if (samples < 1.0 || std::abs(samples * period - row[2]) > 1e-9)
-      throw reader.error("commands", "held for " + number(row[2]) +
+    const double samples = std::round(row.back() / period);
+    if (samples < 1.0 || std::abs(samples * period - row.back()) > 1e-9)
+      throw reader.error("commands", "held for " + number(row.back()) +
                                          " s; allowed are multiples of " + "the period, " +
                                          number(period) + " s");
-    commands.insert(commands.end(), static_cast<size_t>(samples), Command(row[0], row[1]));
+    commands.insert(commands.end(), static_cast<size_t>(samples), commandOf(model, row));
   }
   return commands;
 }
@@ -108,31 +137,42 @@ void readPattern(ConfigReader& reader, const VehicleModel& model, PatternSetCont
   const MotionClass& exit = classNamed(reader, "exit", content.classes);
   pattern.entry_class = entry.name;
   pattern.exit_class = exit.name;
-  pattern.commands = readCommands(reader, period);
+  pattern.commands = readCommands(reader, model, period);
   requireHold(reader, pattern, exit, model, period);
   addPattern(content, pattern, entry, model);
   if (!reader.has("mirror")) return;
   for (const MotionClass* motion : {&entry, &exit})
-    if (mirroredCommand(motion->steady, content.channels) != motion->steady)
+    if (mirroredBy(model, motion->steady) != motion->steady)
       throw reader.error("mirror", "class '" + motion->name + "' turns; only patterns between " +
                                        "classes that go straight can be mirrored");
   reader.text("mirror", pattern.name);
-  for (Command& command : pattern.commands) command = mirroredCommand(command, content.channels);
+  for (Command& command : pattern.commands) command = mirroredBy(model, command);
   addPattern(content, pattern, entry, model);
 }
 
 constexpr double kLeadIn = 3.0;  // [s], longer than any latency of an INS
 
+void hold(VehicleKernel& kernel, const Command& command, double period) {
+  kernel.step(command.tracks(), period);
+}
+void hold(OmniKernel& kernel, const Command& command, double period) {
+  kernel.step(command, period);
+}
+
+/// [periods] of it.
+size_t leadIn(double period) {
+  return static_cast<size_t>(kLeadIn / period) + 1;
+}
+
 /// What a late, askew or biased INS says of an execution, relative to what it said at its start.
+template <class Kernel>
 recordings::Execution seenByIns(const ModelDocument& model, const MotionPattern& pattern,
-                                double period, EntryState entry, const ExecutionNoise& noise) {
-  const auto before = static_cast<size_t>(kLeadIn / period) + 1;
+                                double period, const Command& entry, Kernel kernel) {
+  const size_t before = leadIn(period);
   const double begin = -period * static_cast<double>(before);
-  entry.context.session_time = begin;
-  VehicleKernel kernel(model.vehicle, entry, noise);
   std::vector<MotionSample> motion{{begin, kernel.pose(), kernel.twist().omega}};
   for (size_t i = 0; i < before + pattern.commands.size(); ++i) {
-    kernel.step(i < before ? entry.command : pattern.commands[i - before].tracks(), period);
+    hold(kernel, i < before ? entry : pattern.commands[i - before], period);
     const double time = begin + period * static_cast<double>(motion.size());
     motion.push_back({time, kernel.pose(), kernel.twist().omega});
   }
@@ -143,13 +183,22 @@ recordings::Execution seenByIns(const ModelDocument& model, const MotionPattern&
   return seen;
 }
 
+recordings::Execution seenByIns(const ModelDocument& model, const MotionPattern& pattern,
+                                double period, const Command& steady, const ExecutionNoise& noise) {
+  if (model.vehicle.isOmni())
+    return seenByIns(model, pattern, period, steady, OmniKernel(model.vehicle, steady, noise));
+  EntryState entry = steadyEntry(model.vehicle, steady.tracks());
+  entry.context.session_time = -period * static_cast<double>(leadIn(period));
+  return seenByIns(model, pattern, period, steady, VehicleKernel(model.vehicle, entry, noise));
+}
+
 recordings::Execution execute(const ModelDocument& model, const MotionPattern& pattern,
-                              double period, const EntryState& entry, const ModelRecording& how,
+                              double period, const Command& entry, const ModelRecording& how,
                               std::mt19937_64& random) {
   const ExecutionNoise noise = drawNoise(model.vehicle.spread, random);
   recordings::Execution measured =
       isPerfect(model.measurement)
-          ? simulate(model.vehicle, tracksOf(pattern.commands), period, entry, noise)
+          ? simulateFrom(model.vehicle, entry, pattern.commands, period, noise)
           : seenByIns(model, pattern, period, entry, noise);
   std::normal_distribution<double> standard;
   for (Pose2& pose : measured) {
@@ -158,6 +207,24 @@ recordings::Execution execute(const ModelDocument& model, const MotionPattern& p
     pose.yaw += how.yaw * standard(random);
   }
   return measured;
+}
+
+Envelope envelopeOf(const VehicleModel& model, const MotionPattern& pattern, const Command& steady,
+                    double period) {
+  if (!model.isOmni())
+    return tread::envelopeOf(model, tracksOf(pattern.commands), period,
+                             steadyEntry(model, steady.tracks()));
+  OmniKernel kernel(model, steady);
+  Envelope envelope;
+  const auto include = [&](const Twist2& v_body) {
+    envelope.include({std::hypot(v_body.v_x, v_body.v_y), 0.0, v_body.omega});
+  };
+  include(kernel.twist());
+  for (const Command& command : pattern.commands) {
+    kernel.step(command, period);
+    include(kernel.twist());
+  }
+  return envelope;
 }
 
 /// A series of its own for each surface and pattern.
@@ -203,8 +270,7 @@ recordings::SurfaceRecordings recordModel(const PatternSet& set, const ModelDocu
   recordings::SurfaceRecordings recorded{surface, {}};
   for (const MotionPattern& pattern : set.patterns()) {
     std::mt19937_64 random = randomFor(how.seed, surface, pattern.id);
-    const EntryState entry =
-        steadyEntry(model.vehicle, set.classNamed(pattern.entry_class).steady.tracks());
+    const Command& entry = set.classNamed(pattern.entry_class).steady;
     std::vector<recordings::Execution> executions;
     for (int e = 0; e < how.executions; ++e)
       executions.push_back(execute(model, pattern, set.periodSeconds(), entry, how, random));
@@ -216,10 +282,8 @@ recordings::SurfaceRecordings recordModel(const PatternSet& set, const ModelDocu
 Envelope envelopeOf(const VehicleModel& model, const PatternSet& set) {
   Envelope all;
   for (const MotionPattern& pattern : set.patterns()) {
-    const EntryState entry =
-        steadyEntry(model, set.classNamed(pattern.entry_class).steady.tracks());
     const Envelope one =
-        tread::envelopeOf(model, tracksOf(pattern.commands), set.periodSeconds(), entry);
+        envelopeOf(model, pattern, set.classNamed(pattern.entry_class).steady, set.periodSeconds());
     all.v = std::max(all.v, one.v);
     all.omega = std::max(all.omega, one.omega);
     all.v_omega = std::max(all.v_omega, one.v_omega);

@@ -15,15 +15,21 @@ namespace tread::replay {
 namespace {
 
 /// The commands of an execution by index, as applied.
-using AppliedCommands = std::map<int32_t, TrackCommand>;
+using AppliedCommands = std::map<int32_t, Command>;
+
+Command commandIn(const motor_t& motor) {
+  Command command;
+  for (size_t i = 0; i < Command::kMaxChannels; ++i)
+    if (motor.channel_kind[i] != 0) command[i] = static_cast<double>(motor.command[i]);
+  return command;
+}
 
 std::map<ExecutionKey, AppliedCommands> appliedCommands(const DriveLog& log) {
   std::map<ExecutionKey, AppliedCommands> commands;
   for (const motor_t& motor : log.motor)
     if (motor.execution_id != 0 && motor.command_index >= 0)
-      commands[{motor.motor_run_id, motor.execution_id}].emplace(
-          motor.command_index, TrackCommand{static_cast<double>(motor.command[0]),
-                                            static_cast<double>(motor.command[1])});
+      commands[{motor.motor_run_id, motor.execution_id}].emplace(motor.command_index,
+                                                                 commandIn(motor));
   return commands;
 }
 
@@ -35,9 +41,9 @@ std::vector<CommandKind> kindsIn(const DriveLog& log, const VehicleModel& model)
 }
 
 /// The series that was applied in an execution; a sample that the log misses holds the one before.
-std::vector<TrackCommand> seriesOf(const AppliedCommands& applied, int32_t count) {
-  std::vector<TrackCommand> series;
-  TrackCommand held = applied.begin()->second;
+std::vector<Command> seriesOf(const AppliedCommands& applied, int32_t count) {
+  std::vector<Command> series;
+  Command held = applied.begin()->second;
   for (int32_t index = 0; index < count; ++index) {
     const auto found = applied.find(index);
     if (found != applied.end()) held = found->second;
@@ -48,11 +54,11 @@ std::vector<TrackCommand> seriesOf(const AppliedCommands& applied, int32_t count
 
 /// A class for each pattern: what it does depends on the steady motion in which it begins.
 void addPattern(PatternSetContent& content, const VehicleModel& model, int id,
-                const std::vector<TrackCommand>& commands) {
+                const std::vector<Command>& commands) {
   MotionPattern pattern;
   pattern.id = id;
   pattern.name = "step " + std::to_string(id);
-  pattern.commands = commandsOf(commands);
+  pattern.commands = commands;
   const std::string steady = "steady " + std::to_string(id);
   const MotionClass entry = classOf(model, steady, commands.front());
   content.classes.push_back(entry);

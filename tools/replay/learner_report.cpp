@@ -271,9 +271,23 @@ std::string steeredClass(const MotionPattern& pattern, const CommandChannels& ch
   return std::string(drive > 0.0 ? "forward" : "reverse") + (steering > little ? " turn" : "");
 }
 
+/// Of a holonomic base, whose commands tell little without its wheels' places: where it goes.
+std::string directionClass(const MotionPattern& pattern) {
+  const Pose2& end = pattern.end();
+  const double way = pattern.pathLength(), turned = std::abs(end.yaw);
+  if (way < 0.02 && turned < 0.02) return "standing";
+  if (way < 0.2 * turned) return "turning on the spot";
+  const bool aside = std::abs(end.y) > std::abs(end.x);
+  return std::string(aside         ? "sideways"
+                     : end.x > 0.0 ? "forward"
+                                   : "reverse") +
+         (turned > 0.1 ? " turn" : "");
+}
+
 }  // namespace
 
 std::string commandClass(const MotionPattern& pattern, const CommandChannels& channels) {
+  if (channels.size() > 2) return directionClass(pattern);
   if (!kindOfTracks(channels)) return steeredClass(pattern, channels);
   double left = 0.0;
   double right = 0.0;

@@ -172,9 +172,9 @@ BridgeOutput Bridge::step(int64_t now, const DeviceReport& device) {
       !requests_.estop() && (since_.estop_cleared || (in.arm && device.stop_latched));
   command(now, out);
   schedule(now, out);
-  const TrackCommand tracks = config_.motion.tracks(out.command);
-  motion_.command(tracks, now);
-  fences_.command(tracks, now);
+  const Command motion = config_.motion.motion(out.command);
+  motion_.command(motion, now);
+  fences_.command(motion, now);
   stopping_.command(isZero(out.command), now);
   player_.dropCandidate();
   since_ = Since{};

@@ -23,8 +23,8 @@ std::string centimetres(double metres) {
   return std::to_string(rounded / 100) + "." + (rest.size() < 2 ? "0" : "") + rest + " m";
 }
 
-double effort(const TrackCommand& command) {
-  return std::abs(command.left) + std::abs(command.right);
+double effort(const Command& motion) {
+  return std::abs(motion[0]) + std::abs(motion[1]) + std::abs(motion[kSideways]);
 }
 
 /// Adds what moves and is not there yet.
@@ -44,25 +44,35 @@ void FenceWatch::receive(const InsMotion& ins) {
   if (!std::isfinite(ins_.position_std)) ins_.position_std = known;
 }
 
-void FenceWatch::command(const TrackCommand& command, int64_t now) {
-  if (given_.empty() || given_.back().command != command) given_.push_back({now, command});
+void FenceWatch::command(const Command& motion, int64_t now) {
+  if (given_.empty() || given_.back().motion != motion) given_.push_back({now, motion});
   // The last one before the window holds in it, too.
   const int64_t begin = now - toMicroseconds(motion_.delay);
   while (given_.size() > 1 && given_[1].utime <= begin) given_.pop_front();
-  if (command.left > 0.0 || command.right > 0.0) ahead_ = now;
-  if (command.left < 0.0 || command.right < 0.0) back_ = now;
+  if (motion[0] > 0.0 || motion[1] > 0.0) ahead_ = now;
+  if (motion[0] < 0.0 || motion[1] < 0.0) back_ = now;
+  if (motion[kSideways] > 0.0) left_ = now;
+  if (motion[kSideways] < 0.0) right_ = now;
 }
 
-std::vector<double> FenceWatch::speeds(int64_t now) const {
-  if (std::isfinite(ins_.v_forward)) return {ins_.v_forward};
+std::vector<Eigen::Vector2d> FenceWatch::velocities(int64_t now) const {
   // By then what was commanded last has begun and ended: the stopping time is learned on this
   // ground, lag and braking are in it.
   const int64_t begin = now - toMicroseconds(motion_.delay + limits_.stopping_time);
-  std::vector<double> speeds;
-  if (ahead_ && *ahead_ > begin) speeds.push_back(motion_.full_speed);
-  if (back_ && *back_ > begin) speeds.push_back(-motion_.full_speed);
-  if (speeds.empty()) speeds.push_back(0.0);
-  return speeds;
+  const auto possible = [&](double measured, const std::optional<int64_t>& plus,
+                            const std::optional<int64_t>& minus) -> std::vector<double> {
+    if (std::isfinite(measured)) return {measured};
+    std::vector<double> speeds;
+    if (plus && *plus > begin) speeds.push_back(motion_.full_speed);
+    if (minus && *minus > begin) speeds.push_back(-motion_.full_speed);
+    if (speeds.empty()) speeds.push_back(0.0);
+    return speeds;
+  };
+  std::vector<Eigen::Vector2d> velocities;
+  for (const double forward : possible(ins_.v_forward, ahead_, back_))
+    for (const double left : possible(ins_.v_left, left_, right_))
+      velocities.emplace_back(forward, left);
+  return velocities;
 }
 
 std::vector<Twist2> FenceWatch::twists(int64_t now) const {
@@ -72,20 +82,20 @@ std::vector<Twist2> FenceWatch::twists(int64_t now) const {
   if (!given_.empty()) {
     const auto fastest = std::max_element(
         given_.begin(), given_.end(),
-        [](const Given& a, const Given& b) { return effort(a.command) < effort(b.command); });
-    for (const TrackCommand& command : {given_.back().command, fastest->command}) {
-      const double left = motion_.speed_per_command * command.left;
-      const double right = motion_.speed_per_command * command.right;
+        [](const Given& a, const Given& b) { return effort(a.motion) < effort(b.motion); });
+    for (const Command& motion : {given_.back().motion, fastest->motion}) {
+      const double left = motion_.speed_per_command * motion[0];
+      const double right = motion_.speed_per_command * motion[1];
+      const double aside = motion_.speed_per_command * motion[kSideways];
       const double turn = (right - left) / motion_.gauge;
       for (const double share : {motion_.least_turn, kMuchTurn})
-        add({0.5 * (left + right), 0.0, share * turn}, twists);
+        add({0.5 * (left + right), aside, share * turn}, twists);
       if (!std::isfinite(ins_.yaw_rate)) rates.push_back(kMuchTurn * turn);
     }
   }
   if (rates.empty()) rates.push_back(0.0);
-  const double v_left = std::isfinite(ins_.v_left) ? ins_.v_left : 0.0;
-  for (const double speed : speeds(now))
-    for (const double rate : rates) add({speed, v_left, rate}, twists);
+  for (const Eigen::Vector2d& velocity : velocities(now))
+    for (const double rate : rates) add({velocity.x(), velocity.y(), rate}, twists);
   return twists;
 }
 

@@ -38,8 +38,8 @@ class FenceWatch {
   const FenceBook& book() const { return book_; }
   /// A measurement with a pose.
   void receive(const InsMotion& ins);
-  /// The command that holds from now [us] on, in the unit of the drive.
-  void command(const TrackCommand& command, int64_t now);
+  /// What MotionLimits::motion() makes of the command that holds from now [us] on.
+  void command(const Command& motion, int64_t now);
   /// A person takes it from here: where it stands now counts.
   void restart() { best_.clear(); }
   /// [s] learned on the ground that the robot stands on.
@@ -51,7 +51,7 @@ class FenceWatch {
  private:
   struct Given {
     int64_t utime;
-    TrackCommand command;
+    Command motion;
   };
 
   /// Poses that the motions under way may lead to.
@@ -62,9 +62,9 @@ class FenceWatch {
 
   /// Told for a second: arming is needed then, and a person who drives on without INS knows it.
   std::string blindness(int64_t now);
-  /// [m/s] forward, as measured; else the full speed each way in which a track was commanded
-  /// lately.
-  std::vector<double> speeds(int64_t now) const;
+  /// [m/s] forward and to the left, as measured; else the full speed each way in which the robot
+  /// was commanded lately, to the side where it can be.
+  std::vector<Eigen::Vector2d> velocities(int64_t now) const;
   std::vector<Twist2> twists(int64_t now) const;
   std::string faultOfFence(const Fence& fence, double& best, const Ways& ways) const;
 
@@ -75,6 +75,8 @@ class FenceWatch {
   std::deque<Given> given_;       ///< of the last moments, oldest first
   std::optional<int64_t> ahead_;  ///< [us] when a track was last commanded forward
   std::optional<int64_t> back_;   ///< [us] ... backward
+  std::optional<int64_t> left_;   ///< [us] when the robot was last commanded to the left
+  std::optional<int64_t> right_;  ///< [us] ... to the right
   std::vector<double> best_;      ///< [m] by fence: most room since it was crossed
   int64_t best_revision_ = -1;
   std::optional<int64_t> blind_since_;  ///< [us]

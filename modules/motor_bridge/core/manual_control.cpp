@@ -70,7 +70,21 @@ std::string ManualControl::words() const {
   return "driven by hand by " + last_.name;
 }
 
+namespace {
+
+Command omniCommand(const TrackCommand& stick, const ManualLimits& limits) {
+  Command command = limits.wheels.speeds(
+      {0.5 * (stick.left + stick.right), 0.0, (stick.right - stick.left) / limits.gauge});
+  double most = limits.max_command;
+  for (size_t i = 0; i < limits.wheels.size(); ++i) most = std::max(most, std::abs(command[i]));
+  for (size_t i = 0; i < limits.wheels.size(); ++i) command[i] *= limits.max_command / most;
+  return command;
+}
+
+}  // namespace
+
 Command commandOf(const TrackCommand& stick, const ManualLimits& limits) {
+  if (!limits.wheels.empty() && limits.max_command > 0.0) return omniCommand(stick, limits);
   if (limits.max_steering <= 0.0 || limits.max_command <= 0.0) return stick;
   const double turn = 0.5 * (stick.right - stick.left) / limits.max_command;
   return {0.5 * (stick.left + stick.right), limits.max_steering * turn};

@@ -10,6 +10,7 @@
 
 #include "common/execution/operator_lease.hpp"
 #include "common/pattern/pattern.hpp"
+#include "common/vehicle/omni_wheels.hpp"
 
 namespace tread::motor {
 
@@ -19,11 +20,14 @@ struct ManualLimits {
   double max_command = 0.5;    ///< largest magnitude, in the units of the drive
   double slew = 1.0;           ///< largest growth of a command [units of the drive per s]
   double max_steering = 0.0;   ///< [rad] of a car; 0 = two tracks
+  OmniWheels wheels;           ///< of a holonomic base; else none
+  double gauge = 1.0;          ///< [m] of a holonomic base: the tracks that its stick stands for
 };
 
 /// The robot's command for a stick that is told as tracks, in the units of the drive.
 /** A car drives by their mean and steers by their difference: max_steering where one track has
- * max_command and the other one has it backward. */
+ * max_command and the other one has it backward. A holonomic base moves as two tracks would; where
+ * a wheel would need more than max_command, all of them do less. */
 Command commandOf(const TrackCommand& stick, const ManualLimits& limits);
 
 /// One MANUAL message of the operator who holds the robot.

@@ -38,6 +38,13 @@ constexpr double kDepartureWindow = 0.7;   // [s] compared with what is usual
 constexpr double kLearnedWindow = 1.0;     // [s]
 constexpr double kLearnedAfter = 1.5;      // [s] by when a fault in it would have been told
 
+const std::string kTracks = "tracks";
+const std::string kWheels = "wheels";
+
+const std::string& drivenBy(const MotionLimits& limits) {
+  return limits.isOmni() ? kWheels : kTracks;
+}
+
 /// The pattern with %0, %1, %2 replaced by the values, rounded to that many decimals.
 std::string words(std::string_view pattern, std::initializer_list<double> values) {
   std::string text;
@@ -67,13 +74,15 @@ double leastOf(double min, double max) {
 }
 
 /// Commanded and not done: what the motors say names it. `least` [m] of the tracks' way.
-std::string tooLittle(const MotionSums& sums, const MotorTelemetry& motors, double least) {
+std::string tooLittle(const MotionSums& sums, const MotorTelemetry& motors, double least,
+                      const std::string& what) {
   const double left = std::abs(motors.measured[0]), right = std::abs(motors.measured[1]);
   const double asked = least / sums.seconds();
   const std::string told =
-      words("%2 m, %0 deg in %1 s where tracks make %2 m at least",
+      words("%2 m, %0 deg in %1 s where " + what + " make %2 m at least",
             {sums.position.norm(), toDegrees(sums.turned), sums.seconds(), least});
-  if (std::min(left, right) > 0.5 * asked)
+  // Of a wheel on rollers no share of the motion is known from these two alone.
+  if (what == kTracks && std::min(left, right) > 0.5 * asked)
     return "tracks spin or pose frozen: " + told + "; look, then ARM";
   if (std::isfinite(motors.current[0]) && std::isfinite(motors.current[1]))
     return "stuck or pose frozen: " + told +
@@ -127,7 +136,9 @@ struct Judge {
   std::string still() const {
     const bool still = std::max(sums.position.norm(), half.position.norm()) < kStill + wander &&
                        std::max(std::abs(sums.turned), std::abs(half.turned)) < kStill;
-    return still && sums.tracks_min > kStillTracks ? tooLittle(sums, motors, sums.tracks_min) : "";
+    return still && sums.tracks_min > kStillTracks
+               ? tooLittle(sums, motors, sums.tracks_min, drivenBy(limits))
+               : "";
   }
   std::string travel() const {
     const double off = beyond(sums.forward, sums.travel_min - slack, sums.travel_max + slack);
@@ -137,7 +148,7 @@ struct Judge {
     if (off * expected < 0.0)
       return half.forward * expected < 0.0 && std::abs(half.forward) > kPositionSlack
                  ? backwards()
-                 : tooLittle(sums, motors, std::abs(expected));
+                 : tooLittle(sums, motors, std::abs(expected), drivenBy(limits));
     return words(
         "travels %2 m in %1 s, commands explain %2 to %2; check INS and tracks, "
         "then ARM",
@@ -164,6 +175,7 @@ struct Judge {
                                     toDegrees(sums.turn_min), toDegrees(sums.turn_max)});
     if (sums.turned * sums.turn < 0.0 && std::abs(sums.turned) > 0.3 * std::abs(sums.turn))
       return told + ": the wrong way; check heading and tracks";
+    if (limits.isOmni()) return told + ": a wheel dead or blocked?";
     if (std::abs(sums.turned) < std::abs(sums.turn))
       return told + "; is the heading frozen, a track stuck?";
     const bool left = off * (sums.travel < 0.0 ? -1.0 : 1.0) > 0.0;
@@ -173,12 +185,24 @@ struct Judge {
     const double allowed =
         slack + kSideways * std::abs(sums.forward) +
         kSwing * std::abs(sums.turned) * (1.0 + std::max(std::abs(sums.forward), 0.5 * sums.reach));
-    if (std::abs(sums.left) <= allowed) return "";
+    const double off = beyond(sums.left, sums.side_min - allowed, sums.side_max + allowed);
+    if (off == 0.0) return "";
     if (stands) return uncommanded();
+    if (limits.isOmni()) return besideCommand(off);
     return words(
         "moves %2 m sideways in %1 s, %2 explained: slides, or the heading is off; "
         "check, then ARM",
         {sums.left, sums.seconds(), allowed});
+  }
+  /// Of what is commanded to the side, too.
+  std::string besideCommand(double off) const {
+    const double expected = leastOf(sums.side_min, sums.side_max);
+    if (off * expected < 0.0 && sums.left * expected >= 0.0)
+      return tooLittle(sums, motors, std::abs(expected), drivenBy(limits));
+    return words(
+        "moves %2 m to the left in %1 s, commands explain %2 to %2; check heading and wheels, "
+        "then ARM",
+        {sums.left, sums.seconds(), sums.side_min, sums.side_max});
   }
 };
 
@@ -221,19 +245,28 @@ std::string MotionMonitor::fault(int64_t now) const {
 }
 
 void MotionMonitor::watchTracks(int64_t utime) {
-  const double speeds[] = {motors_.measured[0], motors_.measured[1]};
-  for (int i = 0; i < 2; ++i) {
-    const double least = track_.least(i);
-    const double along = least < 0.0 ? -speeds[i] : speeds[i];
+  for (size_t i = 0; i < wheel_stands_since_.size(); ++i) {
+    const double least = track_.least(i), speed = motors_.measured[i];
+    const double along = least < 0.0 ? -speed : speed;
     const bool stands = std::abs(least) > kStandingTrack * track_.limits().full_speed &&
                         along < kStandingTrack * std::abs(least);
-    if (!stands) track_stands_since_[i] = utime;
+    if (!stands) wheel_stands_since_[i] = utime;
   }
 }
 
+std::string MotionMonitor::standingWheel(int64_t utime) const {
+  for (size_t i = 0; i < wheel_stands_since_.size(); ++i)
+    if (utime - wheel_stands_since_[i] >= kTrackStands)
+      return "wheel " + std::to_string(i + 1) +
+             words(" dead or blocked: %2 m/s where %2 is the least; free or mend it, then ARM",
+                   {motors_.measured[i], track_.least(i)});
+  return "";
+}
+
 std::string MotionMonitor::standingTrack(int64_t utime) const {
-  const bool left = utime - track_stands_since_[0] >= kTrackStands;
-  const bool right = utime - track_stands_since_[1] >= kTrackStands;
+  if (track_.limits().isOmni()) return standingWheel(utime);
+  const bool left = utime - wheel_stands_since_[0] >= kTrackStands;
+  const bool right = utime - wheel_stands_since_[1] >= kTrackStands;
   if (!left && !right) return "";
   return std::string(left && right ? "both tracks blocked"
                      : left        ? "left track dead"
@@ -289,6 +322,7 @@ std::string MotionMonitor::suspicion() const {
 
 std::string MotionMonitor::departure() const {
   using Kind = TrackFault::Kind;
+  if (track_.limits().isOmni()) return "";
   const std::optional<MotionSums> window = track_.window(kDepartureWindow);
   if (!window) return "";
   const std::optional<TrackFault> fault = response_.fault(*window);
@@ -298,7 +332,8 @@ std::string MotionMonitor::departure() const {
   const bool backwards = half.forward * fault->travel < 0.0 && std::abs(half.forward) > kStill;
   const bool mirrored = half.turned * fault->turn < 0.0 && std::abs(half.turned) > kStill;
   const bool blocked = fault->kind == Kind::kBothBlocked;
-  if (blocked && !backwards && !mirrored) return tooLittle(*window, motors_, window->tracks_min);
+  if (blocked && !backwards && !mirrored)
+    return tooLittle(*window, motors_, window->tracks_min, drivenBy(track_.limits()));
   const std::string name = fault->kind == Kind::kLeftDead    ? "left track dead"
                            : fault->kind == Kind::kRightDead ? "right track dead"
                            : blocked && backwards            ? "travels the wrong way"

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "modules/motor_bridge/core/motion_response.hpp"
 #include "modules/motor_bridge/core/motion_track.hpp"
@@ -17,16 +18,20 @@ namespace tread::motor {
     1. MotionTrack sums up what was measured and what the commands explain, slip included;
     2. one step, and windows of 1 and 3 s, are checked: pose against the INS's own rate and
        velocity, travel, turn and sideways motion against the commands;
-    3. MotionResponse compares windows of 0.7 s with what the robot lately made of its commands;
+    3. MotionResponse compares windows of 0.7 s with what the robot lately made of its commands
+       (of two tracks: a holonomic base's wheels have no such names yet);
     4. what fails is named by what the motors tell beside it.
     It knows no pattern: any series of commands will do, driven by whomever. A drift slower than
     slip cannot be told from slip by commands: only the INS's own velocity shows it. */
 class MotionMonitor {
  public:
-  explicit MotionMonitor(const MotionLimits& limits) : track_(limits), response_(limits) {}
+  explicit MotionMonitor(const MotionLimits& limits)
+      : track_(limits),
+        response_(limits),
+        wheel_stands_since_(limits.isOmni() ? limits.wheels.size() : 2, 0) {}
 
-  /// The command that holds from now [us] on, in the unit of the drive.
-  void command(const TrackCommand& command, int64_t now) { track_.command(command, now); }
+  /// What MotionLimits::motion() makes of the command that holds from now [us] on.
+  void command(const Command& motion, int64_t now) { track_.command(motion, now); }
   /// What the controller tells of the motors.
   void receive(const MotorTelemetry& motors) { motors_ = motors; }
   /// A measurement; one that is not newer than the last, or has no pose, is passed over.
@@ -40,6 +45,7 @@ class MotionMonitor {
  private:
   void watchTracks(int64_t utime);
   std::string standingTrack(int64_t utime) const;
+  std::string standingWheel(int64_t utime) const;
   std::string surelyWrong() const;
   std::string suspicion() const;
   /// From what the robot lately made of its commands.
@@ -50,9 +56,10 @@ class MotionMonitor {
   MotionTrack track_;
   MotionResponse response_;
   MotorTelemetry motors_;
-  double doubts_ = 0.0;                     ///< [1] unreachable poses lately
-  double position_std_ = 0.0;               ///< [m] of the last measurements
-  int64_t track_stands_since_[2] = {0, 0};  ///< [us] left, right: against its command
+  double doubts_ = 0.0;        ///< [1] unreachable poses lately
+  double position_std_ = 0.0;  ///< [m] of the last measurements
+  std::vector<int64_t>
+      wheel_stands_since_;        ///< [us] left, right, or each wheel: against its command
   int64_t suspected_since_ = -1;  ///< [us] measurements since then are suspicious; -1 = none
   std::string verdict_;
   int64_t told_ = 0;  ///< [us] time of the measurement that the verdict was given on

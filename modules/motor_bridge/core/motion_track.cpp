@@ -25,7 +25,23 @@ double atLeast(double speed, double dead, double share, double most) {
   return speed > 0.0 ? share * std::max(0.0, speed - dead) : most * speed;
 }
 
+/// [1] of the motion to the side that a holonomic base makes forward, and the other way round: its
+/// wheels do not all slip alike.
+constexpr double kAskew = 0.25;
+
 }  // namespace
+
+Command MotionLimits::motion(const Command& command) const {
+  if (isOmni()) {
+    const Twist2 twist = wheels.twist(command);
+    const double turn = 0.5 * gauge * twist.omega;
+    Command motion(twist.v_x - turn, twist.v_x + turn);
+    motion[kSideways] = twist.v_y;
+    return motion;
+  }
+  if (wheelbase <= 0.0) return command.tracks();
+  return rearWheels(command[0], command[1], wheelbase, gauge);
+}
 
 void TrackBand::follow(double least, double most, const MotionLimits& limits, double dt) {
   const double share = 1.0 - std::exp(-dt / limits.lag);
@@ -49,6 +65,8 @@ MotionSums MotionSums::operator-(const MotionSums& start) const {
   out.high = high - start.high;
   out.travel = travel - start.travel;
   out.turn = turn - start.turn;
+  out.side_min = side_min - start.side_min;
+  out.side_max = side_max - start.side_max;
   out.tracks_min = tracks_min - start.tracks_min;
   out.reach = reach - start.reach;
   out.turn_reach = turn_reach - start.turn_reach;
@@ -62,9 +80,9 @@ MotionSums MotionSums::operator-(const MotionSums& start) const {
   return out;
 }
 
-void MotionTrack::command(const TrackCommand& command, int64_t now) {
-  const Eigen::Array2d speed =
-      (Eigen::Array2d(command.left, command.right) * limits_.speed_per_command)
+void MotionTrack::command(const Command& motion, int64_t now) {
+  const Eigen::Array3d speed =
+      (Eigen::Array3d(motion[0], motion[1], motion[kSideways]) * limits_.speed_per_command)
           .cwiseMax(-limits_.full_speed)
           .cwiseMin(limits_.full_speed);
   if ((given_.back().speed == speed).all() || now < given_.back().utime) return;
@@ -114,9 +132,9 @@ void MotionTrack::follow(MotionSums& sums, int64_t from, int64_t until) {
 void MotionTrack::followPiece(MotionSums& sums, int64_t from, int64_t until) {
   const double dt = 1e-6 * static_cast<double>(until - from);
   const int64_t oldest = until - toMicroseconds(limits_.delay);
-  Eigen::Array2d low = Eigen::Array2d::Constant(limits_.full_speed);
-  Eigen::Array2d high = -low;
-  Eigen::Array2d newest = Eigen::Array2d::Zero();
+  Eigen::Array3d low = Eigen::Array3d::Constant(limits_.full_speed);
+  Eigen::Array3d high = -low;
+  Eigen::Array3d newest = Eigen::Array3d::Zero();
   for (size_t i = 0; i < given_.size(); ++i) {
     if (given_[i].utime >= until) break;
     newest = given_[i].speed;
@@ -124,8 +142,8 @@ void MotionTrack::followPiece(MotionSums& sums, int64_t from, int64_t until) {
     low = low.min(newest);
     high = high.max(newest);
   }
+  for (int i = 0; i < 3; ++i) bands_[i].follow(low[i], high[i], limits_, dt);
   for (int i = 0; i < 2; ++i) {
-    bands_[i].follow(low[i], high[i], limits_, dt);
     sums.low[i] += dt * bands_[i].low();
     sums.high[i] += dt * bands_[i].high();
   }
@@ -135,19 +153,27 @@ void MotionTrack::followPiece(MotionSums& sums, int64_t from, int64_t until) {
   const double w_high = (bands_[1].high() - bands_[0].low()) / limits_.gauge;
   const double v_most = std::max(std::abs(v_low), std::abs(v_high));
   const double w_most = std::max(std::abs(w_low), std::abs(w_high));
-  const double swing = kTurnToTravel * w_most * 0.5 * limits_.gauge;
-  const double pull = limits_.pull * v_most / limits_.gauge;
+  const double s_low = bands_[kSideways].low(), s_high = bands_[kSideways].high();
+  const double s_most = std::max(std::abs(s_low), std::abs(s_high));
+  const double swing = kTurnToTravel * w_most * 0.5 * limits_.gauge + kAskew * s_most;
+  const double pull = limits_.pull * (v_most + s_most) / limits_.gauge;
   const double dead = limits_.dead_band * limits_.full_speed;
   const double dead_turn = 2.0 * dead / limits_.gauge;
   const double travel = limits_.least_travel, turn = limits_.least_turn;
   sums.travel_min += dt * (atLeast(v_low, dead, travel, kMostTravel) - swing);
   sums.travel_max += dt * (-atLeast(-v_high, dead, travel, kMostTravel) + swing);
+  sums.side_min += dt * atLeast(s_low, dead, travel, kMostTravel);
+  sums.side_max += dt * -atLeast(-s_high, dead, travel, kMostTravel);
   sums.turn_min += dt * (atLeast(w_low, dead_turn, turn, kMostTurn) - pull);
   sums.turn_max += dt * (-atLeast(-w_high, dead_turn, turn, kMostTurn) + pull);
-  sums.travel += dt * newest.mean();
+  sums.travel += dt * newest.head<2>().mean();
   sums.turn += dt * (newest[1] - newest[0]) / limits_.gauge;
-  sums.tracks_min += dt * 0.5 * (std::abs(least(0)) + std::abs(least(1)));
-  sums.reach += dt * std::max(v_most, 0.5 * limits_.gauge * w_most);
+  const auto leastOf = [this](const TrackBand& band) {
+    return std::abs(beyondDeadBand(band.low(), band.high()));
+  };
+  sums.tracks_min +=
+      dt * std::max(0.5 * (leastOf(bands_[0]) + leastOf(bands_[1])), leastOf(bands_[kSideways]));
+  sums.reach += dt * std::max(std::hypot(v_most, s_most), 0.5 * limits_.gauge * w_most);
   sums.turn_reach += dt * w_most;
 }
 
@@ -178,10 +204,24 @@ void MotionTrack::measure(MotionSums& sums, const InsMotion& ins, double dt) con
   }
 }
 
-double MotionTrack::least(int track) const {
+double MotionTrack::beyondDeadBand(double low, double high) const {
   const double dead = limits_.dead_band * limits_.full_speed;
-  const TrackBand& band = bands_[track];
-  return std::max(0.0, band.low() - dead) + std::min(0.0, band.high() + dead);
+  return std::max(0.0, low - dead) + std::min(0.0, high + dead);
+}
+
+double MotionTrack::least(size_t wheel) const {
+  if (!limits_.isOmni()) return beyondDeadBand(bands_[wheel].low(), bands_[wheel].high());
+  // Forward speed, sideways speed and turn lie anywhere in their bands.
+  const Eigen::Vector3d row = limits_.wheels.row(wheel);
+  const double turning = row[2] / limits_.gauge;
+  const double weights[] = {0.5 * row[0] - turning, 0.5 * row[0] + turning, row[1]};
+  double low = 0.0, high = 0.0;
+  for (size_t i = 0; i < 3; ++i) {
+    const double ends[] = {weights[i] * bands_[i].low(), weights[i] * bands_[i].high()};
+    low += std::min(ends[0], ends[1]);
+    high += std::max(ends[0], ends[1]);
+  }
+  return beyondDeadBand(low, high);
 }
 
 MotionSums MotionTrack::step() const {

@@ -12,6 +12,7 @@
 #include "common/pattern/command.hpp"
 
 #include "common/pattern/pattern.hpp"
+#include "common/vehicle/omni_wheels.hpp"
 
 namespace tread::motor {
 
@@ -36,8 +37,9 @@ struct InsMotion {
 struct MotionLimits {
   double gauge = 0.6;              ///< [m] between the middles of the tracks
   double wheelbase = 0.0;          ///< [m] of a car, which counts as its rear wheels; 0 = tracks
+  OmniWheels wheels;               ///< of a holonomic base; else none
   double full_speed = 1.1;         ///< [m/s] of a track: no command makes it faster
-  double speed_per_command = 1.1;  ///< [m/s] of a track at command 1
+  double speed_per_command = 1.1;  ///< [m/s] of a track or a wheel's rim at command 1
   double dead_band = 0.15;         ///< [1] share of full_speed that need not move anything
   double delay = 0.25;             ///< [s] longest time from a command to its first effect
   double lag = 0.45;               ///< [s] slowest time constant of the tracks
@@ -47,12 +49,16 @@ struct MotionLimits {
   double pull = 0.25;        ///< [1] turn that uneven ground explains, as a share of speed / gauge
   double time_error = 0.05;  ///< [s] of the INS's measurement times, position against rates, too
 
-  /// What a command means for the two tracks, or a car's rear wheels, in its unit.
-  TrackCommand tracks(const Command& command) const {
-    if (wheelbase <= 0.0) return command.tracks();
-    return rearWheels(command[0], command[1], wheelbase, gauge);
-  }
+  bool isOmni() const { return !wheels.empty(); }
+  /// What a command means, in its unit: for the left and the right track, or a car's rear wheels,
+  /// and at kSideways to the left.
+  /** A holonomic base counts as two tracks, as far apart as its wheels are wide, that go forward
+   * and turn as it does; it alone is commanded to the side. */
+  Command motion(const Command& command) const;
 };
+
+/// Where a motion has its sideways part, beside left and right.
+inline constexpr size_t kSideways = 2;
 
 /// The speeds of a track [m/s] that its commands explain.
 /** It may answer at once, or after the whole delay and lag: the band holds both. */
@@ -79,10 +85,11 @@ struct MotionSums {
   double turn_min = 0.0, turn_max = 0.0;               ///< [rad]
   Eigen::Array2d low = Eigen::Array2d::Zero();         ///< [m] left, right track, at least, no slip
   Eigen::Array2d high = Eigen::Array2d::Zero();        ///< [m] at most
-  double travel = 0.0, turn = 0.0;  ///< [m, rad] of ideal tracks that answer at once
-  double tracks_min = 0.0;          ///< [m] mean way of both tracks, at least, slip left out
-  double reach = 0.0;               ///< [m] of the faster track, at most
-  double turn_reach = 0.0;          ///< [rad] at most, without slip
+  double travel = 0.0, turn = 0.0;        ///< [m, rad] of ideal tracks that answer at once
+  double side_min = 0.0, side_max = 0.0;  ///< [m] explained to the left, of a holonomic base
+  double tracks_min = 0.0;  ///< [m] mean way of both tracks, or sideways, at least, slip left out
+  double reach = 0.0;       ///< [m] of the faster track, at most
+  double turn_reach = 0.0;  ///< [rad] at most, without slip
   Eigen::Vector2d ins_way = Eigen::Vector2d::Zero();  ///< [m] in map, by the INS's velocity
   double ins_path = 0.0;                              ///< [m] length of that
   double gyro = 0.0, gyro_path = 0.0;                 ///< [rad] by the INS's yaw rate
@@ -98,8 +105,8 @@ class MotionTrack {
  public:
   explicit MotionTrack(const MotionLimits& limits) : limits_(limits), given_(1) {}
 
-  /// The command that holds from now [us] on, in the unit of the drive.
-  void command(const TrackCommand& command, int64_t now);
+  /// What MotionLimits::motion() makes of the command that holds from now [us] on.
+  void command(const Command& motion, int64_t now);
   /// Whether a robot in full drive could be at a pose after the last one, with `slack` [m] and
   /// `yaw_slack` [rad]; true where there is none to compare with.
   bool reachable(const InsMotion& ins, double slack, double yaw_slack) const;
@@ -118,24 +125,26 @@ class MotionTrack {
   MotionSums repeats() const;
   /// Commanded to zero for so long [s] at the last measurement.
   double zeroFor() const;
-  /// The slowest speed [m/s] that the commands explain, of the left (0) or right (1) track.
-  double least(int track) const;
+  /// The slowest speed [m/s] that the commands explain, of the left (0) or right (1) track, or of a
+  /// wheel's rim.
+  double least(size_t wheel) const;
   int64_t utime() const { return last_.utime; }
   const MotionLimits& limits() const { return limits_; }
 
  private:
   struct Given {
     int64_t utime = std::numeric_limits<int64_t>::min() / 2;
-    Eigen::Array2d speed = Eigen::Array2d::Zero();  ///< [m/s] left, right
+    Eigen::Array3d speed = Eigen::Array3d::Zero();  ///< [m/s] left, right, sideways
   };
 
   void follow(MotionSums& sums, int64_t from, int64_t until);
   void followPiece(MotionSums& sums, int64_t from, int64_t until);
   void measure(MotionSums& sums, const InsMotion& ins, double dt) const;
+  double beyondDeadBand(double low, double high) const;
 
   MotionLimits limits_;
   std::deque<Given> given_;  ///< oldest first; it begins with zero
-  TrackBand bands_[2];       ///< left, right
+  TrackBand bands_[3];       ///< left, right, sideways
   std::deque<MotionSums> history_;
   std::optional<MotionSums> repeats_;
   InsMotion last_;

@@ -54,6 +54,13 @@ bool LineConnection::readsFaults() const {
 }
 
 LineValues LineConnection::commandValues(const Command& command) const {
+  const std::vector<std::string> wheels = line_.wheels();
+  if (!wheels.empty()) {
+    LineValues values;
+    for (size_t i = 0; i < wheels.size(); ++i)
+      values[wheels[i]] = countsOf(command[i], line_.invert_wheels[i], line_);
+    return values;
+  }
   double left = countsOf(command[0], line_.invert_left, line_);
   if (line_.max_steering > 0.0)
     return {{"throttle", left}, {"steering", steeringCounts(command[1], line_)}};
@@ -189,15 +196,19 @@ void LineConnection::takeValues(const LineTemplate& reply, const LineValues& val
     const auto found = values.find(name);
     if (found != values.end()) value = unit * found->second;
   };
-  const std::string one = line_.swapped ? "right" : "left";
-  const std::string two = line_.swapped ? "left" : "right";
   MotorTelemetry& told = telemetry_;
   reading("battery_voltage", line_.battery_voltage, told.battery_voltage);
   reading("temperature", line_.temperature, told.temperature);
-  reading("current_" + one, line_.current, told.current[0]);
-  reading("current_" + two, line_.current, told.current[1]);
-  reading("speed_" + one, line_.invert_left ? -line_.speed : line_.speed, told.measured[0]);
-  reading("speed_" + two, line_.invert_right ? -line_.speed : line_.speed, told.measured[1]);
+  const auto ofMotor = [&](const std::string& name, bool invert, size_t channel) {
+    reading("current_" + name, line_.current, told.current[channel]);
+    reading("speed_" + name, invert ? -line_.speed : line_.speed, told.measured[channel]);
+  };
+  const std::vector<std::string> wheels = line_.wheels();
+  for (size_t i = 0; i < wheels.size(); ++i) ofMotor(wheels[i], line_.invert_wheels[i], i);
+  if (wheels.empty()) {
+    ofMotor(line_.swapped ? "right" : "left", line_.invert_left, 0);
+    ofMotor(line_.swapped ? "left" : "right", line_.invert_right, 1);
+  }
   const auto faults = values.find("faults");
   if (faults != values.end() && faults->second >= 0.0 && faults->second <= 2147483647.0) {
     told.device_flags = static_cast<int32_t>(faults->second);

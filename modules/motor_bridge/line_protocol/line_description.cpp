@@ -50,14 +50,26 @@ std::string plainOf(ConfigReader& reader, const std::string& key) {
   return text.empty() ? text : templateOf(reader, key, text, kNone, true).format({});
 }
 
-std::vector<LineExchange> exchangesOf(ConfigReader& reader, const std::string& key) {
+/// What a reply may hold of a robot.
+std::set<std::string> readingsOf(const LineDescription& line) {
+  if (line.invert_wheels.empty()) return kReadings;
+  std::set<std::string> names{"watchdog", "battery_voltage", "temperature", "faults"};
+  for (const std::string& wheel : line.wheels()) {
+    names.insert("current_" + wheel);
+    names.insert("speed_" + wheel);
+  }
+  return names;
+}
+
+std::vector<LineExchange> exchangesOf(ConfigReader& reader, const std::string& key,
+                                      const std::set<std::string>& readings) {
   std::vector<LineExchange> exchanges;
   for (ConfigReader& item : reader.sections(key)) {
     std::string send, expect;
     item.text("send", send, true);
     item.text("expect", expect, true);
     exchanges.push_back({templateOf(item, "send", send, kWatchdog, true),
-                         templateOf(item, "expect", expect, kReadings, false)});
+                         templateOf(item, "expect", expect, readings, false)});
   }
   return exchanges;
 }
@@ -86,15 +98,20 @@ void readSteering(ConfigReader& reader, LineDescription& line) {
 
 void readCommands(ConfigReader& reader, LineDescription& line) {
   const bool car = line.max_steering > 0.0;
-  const std::set<std::string> names =
-      car ? std::set<std::string>{"throttle", "steering"} : std::set<std::string>{"left", "right"};
+  const std::vector<std::string> wheels = line.wheels();
+  const std::set<std::string> names = car ? std::set<std::string>{"throttle", "steering"}
+                                      : wheels.empty()
+                                          ? std::set<std::string>{"left", "right"}
+                                          : std::set<std::string>(wheels.begin(), wheels.end());
   line.command = templatesOf(reader, "command", names, true, true);
   if (car) readSteering(reader, line);
   for (const std::string& name : names) {
     if (std::none_of(line.command.begin(), line.command.end(),
                      [&](const LineTemplate& text) { return text.has(name); }))
       throw reader.error("command", "nowhere says {" + name + "}; give " +
-                                        (car ? "throttle and steering" : "both tracks"));
+                                        (car              ? "throttle and steering"
+                                         : wheels.empty() ? "both tracks"
+                                                          : "all wheels"));
     if (name == "steering" && line.steering_centre >= std::abs(line.full_steering)) continue;
     for (const LineTemplate& text : line.command)
       if (!text.takesNegative(name))
@@ -114,8 +131,8 @@ void readCommands(ConfigReader& reader, LineDescription& line) {
 }
 
 void readTelemetry(ConfigReader& reader, LineDescription& line) {
-  line.start = exchangesOf(reader, "start");
-  line.queries = exchangesOf(reader, "queries");
+  line.start = exchangesOf(reader, "start", readingsOf(line));
+  line.queries = exchangesOf(reader, "queries", readingsOf(line));
   reader.seconds("query_interval", line.query_interval_us, {0.01, 1.0});
   for (ConfigReader& item : reader.sections("faults")) {
     LineFault fault;
@@ -163,6 +180,7 @@ LineDescription readLineDescription(ConfigReader& reader, const DriveDescription
   line.full_scale = drive.fullCommand();
   line.swapped = drive.left_channel == 2;
   line.max_steering = drive.max_steering;
+  line.invert_wheels = drive.invert_wheels;
   line.invert_left = drive.invert_left;
   line.invert_right = drive.invert_right;
   reader.text("name", line.name, true);
@@ -173,6 +191,13 @@ LineDescription readLineDescription(ConfigReader& reader, const DriveDescription
   reader.seconds("watchdog", line.times.watchdog_us, {0.15, 1.0});
   reader.seconds("reply_timeout", line.times.reply_timeout_us, {0.02, 0.2});
   return line;
+}
+
+std::vector<std::string> LineDescription::wheels() const {
+  std::vector<std::string> names;
+  while (names.size() < invert_wheels.size())
+    names.push_back("wheel" + std::to_string(names.size() + 1));
+  return names;
 }
 
 bool LineDescription::readsWatchdog() const {

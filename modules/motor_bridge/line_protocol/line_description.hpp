@@ -38,9 +38,9 @@ struct LineDescription {
   std::string checksum_mark;  ///< text between a line and its checksum, which is in hexadecimal
   size_t checksum_skip = 0;   ///< so many characters in front are not covered
   std::vector<LineTemplate>
-      command;                     ///< lines with {left} and {right}, or {throttle} and {steering}
-  std::vector<LineTemplate> stop;  ///< lines for zero; empty: the command with zeros
-  std::string acknowledge;         ///< reply to each of these lines; empty = none comes
+      command;  ///< lines with {left} and {right}, {throttle} and {steering}, or {wheel1}, ...
+  std::vector<LineTemplate> stop;    ///< lines for zero; empty: the command with zeros
+  std::string acknowledge;           ///< reply to each of these lines; empty = none comes
   std::vector<LineTemplate> errors;  ///< replies that refuse
   std::string restarted;             ///< a line that only a restarted controller says
   std::vector<LineExchange> start;
@@ -48,7 +48,7 @@ struct LineDescription {
   std::string emergency_stop;  ///< line that latches the controller's own stop; empty = none
   std::string release_stop;
   std::vector<LineFault> faults;
-  double full_command = 1000.0;   ///< {left} and {right}, or {throttle}, at full command
+  double full_command = 1000.0;   ///< {left} and {right}, {throttle}, or {wheel1}, at full command
   double full_steering = 1000.0;  ///< {steering} at the largest angle to the left, above the centre
   double steering_centre = 0.0;   ///< {steering} straight ahead, as the 1500 us of a servo
   double watchdog_unit = 0.001;   ///< [s] of a count of {watchdog}
@@ -59,12 +59,15 @@ struct LineDescription {
   int64_t query_interval_us = 20'000;
   ConnectionTimes times;
   // Of the robot.
-  double full_scale = 1.0;    ///< command that is full, in the unit of the drive
-  double max_steering = 0.0;  ///< [rad] of a car; 0 = tracks
-  bool swapped = false;       ///< the right track hangs on the controller's {left}
+  double full_scale = 1.0;          ///< command that is full, in the unit of the drive
+  double max_steering = 0.0;        ///< [rad] of a car; 0 = tracks
+  std::vector<bool> invert_wheels;  ///< of a holonomic base, each; none = another vehicle
+  bool swapped = false;             ///< the right track hangs on the controller's {left}
   bool invert_left = false;
   bool invert_right = false;
 
+  /// Names of the wheels of a holonomic base: wheel1, wheel2, ...
+  std::vector<std::string> wheels() const;
   /// Whether one of the start-up's replies, or a query's, reads the watchdog back.
   bool readsWatchdog() const;
   /// {watchdog} in the controller's counts.
@@ -77,9 +80,11 @@ struct LineDescription {
 
 /// Reads a description; throws ConfigError with file:line. tests/data/controllers has two.
 /** Names of numbers: {left}, {right} in `command` (counts; full_command is full ahead), of a car
- * {throttle} and {steering} (full_steering and steering_centre: counts); {watchdog}
- * in `start` and `queries`; in replies also battery_voltage, current_left, current_right,
- * speed_left, speed_right, temperature, faults. {left} is what robot.yaml's channel 1 is. */
+ * {throttle} and {steering} (full_steering and steering_centre: counts), of a holonomic base
+ * {wheel1}, {wheel2}, ... in the order of robot.yaml; {watchdog} in `start` and `queries`; in
+ * replies also battery_voltage, current_left, current_right, speed_left, speed_right (or
+ * current_wheel1, ..., speed_wheel1, ...), temperature, faults. {left} is what robot.yaml's
+ * channel 1 is. */
 LineDescription readLineDescription(ConfigReader& reader, const DriveDescription& drive);
 
 }  // namespace tread::motor

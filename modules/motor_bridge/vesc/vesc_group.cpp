@@ -15,15 +15,21 @@ constexpr double kDutyUnit = 1e-5;
 constexpr double kLargestRpm = 1e6;  // electrical [1/min]
 
 /// `second`: 0 where usually there is only one.
+std::vector<int> readIds(ConfigReader& reader, const std::string& key, std::vector<double> ids,
+                         size_t count) {
+  reader.numbers(key, ids, count, {0.0, 253.0}, "");
+  std::vector<int> whole;
+  for (const double id : ids) {
+    if (id != std::floor(id)) throw reader.error(key, "ids are whole numbers");
+    whole.push_back(static_cast<int>(id));
+  }
+  return whole;
+}
+
 std::vector<int> readIds(ConfigReader& reader, const std::string& key, int usual, int second = 0) {
   std::vector<double> numbers{static_cast<double>(usual)};
   if (second > 0) numbers.push_back(second);
-  reader.numbers(key, numbers, 0, {0.0, 253.0}, "");
-  std::vector<int> ids;
-  for (const double number : numbers) {
-    if (number != std::floor(number)) throw reader.error(key, "ids are whole numbers");
-    ids.push_back(static_cast<int>(number));
-  }
+  const std::vector<int> ids = readIds(reader, key, numbers, 0);
   if (ids.empty() || ids.size() > 2) throw reader.error(key, "needs one or two ids");
   return ids;
 }
@@ -67,12 +73,31 @@ void readTrackIds(ConfigReader& reader, const DriveDescription& drive, VescConfi
   config.right = readIds(reader, "right", 3 - left, four ? 5 - left : 0);
 }
 
+/// One for each wheel, in the order of robot.yaml; usually 1, 2, 3, ...
+void readWheelIds(ConfigReader& reader, const DriveDescription& drive, VescConfig& config) {
+  std::vector<double> usual;
+  while (usual.size() < drive.wheels.size()) usual.push_back(static_cast<double>(usual.size() + 1));
+  config.wheels = readIds(reader, "wheels", usual, usual.size());
+  config.invert_wheels = drive.invert_wheels;
+}
+
 }  // namespace
 
 std::vector<int> VescConfig::ids() const {
+  if (!wheels.empty()) return wheels;
   std::vector<int> all = left;
   all.insert(all.end(), right.begin(), right.end());
   return all;
+}
+
+size_t VescConfig::channelOf(int id) const {
+  if (wheels.empty()) return contains(left, id) ? 0 : 1;
+  return static_cast<size_t>(std::find(wheels.begin(), wheels.end(), id) - wheels.begin());
+}
+
+bool VescConfig::inverted(size_t channel) const {
+  if (wheels.empty()) return channel == 0 ? invert_left : invert_right;
+  return channel < invert_wheels.size() && invert_wheels[channel];
 }
 
 VescConfig readVescConfig(ConfigReader& reader, const DriveDescription& drive) {
@@ -83,17 +108,22 @@ VescConfig readVescConfig(ConfigReader& reader, const DriveDescription& drive) {
   config.invert_right = drive.invert_right;
   if (drive.isCar())
     readCarIds(reader, drive, config);
+  else if (drive.isOmni())
+    readWheelIds(reader, drive, config);
   else
     readTrackIds(reader, drive, config);
   std::vector<int> ids = config.ids();
   int64_t local = ids.front();
   std::sort(ids.begin(), ids.end());
   if (std::adjacent_find(ids.begin(), ids.end()) != ids.end())
-    throw reader.error("right", "names a controller twice, here or in left");
+    throw reader.error(
+        drive.isOmni() ? "wheels" : "right",
+        drive.isOmni() ? "names a controller twice" : "names a controller twice, here or in left");
   reader.integer("local", local, {0.0, 253.0}, "");
   config.local = static_cast<int>(local);
   if (!contains(ids, config.local))
-    throw reader.error("local", "must be one of the ids in left and right");
+    throw reader.error("local", std::string("must be one of the ids in ") +
+                                    (drive.isOmni() ? "wheels" : "left and right"));
   config.erpm_per_mps = readErpmPerSpeed(reader, drive.kind == CommandKind::kTrackSpeed);
   reader.number("brake_current", config.brake_current, {0.0, 200.0}, "A");
   reader.seconds("watchdog", config.times.watchdog_us, {0.15, 1.0});
@@ -101,9 +131,9 @@ VescConfig readVescConfig(ConfigReader& reader, const DriveDescription& drive) {
 }
 
 VescCommand vescCommand(const Command& command, int id, const VescConfig& config) {
-  const bool left = contains(config.left, id);
-  const bool invert = left ? config.invert_left : config.invert_right;
-  const double value = command[left ? 0 : 1];
+  const size_t channel = config.channelOf(id);
+  const bool invert = config.inverted(channel);
+  const double value = command[channel];
   const double finite = std::isfinite(value) ? value : 0.0;
   const double wanted = invert ? -finite : finite;
   using Kind = VescCommand::Kind;
@@ -131,7 +161,7 @@ VescGroup::VescGroup(const VescConfig& config) : config_(config) {
   for (const int id : config.ids()) {
     Member member;
     member.id = id;
-    member.left = contains(config.left, id);
+    member.channel = config.channelOf(id);
     members_.push_back(member);
   }
 }
@@ -177,26 +207,26 @@ std::string VescGroup::unheard() const {
   return words;
 }
 
-/// Mean of a side's controllers.
-double VescGroup::speedOf(bool left) const {
+/// Mean of a channel's controllers.
+double VescGroup::speedOf(size_t channel) const {
   double sum = 0.0;
   int count = 0;
   for (const Member& member : members_) {
-    if (member.left != left || !member.told.erpm) continue;
+    if (member.channel != channel || !member.told.erpm) continue;
     sum += *member.told.erpm;
     ++count;
   }
   if (count == 0 || config_.erpm_per_mps <= 0.0) return kNan;
-  const bool invert = left ? config_.invert_left : config_.invert_right;
+  const bool invert = config_.inverted(channel);
   return (invert ? -sum : sum) / count / config_.erpm_per_mps;
 }
 
-/// Sum of a side's controllers.
-double VescGroup::currentOf(bool left) const {
+/// Sum of a channel's controllers.
+double VescGroup::currentOf(size_t channel) const {
   double sum = 0.0;
   bool told = false;
   for (const Member& member : members_) {
-    if (member.left != left || !member.told.motor_current) continue;
+    if (member.channel != channel || !member.told.motor_current) continue;
     sum += *member.told.motor_current;
     told = true;
   }
@@ -205,10 +235,11 @@ double VescGroup::currentOf(bool left) const {
 
 MotorTelemetry VescGroup::telemetry() const {
   MotorTelemetry all;
-  all.measured[0] = speedOf(true);
-  all.measured[1] = speedOf(false);
-  all.current[0] = currentOf(true);
-  all.current[1] = currentOf(false);
+  const size_t channels = config_.wheels.empty() ? 2 : config_.wheels.size();
+  for (size_t channel = 0; channel < channels; ++channel) {
+    all.measured[channel] = speedOf(channel);
+    all.current[channel] = currentOf(channel);
+  }
   for (const Member& member : members_) {
     const VescReading& told = member.told;
     if (told.voltage) all.battery_voltage = std::fmin(all.battery_voltage, *told.voltage);

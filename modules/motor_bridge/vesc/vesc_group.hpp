@@ -22,12 +22,15 @@ struct VescServo {
   double max_steering = 0.5;  ///< [rad] that angle
 };
 
-/// VESC motor controllers of a robot: one or two on each side, or those of a car's throttle.
+/// VESC motor controllers of a robot: one or two on each side, those of a car's throttle, or one
+/// for each wheel of a holonomic base.
 struct VescConfig {
   std::vector<int> left{1};  ///< CAN ids of the left track's (or wheels') controllers; a car's all
   std::vector<int> right{2};
-  std::optional<VescServo> servo;  ///< of a car
-  int local = 1;                   ///< over UART: the one on the line; it forwards to the others
+  std::vector<int> wheels;          ///< of a holonomic base, which has no left and right, in order
+  std::vector<bool> invert_wheels;  ///< the same wheels
+  std::optional<VescServo> servo;   ///< of a car
+  int local = 1;                    ///< over UART: the one on the line; it forwards to the others
   CommandKind kind = CommandKind::kPower;
   bool invert_left = false;
   bool invert_right = false;
@@ -37,6 +40,9 @@ struct VescConfig {
   ConnectionTimes times;
 
   std::vector<int> ids() const;
+  /// The channel of the commands that a controller drives.
+  size_t channelOf(int id) const;
+  bool inverted(size_t channel) const;
 };
 
 /// Reads the section `vesc` or `vesc_can`; throws ConfigError with file:line.
@@ -66,13 +72,13 @@ class VescGroup {
  private:
   struct Member {
     int id = 0;
-    bool left = false;
+    size_t channel = 0;
     int64_t heard_at = 0;
     bool heard = false;
     VescReading told;
   };
-  double speedOf(bool left) const;
-  double currentOf(bool left) const;
+  double speedOf(size_t channel) const;
+  double currentOf(size_t channel) const;
 
   VescConfig config_;
   std::vector<Member> members_;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "modules/simulator/core/omni_base.hpp"
+
 namespace tread::sim {
 namespace {
 
@@ -87,6 +89,7 @@ void Car::step(const MotorPower& power, const Ground& ground, double dt) {
 }
 
 std::unique_ptr<Plant> makeVehicle(const VehicleParameters& parameters) {
+  if (!parameters.wheels.empty()) return std::make_unique<OmniBase>(parameters);
   if (parameters.wheelbase > 0.0) return std::make_unique<Car>(parameters);
   return std::make_unique<TrackedVehicle>(parameters);
 }

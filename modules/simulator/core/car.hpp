@@ -45,7 +45,8 @@ class Car final : public Plant {
   Twist2 v_mass_;  ///< of the centre of mass, axes of the body
 };
 
-/// The dynamic vehicle of these parameters: a car if they have a wheelbase, else a tracked one.
+/// The dynamic vehicle of these parameters: a holonomic base if they have wheels, a car if they
+/// have a wheelbase, else a tracked one.
 std::unique_ptr<Plant> makeVehicle(const VehicleParameters& parameters);
 
 }  // namespace tread::sim

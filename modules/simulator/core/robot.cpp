@@ -80,7 +80,9 @@ SimulatedRobot::SimulatedRobot(std::shared_ptr<const World> world, const RobotSe
 }
 
 void SimulatedRobot::setPower(const MotorPower& power) {
-  power_ = {finiteOrZero(power.left), finiteOrZero(power.right)};
+  MotorValues finite{};
+  for (size_t i = 0; i < finite.size(); ++i) finite[i] = finiteOrZero(power[i]);
+  power_ = MotorPower::of(finite);
 }
 
 void SimulatedRobot::advanceTo(int64_t utime) {
@@ -127,6 +129,8 @@ void SimulatedRobot::updateGround() {
   truth_.surface = surface_->name;
   ground_.left = surfacesBelow(*world_, settings_.vehicle, pose, 1.0);
   ground_.right = surfacesBelow(*world_, settings_.vehicle, pose, -1.0);
+  for (size_t i = 0; i < settings_.vehicle.wheels.size(); ++i)
+    ground_.wheels[i] = &world_->surface(pose * settings_.vehicle.wheels[i].p_body());
   const auto [height, gradient] = world_->bearing(pose, contactOf(settings_.vehicle));
   plane_ = {pose.position(), height, gradient};
   const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);

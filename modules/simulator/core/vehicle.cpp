@@ -134,8 +134,12 @@ void stepTrack(const DriveParameters& parameters, double commanded_power, double
 void stepBattery(const DriveParameters& parameters, const TrackDrive& left, const TrackDrive& right,
                  double dt, Battery& battery) {
   // The power stage is a step-down converter: battery current = duty x motor current.
-  battery.current =
-      parameters.idle_current + left.power * left.current + right.power * right.current;
+  stepBattery(parameters, left.power * left.current + right.power * right.current, dt, battery);
+}
+
+void stepBattery(const DriveParameters& parameters, double motors_current, double dt,
+                 Battery& battery) {
+  battery.current = parameters.idle_current + motors_current;
   battery.charge =
       std::clamp(battery.charge - battery.current * dt / parameters.capacity, 0.0, 1.0);
   const double open_voltage = parameters.empty_voltage +
@@ -147,6 +151,7 @@ Ground levelGround(const SurfaceParameters& surface) {
   Ground ground;
   ground.left.fill(&surface);
   ground.right.fill(&surface);
+  ground.wheels.fill(&surface);
   return ground;
 }
 

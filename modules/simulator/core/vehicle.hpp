@@ -4,6 +4,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "common/geometry/se2.hpp"
 #include "modules/simulator/core/terrain.hpp"
@@ -110,22 +111,44 @@ struct TrackLoad {
 void stepTrack(const DriveParameters& parameters, double commanded_power, double voltage,
                const TrackLoad& load, double dt, TrackDrive& track);
 
-/// Advances the battery by dt, loaded by both motors.
+/// Advances the battery by dt, loaded by the power stage's current for the motors [A].
+void stepBattery(const DriveParameters& parameters, double motors_current, double dt,
+                 Battery& battery);
+
+/// The same, loaded by both motors.
 void stepBattery(const DriveParameters& parameters, const TrackDrive& left, const TrackDrive& right,
                  double dt, Battery& battery);
 
-/// Motor power, -1..1 a track.
+/// No vehicle has more.
+inline constexpr size_t kMostMotors = 8;
+/// A number for each motor or channel of a vehicle; of two tracks left and right.
+using MotorValues = std::array<double, kMostMotors>;
+
+/// Motor power, -1..1 a track; of a holonomic base a wheel, of which the first two stand for left
+/// and right.
 struct MotorPower {
   double left = 0.0;
   double right = 0.0;
+  std::array<double, kMostMotors - 2> more{};
+
+  double operator[](size_t motor) const {
+    return motor == 0 ? left : motor == 1 ? right : more[motor - 2];
+  }
+  static MotorPower of(const MotorValues& values) {
+    MotorPower power{values[0], values[1]};
+    for (size_t i = 2; i < kMostMotors; ++i) power.more[i - 2] = values[i];
+    return power;
+  }
 };
 
 /// The ground below the vehicle at one moment.
 struct Ground {
   TrackContact::Surfaces left{};   ///< below the segments, front to rear; never null
   TrackContact::Surfaces right{};  ///< below the segments, front to rear; never null
-  double slope_along = 0.0;        ///< height gained per metre ahead [1]
-  double slope_across = 0.0;       ///< height gained per metre to the left [1]
+  /// Below the wheels of a holonomic base; never null of those that it has.
+  std::array<const SurfaceParameters*, kMostMotors> wheels{};
+  double slope_along = 0.0;   ///< height gained per metre ahead [1]
+  double slope_across = 0.0;  ///< height gained per metre to the left [1]
 };
 
 /// The vehicle of a simulated robot as its devices and the world see it: power in, motion out.
@@ -143,6 +166,9 @@ class Plant {
   virtual Twist2 velocity() const = 0;
   virtual const TrackDrive& left() const = 0;
   virtual const TrackDrive& right() const = 0;
+  virtual size_t motors() const { return 2; }
+  /// The drive of each motor, in the order of their channels.
+  virtual const TrackDrive& motor(size_t i) const { return i == 0 ? left() : right(); }
   virtual const Battery& battery() const = 0;
   /// Stops the body at once, as a hard obstacle does; the tracks go on turning.
   virtual void stopBody() = 0;
@@ -156,25 +182,37 @@ class Plant {
   virtual std::string warning() const { return {}; }
 };
 
+/// A wheel with rollers on its rim, axes of the body.
+struct WheelMount {
+  double x = 0.0;        ///< [m] of its contact
+  double y = 0.0;        ///< [m]
+  double heading = 0.0;  ///< [rad] where it rolls when it is driven forward
+  double rollers = 0.0;  ///< [rad] from there to its rollers' axis
+
+  Eigen::Vector2d p_body() const { return {x, y}; }
+};
+
 /// A tracked machine; no robot's size is a default.
 /** Body origin on the ground midway between the tracks, x forward, y left. */
 struct VehicleParameters {
-  double mass = 0.0;            ///< [kg]
-  double yaw_inertia = 0.0;     ///< about the centre of mass, tracks included [kg m^2]
-  double gauge = 0.0;           ///< effective, between the middles of the tracks [m]
-  double contact_length = 0.0;  ///< of each track on the ground [m]
-  double centre = 0.0;          ///< x_body of the middle of the contact patches [m]
-  double mass_height = 0.0;     ///< of the centre of mass above the ground [m]
-  double wheelbase = 0.0;       ///< [m] of a car (car.hpp); 0: it has tracks
-  double max_steering = 0.0;    ///< [rad] of a car, to either side
-  double steering_rate = 2.0;   ///< [rad/s] of a car's servo
-  double mass_ahead = 0.0;      ///< of the middle of the contact patches: the centre of mass [m]
-  FootprintSize outline;        ///< what obstacles stop
-  double left_power = 1.0;      ///< what the left drive gives of the power that it is told to [1]
-  double right_power = 1.0;     ///< the same on the right [1]
-  double left_drag = 0.0;       ///< dry friction that holds the left track, a jammed brake [N]
-  double right_drag = 0.0;      ///< the same on the right [N]
-  double charge = 1.0;          ///< of the battery at the beginning, 1 = full
+  double mass = 0.0;               ///< [kg]
+  double yaw_inertia = 0.0;        ///< about the centre of mass, tracks included [kg m^2]
+  double gauge = 0.0;              ///< effective, between the middles of the tracks [m]
+  double contact_length = 0.0;     ///< of each track on the ground [m]
+  double centre = 0.0;             ///< x_body of the middle of the contact patches [m]
+  double mass_height = 0.0;        ///< of the centre of mass above the ground [m]
+  double wheelbase = 0.0;          ///< [m] of a car (car.hpp); 0: it has tracks
+  double max_steering = 0.0;       ///< [rad] of a car, to either side
+  double steering_rate = 2.0;      ///< [rad/s] of a car's servo
+  std::vector<WheelMount> wheels;  ///< of a holonomic base (omni_base.hpp); else none
+  /// Of the middle of the contact patches, or of a holonomic base's origin: the centre of mass [m].
+  double mass_ahead = 0.0;
+  FootprintSize outline;     ///< what obstacles stop
+  double left_power = 1.0;   ///< what the left drive gives of the power that it is told to [1]
+  double right_power = 1.0;  ///< the same on the right [1]
+  double left_drag = 0.0;    ///< dry friction that holds the left track, a jammed brake [N]
+  double right_drag = 0.0;   ///< the same on the right [N]
+  double charge = 1.0;       ///< of the battery at the beginning, 1 = full
   DriveParameters drive;
 };
 

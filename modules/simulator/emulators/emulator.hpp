@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "modules/simulator/core/instruments.hpp"
+#include "modules/simulator/core/vehicle.hpp"
 
 namespace tread::sim {
 
@@ -50,19 +51,19 @@ class LaserEmulator : public Emulator {
 
 /// What a motor controller measures, from the simulated drive, by channel.
 struct DriveMeasurements {
-  double battery_voltage = 25.6;                  ///< [V]
-  std::array<double, 2> motor_current{0.0, 0.0};  ///< [A]
-  std::array<double, 2> track_speed{0.0, 0.0};    ///< [m/s]
+  double battery_voltage = 25.6;  ///< [V]
+  MotorValues motor_current{};    ///< [A]
+  MotorValues track_speed{};      ///< [m/s]
 };
 
 /// A motor controller behind its driver's line.
 class MotorEmulator : public Emulator {
  public:
-  /// Power on the motors of both channels now, -1..1. Where the controller is set up to hold speeds
+  /// Power on the motors of all channels now, -1..1. Where the controller is set up to hold speeds
   /// and heldSpeeds() does not tell them: the shares of its top speed that it is told to hold.
-  virtual std::array<double, 2> output(int64_t utime) = 0;
+  virtual MotorValues output(int64_t utime) = 0;
   /// The speeds that it holds by itself, by channel [m/s]; output() is what it does for them.
-  virtual std::optional<std::array<double, 2>> heldSpeeds() const { return std::nullopt; }
+  virtual std::optional<MotorValues> heldSpeeds() const { return std::nullopt; }
   virtual void measure(const DriveMeasurements& measurements) = 0;
 };
 

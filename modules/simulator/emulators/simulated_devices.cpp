@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/simulator/emulators/simulated_devices.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -43,6 +44,9 @@ VescSettings vescsOf(const RobotSettings& robot) {
   VescSettings vesc;
   vesc.servo = robot.vehicle.wheelbase > 0.0;
   vesc.controllers = vesc.servo ? 1 : robot.wiring.four_motors ? 4 : 2;
+  if (robot.vehicle.wheels.empty()) return vesc;
+  vesc.channels = robot.vehicle.wheels.size();
+  vesc.controllers = static_cast<int>(vesc.channels);
   return vesc;
 }
 
@@ -57,8 +61,9 @@ const Table<MotorEmulator> kControllers{
        return std::make_unique<KangarooEmulator>();
      }},
     {"line_protocol",
-     [](const Settings&, uint64_t) -> std::unique_ptr<MotorEmulator> {
-       return std::make_unique<MoleEmulator>();
+     [](const Settings& settings, uint64_t) -> std::unique_ptr<MotorEmulator> {
+       return std::make_unique<MoleEmulator>(
+           std::max<size_t>(2, settings.robot.vehicle.wheels.size()));
      }},
     {"roboteq",
      [](const Settings&, uint64_t) -> std::unique_ptr<MotorEmulator> {
@@ -124,8 +129,7 @@ EmulatedDevices emulatedDevices() {
 SimulatedDevices::SimulatedDevices(std::shared_ptr<const World> world,
                                    const SimulatorSettings& settings, RobotParts parts)
     : robot_(std::move(world), settings.robot, std::move(parts)),
-      speed_loops_{SpeedLoop(settings.robot.vehicle.drive.free_speed),
-                   SpeedLoop(settings.robot.vehicle.drive.free_speed)},
+      speed_loops_(robot_.vehicle().motors(), SpeedLoop(settings.robot.vehicle.drive.free_speed)),
       ins_(kSources.at(settings.source)(settings, streamSeed(settings.robot.seed, kInsStream))),
       motor_(kControllers.at(settings.controller)(settings,
                                                   streamSeed(settings.robot.seed, kMotorStream))),
@@ -151,13 +155,17 @@ void SimulatedDevices::advanceTo(int64_t utime) {
   if (scans_.size() > kMostScans) scans_.erase(scans_.begin(), scans_.end() - kMostScans);
 }
 
-std::array<double, 2> SimulatedDevices::power(int64_t utime) {
+MotorValues SimulatedDevices::power(int64_t utime) {
   return ofTracks(motor_->output(utime));
 }
 
-/// From the controller's channels to the left and the right track.
-std::array<double, 2> SimulatedDevices::ofTracks(std::array<double, 2> channels) const {
+/// From the controller's channels to the left and the right track, and the same way back; of a
+/// holonomic base, to its wheels.
+MotorValues SimulatedDevices::ofTracks(MotorValues channels) const {
   const MotorWiring& wiring = robot_.settings().wiring;
+  for (size_t i = 0; i < wiring.invert_wheels.size(); ++i)
+    if (wiring.invert_wheels[i]) channels[i] = -channels[i];
+  if (!wiring.invert_wheels.empty()) return channels;
   if (wiring.left_channel == 2) std::swap(channels[0], channels[1]);
   if (wiring.invert_left) channels[0] = -channels[0];
   if (wiring.invert_right) channels[1] = -channels[1];
@@ -165,28 +173,35 @@ std::array<double, 2> SimulatedDevices::ofTracks(std::array<double, 2> channels)
 }
 
 void SimulatedDevices::drive() {
-  const std::array<double, 2> given = power(robot_.truth().utime);
+  const MotorValues given = power(robot_.truth().utime);
   const double top_speed = robot_.settings().wiring.top_speed.value_or(0.0);
   const Plant& vehicle = robot_.vehicle();
   const auto held = motor_->heldSpeeds();
   if (top_speed == 0.0 || (held && !vehicle.takesSpeeds()))
-    return robot_.setPower({given[0], given[1]});
-  const std::array<double, 2> wanted =
-      held ? ofTracks(*held) : std::array<double, 2>{top_speed * given[0], top_speed * given[1]};
-  if (vehicle.takesSpeeds()) return robot_.setPower({wanted[0], wanted[1]});
+    return robot_.setPower(MotorPower::of(given));
+  MotorValues wanted = held ? ofTracks(*held) : given;
+  if (!held)
+    for (double& value : wanted) value *= top_speed;
+  if (vehicle.takesSpeeds()) return robot_.setPower(MotorPower::of(wanted));
   constexpr double kStep = static_cast<double>(kStepUs) * 1e-6;
-  robot_.setPower({speed_loops_[0].step(wanted[0], vehicle.left().speed, kStep),
-                   speed_loops_[1].step(wanted[1], vehicle.right().speed, kStep)});
+  MotorValues power{};
+  for (size_t i = 0; i < speed_loops_.size(); ++i)
+    power[i] = speed_loops_[i].step(wanted[i], vehicle.motor(i).speed, kStep);
+  robot_.setPower(MotorPower::of(power));
 }
 
 void SimulatedDevices::measureDrive() {
   const MotorWiring& wiring = robot_.settings().wiring;
-  const TrackDrive& left = robot_.vehicle().left();
-  const TrackDrive& right = robot_.vehicle().right();
-  DriveMeasurements seen{robot_.vehicle().battery().voltage,
-                         {drivingCurrent(left), drivingCurrent(right)},
-                         {wiring.invert_left ? -left.speed : left.speed,
-                          wiring.invert_right ? -right.speed : right.speed}};
+  const Plant& vehicle = robot_.vehicle();
+  DriveMeasurements seen;
+  seen.battery_voltage = vehicle.battery().voltage;
+  for (size_t i = 0; i < vehicle.motors(); ++i) {
+    const bool inverted = i < wiring.invert_wheels.size() ? wiring.invert_wheels[i]
+                          : i == 0                        ? wiring.invert_left
+                                                          : wiring.invert_right;
+    seen.motor_current[i] = drivingCurrent(vehicle.motor(i));
+    seen.track_speed[i] = inverted ? -vehicle.motor(i).speed : vehicle.motor(i).speed;
+  }
   if (wiring.left_channel == 2) {
     std::swap(seen.motor_current[0], seen.motor_current[1]);
     std::swap(seen.track_speed[0], seen.track_speed[1]);

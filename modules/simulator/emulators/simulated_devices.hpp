@@ -41,9 +41,9 @@ class SimulatedDevices {
   /// Simulates up to a time; the motors follow the controller's output in steps of 1 ms.
   void advanceTo(int64_t utime);
 
-  /// What the controller gives to the left and the right motor now, -1..1: power, or a share of the
-  /// speed that it holds at full command.
-  std::array<double, 2> power(int64_t utime);
+  /// What the controller gives to the left and the right motor, or to each wheel's, now, -1..1:
+  /// power, or a share of the speed that it holds at full command.
+  MotorValues power(int64_t utime);
 
   /// Laser scans finished since the last call: the interface behind the range finder's library.
   std::vector<LaserScan> takeScans();
@@ -58,10 +58,10 @@ class SimulatedDevices {
  private:
   void measureDrive();
   void drive();
-  std::array<double, 2> ofTracks(std::array<double, 2> channels) const;
+  MotorValues ofTracks(MotorValues channels) const;
 
   SimulatedRobot robot_;
-  std::array<SpeedLoop, 2> speed_loops_;  ///< left and right
+  std::vector<SpeedLoop> speed_loops_;  ///< left and right, or each wheel
   std::unique_ptr<InsEmulator> ins_;
   std::unique_ptr<MotorEmulator> motor_;
   std::unique_ptr<LaserEmulator> laser_;

@@ -105,3 +105,35 @@ TEST_CASE("The table shows each pattern on a line") {
   CHECK(table.find("turn_left") != std::string::npos);
   CHECK(table.find("turn_right") != std::string::npos);
 }
+
+TEST_CASE("A recipe of a holonomic base gives twists, and its patterns hold the rims' speeds") {
+  const VehicleModel model = readModelFile(TREAD_SOURCE_DIR "/tests/data/robots/omni3/model.yaml");
+  const std::string recipe =
+      "name: omni\nperiod: 0.05\nclasses:\n"
+      "  - {name: rest, steady: [0, 0, 0]}\n"
+      "  - {name: left, steady: [0, 0.6, 0]}\n"
+      "patterns:\n"
+      "  - {name: go_left, entry: rest, exit: left, commands: [[0, 0.6, 0, 1.0]]}\n"
+      "  - {name: step_left, mirror: step_right, entry: rest, exit: rest,"
+      " commands: [[0.2, 0.4, 0.3, 0.6], [0, 0, 0, 0.6]]}\n";
+  const PatternSet set = patterns::makeSet(ConfigReader::fromText(recipe, "r.yaml"), model);
+  CHECK(describe(set.content().channels) == "wheel1 [m/s], wheel2 [m/s], wheel3 [m/s]");
+  const MotionPattern& go = *set.findByName("go_left");
+  const Command speeds = model.wheels.speeds({0.0, 0.6, 0.0});
+  for (size_t i = 0; i < 3; ++i) CHECK(go.commands[5][i] == Approx(speeds[i]).margin(1e-6));
+  CHECK(go.end().y > 0.4);
+  CHECK(std::abs(go.end().x) < 1e-6);
+  const Pose2 left = set.findByName("step_left")->end();
+  const Pose2 right = set.findByName("step_right")->end();
+  CHECK(right.x == Approx(left.x).margin(2e-6));
+  CHECK(right.y == Approx(-left.y).margin(2e-6));
+  CHECK(right.yaw == Approx(-left.yaw).margin(2e-6));
+  CHECK_THROWS_WITH(patterns::makeSet(ConfigReader::fromText(kRecipe, "r.yaml"), model),
+                    Catch::Contains("r.yaml:5") && Catch::Contains("steady"));
+  CHECK_THROWS_WITH(patterns::requireSameKind(made(kRecipe), model),
+                    Catch::Contains("give a model of the same vehicle"));
+  const recordings::SurfaceRecordings recorded = patterns::recordModel(
+      set, readModelDocument(TREAD_SOURCE_DIR "/tests/data/robots/omni3/model.yaml"), "floor", {});
+  CHECK(recorded.executions[0].size() == 30);
+  CHECK(recorded.executions[0][0].back().y == Approx(go.end().y).epsilon(0.2));
+}

@@ -122,10 +122,15 @@ std::string DriveCall::describe(int64_t utime) const {
   if (motor_.age(utime) > kSilent) return "MOTOR has fallen silent: look at tread-motor-bridge";
   const motor_t& motor = motor_.message();
   const bool car = motor.channel_kind[1] == static_cast<int16_t>(CommandKind::kSteeringAngle);
-  std::string words =
-      formatted("%-16s", stateWord(motor.bridge_state)) +
-      formatted(car ? "  throttle %+.2f steering %+.2f" : "  left %+.2f right %+.2f",
-                motor.command[0], motor.command[1]);
+  std::string words = formatted("%-16s", stateWord(motor.bridge_state));
+  if (motor.channel_kind[2] != 0) {
+    words += "  wheels";
+    for (size_t i = 0; i < Command::kMaxChannels && motor.channel_kind[i] != 0; ++i)
+      words += formatted(" %+.2f", motor.command[i]);
+  } else {
+    words += formatted(car ? "  throttle %+.2f steering %+.2f" : "  left %+.2f right %+.2f",
+                       motor.command[0], motor.command[1]);
+  }
   if (std::isfinite(motor.battery_voltage)) words += formatted("  %.1f V", motor.battery_voltage);
   words += wishes_.hold ? "  held" : "  not held";
   if (std::isnan(wishes_.forward) || std::isnan(wishes_.turn))

@@ -21,7 +21,7 @@ constexpr double kTurnWeight = 0.5;
 int nearestClass(const PatternTable& table, const Twist2& twist) {
   const std::vector<MotionClass>& classes = table.set().content().classes;
   const auto distance = [&twist](const MotionClass& motion) {
-    return std::hypot(motion.twist.v_x - twist.v_x,
+    return std::hypot(motion.twist.v_x - twist.v_x, motion.twist.v_y - twist.v_y,
                       kTurnWeight * (motion.twist.omega - twist.omega));
   };
   const auto nearest = std::min_element(

@@ -91,8 +91,9 @@ PatternTable::PatternTable(const std::vector<Primitive>& primitives, const Sweep
 bool PatternTable::isTooFast(const TablePattern& pattern, double top_speed) const {
   if (pattern.length / pattern.duration > top_speed) return true;
   if (!set_) return false;
-  return std::abs(motionClass(pattern.entry).twist.v_x) > top_speed ||
-         std::abs(motionClass(pattern.exit).twist.v_x) > top_speed;
+  const auto speed = [](const Twist2& v_body) { return std::hypot(v_body.v_x, v_body.v_y); };
+  return speed(motionClass(pattern.entry).twist) > top_speed ||
+         speed(motionClass(pattern.exit).twist) > top_speed;
 }
 
 void PatternTable::index(size_t classes, double top_speed) {

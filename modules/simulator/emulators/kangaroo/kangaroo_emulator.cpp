@@ -26,14 +26,13 @@ int KangarooEmulator::sumOf(const std::string& packet) {
   return sum ^ 0x3fff;
 }
 
-std::array<double, 2> KangarooEmulator::output(int64_t utime) {
+MotorValues KangarooEmulator::output(int64_t utime) {
   advance(utime);
   return {channels_[0].power, channels_[1].power};
 }
 
-std::optional<std::array<double, 2>> KangarooEmulator::heldSpeeds() const {
-  return std::array<double, 2>{channels_[0].speed / kUnitsPerMetre,
-                               channels_[1].speed / kUnitsPerMetre};
+std::optional<MotorValues> KangarooEmulator::heldSpeeds() const {
+  return MotorValues{channels_[0].speed / kUnitsPerMetre, channels_[1].speed / kUnitsPerMetre};
 }
 
 void KangarooEmulator::run(int64_t utime) {

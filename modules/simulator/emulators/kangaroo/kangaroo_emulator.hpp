@@ -22,8 +22,8 @@ class KangarooEmulator final : public SerialMotorEmulator {
 
   KangarooEmulator() : SerialMotorEmulator(38400, 1'000, 500'000) {}
 
-  std::array<double, 2> output(int64_t utime) override;
-  std::optional<std::array<double, 2>> heldSpeeds() const override;
+  MotorValues output(int64_t utime) override;
+  std::optional<MotorValues> heldSpeeds() const override;
   void measure(const DriveMeasurements& measurements) override {
     measured_ = measurements.track_speed;
   }
@@ -52,7 +52,7 @@ class KangarooEmulator final : public SerialMotorEmulator {
 
   std::string packet_;
   std::array<Channel, 2> channels_;
-  std::array<double, 2> measured_{0.0, 0.0};  ///< [m/s]
+  MotorValues measured_{};  ///< [m/s]
   int64_t controlled_at_ = 0;
   int64_t timeout_us_ = 0;  ///< 0 = off
   int64_t heard_at_ = 0;

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/simulator/emulators/line_protocol/mole_emulator.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -29,8 +30,17 @@ unsigned remainderOf(const std::string& body) {
   return rest;
 }
 
-int signed16(unsigned word) {
-  return static_cast<int16_t>(word);
+/// The words of up to four hexadecimal digits behind "$DRV," as numbers with a sign.
+std::vector<int> wordsIn(const std::string& body) {
+  std::vector<int> words;
+  for (const char* at = body.c_str() + 4; *at == ',';) {
+    unsigned word = 0;
+    int length = 0;
+    if (std::sscanf(++at, "%4x%n", &word, &length) != 1) break;
+    words.push_back(static_cast<int16_t>(word));
+    at += length;
+  }
+  return words;
 }
 
 }  // namespace
@@ -39,10 +49,12 @@ std::string MoleEmulator::framed(const std::string& body) {
   return body + formatted("*%04X\n", remainderOf(body));
 }
 
-std::array<double, 2> MoleEmulator::output(int64_t utime) {
+MotorValues MoleEmulator::output(int64_t utime) {
   advance(utime);
-  if (expired_ || locked_ || faults_ != 0) return {0.0, 0.0};
-  return {power_[0] / static_cast<double>(kFull), power_[1] / static_cast<double>(kFull)};
+  MotorValues output{};
+  if (expired_ || locked_ || faults_ != 0) return output;
+  for (size_t i = 0; i < power_.size(); ++i) output[i] = power_[i] / static_cast<double>(kFull);
+  return output;
 }
 
 void MoleEmulator::run(int64_t utime) {
@@ -51,7 +63,7 @@ void MoleEmulator::run(int64_t utime) {
 
 void MoleEmulator::powerUp(int64_t utime) {
   line_.clear();
-  power_ = {0, 0};
+  std::fill(power_.begin(), power_.end(), 0);
   watchdog_ = 1.0;
   expired_ = true;
   locked_ = false;
@@ -72,11 +84,11 @@ void MoleEmulator::hear(char byte, int64_t utime) {
 }
 
 std::string MoleEmulator::answer(const std::string& body, int64_t utime) {
-  unsigned left = 0;
-  unsigned right = 0;
-  if (std::sscanf(body.c_str(), "$DRV,%4x,%4x", &left, &right) == 2)
-    return drive(signed16(left), signed16(right), utime);
-  if (body == "$HLT") return drive(0, 0, utime);
+  if (body.rfind("$DRV,", 0) == 0) {
+    const std::vector<int> power = wordsIn(body);
+    if (power.size() == power_.size()) return drive(power, utime);
+  }
+  if (body == "$HLT") return drive(std::vector<int>(power_.size(), 0), utime);
   if (body == "$WDT?") return formatted("$WDT,%.2f", watchdog_);
   if (body.rfind("$WDT,", 0) == 0) return setWatchdog(body.substr(5));
   if (body == "$STA") return status();
@@ -90,12 +102,13 @@ std::string MoleEmulator::answer(const std::string& body, int64_t utime) {
   return "$OK";
 }
 
-std::string MoleEmulator::drive(int left, int right, int64_t utime) {
-  if (std::abs(left) > kFull || std::abs(right) > kFull) return "$ERR,range";
-  const bool moves = left != 0 || right != 0;
+std::string MoleEmulator::drive(const std::vector<int>& power, int64_t utime) {
+  const auto any = [&power](auto is) { return std::any_of(power.begin(), power.end(), is); };
+  if (any([](int word) { return std::abs(word) > kFull; })) return "$ERR,range";
+  const bool moves = any([](int word) { return word != 0; });
   if (locked_ && moves) return "$ERR,locked";
   resumed_ += expired_ && moves;
-  power_ = {left, right};
+  power_ = power;
   expired_ = false;
   fed_ = utime;
   return "$OK";
@@ -114,9 +127,12 @@ std::string MoleEmulator::status() const {
 }
 
 std::string MoleEmulator::telemetry() const {
-  return formatted("$TEL,%+.1f,%+.1f,%+ld,%+ld", measurements_.motor_current[0],
-                   measurements_.motor_current[1], std::lround(1000 * measurements_.track_speed[0]),
-                   std::lround(1000 * measurements_.track_speed[1]));
+  std::string body = "$TEL";
+  for (size_t i = 0; i < power_.size(); ++i)
+    body += formatted(",%+.1f", measurements_.motor_current[i]);
+  for (size_t i = 0; i < power_.size(); ++i)
+    body += formatted(",%+ld", std::lround(1000 * measurements_.track_speed[i]));
+  return body;
 }
 
 }  // namespace tread::sim

@@ -2,10 +2,10 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "modules/simulator/emulators/serial_motor_emulator.hpp"
 
@@ -16,6 +16,7 @@ namespace tread::sim {
  * wrong checksum is not answered.
  *
  *      $DRV,LLLL,RRRR  power, 32000 = full, two's complement   $OK or $ERR,reason
+ *                      (of n motors n words, and as much in $TEL)
  *      $HLT            zero                                    $OK
  *      $WDT,s.ss       watchdog (1.00 after power-up)          $OK or $ERR,range
  *      $WDT?                                                   $WDT,s.ss
@@ -27,9 +28,10 @@ namespace tread::sim {
  * of them and $ULK let the motors run on at the old speed first, as the worst real ones do. */
 class MoleEmulator final : public SerialMotorEmulator {
  public:
-  MoleEmulator() : SerialMotorEmulator(115200, 400, 300'000) {}
+  explicit MoleEmulator(size_t motors = 2)
+      : SerialMotorEmulator(115200, 400, 300'000), power_(motors, 0) {}
 
-  std::array<double, 2> output(int64_t utime) override;
+  MotorValues output(int64_t utime) override;
   void measure(const DriveMeasurements& measurements) override { measurements_ = measurements; }
   /// Faults beside the lock: 2 undervoltage, 4 stall.
   void setFaults(int faults) { faults_ = faults; }
@@ -42,7 +44,7 @@ class MoleEmulator final : public SerialMotorEmulator {
   void powerUp(int64_t utime) override;
   void hear(char byte, int64_t utime) override;
   std::string answer(const std::string& body, int64_t utime);
-  std::string drive(int left, int right, int64_t utime);
+  std::string drive(const std::vector<int>& power, int64_t utime);
   std::string setWatchdog(const std::string& text);
   std::string status() const;
   std::string telemetry() const;
@@ -50,8 +52,8 @@ class MoleEmulator final : public SerialMotorEmulator {
 
   DriveMeasurements measurements_;
   std::string line_;
-  std::array<int, 2> power_{0, 0};  ///< of 32000
-  double watchdog_ = 1.0;           ///< [s]
+  std::vector<int> power_;  ///< of 32000
+  double watchdog_ = 1.0;   ///< [s]
   bool expired_ = true;
   bool locked_ = false;
   int faults_ = 0;

@@ -219,7 +219,7 @@ RoboteqEmulator::RoboteqEmulator(const RoboteqSettings& settings)
     : SerialMotorEmulator(settings.baud, settings.reply_delay_us, settings.boot_us),
       firmware_(settings) {}
 
-std::array<double, 2> RoboteqEmulator::output(int64_t utime) {
+MotorValues RoboteqEmulator::output(int64_t utime) {
   advance(utime);
   const std::array<int, 2> applied = firmware_.applied();
   return {applied[0] / 1000.0, applied[1] / 1000.0};

@@ -92,7 +92,7 @@ class RoboteqEmulator final : public SerialMotorEmulator {
  public:
   explicit RoboteqEmulator(const RoboteqSettings& settings = {});
 
-  std::array<double, 2> output(int64_t utime) override;
+  MotorValues output(int64_t utime) override;
   void measure(const DriveMeasurements& measurements) override { firmware_.measure(measurements); }
   /// The motor supply drops below what the power stage needs, or recovers.
   void setBrownOut(bool active) { firmware_.setBrownOut(active); }

@@ -10,7 +10,7 @@ constexpr int kBauding = 170;
 
 }  // namespace
 
-std::array<double, 2> SabertoothEmulator::output(int64_t utime) {
+MotorValues SabertoothEmulator::output(int64_t utime) {
   advance(utime);
   return {power_[0] / 127.0, power_[1] / 127.0};
 }

@@ -17,7 +17,7 @@ class SabertoothEmulator final : public SerialMotorEmulator {
  public:
   SabertoothEmulator() : SerialMotorEmulator(38400, 0, 200'000) {}
 
-  std::array<double, 2> output(int64_t utime) override;
+  MotorValues output(int64_t utime) override;
   void measure(const DriveMeasurements& /*measurements*/) override {}
   int64_t timeoutUs() const { return timeout_us_; }
   int64_t badSums() const { return bad_sums_; }

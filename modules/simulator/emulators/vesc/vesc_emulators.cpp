@@ -72,7 +72,8 @@ std::string frame(unsigned packet, int id, const std::string& data) {
 
 }  // namespace
 
-VescBank::VescBank(const VescSettings& settings) : has_servo_(settings.servo) {
+VescBank::VescBank(const VescSettings& settings)
+    : channels_(settings.channels), has_servo_(settings.servo) {
   for (int id = 1; id <= settings.controllers; ++id) motors_.emplace_back(id, settings);
 }
 
@@ -82,18 +83,26 @@ VescMotor* VescBank::find(int id) {
   return nullptr;
 }
 
-std::array<double, 2> VescBank::output(int64_t utime) {
-  std::array<double, 2> sum{0.0, 0.0};
-  for (size_t i = 0; i < motors_.size(); ++i) sum[i % 2] += motors_[i].output(utime);
+MotorValues VescBank::output(int64_t utime) {
+  MotorValues sum{};
+  for (size_t i = 0; i < motors_.size(); ++i) sum[i % channels_] += motors_[i].output(utime);
   if (has_servo_) return {sum[0], std::clamp((servo_ - 0.5) / 0.4, -1.25, 1.25)};
-  const double share = 2.0 / static_cast<double>(motors_.size());
-  return {sum[0] * share, sum[1] * share};
+  const double share = static_cast<double>(channels_) / static_cast<double>(motors_.size());
+  for (double& value : sum) value *= share;
+  return sum;
+}
+
+MotorValues VescBank::heldSpeeds() const {
+  MotorValues held{};
+  for (size_t i = 0; i < std::min(channels_, motors_.size()); ++i) held[i] = motors_[i].heldSpeed();
+  return held;
 }
 
 void VescBank::measure(const DriveMeasurements& seen) {
-  const double share = has_servo_ ? 1.0 : 2.0 / static_cast<double>(motors_.size());
+  const double share =
+      has_servo_ ? 1.0 : static_cast<double>(channels_) / static_cast<double>(motors_.size());
   for (size_t i = 0; i < motors_.size(); ++i)
-    motors_[i].measure(seen.track_speed[i % 2], share * seen.motor_current[i % 2],
+    motors_[i].measure(seen.track_speed[i % channels_], share * seen.motor_current[i % channels_],
                        seen.battery_voltage);
 }
 
@@ -105,7 +114,7 @@ void VescBank::powerUp() {
 VescUartEmulator::VescUartEmulator(const VescSettings& settings)
     : SerialMotorEmulator(115200, kReplyDelay, kBoot), bank_(settings) {}
 
-std::array<double, 2> VescUartEmulator::output(int64_t utime) {
+MotorValues VescUartEmulator::output(int64_t utime) {
   advance(utime);
   return bank_.output(utime);
 }

@@ -13,8 +13,9 @@
 
 namespace tread::sim {
 
-/// Controllers that drive two channels: odd ids the first, even ids the second. With a servo, that
-/// is the second: -1..1 from its position 0.1 to 0.9, which is held whatever the motors' timeout.
+/// Controllers that drive two channels, odd ids the first, even ids the second, or more in turn.
+/// With a servo, that is the second: -1..1 from its position 0.1 to 0.9, which is held whatever the
+/// motors' timeout.
 class VescBank {
  public:
   explicit VescBank(const VescSettings& settings);
@@ -22,16 +23,15 @@ class VescBank {
   /// The one with this id; null if there is none.
   VescMotor* find(int id);
   std::vector<VescMotor>& motors() { return motors_; }
-  std::array<double, 2> output(int64_t utime);
-  std::array<double, 2> heldSpeeds() const {
-    return {motors_.front().heldSpeed(), motors_.size() > 1 ? motors_[1].heldSpeed() : 0.0};
-  }
+  MotorValues output(int64_t utime);
+  MotorValues heldSpeeds() const;
   void setServo(double position) { servo_ = position; }
   void measure(const DriveMeasurements& measurements);
   void powerUp();
 
  private:
   std::vector<VescMotor> motors_;
+  size_t channels_;
   bool has_servo_;
   double servo_ = 0.5;
 };
@@ -43,8 +43,8 @@ class VescUartEmulator final : public SerialMotorEmulator {
  public:
   explicit VescUartEmulator(const VescSettings& settings = {});
 
-  std::array<double, 2> output(int64_t utime) override;
-  std::optional<std::array<double, 2>> heldSpeeds() const override { return bank_.heldSpeeds(); }
+  MotorValues output(int64_t utime) override;
+  std::optional<MotorValues> heldSpeeds() const override { return bank_.heldSpeeds(); }
   void measure(const DriveMeasurements& measurements) override { bank_.measure(measurements); }
   VescBank& bank() { return bank_; }
 
@@ -68,8 +68,8 @@ class VescCanEmulator final : public MotorEmulator {
 
   void receive(std::string_view bytes, int64_t utime) override;
   std::string transmit(int64_t utime) override;
-  std::array<double, 2> output(int64_t utime) override { return bank_.output(utime); }
-  std::optional<std::array<double, 2>> heldSpeeds() const override { return bank_.heldSpeeds(); }
+  MotorValues output(int64_t utime) override { return bank_.output(utime); }
+  std::optional<MotorValues> heldSpeeds() const override { return bank_.heldSpeeds(); }
   void measure(const DriveMeasurements& measurements) override { bank_.measure(measurements); }
   VescBank& bank() { return bank_; }
 

@@ -2,14 +2,17 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace tread::sim {
 
 /// How the emulated VESC controllers are set up.
 struct VescSettings {
-  /// Ids 1, 2 (left, right) or 1 to 4 (left, right, left, right); 1 with a servo.
+  /// Ids 1, 2 (left, right) or 1 to 4 (left, right, left, right); 1 with a servo; 1 to n of n
+  /// wheels.
   int controllers = 2;
+  size_t channels = 2;
   int64_t timeout_ms = 200;  ///< without a command until the motor is let go; 0 = never
   double erpm_per_mps = 5000.0;
   bool statuses = true;  ///< CAN status messages are switched on
