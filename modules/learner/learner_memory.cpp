@@ -90,7 +90,7 @@ std::optional<std::string> LearnerMemory::save(const std::string& state_text) {
 }
 
 void SetPublisher::putSet(const PatternSet& set) {
-  const auto parts = toMessages(set);
+  const auto parts = toMessages(replacement_ ? replacement_(set) : set);
   sets_.assign(parts.begin(), parts.end());
 }
 

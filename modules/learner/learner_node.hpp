@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/bus/bus.hpp"
@@ -57,12 +59,17 @@ class LearnerMemory {
   int next_slot_ = 0;
 };
 
+/// Another set in the place of one.
+using SetReplacement = std::function<PatternSet(const PatternSet&)>;
+
 /// Sends sets and states in portions: LCM silently loses messages where one
 /// publisher sends more than 100 kB in 20 ms.
 class SetPublisher {
  public:
   explicit SetPublisher(Bus& bus) : bus_(bus) {}
 
+  /// Sets go out as this makes them from now on; it keeps their versions. For experiments.
+  void replaceSets(SetReplacement replacement) { replacement_ = std::move(replacement); }
   /// The parts of a set; those of an older one that are still here are not sent any more.
   void putSet(const PatternSet& set);
   /// The parts of a state's text, sent after the sets. At most two states wait; more drop the
@@ -75,6 +82,7 @@ class SetPublisher {
 
  private:
   Bus& bus_;
+  SetReplacement replacement_;
   std::deque<pattern_set_part_t> sets_;
   std::deque<learner_state_t> states_;
   int64_t seq_set_ = 0;
@@ -139,6 +147,9 @@ class LearnerNode : public Node {
   /// Goes on as exactly that version, without a new number: for replay, to begin where a log does.
   /** `earlier`: sets before it that executions may still name. Call before the first step. */
   void resume(LearnerState state, const std::vector<PatternSet>& earlier);
+
+  /// The planner is given other sets than the learned ones, by which executions are still scored.
+  void replaceSets(SetReplacement replacement) { publisher_.replaceSets(std::move(replacement)); }
 
   int64_t period() const override { return config_.period_us; }
   void step(int64_t utime) override;

@@ -2,9 +2,12 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/simulator/simulator_files.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <stdexcept>
+#include <utility>
 
 #include "common/report/text.hpp"
 #include "common/vehicle/robot_description.hpp"
@@ -15,6 +18,9 @@ namespace {
 constexpr Range kPlace{-100000.0, 100000.0};  // [m]
 constexpr Range kSize{0.001, 10000.0};        // [m]
 constexpr Range kAngle{-10.0, 10.0};          // [rad]
+constexpr int64_t kMirrorTurn = 25'000;       // [us] of a laser
+/// A belt lighter than that share of the vehicle shakes on the ground's spring in steps of 1 ms.
+constexpr double kLightestTrack = 0.02;
 
 std::vector<Eigen::Vector2d> readCorners(ConfigReader& reader) {
   std::vector<std::vector<double>> rows;
@@ -99,29 +105,9 @@ RoughRegion readRough(ConfigReader& reader) {
   return region;
 }
 
-WorldDescription readWorld(ConfigReader reader) {
-  WorldDescription world;
-  reader.text("name", world.name);
-  std::vector<double> bounds{world.bounds.low.x(), world.bounds.low.y(), world.bounds.high.x(),
-                             world.bounds.high.y()};
-  reader.numbers("bounds", bounds, 4, kPlace, "m");
-  world.bounds = {{bounds[0], bounds[1]}, {bounds[2], bounds[3]}};
-  reader.text("base_surface", world.base_surface);
-  for (ConfigReader& item : reader.sections("surfaces"))
-    world.surfaces.push_back(readSurface(item));
-  for (ConfigReader& item : reader.sections("regions")) world.regions.push_back(readRegion(item));
-  world.terrain = readTerrain(reader.section("terrain"));
-  for (ConfigReader& item : reader.sections("rough")) world.rough.push_back(readRough(item));
-  for (ConfigReader& item : reader.sections("obstacles"))
-    world.obstacles.push_back(readObstacle(item));
-  reader.finish();
-  if (const auto fault = worldFault(world)) throw reader.error("base_surface", *fault);
-  return world;
-}
-
 void readBody(ConfigReader& reader, VehicleParameters& vehicle, bool required) {
-  reader.number("mass", vehicle.mass, {100.0, 2000.0}, "kg", required);
-  reader.number("yaw_inertia", vehicle.yaw_inertia, {5.0, 500.0}, "kg m2", required);
+  reader.number("mass", vehicle.mass, {5.0, 2000.0}, "kg", required);
+  reader.number("yaw_inertia", vehicle.yaw_inertia, {0.05, 500.0}, "kg m2", required);
   reader.number("gauge", vehicle.gauge, {0.2, 2.0}, "m");
   if (vehicle.wheels.empty()) {
     reader.number("contact_length", vehicle.contact_length, {0.2, 3.0}, "m", required);
@@ -135,11 +121,11 @@ void readBody(ConfigReader& reader, VehicleParameters& vehicle, bool required) {
 
 void readDrive(ConfigReader& reader, DriveParameters& drive, bool required) {
   reader.number("free_speed", drive.free_speed, {0.1, 5.0}, "m/s");
-  reader.number("stiffness", drive.stiffness, {200.0, 50000.0}, "N s/m", required);
-  reader.number("force_limit", drive.force_limit, {100.0, 20000.0}, "N", required);
+  reader.number("stiffness", drive.stiffness, {10.0, 50000.0}, "N s/m", required);
+  reader.number("force_limit", drive.force_limit, {5.0, 20000.0}, "N", required);
   reader.number("power_lag", drive.power_lag, {0.001, 2.0}, "s");
   reader.number("dead_power", drive.dead_power, {0.0, 0.5}, "");
-  reader.number("track_mass", drive.track_mass, {5.0, 500.0}, "kg", required);
+  reader.number("track_mass", drive.track_mass, {0.3, 500.0}, "kg", required);
   reader.number("gear_friction", drive.gear_friction, {0.0, 2000.0}, "N", required);
   reader.number("brake_force", drive.brake_force, {0.0, 20000.0}, "N", required);
 }
@@ -156,6 +142,25 @@ void readBattery(ConfigReader& reader, VehicleParameters& vehicle) {
   reader.number("idle_current", drive.idle_current, {0.0, 100.0}, "A");
   if (drive.empty_voltage > drive.full_voltage)
     throw reader.error("empty_voltage", "must not be above full_voltage");
+}
+
+/// Of a rotating range finder, what it looks at in a turn; the scan is the part in front of it.
+void readLaser(ConfigReader reader, LaserParameters& laser) {
+  int64_t beams = laser.beams;
+  double rate = 1e6 / static_cast<double>(laser.period_us);
+  double field_of_view = laser.field_of_view * 180.0 / kPi;
+  reader.integer("beams", beams, {2.0, 8000.0}, "1");
+  reader.number("rate", rate, {1.0, 100.0}, "Hz");
+  reader.number("field_of_view", field_of_view, {1.0, 360.0}, "deg");
+  reader.number("range_max", laser.range_max, {1.0, 300.0}, "m");
+  reader.number("range_noise", laser.range_noise, {0.0, 1.0}, "m");
+  laser.beams = static_cast<int>(beams);
+  // There and back again a number may lose its last digit, and a seed its mission.
+  if (reader.has("field_of_view")) laser.field_of_view = field_of_view * kPi / 180.0;
+  laser.period_us = std::llround(1e6 / rate);
+  // A slow one leaves turns out: its mirror has 40 a second.
+  const int64_t turn = std::min<int64_t>(laser.period_us, kMirrorTurn);
+  laser.sweep_us = std::llround(static_cast<double>(turn) * field_of_view / 360.0);
 }
 
 constexpr int64_t kRowEvery = 20'000;  // [us]
@@ -196,6 +201,26 @@ void readBumps(ConfigReader& reader, RoughRegion& region) {
   if (region.shortest >= region.longest) throw reader.error("longest", "must be above shortest");
 }
 
+WorldDescription readWorld(ConfigReader reader) {
+  WorldDescription world;
+  reader.text("name", world.name);
+  std::vector<double> bounds{world.bounds.low.x(), world.bounds.low.y(), world.bounds.high.x(),
+                             world.bounds.high.y()};
+  reader.numbers("bounds", bounds, 4, kPlace, "m");
+  world.bounds = {{bounds[0], bounds[1]}, {bounds[2], bounds[3]}};
+  reader.text("base_surface", world.base_surface);
+  for (ConfigReader& item : reader.sections("surfaces"))
+    world.surfaces.push_back(readSurface(item));
+  for (ConfigReader& item : reader.sections("regions")) world.regions.push_back(readRegion(item));
+  world.terrain = readTerrain(reader.section("terrain"));
+  for (ConfigReader& item : reader.sections("rough")) world.rough.push_back(readRough(item));
+  for (ConfigReader& item : reader.sections("obstacles"))
+    world.obstacles.push_back(readObstacle(item));
+  reader.finish();
+  if (const auto fault = worldFault(world)) throw reader.error("base_surface", *fault);
+  return world;
+}
+
 WorldDescription readWorld(const std::string& path) {
   return readWorld(ConfigReader::fromFile(path));
 }
@@ -212,6 +237,9 @@ void readVehicle(ConfigReader reader, VehicleParameters& vehicle, bool whole) {
   reader.number("right_drag", vehicle.right_drag, {0.0, 2000.0}, "N");
   readDrive(reader, vehicle.drive, whole);
   readBattery(reader, vehicle);
+  const double lightest = kLightestTrack * vehicle.mass;
+  if (vehicle.drive.track_mass < lightest)
+    throw reader.error("track_mass", "at least a 50th of the mass, " + fixed(lightest, 2) + " kg");
 }
 
 void readSimulatedRobot(ConfigReader& reader, RobotSettings& settings) {
@@ -236,7 +264,9 @@ void readSimulatedRobot(ConfigReader& reader, RobotSettings& settings) {
   settings.laser.mounting = robot.range_finder;
   if (robot.ground_finder) settings.ground_laser.emplace().mounting = *robot.ground_finder;
   settings.ins.mounting = robot.ins;
-  readVehicle(reader.file("dynamics", "dynamics.yaml"), settings.vehicle, true);
+  ConfigReader dynamics = reader.file("dynamics", "dynamics.yaml");
+  readLaser(dynamics.section("laser"), settings.laser);
+  readVehicle(std::move(dynamics), settings.vehicle, true);
 }
 
 RobotSettings readSimulatedRobot(const std::string& folder) {

@@ -22,6 +22,8 @@ void readBumps(ConfigReader& reader, RoughRegion& region);
 
 /// Reads a world file (config/worlds); throws ConfigError with file:line.
 WorldDescription readWorld(const std::string& path);
+/// The same from a map in another file.
+WorldDescription readWorld(ConfigReader reader);
 /// The same from text; `name` stands for the file in messages.
 WorldDescription parseWorld(const std::string& text, const std::string& name);
 
@@ -33,7 +35,8 @@ void readVehicle(ConfigReader reader, VehicleParameters& vehicle, bool whole = f
 /// The simulated robot of a configuration: keys `robot` and `dynamics`, each a file or a map.
 /** Outline, mountings and, unless dynamics.yaml says otherwise, gauge and free speed are the
  * described robot's (robot.yaml), the rest of the vehicle stands in dynamics.yaml; both beside the
- * configuration if they are not named. */
+ * configuration if they are not named. Its map `laser` (beams, rate, field_of_view, range_max,
+ * range_noise) replaces the laser's usual numbers. */
 void readSimulatedRobot(ConfigReader& reader, RobotSettings& settings);
 
 /// The same from a robot's folder.

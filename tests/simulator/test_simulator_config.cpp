@@ -92,4 +92,41 @@ TEST_CASE("what is changed in the dynamic vehicle shows in its motion") {
   CHECK(driven("vehicle: {force_limit: 400}\n", {-0.5, 0.5}).yaw < 0.8 * turned);
 }
 
+TEST_CASE("a vehicle of 17 kg and its laser of any rate can be said, a track too light cannot") {
+  const std::string folder = std::string(TREAD_SOURCE_DIR) + "/tests/data/robots/jackal";
+  const RobotSettings jackal = readSimulatedRobot(folder);
+  CHECK(jackal.vehicle.mass == 17.0);
+  CHECK(jackal.laser.beams == 720);
+  CHECK(jackal.laser.period_us == 25'000);
+  CHECK(jackal.laser.sweep_us == 18'750);  // 270 of 360 degrees
+  CHECK(readSimulatedRobot(std::string(TREAD_SOURCE_DIR) + "/config/robots/teodor").laser.beams ==
+        LaserParameters().beams);
+  CHECK(refusalOf("vehicle: {track_mass: 5}\n").find("a 50th of the mass, 8.00 kg") !=
+        std::string::npos);
+}
+
+TEST_CASE("a light vehicle drives on every ground without shaking") {
+  RobotSettings jackal =
+      readSimulatedRobot(std::string(TREAD_SOURCE_DIR) + "/tests/data/robots/jackal");
+  jackal.motion_noise = false;
+  for (const SurfaceParameters& surface : builtInSurfaces()) {
+    CAPTURE(surface.name);
+    WorldDescription world;
+    world.base_surface = surface.name;
+    SimulatedRobot robot(std::make_shared<const World>(world), jackal);
+    robot.setPower({0.5, 0.5});
+    robot.advanceTo(3'000'000);
+    const double before = robot.truth().v_body.v_x;
+    CHECK(before > 0.8);
+    CHECK(std::abs(robot.truth().v_body.omega) < 0.01);
+    robot.advanceTo(3'001'000);
+    CHECK(robot.truth().v_body.v_x == Approx(before).margin(0.002));
+    robot.setPower({});
+    robot.advanceTo(12'000'000);
+    const Pose2 rest = robot.truth().T_map_body;
+    robot.advanceTo(14'000'000);
+    CHECK(distanceBetween(rest, robot.truth().T_map_body) < 0.002);
+  }
+}
+
 }  // namespace tread::sim

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <algorithm>
 #include <iostream>
 #include <optional>
 
@@ -7,8 +8,11 @@
 
 #include "common/config/command_line.hpp"
 #include "common/config/outputs.hpp"
+#include "common/config/scalars.hpp"
 #include "common/report/text.hpp"
+#include "tools/missions/given_worlds.hpp"
 #include "tools/missions/report.hpp"
+#include "tools/missions/world_report.hpp"
 
 namespace {
 
@@ -36,8 +40,39 @@ struct Arguments {
   std::string robot = TREAD_CONFIG_DIR "/robots/teodor";
   std::vector<std::string> overrides;
   bool compare_omniscient = false;
+  std::string worlds;               ///< file of given worlds; empty = drawn by the seeds
+  std::vector<std::string> only;    ///< names of some of them; empty = all
+  GivenGround ground;               ///< of all of them
   std::vector<std::string> speeds;  ///< ways to choose the speed, to compare; empty = as configured
 };
+
+std::string refusalOfRule(const std::string& word) {
+  if (patternSourceOf(word)) return {};
+  return "no rule of learning: " + word + "; there are " + joinWords(learner::ruleNames());
+}
+
+void defineWorlds(CLI::App& app, Arguments& arguments) {
+  CLI::Option* worlds =
+      app.add_option("--worlds", arguments.worlds,
+                     "drive the worlds of this file against the clock: \"world x y radius\" lines "
+                     "as the BARN benchmark's, or YAML (tools/missions/README.md)")
+          ->excludes("--missions")
+          ->excludes("--world")
+          ->excludes("--length")
+          ->excludes("--compare-omniscient")
+          ->excludes("--speeds")
+          ->excludes("--simulator");
+  app.add_option("--only", arguments.only, "names of some of those worlds")
+      ->delimiter(',')
+      ->needs(worlds);
+  app.add_option("--surface", arguments.ground.surface,
+                 "ground of all of them (default: as they say, tarmac)")
+      ->needs(worlds);
+  app.add_option("--friction", arguments.ground.friction,
+                 "its friction in the place of that surface's (default: of ice)")
+      ->check(CLI::Range(0.01, 2.0))
+      ->needs(worlds);
+}
 
 void define(CLI::App& app, Arguments& arguments) {
   app.add_option("--missions", arguments.missions, "how many")->check(CLI::Range(1, 100000));
@@ -45,14 +80,18 @@ void define(CLI::App& app, Arguments& arguments) {
   app.add_option("--world", arguments.world, "kind of world (see tools/missions/README.md)")
       ->check(CLI::IsMember(worldKinds()));
   CLI::Option* one =
-      app.add_option("--rule", arguments.rule, "rule of learning (default: as in learner.yaml)")
-          ->check(CLI::IsMember(learner::ruleNames()));
+      app.add_option("--rule", arguments.rule,
+                     "rule of learning (default: as in learner.yaml); with --worlds also what "
+                     "--rules takes")
+          ->check(CLI::Validator(refusalOfRule, "RULE"));
   CLI::Option* several =
       app.add_option(
              "--rules", arguments.rules,
-             "compare rules: each drives all missions, and all judge the first one's drives")
+             "compare rules: each drives all missions, and all judge the first one's drives; with "
+             "--worlds also omniscient, RULE+true_means and RULE+true_covariances: all or a part "
+             "of the true patterns in the place of what is learned")
           ->delimiter(',')
-          ->check(CLI::IsMember(learner::ruleNames()))
+          ->check(CLI::Validator(refusalOfRule, "RULE"))
           ->excludes(one);
   app.add_flag("--compare-omniscient", arguments.compare_omniscient,
                "drive all missions, and once more without learning: the planner is given the true "
@@ -75,7 +114,8 @@ void define(CLI::App& app, Arguments& arguments) {
   Outputs outputs(app);
   outputs.file("--json", arguments.json, "write the report to this file");
   app.add_option("--show", arguments.show,
-                 "draw the mission with this seed; with --rules, how each drives it, side by side");
+                 "draw the mission with this seed, with --worlds the world of this name; with "
+                 "--rules, how each drives it, side by side");
   outputs.file("--picture", arguments.picture,
                std::string("file of that picture (PNG); default ") + kPicture);
   outputs.derived([&arguments] {
@@ -91,6 +131,7 @@ void define(CLI::App& app, Arguments& arguments) {
           ->excludes("--missions")
           ->excludes("--seed")
           ->excludes("--world");
+  defineWorlds(app, arguments);
   CLI::Option* goal = app.add_option("--goal", arguments.goal, "X Y in map [m]")
                           ->type_size(2)
                           ->expected(1)
@@ -126,10 +167,8 @@ BatchOrder orderOf(const Arguments& arguments, const std::string& name, bool fir
   if (first) order.log = arguments.log;
   if (first) order.truth = arguments.truth;
   if (!arguments.simulator.empty()) {
-    order.options.place =
-        readMissionWorld(arguments.simulator, {arguments.goal[0], arguments.goal[1]});
-    order.seed = order.options.place->seed;
-    if (arguments.show) order.show = order.seed;
+    order.places = {readMissionWorld(arguments.simulator, {arguments.goal[0], arguments.goal[1]})};
+    if (arguments.show) order.show = order.places.front().seed;
   }
   return order;
 }
@@ -173,7 +212,7 @@ void compareOmniscient(const Arguments& arguments, const RobotConfig& robot) {
   const TruePatterns true_patterns(robot.learner.shipped, robot.simulated.vehicle,
                                    robot.world.surfaces);
   BatchOrder order = orderOf(arguments, "omniscient", false);
-  order.options.true_patterns = &true_patterns;
+  order.options.known.patterns = &true_patterns;
   comparison.omniscient = runBatch(robot, order);
   printSummary(std::cout, comparison.omniscient);
   printOmniscient(std::cout, comparison);
@@ -214,7 +253,66 @@ void compareSpeeds(const Arguments& arguments, const RobotConfig& robot) {
   if (!arguments.json.empty()) writeSpeeds(arguments.json, comparison);
 }
 
+/// True patterns are of known ground; built in are those that worlds do not bring themselves.
+TruePatterns truePatternsIn(const std::vector<MissionWorld>& worlds, const RobotConfig& robot) {
+  std::vector<sim::SurfaceParameters> surfaces;
+  for (const MissionWorld& world : worlds)
+    for (const sim::SurfaceParameters& own : world.description.surfaces) {
+      const auto same = [&](const auto& other) { return other.name == own.name; };
+      if (std::none_of(surfaces.begin(), surfaces.end(), same)) surfaces.push_back(own);
+    }
+  return {robot.learner.shipped, robot.simulated.vehicle, surfaces};
+}
+
+const MissionWorld& worldNamed(const std::string& name, const std::vector<MissionWorld>& worlds) {
+  for (const MissionWorld& world : worlds)
+    if (world.description.name == name) return world;
+  throw std::invalid_argument("--show " + name + ": no world of that name is driven");
+}
+
+void driveGivenWorlds(Arguments arguments, const RobotConfig& robot) {
+  std::vector<std::string> words = arguments.rules;
+  if (words.empty()) words = {arguments.rule.empty() ? robot.learner.rule.rule : arguments.rule};
+  std::vector<MissionWorld> worlds =
+      readGivenWorlds(arguments.worlds, arguments.only, arguments.ground);
+  for (MissionWorld& world : worlds) world.seed += arguments.seed;
+  if (arguments.show) arguments.show = worldNamed(std::to_string(*arguments.show), worlds).seed;
+  std::optional<TruePatterns> truth;
+  std::vector<MissionBatch> batches;
+  for (const std::string& word : words) {
+    const PatternSource source = *patternSourceOf(word);
+    std::cout << source.name << std::endl;
+    BatchOrder order = orderOf(arguments, source.name, batches.empty());
+    order.missions = static_cast<int>(worlds.size());
+    order.places = worlds;
+    order.options.rule = source.rule;
+    if (source.truth) {
+      if (!truth) truth = truePatternsIn(worlds, robot);
+      order.options.known = {&*truth, *source.truth};
+    }
+    batches.push_back(runBatch(robot, order));
+  }
+  printWorlds(std::cout, batches);
+  std::vector<const MissionBatch*> driven;
+  for (const MissionBatch& batch : batches) driven.push_back(&batch);
+  draw(arguments, driven);
+  if (!arguments.json.empty()) writeWorlds(arguments.json, batches);
+}
+
+/// What only given worlds can be driven with is refused elsewhere.
+void refuseTruth(const Arguments& arguments) {
+  std::vector<std::string> words = arguments.rules;
+  if (!arguments.rule.empty()) words.push_back(arguments.rule);
+  for (const std::string& word : words)
+    if (patternSourceOf(word)->truth)
+      throw std::invalid_argument(word +
+                                  " needs --worlds; elsewhere there is --compare-omniscient");
+}
+
 void drive(const Arguments& arguments) {
+  if (!arguments.worlds.empty())
+    return driveGivenWorlds(arguments, readRobot(arguments.robot, arguments.overrides));
+  refuseTruth(arguments);
   if (!showsOneOfThem(arguments))
     throw std::invalid_argument("--show: the seed is not among those of --seed and --missions");
   RobotConfig robot = readRobot(arguments.robot, arguments.overrides);
@@ -238,7 +336,8 @@ int main(int argc, char** argv) {
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   return runProgram("tread-missions", [&] {
     // --show alone means: that mission.
-    if (arguments.show && app.count("--seed") == 0 && arguments.missions == 1)
+    if (arguments.show && arguments.worlds.empty() && app.count("--seed") == 0 &&
+        arguments.missions == 1)
       arguments.seed = *arguments.show;
     if (arguments.picture.empty()) arguments.picture = kPicture;
     drive(arguments);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,15 @@
 #include "tools/report/drive_report.hpp"
 
 namespace tread::missions {
+
+/// A run against the clock, as benchmarks of navigation judge it.
+/** The clock starts when the robot has moved 0.1 m. The run ends when the body's true origin is
+ * within the tolerance of the goal, at the first contact, or at the limit; nothing else ends it. */
+struct TimedRun {
+  double tolerance = 1.0;  ///< [m]
+  double limit = 100.0;    ///< [s]
+  double path = 0.0;       ///< [m] length of a reference path from start to goal
+};
 
 /// What a mission takes place in: hard on purpose, the same for the same seed.
 /** From start to goal at least `shortest`, at most 1.68 times that; walls whose only near gap lies
@@ -29,6 +40,7 @@ struct MissionWorld {
   int surface_changes = 0;     ///< borders between surfaces that the straight line crosses: 1 to 3,
                                ///< twice as many with stretches between them
   sim::WorldDescription description;
+  std::optional<TimedRun> timed;  ///< how it ends; else by the planner's word
 };
 
 /// Shortest straight line from start to goal [m].
@@ -54,11 +66,12 @@ enum class MissionOutcome {
   kArrived,  ///< the robot stands within the goal's tolerances (checked against the true pose)
   kRefused,  ///< the planner reported the goal unreachable, or itself blocked, for 15 s
   kIdle,     ///< nothing moved for too long
-  kStopped   ///< a failsafe kept it from going on, or the time ran out while driving
+  kStopped,  ///< a failsafe kept it from going on, or the time ran out while driving
+  kContact   ///< it touched an obstacle; only a timed run ends so
 };
 
 inline const char* nameOf(MissionOutcome outcome) {
-  constexpr const char* kNames[] = {"arrived", "refused", "idle", "stopped"};
+  constexpr const char* kNames[] = {"arrived", "refused", "idle", "stopped", "contact"};
   return kNames[static_cast<size_t>(outcome)];
 }
 
@@ -111,6 +124,14 @@ struct Disarming {
   std::string reason;  ///< as published
 };
 
+/// What the plans of a mission promised, as means of those that were searched for and lead on.
+struct PlanFigures {
+  int count = 0;
+  double next = 0.0;       ///< [m] sum of the standard deviations of the next pattern's end
+  double end = 0.0;        ///< [m] the same of the plan's end
+  int64_t expansions = 0;  ///< of all of them
+};
+
 /// What happened in one mission: one entry of the report, hence so many fields.
 struct MissionResult {
   uint64_t seed = 0;
@@ -135,6 +156,12 @@ struct MissionResult {
   std::vector<Stop> stops;                  ///< between start and arrival
   std::vector<Disarming> disarmings;
   std::vector<Flip> flips;
+  PlanFigures plans;
+  double least_clearance =
+      std::numeric_limits<double>::infinity();  ///< [m] of the true outline to obstacles
+  std::string world;                            ///< its name, where it was given
+  std::optional<TimedRun> timed;                ///< how it was judged, where it was given so
+  double clock = 0.0;                           ///< [s] of a timed run
   sim::Shaking smooth;  ///< how the true body was shaken on ground without bumps
   sim::Shaking rough;   ///< and on ground with them
 

@@ -18,6 +18,8 @@
 namespace tread::missions {
 namespace {
 
+/// Of a timed run's tolerance, so that the planner aims well within it: 0.6 m where that is 1 m.
+constexpr double kAskedShare = 0.6;
 constexpr int64_t kTick = 50'000;  ///< [us] between looks at the robot
 
 double threadSeconds() {
@@ -64,7 +66,7 @@ class BatchRun {
 
  private:
   void driveOne(size_t i) {
-    MissionRun run = drive(order_.seed + i);
+    MissionRun run = drive(i);
     const std::lock_guard<std::mutex> lock(mutex_);
     batch_.virtual_time += run.virtual_time;
     batch_.cpu_time += run.cpu_time;
@@ -72,12 +74,14 @@ class BatchRun {
     batch_.results[i] = std::move(run.result);
   }
 
-  MissionRun drive(uint64_t seed) {
+  MissionRun drive(size_t i) {
     MissionOptions options = order_.options;
+    if (!order_.places.empty()) options.place = order_.places.at(i);
+    const uint64_t seed = options.place ? options.place->seed : order_.seed + i;
     std::optional<LogWriter> log;
     std::optional<sim::TruthRecord> truth;
-    if (!order_.log.empty() && seed == order_.seed) options.log = &log.emplace(order_.log);
-    if (!order_.truth.empty() && seed == order_.seed) options.truth = &truth.emplace(order_.truth);
+    if (!order_.log.empty() && i == 0) options.log = &log.emplace(order_.log);
+    if (!order_.truth.empty() && i == 0) options.truth = &truth.emplace(order_.truth);
     MissionRun run = runMission(robot_, seed, options);
     if (log) log->close();
     if (truth) truth->flush();
@@ -104,7 +108,7 @@ MissionRun runMission(const RobotConfig& robot, uint64_t seed, const MissionOpti
                                   : makeMissionWorld(seed, robot.simulated.vehicle.outline,
                                                      options.shortest_line, robot.world);
   RobotSystem system(robot, run.scene.world.description, run.scene.world.T_map_start, seed,
-                     options.rule, options.faults, options.true_patterns,
+                     options.rule, options.faults, options.known,
                      {vehicleOf(robot.world, robot.simulated.vehicle), nullptr});
   shadow::ShadowLearners shadows(system.learnerConfig(), options.shadows, system.bus().now());
   if (options.log != nullptr || !options.shadows.empty())
@@ -112,8 +116,10 @@ MissionRun runMission(const RobotConfig& robot, uint64_t seed, const MissionOpti
       if (options.log != nullptr) options.log->write(utime, channel, bytes, size);
       if (shadows.hears(channel)) shadows.hear(utime, {utime, channel, {bytes, bytes + size}});
     });
-  Operator person(system.bus().outside(), run.scene.world.T_map_goal);
-  Referee referee(system, run.scene.world);
+  const MissionWorld& world = run.scene.world;
+  Operator person(system.bus().outside(), world.T_map_goal,
+                  world.timed ? kAskedShare * world.timed->tolerance : kGoalTolerance);
+  Referee referee(system, world);
   const int64_t start = system.bus().now();
   for (int64_t tick = 1; !referee.ended(); ++tick) {
     system.bus().runUntil(start + tick * kTick);

@@ -81,8 +81,9 @@ std::vector<Stop> StopDetector::stops(int64_t start, bool arrived) const {
 namespace {
 
 constexpr double kArrivedWithin =
-    0.8;                             ///< [m] of the true pose: tolerance of the goal and INS error
-constexpr double kIdleAfter = 60.0;  ///< [s] without moving 10 cm
+    0.8;                              ///< [m] of the true pose: tolerance of the goal and INS error
+constexpr double kClockStarts = 0.1;  ///< [m] from the start, of a timed run
+constexpr double kIdleAfter = 60.0;   ///< [s] without moving 10 cm
 constexpr double kRefusedAfter = 15.0;  ///< [s] of blocked or unreachable without a break
 constexpr int64_t kSurfaceConfirmed =
     1'000'000;  ///< [us] on a new surface before it counts as a change
@@ -102,6 +103,8 @@ Referee::Referee(RobotSystem& system, const MissionWorld& world)
   result_.straight_line = world.straight_line;
   result_.line_blocked = world.line_blocked;
   result_.surface_changes = world.surface_changes;
+  result_.timed = world.timed;
+  if (world.timed) result_.world = world.description.name;
   listen(system.bus().outside());
 }
 
@@ -141,10 +144,25 @@ void Referee::hear(const pattern_set_part_t& part) {
 
 void Referee::hear(const plan_t& message) {
   plan_ = message;
+  notePlan(message);
   std::optional<Flip> flip = flips_.hear(message);
   if (!flip) return;
   flip->time = seconds(system_.bus().now());
   result_.flips.push_back(*flip);
+}
+
+/// The first pattern of a plan is the one that runs.
+void Referee::notePlan(const plan_t& message) {
+  if (message.expansions == 0 || message.num_patterns < 2) return;
+  const auto sigma = [](const std::vector<double>& c) {
+    const double half = 0.5 * (c[0] - c[3]);
+    return std::sqrt(std::max(0.0, 0.5 * (c[0] + c[3]) + std::hypot(half, c[1])));
+  };
+  const auto& covariances = message.covariance;
+  ++result_.plans.count;
+  result_.plans.next += sigma(covariances[1]);
+  result_.plans.end += sigma(covariances.back());
+  result_.plans.expansions += message.expansions;
 }
 
 bool Referee::isFree(const Pose2& T_map_start,
@@ -218,8 +236,12 @@ void Referee::step() {
   noteMotion();
   stops_.step(now, system_.robot().truth().v_body, {plan_.reason, abort_reason_});
   noteContacts();
+  noteClearance();
   noteSurface();
-  judge();
+  if (world_.timed)
+    judgeTimed(*world_.timed);
+  else
+    judge();
 }
 
 void Referee::noteMotion() {
@@ -247,6 +269,18 @@ void Referee::noteContacts() {
   }
   for (size_t i = 0; i < result_.contacts.size(); ++i)
     result_.contacts[i].penetration = truth.collisions[i].penetration;
+}
+
+/// Where the body touches, the simulator keeps it where it last stood free.
+void Referee::noteClearance() {
+  const FootprintSize& outline = system_.robot().settings().vehicle.outline;
+  const Pose2 T_map_middle = last_pose_ * Pose2{(outline.front - outline.rear) / 2.0, 0.0, 0.0};
+  const sim::Rectangle rectangle{outline.length(), 2.0 * outline.half_width};
+  for (const sim::Obstacle& obstacle : world_.description.obstacles)
+    result_.least_clearance =
+        std::min(result_.least_clearance,
+                 std::max(0.0, -sim::penetrationOf(obstacle, rectangle, T_map_middle)));
+  if (!result_.contacts.empty()) result_.least_clearance = 0.0;
 }
 
 std::string Referee::presentPattern() const {
@@ -309,6 +343,19 @@ void Referee::judge() {
                "nothing moved for a minute; planner " + plan + "; bridge: " + motor_.state_reason);
   if (result_.time > 60.0 + 8.0 * world_.straight_line)
     return end(MissionOutcome::kStopped, "time ran out; planner " + plan);
+}
+
+void Referee::judgeTimed(const TimedRun& run) {
+  const int64_t now = system_.bus().now();
+  if (!clock_start_ && distanceBetween(world_.T_map_start, last_pose_) >= kClockStarts)
+    clock_start_ = now;
+  result_.clock = clock_start_ ? static_cast<double>(now - *clock_start_) * 1e-6 : 0.0;
+  if (!result_.contacts.empty()) return end(MissionOutcome::kContact, "touched an obstacle");
+  if (toGo() <= run.tolerance) return end(MissionOutcome::kArrived, "");
+  const double waited = clock_start_ ? result_.clock : result_.time;
+  if (waited > run.limit)
+    end(MissionOutcome::kStopped,
+        "time ran out; planner " + operators::statusWord(plan_.plan_status) + ": " + plan_.reason);
 }
 
 void Referee::end(MissionOutcome outcome, const std::string& reason) {

@@ -141,12 +141,15 @@ class Referee {
   void hear(const learning_t& message);
   void hear(const plan_tree_t& message);
   void hear(const map_tile_t& message);
+  void notePlan(const plan_t& message);
   bool isFree(const Pose2& T_map_start, const std::vector<const MotionPattern*>& patterns) const;
   void noteContacts();
   std::string presentPattern() const;
   void noteSurface();
   void noteMotion();
+  void noteClearance();
   void judge();
+  void judgeTimed(const TimedRun& run);
   void end(MissionOutcome outcome, const std::string& reason);
   double seconds(int64_t utime) const { return static_cast<double>(utime - start_) * 1e-6; }
   double toGo() const;
@@ -166,6 +169,7 @@ class Referee {
   std::map<std::pair<int64_t, int64_t>, execution_record_t> records_;  ///< by run and execution id
   SurfaceTracker surfaces_;
   std::optional<int64_t> refused_since_;
+  std::optional<int64_t> clock_start_;  ///< [us] of a timed run
   Pose2 last_pose_;
   int64_t moved_at_;  ///< when and where it last was 10 cm or 0.1 rad from where it is
   Pose2 moved_from_;

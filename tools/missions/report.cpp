@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cctype>
 #include <ostream>
+#include <stdexcept>
 
 #include "common/report/text.hpp"
 #include "common/store/store.hpp"
+#include "tools/missions/world_report.hpp"
 
 namespace tread::missions {
 namespace {
@@ -20,8 +22,10 @@ bool isDigit(char c) {
 
 void printShares(std::ostream& out, const MissionBatch& batch) {
   const auto total = static_cast<double>(std::max<size_t>(1, batch.results.size()));
-  for (const MissionOutcome outcome : {MissionOutcome::kArrived, MissionOutcome::kRefused,
-                                       MissionOutcome::kIdle, MissionOutcome::kStopped}) {
+  for (const MissionOutcome outcome :
+       {MissionOutcome::kArrived, MissionOutcome::kRefused, MissionOutcome::kIdle,
+        MissionOutcome::kStopped, MissionOutcome::kContact}) {
+    if (outcome == MissionOutcome::kContact && countOf(batch, outcome) == 0) continue;
     const int count = countOf(batch, outcome);
     out << formatted("%-9s %4d  %5.1f %%\n", nameOf(outcome), count, 100.0 * count / total);
     std::map<std::string, int> reasons;
@@ -235,7 +239,11 @@ int collisionsOf(const MissionBatch& batch) {
 }
 
 std::string resultOf(const MissionBatch& batch, uint64_t seed) {
-  const MissionResult& result = batch.results.at(seed - batch.seed);
+  const auto found = std::find_if(batch.results.begin(), batch.results.end(),
+                                  [&](const MissionResult& result) { return result.seed == seed; });
+  if (found == batch.results.end())
+    throw std::out_of_range("no mission with seed " + std::to_string(seed));
+  const MissionResult& result = *found;
   const auto counted = [](size_t count, const char* what) {
     return formatted("%zu %s%s", count, what, count == 1 ? "" : "s");
   };
@@ -247,6 +255,7 @@ std::string resultOf(const MissionBatch& batch, uint64_t seed) {
 }
 
 std::string lineOf(const MissionResult& result) {
+  if (result.timed) return timedLineOf(result);
   return formatted(
       "seed %-6llu %-8s %5.1f s  %5.1f m  detour %4.2f  patterns %3d  crossings %zu of %d  "
       "collisions %d  stops %zu  flips %zu%s%s",
@@ -298,6 +307,7 @@ nlohmann::ordered_json batchJson(const MissionBatch& batch) {
   json["refused"] = countOf(batch, MissionOutcome::kRefused);
   json["idle"] = countOf(batch, MissionOutcome::kIdle);
   json["stopped"] = countOf(batch, MissionOutcome::kStopped);
+  json["contact"] = countOf(batch, MissionOutcome::kContact);
   json["collisions"] = collisionsOf(batch);
   addSteadiness(json, batch);
   json["virtual_s"] = batch.virtual_time;

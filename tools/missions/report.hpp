@@ -153,10 +153,10 @@ struct MissionOptions {
   std::vector<learner::Rule> shadows;    ///< predict the same executions
   double shortest_line = kShortestLine;  ///< [m] see makeMissionWorld()
   FaultPlan faults;
-  const TruePatterns* true_patterns = nullptr;  ///< if given: an omniscient robot drives
-  LogWriter* log = nullptr;                     ///< every message, if given
-  std::optional<MissionWorld> place;            ///< where to drive; empty = drawn by the seed
-  sim::TruthRecord* truth = nullptr;            ///< what really happened, if given
+  Knowledge known;                    ///< what the planner is told of the truth
+  LogWriter* log = nullptr;           ///< every message, if given
+  std::optional<MissionWorld> place;  ///< where to drive; empty = drawn by the seed
+  sim::TruthRecord* truth = nullptr;  ///< what really happened, if given
 };
 
 /// World, map and search tree for a picture of a mission.
@@ -185,11 +185,12 @@ report::DriveScene driveSceneOf(const MissionResult& result, const MissionScene&
 /// Missions to be driven one way.
 struct BatchOrder {
   int missions = 1;
-  uint64_t seed = 1;                   ///< of the first; the others count up from it
+  std::vector<MissionWorld> places;    ///< one a mission, with their seeds; empty = drawn by seeds
+  uint64_t seed = 1;                   ///< of the first drawn; the others count up from it
   int threads = 1;                     ///< missions at the same time
   std::string name;                    ///< of the batch: its rule, or that it is omniscient
   std::vector<std::string> overrides;  ///< of the configuration, for the report
-  MissionOptions options;              ///< of each mission; its log is set here
+  MissionOptions options;              ///< of each mission; place and log are set here
   std::optional<uint64_t> show;        ///< seed of the mission whose scene is kept
   std::string log;                     ///< of the first mission; empty = none
   std::string truth;                   ///< the same: file of what really happened

@@ -185,11 +185,8 @@ void enterWorld(RobotConfig& robot, const std::string& kind) {
 
 RobotSystem::RobotSystem(const RobotConfig& config, const sim::WorldDescription& world,
                          const Pose2& T_map_start, uint64_t seed, const std::string& rule,
-                         const FaultPlan& faults, const TruePatterns* true_patterns,
-                         sim::RobotParts parts)
-    : config_(config),
-      true_patterns_(true_patterns),
-      bus_(std::make_unique<VirtualBus>(seed, onTheRobot(faults))) {
+                         const FaultPlan& faults, const Knowledge& known, sim::RobotParts parts)
+    : config_(config), known_(known), bus_(std::make_unique<VirtualBus>(seed, onTheRobot(faults))) {
   if (!rule.empty()) config_.learner.rule.rule = rule;
   std::tie(ins_line_, ins_device_) = makePipe();
   std::tie(motor_line_, motor_device_) = makePipe();
@@ -235,14 +232,21 @@ void RobotSystem::addRobotNodes() {
       [this](Bus& bus) { return std::make_unique<mapping::MappingNode>(config_.mapping, bus); });
   add("planner",
       [this](Bus& bus) { return std::make_unique<planner::PlannerNode>(config_.planner, bus); });
-  add("learner", [this](Bus& bus) -> std::unique_ptr<Node> {
-    if (true_patterns_ != nullptr)
-      return std::make_unique<TruePatternsNode>(*true_patterns_, devices_->robot(), bus);
-    return std::make_unique<learner::LearnerNode>(config_.learner, bus, learner_store_);
-  });
+  add("learner", [this](Bus& bus) { return makeLearner(bus); });
   add("motor_bridge", [this](Bus& bus) {
     return std::make_unique<motor::MotorBridgeNode>(config_.motor_bridge, bus, *motor_line_);
   });
+}
+
+std::unique_ptr<Node> RobotSystem::makeLearner(Bus& bus) {
+  if (known_.patterns != nullptr && known_.share == TrueShare::kAll)
+    return std::make_unique<TruePatternsNode>(*known_.patterns, devices_->robot(), bus);
+  auto learner = std::make_unique<learner::LearnerNode>(config_.learner, bus, learner_store_);
+  if (known_.patterns != nullptr)
+    learner->replaceSets([this](const PatternSet& learned) {
+      return known_.patterns->mixedInto(learned, robot().truth().surface, known_.share);
+    });
+  return learner;
 }
 
 void RobotSystem::add(const std::string& name, VirtualBus::Factory factory) {
@@ -271,9 +275,10 @@ constexpr int64_t kArmRepeats = 1'000'000;     ///< [us] for which ARM is repeat
 
 }  // namespace
 
-Operator::Operator(Bus& bus, const Pose2& T_map_goal)
+Operator::Operator(Bus& bus, const Pose2& T_map_goal, double tolerance)
     : bus_(bus),
       T_map_goal_(T_map_goal),
+      tolerance_(tolerance),
       beacon_(bus, kOperatorName),
       motor_(bus, kMotor),
       plan_(bus, kPlan),
@@ -319,7 +324,7 @@ void Operator::sendGoal(int64_t utime) {
   goal.goal_pose[0] = T_map_goal_.x;
   goal.goal_pose[1] = T_map_goal_.y;
   goal.goal_pose[2] = T_map_goal_.yaw;
-  goal.position_tolerance = 0.6;
+  goal.position_tolerance = tolerance_;
   goal.yaw_tolerance = kPi;
   bus_.publish(kGoal, goal);
 }

@@ -28,6 +28,13 @@
 
 namespace tread::missions {
 
+/// What of the true patterns an experiment gives the planner.
+enum class TrueShare {
+  kAll,         ///< means and covariances; nobody learns
+  kMeans,       ///< trajectories and classes, with the covariances of a rule that learns beside
+  kCovariances  ///< of the ends, with the trajectories of that rule
+};
+
 /// What an omniscient robot would know: the patterns as each surface truly makes them.
 /** The simulator's ground truth executes every pattern on level ground of the surface, entered in
  * the steady motion of its entry class, without the ground's chance. That chance is in the
@@ -35,16 +42,26 @@ namespace tread::missions {
  * What even this robot does not know: slopes, and where within a pattern the surface changes. */
 class TruePatterns {
  public:
-  /// For all built-in surfaces and some more.
+  /// For all built-in surfaces and some more; of a vehicle with speed loops, where the set asks
+  /// for speeds.
   TruePatterns(const PatternSet& shipped, const sim::VehicleParameters& vehicle,
                const std::vector<sim::SurfaceParameters>& more = {});
 
   /// The set of a surface under a version; throws std::out_of_range for a surface that is not
   /// known.
   PatternSet on(const std::string& surface, int64_t version) const;
+  /// A learned set with the true means or covariances of a surface in the place of its own.
+  PatternSet mixedInto(const PatternSet& learned, const std::string& surface,
+                       TrueShare share) const;
 
  private:
   std::map<std::string, PatternSetContent> by_surface_;
+};
+
+/// True patterns for a planner, and how many of them.
+struct Knowledge {
+  const TruePatterns* patterns = nullptr;  ///< if given; they must outlive who is told of them
+  TrueShare share = TrueShare::kAll;
 };
 
 /// In the learner's place: publishes the true set of the ground that the body stands on.
@@ -112,12 +129,12 @@ FaultPlan readFaultFile(const std::string& path);
  * observers outside receive every message unharmed. */
 class RobotSystem {
  public:
-  /// `rule`: of learning; empty = the configuration's. `true_patterns`: if given, TruePatternsNode
-  /// publishes them in the learner's place; they must outlive the system.
+  /// `rule`: of learning; empty = the configuration's. `known`: all true patterns take the
+  /// learner's place (TruePatternsNode); a share of them is put into each set that it publishes, as
+  /// they are on the ground below the body when the set is new.
   RobotSystem(const RobotConfig& config, const sim::WorldDescription& world,
               const Pose2& T_map_start, uint64_t seed, const std::string& rule,
-              const FaultPlan& faults, const TruePatterns* true_patterns = nullptr,
-              sim::RobotParts parts = {});
+              const FaultPlan& faults, const Knowledge& known = {}, sim::RobotParts parts = {});
   ~RobotSystem();
 
   VirtualBus& bus() { return *bus_; }
@@ -137,10 +154,11 @@ class RobotSystem {
  private:
   class SimulatedScans;
   void addRobotNodes();
+  std::unique_ptr<Node> makeLearner(Bus& bus);
   void add(const std::string& name, VirtualBus::Factory factory);
 
   RobotConfig config_;
-  const TruePatterns* true_patterns_;
+  Knowledge known_;
   std::unique_ptr<Link> ins_line_, ins_device_;      ///< both ends of the INS line
   std::unique_ptr<Link> motor_line_, motor_device_;  ///< both ends of the motor controller's line
   std::unique_ptr<sim::SimulatedDevices> devices_;
@@ -151,10 +169,14 @@ class RobotSystem {
   std::unique_ptr<VirtualBus> bus_;  ///< last: its nodes refer to the rest
 };
 
+/// Of goals in missions [m].
+inline constexpr double kGoalTolerance = 0.6;
+
 /// The person at the remote control: sends the goal, arms, and arms again after a failsafe.
 class Operator {
  public:
-  Operator(Bus& bus, const Pose2& T_map_goal);
+  /// `tolerance` [m]: of the goal.
+  Operator(Bus& bus, const Pose2& T_map_goal, double tolerance = kGoalTolerance);
 
   void step(int64_t utime);
   /// How often it had to arm again.
@@ -167,6 +189,7 @@ class Operator {
 
   Bus& bus_;
   Pose2 T_map_goal_;
+  double tolerance_;
   OperatorBeacon beacon_;
   Latest<motor_t> motor_;
   Latest<plan_t> plan_;

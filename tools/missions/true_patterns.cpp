@@ -22,30 +22,46 @@ constexpr double kEntry = 3.0;      // [s] until a motion is steady
 constexpr double kCommandDelay = 0.010;  // [s]
 constexpr int kDisturbed = 60;           // executions that a covariance is taken of
 
+/// What the motors get of a command: power, or what holds the speeds that it asks for.
+class DriveInput {
+ public:
+  DriveInput(const sim::VehicleParameters& vehicle, CommandKind kind, size_t motors)
+      : holds_speeds_(kind == CommandKind::kTrackSpeed),
+        steering_(vehicle.wheelbase > 0.0 ? vehicle.max_steering : 1.0),
+        loops_(motors, sim::SpeedLoop(vehicle.drive.free_speed)) {}
+
+  sim::MotorPower power(const Command& command, const sim::Plant& vehicle) {
+    sim::MotorValues power{command[0], command[1] / steering_};
+    for (size_t k = 2; k < loops_.size(); ++k) power[k] = command[k];
+    // Where a controller holds speeds it does so as the simulated one that has no loop of its own.
+    for (size_t k = 0; k < loops_.size() && holds_speeds_; ++k)
+      power[k] = loops_[k].step(command[k], vehicle.motor(k).speed, kStep);
+    return sim::MotorPower::of(power);
+  }
+
+ private:
+  bool holds_speeds_;
+  double steering_;
+  std::vector<sim::SpeedLoop> loops_;
+};
+
 /// Velocities of the body through an execution, step by step, without chance.
 std::vector<Twist2> velocitiesOf(const MotionPattern& pattern, const Command& entry,
-                                 CommandKind kind, double period,
-                                 const sim::VehicleParameters& parameters,
+                                 const PatternSet& set, const sim::VehicleParameters& parameters,
                                  const sim::SurfaceParameters& surface) {
   const std::unique_ptr<sim::Plant> vehicle = sim::makeVehicle(parameters);
-  const double steering = parameters.wheelbase > 0.0 ? parameters.max_steering : 1.0;
+  DriveInput drive(parameters, set.content().channels.front().kind, vehicle->motors());
   const sim::Ground ground = sim::levelGround(surface);
-  // Where a controller holds speeds it does so as the simulated one that has no loop of its own.
-  std::vector<sim::SpeedLoop> loops(vehicle->motors(), sim::SpeedLoop(parameters.drive.free_speed));
   const auto run = [&](const Command& command, double seconds, std::vector<Twist2>* kept) {
     for (int i = 0; i < static_cast<int>(std::lround(seconds / kStep)); ++i) {
-      sim::MotorValues power{command[0], command[1] / steering};
-      for (size_t k = 2; k < vehicle->motors(); ++k) power[k] = command[k];
-      for (size_t k = 0; k < loops.size() && kind == CommandKind::kTrackSpeed; ++k)
-        power[k] = loops[k].step(command[k], vehicle->motor(k).speed, kStep);
-      vehicle->step(sim::MotorPower::of(power), ground, kStep);
+      vehicle->step(drive.power(command, *vehicle), ground, kStep);
       if (kept != nullptr) kept->push_back(vehicle->velocity());
     }
   };
   std::vector<Twist2> velocities;
   run(entry, kEntry, nullptr);
   run(entry, kCommandDelay, &velocities);
-  for (const Command& command : pattern.commands) run(command, period, &velocities);
+  for (const Command& command : pattern.commands) run(command, set.periodSeconds(), &velocities);
   velocities.resize(velocities.size() - static_cast<size_t>(std::lround(kCommandDelay / kStep)));
   return velocities;
 }
@@ -82,10 +98,10 @@ PoseCovariance covarianceOf(const std::vector<Twist2>& velocities,
   return covariance;
 }
 
-void makeTrue(MotionPattern& pattern, const Command& entry, CommandKind kind, double period,
+void makeTrue(MotionPattern& pattern, const PatternSet& shipped,
               const sim::VehicleParameters& vehicle, const sim::SurfaceParameters& surface) {
-  const std::vector<Twist2> velocities =
-      velocitiesOf(pattern, entry, kind, period, vehicle, surface);
+  const Command& entry = shipped.classNamed(pattern.entry_class).steady;
+  const std::vector<Twist2> velocities = velocitiesOf(pattern, entry, shipped, vehicle, surface);
   const size_t per_sample = velocities.size() / pattern.commands.size();
   Pose2 pose;
   for (size_t i = 0; i < velocities.size(); ++i) {
@@ -98,17 +114,20 @@ void makeTrue(MotionPattern& pattern, const Command& entry, CommandKind kind, do
 PatternSetContent trueSet(const PatternSet& shipped, const sim::VehicleParameters& vehicle,
                           const sim::SurfaceParameters& surface) {
   PatternSetContent content = shipped.content();
-  const CommandKind kind = content.channels.front().kind;
   for (MotionClass& motion : content.classes) {
     MotionPattern held;
     held.commands.assign(1, motion.steady);
-    motion.twist =
-        velocitiesOf(held, motion.steady, kind, shipped.periodSeconds(), vehicle, surface).back();
+    motion.twist = velocitiesOf(held, motion.steady, shipped, vehicle, surface).back();
   }
-  for (MotionPattern& pattern : content.patterns)
-    makeTrue(pattern, shipped.classNamed(pattern.entry_class).steady, kind, shipped.periodSeconds(),
-             vehicle, surface);
+  for (MotionPattern& pattern : content.patterns) makeTrue(pattern, shipped, vehicle, surface);
   return content;
+}
+
+PatternSet checked(PatternSetContent content, const std::string& surface) {
+  std::string why;
+  std::optional<PatternSet> set = PatternSet::make(std::move(content), why);
+  if (!set) throw std::logic_error("true patterns on " + surface + ": " + why);
+  return *set;
 }
 
 }  // namespace
@@ -124,10 +143,21 @@ PatternSet TruePatterns::on(const std::string& surface, int64_t version) const {
   PatternSetContent content = by_surface_.at(surface);
   content.parent_version = version - 1;
   content.version = version;
-  std::string why;
-  std::optional<PatternSet> set = PatternSet::make(std::move(content), why);
-  if (!set) throw std::logic_error("true patterns on " + surface + ": " + why);
-  return *set;
+  return checked(std::move(content), surface);
+}
+
+PatternSet TruePatterns::mixedInto(const PatternSet& learned, const std::string& surface,
+                                   TrueShare share) const {
+  const PatternSetContent& truth = by_surface_.at(surface);
+  PatternSetContent content = learned.content();
+  if (share != TrueShare::kCovariances) content.classes = truth.classes;
+  for (size_t i = 0; i < content.patterns.size(); ++i) {
+    if (share != TrueShare::kCovariances)
+      content.patterns[i].trajectory = truth.patterns[i].trajectory;
+    if (share != TrueShare::kMeans)
+      content.patterns[i].end_covariance = truth.patterns[i].end_covariance;
+  }
+  return checked(std::move(content), surface);
 }
 
 void TruePatternsNode::step(int64_t utime) {

@@ -81,6 +81,17 @@ WorldKind readWorldKind(const std::string& name, const sim::VehicleParameters& v
   return kind;
 }
 
+std::vector<sim::SurfaceParameters> surfacesOfKinds() {
+  std::vector<sim::SurfaceParameters> surfaces;
+  for (const std::string& name : worldKinds()) {
+    if (name == WorldKind().name) continue;
+    ConfigReader reader = ConfigReader::fromFile(kFolder + "/" + name + ".yaml");
+    for (ConfigReader& surface : reader.sections("surfaces"))
+      surfaces.push_back(sim::readSurface(surface));
+  }
+  return surfaces;
+}
+
 std::unique_ptr<sim::Plant> vehicleOf(const WorldKind& kind, const sim::VehicleParameters& before) {
   if (!kind.changesOnTheWay()) return nullptr;
   return std::make_unique<ChangingVehicle>(before, kind);

@@ -35,6 +35,9 @@ std::vector<std::string> worldKinds();
 /// A kind by its name for a robot that is simulated by `vehicle`; throws ConfigError with one line.
 WorldKind readWorldKind(const std::string& name, const sim::VehicleParameters& vehicle);
 
+/// The surfaces of all kinds, beside the built-in ones.
+std::vector<sim::SurfaceParameters> surfacesOfKinds();
+
 /// The vehicle that becomes another one on its way; null where it does not.
 std::unique_ptr<sim::Plant> vehicleOf(const WorldKind& kind, const sim::VehicleParameters& before);
 
