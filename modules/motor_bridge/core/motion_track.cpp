@@ -28,6 +28,7 @@ double atLeast(double speed, double dead, double share, double most) {
 /// [1] of the motion to the side that a holonomic base makes forward, and the other way round: its
 /// wheels do not all slip alike.
 constexpr double kAskew = 0.25;
+constexpr double kRounding = 1e-9;  // [m/s] of a holonomic base's wheels, made a motion
 
 }  // namespace
 
@@ -35,8 +36,10 @@ Command MotionLimits::motion(const Command& command) const {
   if (isOmni()) {
     const Twist2 twist = wheels.twist(command);
     const double turn = 0.5 * gauge * twist.omega;
-    Command motion(twist.v_x - turn, twist.v_x + turn);
-    motion[kSideways] = twist.v_y;
+    // What only rounding makes of it is no direction in which it was commanded.
+    const auto exact = [](double value) { return std::abs(value) < kRounding ? 0.0 : value; };
+    Command motion(exact(twist.v_x - turn), exact(twist.v_x + turn));
+    motion[kSideways] = exact(twist.v_y);
     return motion;
   }
   if (wheelbase <= 0.0) return command.tracks();

@@ -25,7 +25,7 @@ struct MotorWiring {
   std::optional<double>
       top_speed;             ///< [m/s] held at full command; none: the controller gives power
   bool four_motors = false;  ///< two on each side, each with a controller of its own
-  std::vector<bool> invert_wheels;  ///< of a holonomic base, one for each; else none
+  std::vector<bool> invert_wheels{};  ///< of a holonomic base, one for each; else none
 };
 
 /// How a simulated robot is built.

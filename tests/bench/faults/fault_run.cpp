@@ -277,7 +277,8 @@ class Run {
       liar_->step(now, now - start_);
     putFence(now - start_);
     judgeFences(now);
-    const std::array<double, 2> power = system_.devices().power(now);
+    const sim::MotorValues motors = system_.devices().power(now);
+    const std::array<double, 2> power{motors[0], motors[1]};
     breaks(motors_.check(now, power));
     const bool turns = power[0] != 0.0 || power[1] != 0.0;
     if (!active_.empty()) effect_.step(now, turns, system_.robot().truth(), active_.front());

@@ -39,7 +39,7 @@ ReturnRun runReturn(missions::RobotConfig robot, uint64_t seed) {
   while (bus.now() < end && bus.now() - stood_since < 35'000'000) {
     bus.runUntil(bus.now() + kReturnTick);
     const int64_t now = bus.now();
-    const std::array<double, 2> power = system.devices().power(now);
+    const sim::MotorValues power = system.devices().power(now);
     run.moved_at_end = power[0] != 0.0 || power[1] != 0.0;
     if (run.moved_at_end || now < silent) stood_since = now;
     if (now <= silent) {

@@ -159,7 +159,7 @@ PadDriven driveWith(const std::string& events) {
     system.bus().runUntil(now);
     state = call.step(now);
     result.lines += call.describe(now) + "\n";
-    const std::array<double, 2> power = system.devices().power(now);
+    const sim::MotorValues power = system.devices().power(now);
     result.moved |= power[0] != 0.0 || power[1] != 0.0;
     result.armed |= motor.any() && mayDrive(motor.message().bridge_state);
   }
