@@ -149,7 +149,11 @@ class LearnerNode : public Node {
   void resume(LearnerState state, const std::vector<PatternSet>& earlier);
 
   /// The planner is given other sets than the learned ones, by which executions are still scored.
-  void replaceSets(SetReplacement replacement) { publisher_.replaceSets(std::move(replacement)); }
+  /// Call before the first step.
+  void replaceSets(SetReplacement replacement) {
+    publisher_.replaceSets(std::move(replacement));
+    publisher_.putSet(learner_.set());
+  }
 
   int64_t period() const override { return config_.period_us; }
   void step(int64_t utime) override;

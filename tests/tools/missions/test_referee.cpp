@@ -170,41 +170,6 @@ TEST_CASE("arriving counts at the goal only, by the true pose") {
   CHECK(far.referee.result().reason.find("the true pose says no") != std::string::npos);
 }
 
-TEST_CASE("a timed run begins with the motion and ends within the tolerance, still in motion") {
-  MissionWorld world = flatWorld(5.0);
-  world.timed = TimedRun{1.0, 100.0, 5.0};
-  world.description.obstacles.push_back(sim::discObstacle({2.0, 1.0}, 0.1, 1.0));
-  Stage stage(world);
-  stage.plan(plan_t::PLAN_BLOCKED, "a wall");
-  stage.wait(20.0);  // the planner's word ends nothing
-  REQUIRE_FALSE(stage.referee.ended());
-  stage.drive(0.8, 30.0);
-  const MissionResult result = stage.referee.result();
-  CHECK(result.outcome == MissionOutcome::kArrived);
-  CHECK(result.distance == Approx(4.0).margin(0.1));
-  CHECK(result.time > 22.0);
-  CHECK(result.clock == Approx(result.time - 20.0).margin(0.6));
-  CHECK(result.stops.empty());
-  // The disc's edge is 0.9 m from the line, the outline 0.34 m wide to that side.
-  CHECK(result.least_clearance == Approx(0.56).margin(0.1));
-}
-
-TEST_CASE("a timed run ends at the first contact, or when its time is over") {
-  MissionWorld world = flatWorld(20.0);
-  world.timed = TimedRun{1.0, 6.0, 20.0};
-  Stage slow(world);
-  slow.drive(0.4, 30.0);
-  CHECK(slow.referee.result().outcome == MissionOutcome::kStopped);
-  CHECK(slow.referee.result().clock == Approx(6.0).margin(0.1));
-  world.description.obstacles.push_back(sim::boxObstacle({3.0, 0.0, 0.0}, 0.4, 4.0, 1.0));
-  Stage blocked(world);
-  blocked.drive(0.8, 30.0);
-  CHECK(blocked.referee.result().outcome == MissionOutcome::kContact);
-  CHECK(blocked.referee.result().collisions() == 1);
-  CHECK(blocked.referee.result().least_clearance == 0.0);
-  CHECK(blocked.referee.result().clock < 6.0);
-}
-
 TEST_CASE("a planner that is blocked for fifteen seconds without a break has refused") {
   Stage stage(flatWorld(20.0));
   stage.plan(plan_t::PLAN_BLOCKED, "a wall");

@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
-#include <set>
 #include <sstream>
 
 #include <unistd.h>
@@ -139,65 +138,6 @@ TEST_CASE("the omniscient robot gets another set where the ground becomes anothe
   CHECK(watch.result().executions.empty());  // nobody learns
   CHECK(always_true);
   CHECK(always_planned);
-}
-
-TEST_CASE("true patterns of speeds are those of controllers that hold them, not of so much power") {
-  const RobotConfig robot = readRobot(std::string(TREAD_SOURCE_DIR) + "/tests/data/robots/skid4");
-  const PatternSet set =
-      TruePatterns(robot.learner.shipped, robot.simulated.vehicle).on("tarmac", 1);
-  const MotionPattern& straight = *set.findByName("straight");
-  const double seconds = set.periodSeconds() * static_cast<double>(straight.commands.size());
-  // A metre a second less the slip; full power would be 1.2 m/s without load.
-  CHECK(straight.commands.front()[0] == 1.0);
-  CHECK(straight.end().x / seconds > 0.93);
-  CHECK(straight.end().x / seconds < 1.01);
-  const double reverse = set.classNamed("reverse").twist.v_x;
-  CHECK(reverse > -0.61);
-  CHECK(reverse < -0.55);
-}
-
-TEST_CASE("a part of the truth is put into a learned set, the rest stays as it was learned") {
-  const PatternSet& learned = teodor().learner.shipped;
-  const PatternSet truth = truePatterns().on("grass", 1);
-  const PatternSet means = truePatterns().mixedInto(learned, "grass", TrueShare::kMeans);
-  const PatternSet spreads = truePatterns().mixedInto(learned, "grass", TrueShare::kCovariances);
-  CHECK(means.version() == learned.version());
-  for (size_t i = 0; i < learned.patterns().size(); ++i) {
-    CHECK(means.patterns()[i].end().yaw == truth.patterns()[i].end().yaw);
-    CHECK(means.patterns()[i].end_covariance == learned.patterns()[i].end_covariance);
-    CHECK(spreads.patterns()[i].end().yaw == learned.patterns()[i].end().yaw);
-    CHECK(spreads.patterns()[i].end_covariance == truth.patterns()[i].end_covariance);
-  }
-}
-
-TEST_CASE("beside the truth a rule goes on learning, and the planner gets its covariances") {
-  MissionWorld world = makeMissionWorld(8, {0.65, 0.65, 0.34});
-  world.description.base_surface = "grass";
-  world.description.regions.clear();
-  RobotSystem system(teodor(), world.description, world.T_map_start, 8, "multi_model", {},
-                     {&truePatterns(), TrueShare::kMeans});
-  Operator person(system.bus().outside(), world.T_map_goal);
-  PatternSetAssembler sets;
-  std::vector<PatternSet> published;
-  system.bus().outside().subscribe<pattern_set_part_t>(kPatternSet,
-                                                       [&](const pattern_set_part_t& part) {
-                                                         if (auto set = sets.add(part))
-                                                           published.push_back(*set);
-                                                       });
-  const int64_t end = system.bus().now() + 20'000'000;
-  while (system.bus().now() < end) {
-    system.bus().runUntil(system.bus().now() + 50'000);
-    person.step(system.bus().now());
-  }
-  REQUIRE(published.size() > 5);
-  const double truth = truePatterns().on("grass", 1).findByName("hard_left")->end().yaw;
-  std::set<double> variances;
-  for (const PatternSet& set : published) {
-    CHECK(set.findByName("hard_left")->end().yaw == truth);
-    variances.insert(set.findByName("hard_left")->end_covariance[0]);
-  }
-  CHECK(variances.size() > 5);
-  CHECK(system.robot().truth().distance > 3.0);
 }
 
 TEST_CASE("times are compared from the first motion, where both arrive") {
