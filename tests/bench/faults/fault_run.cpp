@@ -100,7 +100,7 @@ class Run {
         world_(missions::makeMissionWorld(schedule.seed, robot.simulated.vehicle.outline, kLine)),
         own_fences_(fencesOf(schedule.scenario, world_)),
         system_(configured(robot), world_.description, world_.T_map_start, schedule.seed, "",
-                planOf(schedule), nullptr, parts(robot.simulated.vehicle)),
+                planOf(schedule), {}, parts(robot.simulated.vehicle)),
         bus_(system_.bus()),
         start_(bus_.now()),
         active_(schedule.faults.size(), false),
