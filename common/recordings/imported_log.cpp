@@ -125,6 +125,11 @@ class ImportMaker {
     }
   }
 
+  void addGrounds(const std::vector<TimedGround>& grounds) {
+    for (const TimedGround& ground : grounds)
+      log_.addMark(utimeOf(ground.time), "surface", ground.name);
+  }
+
   void addScans(const std::vector<TimedScan>& scans) {
     for (const TimedScan& scan : scans) {
       scan_t message = scan.message;
@@ -236,6 +241,7 @@ std::vector<LogEvent> makeLog(const RecordedDrive& recording, const Session& ses
   maker.addIns(recording.fixes, recording.gyro, 3.0 * step);
   maker.addMotor(recording, executions);
   maker.addScans(recording.scans);
+  maker.addGrounds(recording.grounds);
   maker.addExecutions(executions);
   return maker.sorted();
 }

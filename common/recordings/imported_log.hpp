@@ -72,6 +72,12 @@ struct GyroReading {
   double yaw_rate = 0.0;  ///< [rad/s]
 };
 
+/// The ground from a time on.
+struct TimedGround {
+  double time = 0.0;  ///< [s]
+  std::string name;
+};
+
 /// Which readings of the gyro are kept.
 enum class Gyro {
   kAtFixes,  ///< the one nearest to each fix
@@ -87,10 +93,11 @@ struct TimedScan {
 struct RecordedDrive {
   CommandChannels channels = trackChannels(CommandKind::kTrackSpeed);  ///< of the commands
   std::vector<Fix> fixes;                                              ///< in order of time
-  std::vector<GyroReading> gyro;   ///< in order of time; only where all are kept
-  std::vector<DriveSample> drive;  ///< in order of time
-  std::vector<CommandRun> runs;    ///< in order of time
-  std::vector<TimedScan> scans;    ///< in order of time
+  std::vector<GyroReading> gyro;     ///< in order of time; only where all are kept
+  std::vector<DriveSample> drive;    ///< in order of time
+  std::vector<CommandRun> runs;      ///< in order of time
+  std::vector<TimedScan> scans;      ///< in order of time
+  std::vector<TimedGround> grounds;  ///< in order of time, where the recording names them
 };
 
 /// Silence between steps that were recorded apart [s].

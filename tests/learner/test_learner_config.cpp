@@ -89,7 +89,7 @@ Values writtenKeys() {
 
 /// All predictions of a rule that has learned from executions with another gain and a turn.
 std::vector<double> learned(const RuleConfig& config) {
-  samples::Pupil pupil(config, samples::smallSet());
+  learner::samples::Pupil pupil(config, learner::samples::smallSet());
   for (const double gain : {0.8, 0.7, 0.75})
     for (size_t p = 0; p < 3; ++p) {
       std::vector<Pose2> measured = pupil.shipped(p);
@@ -149,7 +149,7 @@ TEST_CASE("the manual of the learner's keys names each key that is read, with it
 
 TEST_CASE("a rule reads the keys that it is said to read, and no other ones") {
   for (const Rule& rule : ruleNames()) {
-    RuleConfig config = samples::ruleConfig(rule);
+    RuleConfig config = learner::samples::ruleConfig(rule);
     const std::vector<double> usual = learned(config);
     std::map<std::string, RuleConfig> changed{{"memory", config}, {"scaling", config}};
     changed["ground"] = config;

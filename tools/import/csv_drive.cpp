@@ -90,6 +90,7 @@ class CsvContent {
     }
     for (auto& [name, series] : series_) series.shift(-begin_);
     for (double& drive : drives_) drive -= begin_;
+    for (recordings::TimedGround& ground : grounds_) ground.time -= begin_;
   }
 
   const Series& of(const std::string& quantity) const {
@@ -100,6 +101,8 @@ class CsvContent {
   double at(const std::string& quantity, double time, double age) const {
     return of(quantity).at(time, age);
   }
+  /// The grounds that the tables name, each where it begins.
+  const std::vector<recordings::TimedGround>& grounds() const { return grounds_; }
   /// Whether another drive begins after one time and not after another.
   bool isApart(double time, double later) const {
     const auto next = std::upper_bound(drives_.begin(), drives_.end(), time);
@@ -139,9 +142,11 @@ class CsvContent {
       });
     };
     sortByTime(rows, "rows of " + file, same, result_);
-    for (const Row& row : rows)
+    for (const Row& row : rows) {
       for (const auto& [quantity, column] : source.columns)
         take(table, row, quantity, column, file);
+      takeGround(table, row, source);
+    }
     if (!rows.empty()) begin_ = std::min(begin_, rows.front().time);
   }
 
@@ -233,9 +238,24 @@ class CsvContent {
     series_[quantity].add(place.time, value, table.line(row));
   }
 
+  /// "ice", or "ice/ice/gravel" where wheels stand on several.
+  void takeGround(const CsvTable& table, const Row& row, const CsvSource& source) {
+    if (source.ground.empty()) return;
+    std::string name = table.text(row.row, source.ground.front()), of_all = name;
+    bool one = true;
+    for (size_t i = 1; i < source.ground.size(); ++i) {
+      const std::string& other = table.text(row.row, source.ground[i]);
+      one = one && other == name;
+      of_all += "/" + other;
+    }
+    if (!one) name = of_all;
+    if (grounds_.empty() || grounds_.back().name != name) grounds_.push_back({row.time, name});
+  }
+
   ForeignDrive& result_;
   std::map<std::string, Series> series_;
   std::map<std::string, std::string> files_;
+  std::vector<recordings::TimedGround> grounds_;
   double silence_;              ///< [s] between the drives of a table
   std::vector<double> drives_;  ///< [s] where drives begin, the first one left out
   double begin_ = std::numeric_limits<double>::max();
@@ -406,6 +426,7 @@ ForeignDrive readMappedCsv(const std::string& path, const CsvMapping& mapping) {
     result.poses = "headings are the course over ground: slip to the side is not in them";
   takePoses(content, mapping, result);
   takeCommands(content, mapping, result.drive);
+  result.drive.grounds = content.grounds();
   if (result.drive.fixes.empty() && result.drive.drive.empty())
     throw RecordingError(path + ": holds neither a pose nor a command that can be used");
   return result;

@@ -51,7 +51,7 @@ const std::map<std::string, Quantity>& quantities() {
 const std::string kCommandOf = "_command";
 
 /// What stands before an ending; nothing where that is not the ending or nothing stands before it.
-std::optional<std::string> before(const std::string& name, const std::string& ending) {
+std::optional<std::string> channelBefore(const std::string& name, const std::string& ending) {
   if (name.size() <= ending.size() ||
       name.compare(name.size() - ending.size(), ending.size(), ending) != 0)
     return std::nullopt;
@@ -67,9 +67,9 @@ std::optional<Quantity> quantityNamed(const std::string& name) {
   const Quantity speed{{{"m/s", 1.0}, {"rad/s", 1.0}, {"rpm", 2.0 * kPi / 60.0}}, 100.0};
   const auto found = quantities().find(name);
   if (found != quantities().end()) return found->second;
-  if (before(name, "_speed")) return speed;
-  if (before(name, "_current")) return Quantity{{{"A", 1.0}, {"mA", 0.001}}, 10'000.0};
-  const std::optional<std::string> channel = before(name, kCommandOf);
+  if (channelBefore(name, "_speed")) return speed;
+  if (channelBefore(name, "_current")) return Quantity{{{"A", 1.0}, {"mA", 0.001}}, 10'000.0};
+  const std::optional<std::string> channel = channelBefore(name, kCommandOf);
   if (!channel) return std::nullopt;
   Quantity command{{{"1", 1.0}, {"percent", 0.01}}, 1.0};
   command.units.insert(command.units.end(), speed.units.begin(), speed.units.end());
@@ -166,6 +166,7 @@ class MappingReader {
     table.flag("decimal_comma", source.layout.decimal_comma);
     readTime(table.section("time", true), source);
     table.text("run", source.run);
+    table.texts("ground", source.ground);
     ConfigReader only = table.section("only");
     for (const std::string& column : only.keys())
       only.numbers(column, source.only[column], 0, {-1e15, 1e15}, "as in the column");
@@ -189,6 +190,7 @@ class MappingReader {
     std::vector<std::string>& names = source.layout.columns;
     if (!source.time.empty()) names.push_back(source.time);
     if (!source.run.empty()) names.push_back(source.run);
+    names.insert(names.end(), source.ground.begin(), source.ground.end());
     for (const auto& [column, numbers] : source.only) names.push_back(column);
     for (const auto& [quantity, column] : source.columns) names.push_back(column.column);
     const auto is_number = [](const std::string& name) { return parseInteger(name).has_value(); };
@@ -223,7 +225,7 @@ class MappingReader {
     if (wheels && wheel_radius_ == 0.0)
       throw section.error("unit", "needs wheel_radius, the metres from axle to rim");
     if (wheels) column.factor *= wheel_radius_;
-    const std::optional<std::string> channel = before(name, kCommandOf);
+    const std::optional<std::string> channel = channelBefore(name, kCommandOf);
     if (!channel) return column;
     const CommandKind kind = kindIn(unit);
     column.limit = kind == CommandKind::kTrackSpeed ? 100.0 : commandLimit(kind);
@@ -287,7 +289,7 @@ class MappingReader {
   /// sides are known without, too.
   void requireChannelOf(const std::string& quantity) const {
     for (const char* ending : {"_speed", "_current"}) {
-      const std::optional<std::string> channel = before(quantity, ending);
+      const std::optional<std::string> channel = channelBefore(quantity, ending);
       require(!channel || isSide(*channel) || mapping_.has(*channel + kCommandOf),
               quantity + ": there is no " + channel.value_or("") + kCommandOf);
     }

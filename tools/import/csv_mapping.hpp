@@ -30,9 +30,10 @@ struct CsvSource {
   std::string time;        ///< column of the time; empty: rows come at `rate`
   double time_unit = 1.0;  ///< [s]
   std::vector<std::string> other_time_units;
-  double time_offset = 0.0;  ///< [s] added, where its clock is another one
-  double rate = 0.0;         ///< [Hz]
-  std::string run;           ///< column: another value begins another drive, with a time of its own
+  double time_offset = 0.0;         ///< [s] added, where its clock is another one
+  double rate = 0.0;                ///< [Hz]
+  std::vector<std::string> ground;  ///< columns that name the ground, one or one for each wheel
+  std::string run;  ///< column: another value begins another drive, with a time of its own
   std::map<std::string, std::vector<double>> only;  ///< columns: rows with other numbers are no
                                                     ///< part of the drive
   std::map<std::string, CsvColumn> columns;         ///< by quantity, see csv_mapping.cpp

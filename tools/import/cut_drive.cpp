@@ -24,7 +24,7 @@ using recordings::kPeriod;
 using recordings::RecordedDrive;
 using recordings::RecordingError;
 
-constexpr double kSame = 1e-6;          // [s]
+constexpr double kSameInstant = 1e-6;   // [s]
 constexpr double kTrackOrigin = 100.0;  // [s] a track has no negative times; a fix may be early
 constexpr double kSameCommand = 1e-4;   // [1] of the largest: what rounding makes of one command
 
@@ -50,7 +50,7 @@ class Cutter {
   }
 
   void cut() {
-    for (const CommandRun& run : drive_.runs) cutRun(run);
+    for (; run_ < drive_.runs.size(); ++run_) cutRun(drive_.runs[run_]);
   }
 
  private:
@@ -64,20 +64,20 @@ class Cutter {
     const double lasts = run.end - run.begin;
     surface_.seconds += lasts;
     const double steady = lasts - layout_.settle;
-    if (steady < layout_.length - kSame)
+    if (steady < layout_.length - kSameInstant)
       return leaveOut("of commands that last for no piece", lasts);
     if (layout_.settle > 0.0) leaveOut("after a change of command", layout_.settle);
-    const auto pieces = static_cast<size_t>(std::floor(steady / layout_.length + kSame));
+    const auto pieces = static_cast<size_t>(std::floor(steady / layout_.length + kSameInstant));
     for (size_t i = 0; i < pieces; ++i)
       cutPiece(run.begin + layout_.settle + static_cast<double>(i) * layout_.length);
     const double rest = steady - static_cast<double>(pieces) * layout_.length;
-    if (rest > kSame) leaveOut("at the end of a command, shorter than a piece", rest);
+    if (rest > kSameInstant) leaveOut("at the end of a command, shorter than a piece", rest);
   }
 
   void cutPiece(double begin) {
     const std::string problem = commandProblem(begin);
     if (!problem.empty()) return leaveOut(problem, layout_.length);
-    CutPiece piece{sampleAt(begin)->command, {}};
+    CutPiece piece{sampleAt(begin)->command, {}, begin, run_};
     const PoseTrack* const track = history_.covering(trackTime(begin));
     const auto at = [&](double time) -> std::optional<Pose2> {
       if (track == nullptr) return std::nullopt;
@@ -98,7 +98,7 @@ class Cutter {
   /// The newest sample at a time.
   std::vector<DriveSample>::const_iterator sampleAt(double time) const {
     const auto after = std::upper_bound(
-        drive_.drive.begin(), drive_.drive.end(), time + kSame,
+        drive_.drive.begin(), drive_.drive.end(), time + kSameInstant,
         [](double instant, const DriveSample& sample) { return instant < sample.time; });
     return after == drive_.drive.begin() ? drive_.drive.end() : std::prev(after);
   }
@@ -112,11 +112,11 @@ class Cutter {
     for (auto sample = first; sample != drive_.drive.end() && sample->time < end; ++sample) {
       if (!sample->automatic) return "driven by the operator";
       if (sample->command != first->command) return "in which the command changes";
-      if (sample->time - last > recordings::kLongestHold + kSame)
+      if (sample->time - last > recordings::kLongestHold + kSameInstant)
         return "with commands that are missing";
       last = sample->time;
     }
-    return begin + layout_.length - last > recordings::kLongestHold + kSame
+    return begin + layout_.length - last > recordings::kLongestHold + kSameInstant
                ? "with commands that are missing"
                : "";
   }
@@ -125,6 +125,7 @@ class Cutter {
   const CutLayout& layout_;
   CutSurface& surface_;
   size_t samples_;
+  size_t run_ = 0;  ///< being cut
   TrackHistory history_{INT64_MAX / 2};
 };
 
@@ -248,7 +249,7 @@ class PatternMaker {
       const bool held = std::all_of(pattern.commands.begin(), pattern.commands.end(),
                                     [&](const Command& u) { return u == pattern.commands[0]; });
       const double lasts = kPeriod * static_cast<double>(pattern.commands.size());
-      if (!held || std::abs(lasts - layout_.length) > kSame)
+      if (!held || std::abs(lasts - layout_.length) > kSameInstant)
         refuse("has a pattern '" + pattern.name + "' that is not one command held for " +
                threeDigits(layout_.length) + " s");
       commands_.push_back(pattern.commands[0]);

@@ -35,6 +35,8 @@ struct CutLayout {
 struct CutPiece {
   Command command;
   recordings::Execution poses;
+  double begin = 0.0;  ///< [s] in its drive
+  size_t run = 0;      ///< index of the command that was held, in the drive's runs
 };
 
 /// A part of a drive that is in no piece.
