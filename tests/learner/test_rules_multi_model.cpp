@@ -175,7 +175,8 @@ TEST_CASE("surfaces do not collapse: eight grounds stay eight, also after a very
           "[statistics]") {
   // Moderate differences, as executions scatter. Measured over 30 seeds: 7.0 remembered, 5.9 of 7
   // told apart when they come back, 13 % taken for the rough one. A narrower expectation of grounds
-  // tells more of such apart (7.6, 6.6, 3 %), and learns grounds that really differ ten times slower.
+  // tells more of such apart (7.6, 6.6, 3 %), and learns grounds that really differ ten times
+  // slower.
   const GroundEffect grounds[] = {{1.0, 1.0, 0.0, 0.0},     {1.05, 1.12, 0.03, 0.0},
                                   {0.95, 0.91, 0.0, 0.012}, {1.0, 1.21, 0.06, 0.0},
                                   {0.91, 1.06, 0.0, 0.0},   {1.09, 0.88, -0.03, 0.0},

@@ -65,7 +65,7 @@ struct ScalingLimits {
   Axes min_box{0.05, 0.02,
                0.03};           ///< [m], [m], [rad]: smaller boxes are noise; their factor stays 1
   double min_box_sigmas = 3.0;  ///< a box must also exceed this many recorded standard deviations
-  double min_factor = 0.5;  ///< [1] limits of each factor of V
+  double min_factor = 0.5;      ///< [1] limits of each factor of V
   double max_factor = 2.0;
 };
 

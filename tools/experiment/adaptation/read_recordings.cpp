@@ -65,7 +65,8 @@ class StepJoiner {
       place(run);
       gap::Segment& segment = segments_.back();
       for (size_t i = sample_; i < samples_end; ++i)
-        segment.commands.push_back({drive_.drive[i].time + shift_, drive_.drive[i].command.tracks()});
+        segment.commands.push_back(
+            {drive_.drive[i].time + shift_, drive_.drive[i].command.tracks()});
       segment.end = segment.commands.back().time + kPeriod;
       const bool ok = ok_.count(run.step) > 0 && ok_[run.step];
       for (size_t i = fix_; i < fixes_end && ok; ++i)
