@@ -30,6 +30,10 @@ constexpr double kSeenThrough = 0.9;
 /// The last good scan tells for so long what must be there [us]; while doubted without end.
 constexpr int64_t kMoment = 600'000;
 
+/// Steeper than this a level range finder looks along the ground: what it sees of a hillside comes
+/// and goes as the robot rolls [rad].
+constexpr double kSteep = 0.25;
+
 /// Good scans are kept every so far [m, rad], and compared with over these distances.
 constexpr double kKeepWay = 0.2;
 constexpr double kKeepTurn = 6.0 / 180.0 * kPi;
@@ -88,6 +92,7 @@ std::optional<ScanSuspicion> ScanMonitor::suspect(const ToldScan& told, const Po
   if (told.scan.beams.empty()) return ScanSuspicion{ScanDefect::kEmpty};
   if (repeats(told)) return ScanSuspicion{ScanDefect::kFrozen};
   if (!level_) return ScanSuspicion{};
+  if (told.scan.T_map_body_last.linear()(2, 2) < std::cos(kSteep)) return std::nullopt;
   return compare(told.scan, poseAt);
 }
 

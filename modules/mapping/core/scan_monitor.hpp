@@ -33,6 +33,7 @@ struct ToldScan {
     A scan that decides nothing, but that most of does not fit or that fits a recent suspicion as
        well, counts for nothing and is compared with no later one for a while: else the first wrong
        scans would vouch for the others.
+    On ground steeper than 0.25 rad only 1. is asked.
     Three scans of the last five make a verdict, one in the minute after another verdict. It stands
     until scans were good for a second; one that sees nothing is none of them. */
 class ScanMonitor {

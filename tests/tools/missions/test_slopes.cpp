@@ -104,12 +104,13 @@ void addTo(MeanError& sum, const MeanError& more) {
 }  // namespace
 
 TEST_CASE("what a slope did is not learned with the gate, and spoils level ground without it") {
+  constexpr uint64_t kSeeds = 4;
   MeanError with[2], without[2];
   int refused = 0;  // and LEARNING says for which slope
-  // On seed 2 the robot stands on the hill, refused, since 2026-11-27.
-  for (const uint64_t seed : {uint64_t{1}, uint64_t{3}}) {
+  for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
     CAPTURE(seed);
     const HillsideDrive drive = driveHillside(seed);
+    INFO(drive.result.reason << "; " << drive.result.executions.size() << " executions");
     CHECK(drive.result.outcome == MissionOutcome::kArrived);
     for (const ScoredExecution& execution : drive.result.executions) {
       if (!(execution.slope > teodor().learner.limits.max_slope)) continue;
@@ -121,12 +122,12 @@ TEST_CASE("what a slope did is not learned with the gate, and spoils level groun
       addTo(without[rule], afterwards(drive.without_gate, rule, 5));
     }
   }
-  CHECK(refused >= 40);
+  CHECK(refused >= 20 * static_cast<int>(kSeeds));
   for (size_t rule = 0; rule < kRules.size(); ++rule) {
     CAPTURE(kRules[rule], with[rule].position, without[rule].position, with[rule].yaw,
             without[rule].yaw);
-    REQUIRE(with[rule].count == 10);
-    REQUIRE(without[rule].count == 10);
+    REQUIRE(with[rule].count == 5 * static_cast<int>(kSeeds));
+    REQUIRE(without[rule].count == 5 * static_cast<int>(kSeeds));
     CHECK(without[rule].position > 1.2 * with[rule].position);
     CHECK(without[rule].yaw > with[rule].yaw);
   }
