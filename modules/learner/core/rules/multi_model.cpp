@@ -203,6 +203,13 @@ void MultiModel::scaleWeights(double total) {
     for (Hypothesis& hypothesis : *hypotheses) hypothesis.weight /= total;
 }
 
+void MultiModel::normalizeWeights() {
+  double total = 0.0;
+  for (auto* hypotheses : {&surfaces_, &fresh_})
+    for (Hypothesis& hypothesis : *hypotheses) total += hypothesis.weight;
+  scaleWeights(total);
+}
+
 void MultiModel::update(const TwistSample& sample) {
   for (Hypothesis& hypothesis : fresh_) hypothesis.surface.add(config_, sample);
   for (Hypothesis& hypothesis : surfaces_) {
@@ -242,10 +249,7 @@ void MultiModel::followScatter(const TwistSample& sample, const Eigen::Vector3d&
 void MultiModel::forgetWeakest() {
   for (auto each = fresh_.begin(); each != fresh_.end();)
     each = each->weight < kLeastHypothesis ? fresh_.erase(each) : each + 1;
-  double total = 0.0;
-  for (auto* hypotheses : {&surfaces_, &fresh_})
-    for (Hypothesis& hypothesis : *hypotheses) total += hypothesis.weight;
-  scaleWeights(total);
+  normalizeWeights();
   while (static_cast<int64_t>(fresh_.size()) > config_.moments) {
     const auto weakest = std::min_element(
         fresh_.begin(), fresh_.end() - 1,
@@ -307,10 +311,7 @@ bool MultiModel::rememberSettled() {
     scaleWeights(left);
   }
   surfaces_.push_back(std::move(likeliest));
-  double total = 0.0;
-  for (auto* hypotheses : {&surfaces_, &fresh_})
-    for (Hypothesis& hypothesis : *hypotheses) total += hypothesis.weight;
-  scaleWeights(total);
+  normalizeWeights();
   return true;
 }
 
@@ -398,20 +399,20 @@ std::string MultiModel::reason(const RuleNote& note) const {
                           : "unknown ground" + sure;
 }
 
-void MultiModel::predict(size_t pattern, Trajectory prediction) const {
+TwistCorrection MultiModel::predicted(size_t pattern) const {
   TwistCorrection correction = expected(model_->whole(pattern));
   const Eigen::Vector2d gains = effects_.gainsNow();
   correction.common[TwistCorrection::kGain] += gains[0];
   correction.common[TwistCorrection::kYaw] += gains[1];
-  model_->profile(pattern).integrate(model_->scale(), correction, prediction);
+  return correction;
+}
+
+void MultiModel::predict(size_t pattern, Trajectory prediction) const {
+  model_->profile(pattern).integrate(model_->scale(), predicted(pattern), prediction);
 }
 
 Pose2 MultiModel::predictEnd(size_t pattern) const {
-  TwistCorrection correction = expected(model_->whole(pattern));
-  const Eigen::Vector2d gains = effects_.gainsNow();
-  correction.common[TwistCorrection::kGain] += gains[0];
-  correction.common[TwistCorrection::kYaw] += gains[1];
-  return model_->profile(pattern).integrateEnd(model_->scale(), correction);
+  return model_->profile(pattern).integrateEnd(model_->scale(), predicted(pattern));
 }
 
 void MultiModel::assign(const LearningRule& other) {

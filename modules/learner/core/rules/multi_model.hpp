@@ -39,11 +39,10 @@ struct Calibration {
  * yaw and residuals less, as those surfaces contradict each other, by the factor (James and Stein)
  *    max(0, 1 - (|m|^2 + sum |x_k - m|^2) / (K (K + 1) |m|^2)),
  * with (2 + K) / (2 + 2 K) of the variances of the scales; the weights of the scales are learned
- * from those surfaces. Fresh ground that proves to be one that is
- * remembered, within half of what one execution tells, is that one. Executions are expected to
- * scatter on new ground as they have so far (Scatter). Effects of slope and battery are subtracted
- * from each execution (ContextEffects); predictions are for level ground and the voltage of the
- * last one.
+ * from those surfaces. A settled fresh ground that differs from a remembered one by less than half
+ * of one execution's deviation is merged with it. Executions are expected to scatter on new ground
+ * as they have so far (Scatter). Effects of slope and battery are subtracted from each execution
+ * (ContextEffects); predictions are for level ground and the voltage of the last one.
  *
  * Predictions are the mixture's mean, (1 - h / 2) sum_i w_i E[x_i] + (h / 2) sum_i pi_i E[x_i] for
  * a pattern in which the ground changes by h. The region of 90 % is found of the mixture itself,
@@ -90,6 +89,7 @@ class MultiModel : public LearningRule {
   void expectChange(double metres);
   void weigh(const TwistSample& sample);
   void scaleWeights(double total);
+  void normalizeWeights();
   void update(const TwistSample& sample);
   const Hypothesis& likeliest() const;
   void followScatter(const TwistSample& sample, const Eigen::Vector3d& effect, const Pose2& end);
@@ -100,6 +100,8 @@ class MultiModel : public LearningRule {
   void mix();
   /// E[x] of a pattern, in which the ground may change, too.
   TwistCorrection expected(const PatternPart& part) const;
+  /// The same at the voltage of the last execution.
+  TwistCorrection predicted(size_t pattern) const;
   bool searching() const;
   Moments region(const PatternPart& part) const;
   void calibrate(const TwistSample& sample);
