@@ -67,6 +67,12 @@ bool ConfigReader::has(const std::string& key) const {
   return level_->find(key) != nullptr;
 }
 
+bool ConfigReader::retired(const std::string& key) {
+  Level::Entry* entry = level_->find(key);
+  if (entry != nullptr) entry->asked = true;
+  return entry != nullptr;
+}
+
 void ConfigReader::number(const std::string& key, double& value, Range range,
                           const std::string& unit, bool required) {
   if (const auto found = level_->ask(key, required)) value = level_->number(*found, range, unit);

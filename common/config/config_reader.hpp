@@ -51,6 +51,9 @@ class ConfigReader {
   ~ConfigReader();
 
   bool has(const std::string& key) const;
+  /// Whether the file has a key of an earlier version, which is read without effect: it is not an
+  /// unknown key, and no message offers it.
+  bool retired(const std::string& key);
   void number(const std::string& key, double& value, Range range, const std::string& unit,
               bool required = false);
   /// A time: `range` and what the file says in seconds, the value in whole microseconds.

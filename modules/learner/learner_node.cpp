@@ -66,7 +66,7 @@ void addRetired(ConfigReader& reader, const char* section_name, const char* cons
                 std::vector<std::string>& lines) {
   ConfigReader section = reader.section(section_name);
   for (const char* key : keys)
-    if (section.has(key))
+    if (section.retired(key))
       lines.emplace_back(section.error(key, "has no effect any more; take it out").what());
 }
 

@@ -74,7 +74,8 @@ std::vector<double> coverageAfterChange(const GroundEffect& ground, int seeds, i
 
 TEST_CASE("a bank of scales predicts as the Gaussian of each scale, weighted by its evidence") {
   using Bank = YawBank;
-  const Bank::Scales scales{{{0.04, 0.01, 0.02}, 1.0, 0.6}, {{0.5, 0.1, 0.02}, 4.0, 0.4}};
+  Bank::Scales scales{{{0.04, 0.01, 0.02}, 1.0, 0.3}, {{0.5, 0.1, 0.02}, 4.0, 0.2}};
+  for (int s = 1; s <= 10; ++s) scales.push_back({{0.01 * s, 0.3 / s, 0.02}, 1.0 + s % 3, 0.05});
   Bank::Grams grams;
   for (size_t b = 0; b < 3; ++b) {
     Eigen::Matrix3d root;
@@ -90,25 +91,35 @@ TEST_CASE("a bank of scales predicts as the Gaussian of each scale, weighted by 
     cross[b] = grams[b].col(0);
     own[b] = grams[b].topLeftCorner<1, 1>();
   }
-  std::array<double, 2> evidence{};
-  std::array<Eigen::Matrix3d, 2> K;
-  for (size_t s = 0; s < 2; ++s) {
+  std::vector<double> evidence(scales.size());
+  std::vector<Eigen::Matrix3d> K(scales.size()), left(scales.size());
+  double total = 0.0;
+  for (size_t s = 0; s < scales.size(); ++s) {
     K[s].setZero();
     for (size_t b = 0; b < 3; ++b) K[s] += scales[s].variance[b] * grams[b];
     const Eigen::Matrix3d S = K[s] + Eigen::Matrix3d((scales[s].noise * noise).asDiagonal());
     evidence[s] =
         scales[s].weight * std::exp(-0.5 * y.dot(S.inverse() * y)) / std::sqrt(S.determinant());
-    K[s] = Eigen::Matrix3d(K[s] * S.inverse());  // what is left of y in the expectation
+    total += evidence[s];
+    const Eigen::Matrix3d gain = K[s] * S.inverse();  // what is left of y in the expectation
+    left[s] = Eigen::Matrix3d(K[s] - gain * K[s]);
+    K[s] = gain;
   }
   const auto predicted = bank.predict(cross, own, 0.0);
-  REQUIRE(predicted.size() == 2);
+  REQUIRE(predicted.size() == scales.size());
   double mean = 0.0;
-  for (size_t s = 0; s < 2; ++s) {
-    REQUIRE(predicted[s].weight == Approx(evidence[s] / (evidence[0] + evidence[1])));
+  for (size_t s = 0; s < scales.size(); ++s) {
+    REQUIRE(predicted[s].weight == Approx(evidence[s] / total));
     REQUIRE(predicted[s].mean[0] == Approx((K[s] * y)[0]));
-    REQUIRE(predicted[s].covariance(0, 0) > 0.0);
+    REQUIRE(predicted[s].covariance(0, 0) == Approx(left[s](0, 0)));
     REQUIRE(predicted[s].noise == scales[s].noise);
     mean += predicted[s].weight * predicted[s].mean[0];
+  }
+  const Eigen::VectorXd doubt = bank.doubt(noise, 0.0);
+  for (int i = 0; i < 3; ++i) {
+    double variance = 0.0;
+    for (size_t s = 0; s < scales.size(); ++s) variance += predicted[s].weight * left[s](i, i);
+    REQUIRE(doubt[i] == Approx(variance));
   }
   double by_alpha = 0.0;
   for (size_t b = 0; b < 3; ++b) by_alpha += cross[b].col(0).dot(bank.meanAlpha(b));

@@ -179,6 +179,17 @@ TEST_CASE("a key that the rule does not read is a warning that names the rules t
   CHECK(read("rule: off\nmemory: 0.3\n").warnings.size() == 1);
 }
 
+TEST_CASE("a key of an earlier version is read without effect, and a warning says so") {
+  const std::string retired = "scaling: {min_turn: 0.05}\nground: {recorded: 0.2, far: 3.0}\n";
+  const auto config = read("rule: collective\n" + retired);
+  CHECK(config.effective() == read("rule: collective\nscaling: {}\nground: {}\n").effective());
+  REQUIRE(config.warnings.size() == 4);
+  CHECK(config.warnings[1] ==
+        "learner.yaml:4: scaling.min_turn: has no effect any more; take it out");
+  CHECK_THROWS_WITH(read("scaling: {min_turns: 0.05}\n"),
+                    !Catch::Contains("is min_turn meant"));
+}
+
 TEST_CASE("the effective configuration is itself YAML and names the shipped set") {
   const std::string text = read("").effective();
   REQUIRE(text.find("shipped_set: teodor\n") == 0);

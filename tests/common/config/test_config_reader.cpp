@@ -128,6 +128,20 @@ TEST_CASE("the effective configuration holds the defaults, in the order of askin
   CHECK(reader.effective() == "a: 0.1\nb: 3\nempty:\n  {}\n");
 }
 
+TEST_CASE("a retired key is no unknown key, and no message or effective text names it") {
+  ConfigReader reader = ConfigReader::fromText("old: 3\nold_section: {}\nnew: 1\n", "a.yaml");
+  double value = 0.0;
+  reader.number("new", value, {0.0, 5.0}, "1");
+  CHECK(reader.retired("old"));
+  CHECK(reader.retired("old_section"));
+  CHECK_FALSE(reader.retired("older"));
+  CHECK_NOTHROW(reader.finish());
+  CHECK(reader.effective() == "new: 1\n");
+  ConfigReader other = ConfigReader::fromText("olf: 3\n", "a.yaml");
+  other.retired("old");
+  CHECK_THROWS_WITH(other.finish(), !Catch::Contains("old"));
+}
+
 TEST_CASE("keys come in the order of the file, so that a map's keys may be names") {
   ConfigReader reader = ConfigReader::fromText("zebra: {w: 1}\nant: {w: 2}\n", "a");
   REQUIRE(reader.keys() == std::vector<std::string>{"zebra", "ant"});

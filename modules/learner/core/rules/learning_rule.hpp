@@ -79,7 +79,7 @@ void readScaling(Reader& reader, RuleConfig& rule) {
   section.numbers("min_box", box, 3, {0.001, 1.0}, "m, m, rad");
   limits.min_box = {box[0], box[1], box[2]};
   section.number("min_box_sigmas", limits.min_box_sigmas, {0.0, 10.0}, "1");
-  for (const char* key : kRetiredScalingKeys) section.has(key);
+  for (const char* key : kRetiredScalingKeys) section.retired(key);
   section.number("min_factor", limits.min_factor, {0.1, 1.0}, "1");
   section.number("max_factor", limits.max_factor, {1.0, 10.0}, "1");
   section.number("sign_sigmas", rule.sign_sigmas, {0.0, 10.0}, "1");
@@ -111,7 +111,7 @@ void readGround(Reader& reader, GroundConfig& ground) {
   section.number("longest_memory", ground.longest_memory, {10.0, 1e6}, "1");
   section.integer("moments", ground.moments, {3, 64}, "1");
   section.integer("capacity", ground.capacity, {1, GroundConfig::kMostSurfaces}, "1");
-  for (const char* key : kRetiredGroundKeys) section.has(key);
+  for (const char* key : kRetiredGroundKeys) section.retired(key);
 }
 
 template <class Reader>

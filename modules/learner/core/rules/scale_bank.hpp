@@ -12,7 +12,9 @@ namespace tread::learner {
 /// A regression whose width is not known: of each of several scales one, weighted by its evidence.
 /** Measured are means y of kAxes numbers each, y ~ N(0, sum_b s_b G_b + N), G_b the Gram matrix of
  * the b-th kind of spread, s_b what a scale says of it, N the (diagonal) noise. With K the sum of a
- * scale, its weight is its prior weight times N(y; 0, K + N); predictions are the mixture. */
+ * scale, its weight is its prior weight times N(y; 0, K + N); predictions are the mixture.
+ * Scales are computed eight at a time, one in each lane of an array: the systems are small, and one
+ * after the other they cost four times as much. */
 template <int kAxes, int kKinds>
 class ScaleBank {
  public:
@@ -28,8 +30,9 @@ class ScaleBank {
   using Blocks = std::array<Block, kKinds>;
   using Vector = Eigen::Matrix<double, kAxes, 1>;
 
-  explicit ScaleBank(const Scales& scales) : scales_(scales) {}
+  explicit ScaleBank(const Scales& scales);
 
+  /// Reads the lower triangles of the Gram matrices only.
   void regress(const Grams& grams, const Eigen::VectorXd& y, const Eigen::VectorXd& noise);
 
   /// What one scale expects to be added to a mean.
@@ -56,20 +59,28 @@ class ScaleBank {
     return mean;
   }
   /// Weights of the scales.
-  double weight(size_t scale) const {
-    return each_.empty() ? scales_[scale].weight : each_[scale].weight;
-  }
+  double weight(size_t scale) const { return weights_[static_cast<Eigen::Index>(scale)]; }
   const Scales& scales() const { return scales_; }
 
  private:
-  struct One {
-    Eigen::MatrixXd factor;  ///< lower triangle: L of K + N = L L'
-    Eigen::VectorXd alpha;   ///< (K + N)^-1 y
-    double weight = 0.0;
+  static constexpr Eigen::Index kLanes = 8;
+  using Lanes = Eigen::Array<double, kLanes, 1>;
+  /// Eight scales.
+  struct Chunk {
+    std::array<Lanes, kKinds> variance;
+    Lanes noise;
+    std::vector<Lanes> factor;  ///< of K + N = L L': rows of L, the diagonal inverted
+    std::vector<Lanes> alpha;   ///< (K + N)^-1 y
   };
+  void decompose(Chunk& chunk, const Grams& grams, const Eigen::VectorXd& noise) const;
+  /// Sets alpha; returns the logarithm of N(y; 0, K + N) without its constant.
+  Lanes solve(Chunk& chunk, const Eigen::VectorXd& y) const;
+  bool counts(size_t chunk, double least) const;
 
   Scales scales_;
-  std::vector<One> each_;
+  Eigen::ArrayXd weights_;
+  std::vector<Chunk> chunks_;
+  Eigen::Index measured_ = 0;  ///< numbers that were measured
   std::array<Eigen::VectorXd, kKinds> mean_alpha_;
 };
 

@@ -20,15 +20,24 @@ constexpr double kLeastInNoise = 0.03;
 /// No ground's corrections are beyond this.
 constexpr double kLargestCorrection = 1e9;
 
-/// Logarithm of Student's density of y: centre 0, scale matrix, degrees of freedom.
+/// Logarithm of Student's density about 0.
 template <int kAxes>
-double logStudent(const Eigen::Matrix<double, kAxes, 1>& y,
-                  const Eigen::Matrix<double, kAxes, kAxes>& scale, double freedom) {
-  const double half = 0.5 * (freedom + kAxes);
-  return std::lgamma(half) - std::lgamma(0.5 * freedom) - 0.5 * kAxes * std::log(freedom * kPi) -
-         0.5 * std::log(scale.determinant()) -
-         half * std::log1p(y.dot(scale.inverse() * y) / freedom);
-}
+class LogStudent {
+ public:
+  explicit LogStudent(double freedom)
+      : freedom_(freedom),
+        constant_(std::lgamma(0.5 * (freedom + kAxes)) - std::lgamma(0.5 * freedom) -
+                  0.5 * kAxes * std::log(freedom * kPi)) {}
+  double operator()(const Eigen::Matrix<double, kAxes, 1>& y,
+                    const Eigen::Matrix<double, kAxes, kAxes>& scale) const {
+    return constant_ - 0.5 * std::log(scale.determinant()) -
+           0.5 * (freedom_ + kAxes) * std::log1p(y.dot(scale.inverse() * y) / freedom_);
+  }
+
+ private:
+  double freedom_;
+  double constant_;
+};
 
 /// Of a mixture, log sum exp, and moments.
 class LogSum {
@@ -253,18 +262,20 @@ double Surface::logDensity(const TwistSample& sample, const Eigen::Vector3d& ret
   Eigen::Vector3d noise = returned;
   for (Eigen::Index axis = 0; axis < 3; ++axis) noise[axis] += noise_[axis] * R(part, axis);
   LogSum velocity, yaw;
+  const LogStudent<2> of_velocity(certainty_[0] + certainty_[1]);
+  const LogStudent<1> of_yaw(2.0 * certainty_[2]);
   for (const auto& scale : posterior_->velocity.predict(
            velocityCross(part), model_->velocity(part, part), kLeastInDensity)) {
     const Eigen::Matrix2d spread =
         scale.covariance + Eigen::Matrix2d((scale.noise * noise.head<2>()).asDiagonal());
     velocity.add(std::log(scale.weight) +
-                 logStudent<2>(y.head<2>() - scale.mean, spread, certainty_[0] + certainty_[1]));
+                 of_velocity(y.head<2>() - scale.mean, spread));
   }
   for (const auto& scale :
        posterior_->yaw.predict(yawCross(part), model_->yaw(part, part), kLeastInDensity))
     yaw.add(std::log(scale.weight) +
-            logStudent<1>(One(y[2] - scale.mean[0]),
-                          One(scale.covariance[0] + scale.noise * noise[2]), 2.0 * certainty_[2]));
+            of_yaw(One(y[2] - scale.mean[0]),
+                   One(scale.covariance[0] + scale.noise * noise[2])));
   return velocity.value() + yaw.value();
 }
 
