@@ -185,7 +185,7 @@ TEST_CASE("a key of an earlier version is read without effect, and a warning say
   CHECK(config.effective() == read("rule: collective\nscaling: {}\nground: {}\n").effective());
   REQUIRE(config.warnings.size() == 4);
   CHECK(config.warnings[1] ==
-        "learner.yaml:4: scaling.min_turn: has no effect any more; take it out");
+        "learner.yaml:3: scaling.min_turn: has no effect any more; take it out");
   CHECK_THROWS_WITH(read("scaling: {min_turns: 0.05}\n"),
                     !Catch::Contains("is min_turn meant"));
 }

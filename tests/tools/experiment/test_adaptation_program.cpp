@@ -68,7 +68,7 @@ TEST_CASE("on real drives the default rule is better than no learning and holds 
   }
   Settings settings;
   settings.rules = {kOff, kJudged, "slip"};
-  settings.starts = 60;
+  settings.starts = 120;
   settings.threads = 2;
   const Recordings found = readRecordings(drive);
   const Errors errors = runAdaptation(found.sessions, settings, nullptr);

@@ -112,7 +112,7 @@ TEST_CASE("cells of two seeds differ beyond their joint interval as seldom as it
   // leave out a pattern, so that repetitions of one run are alike.
   const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
   ExperimentSettings settings = smallSettings();
-  settings.rules = {"single", "collective_home", "multi_model_home", "multi_model_remembered"};
+  settings.rules = {"single", "collective_home", "multi_model_home"};
   settings.repetitions = 200;
   settings.excitations = 20;
   settings.excitation = 6;

@@ -24,7 +24,7 @@ struct TwistNoise {
   double yaw = 0.08;       ///< [1] of |omega|
   double turning = 0.05;   ///< [m] of |omega|, added to the first two: where it turns about
   double wander = 0.005;   ///< [rad/m] of |v_x|, added to the third: the course is not kept
-  double lag = 0.10;       ///< [s] of the change of each velocity inside, over the time it took
+  double lag = 0.15;       ///< [s] of the change of each velocity inside, over the time it took
   double shape = 0.02;     ///< [1] of the way: where it ends apart from what its mean twist says
   double position = 0.01;  ///< [m] of a measured end, added to the first two over the time it took
   double heading = 0.01;   ///< [rad] the same, added to the third
@@ -37,7 +37,7 @@ struct GroundConfig {
   TwistNoise noise;               ///< expected where nothing was recorded
   double lever = 0.3;             ///< [m] half the gauge: turning against driving
   double noise_prior = 5.0;       ///< [1] executions that the expected noise counts for
-  double most_freedom = 40.0;     ///< [1] of Student's t: even a known surface has tails
+  double most_freedom = 12.0;      ///< [1] of Student's t: even a known surface has tails
   double change_prior = 10.0;     ///< [1] changes that the expected way to the next one counts for
   double change_metres = 10.0;    ///< [m] mean way to the next change of ground
   double fresh = 0.5;             ///< [1] probability that a change leads to ground not met before

@@ -81,14 +81,20 @@ void ScaleBank<kAxes, kKinds>::decompose(Chunk& chunk, const Grams& grams,
 
 template <int kAxes, int kKinds>
 auto ScaleBank<kAxes, kKinds>::solve(Chunk& chunk, const Eigen::VectorXd& y) const -> Lanes {
+  constexpr Eigen::Index kTogether = 8;  // factors of a product that is far from the largest number
   Lanes log = Lanes::Zero();
+  Lanes product = Lanes::Ones();
   for (Eigen::Index i = 0; i < measured_; ++i) {
     const Lanes* const L = &chunk.factor[row(i)];
     Lanes sum = Lanes::Constant(y[i]);
     for (Eigen::Index k = 0; k < i; ++k) sum -= L[k] * chunk.alpha[static_cast<size_t>(k)];
     sum *= L[i];
     chunk.alpha[static_cast<size_t>(i)] = sum;
-    log += L[i].log() - 0.5 * sum.square();
+    log -= 0.5 * sum.square();
+    product *= L[i];
+    if ((i + 1) % kTogether != 0 && i + 1 != measured_) continue;
+    log += product.log();
+    product.setOnes();
   }
   for (Eigen::Index i = measured_ - 1; i >= 0; --i) {
     const Lanes* const L = &chunk.factor[row(i)];

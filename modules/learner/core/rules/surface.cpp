@@ -3,7 +3,6 @@
 #include "modules/learner/core/rules/surface.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include <Eigen/LU>
 
@@ -20,38 +19,36 @@ constexpr double kLeastInNoise = 0.03;
 /// No ground's corrections are beyond this.
 constexpr double kLargestCorrection = 1e9;
 
-/// Logarithm of Student's density about 0.
+/// Logarithm of the density of a mixture of Student's t with the same degrees of freedom.
 template <int kAxes>
-class LogStudent {
+class LogMixture {
  public:
-  explicit LogStudent(double freedom)
+  LogMixture(double freedom, size_t components)
       : freedom_(freedom),
-        constant_(std::lgamma(0.5 * (freedom + kAxes)) - std::lgamma(0.5 * freedom) -
-                  0.5 * kAxes * std::log(freedom * kPi)) {}
-  double operator()(const Eigen::Matrix<double, kAxes, 1>& y,
-                    const Eigen::Matrix<double, kAxes, kAxes>& scale) const {
-    return constant_ - 0.5 * std::log(scale.determinant()) -
-           0.5 * (freedom_ + kAxes) * std::log1p(y.dot(scale.inverse() * y) / freedom_);
+        size_(static_cast<Eigen::Index>(components)),
+        square_(size_),
+        squared_peak_(size_) {}
+  /// `y` from its centre, `scale` its scale matrix.
+  void add(double weight, const Eigen::Matrix<double, kAxes, 1>& y,
+           const Eigen::Matrix<double, kAxes, kAxes>& scale) {
+    square_[at_] = y.dot(scale.inverse() * y);
+    squared_peak_[at_++] = weight * weight / scale.determinant();
+  }
+  double value() const {
+    const double half = 0.5 * (freedom_ + kAxes);
+    const Eigen::ArrayXd logs =
+        0.5 * squared_peak_.log() - half * (1.0 + square_ / freedom_).log();
+    const double highest = logs.maxCoeff();
+    return std::lgamma(half) - std::lgamma(0.5 * freedom_) -
+           0.5 * kAxes * std::log(freedom_ * kPi) + highest + std::log((logs - highest).exp().sum());
   }
 
  private:
   double freedom_;
-  double constant_;
-};
-
-/// Of a mixture, log sum exp, and moments.
-class LogSum {
- public:
-  void add(double log) {
-    const double high = std::max(highest_, log);
-    sum_ = sum_ * std::exp(highest_ - high) + std::exp(log - high);
-    highest_ = high;
-  }
-  double value() const { return highest_ + std::log(sum_); }
-
- private:
-  double highest_ = -std::numeric_limits<double>::max();
-  double sum_ = 0.0;
+  Eigen::Index size_;
+  Eigen::Index at_ = 0;
+  Eigen::ArrayXd square_;        ///< y' scale^-1 y
+  Eigen::ArrayXd squared_peak_;  ///< weight^2 / det(scale)
 };
 
 template <int kAxes>
@@ -261,21 +258,20 @@ double Surface::logDensity(const TwistSample& sample, const Eigen::Vector3d& ret
   const Eigen::Vector3d y = sample.deviation() - expectation_.centre.added(part);
   Eigen::Vector3d noise = returned;
   for (Eigen::Index axis = 0; axis < 3; ++axis) noise[axis] += noise_[axis] * R(part, axis);
-  LogSum velocity, yaw;
-  const LogStudent<2> of_velocity(certainty_[0] + certainty_[1]);
-  const LogStudent<1> of_yaw(2.0 * certainty_[2]);
-  for (const auto& scale : posterior_->velocity.predict(
-           velocityCross(part), model_->velocity(part, part), kLeastInDensity)) {
+  const auto velocities = posterior_->velocity.predict(
+      velocityCross(part), model_->velocity(part, part), kLeastInDensity);
+  LogMixture<2> velocity(certainty_[0] + certainty_[1], velocities.size());
+  for (const auto& scale : velocities) {
     const Eigen::Matrix2d spread =
         scale.covariance + Eigen::Matrix2d((scale.noise * noise.head<2>()).asDiagonal());
-    velocity.add(std::log(scale.weight) +
-                 of_velocity(y.head<2>() - scale.mean, spread));
+    velocity.add(scale.weight, y.head<2>() - scale.mean, spread);
   }
-  for (const auto& scale :
-       posterior_->yaw.predict(yawCross(part), model_->yaw(part, part), kLeastInDensity))
-    yaw.add(std::log(scale.weight) +
-            of_yaw(One(y[2] - scale.mean[0]),
-                   One(scale.covariance[0] + scale.noise * noise[2])));
+  const auto turns =
+      posterior_->yaw.predict(yawCross(part), model_->yaw(part, part), kLeastInDensity);
+  LogMixture<1> yaw(2.0 * certainty_[2], turns.size());
+  for (const auto& scale : turns)
+    yaw.add(scale.weight, One(y[2] - scale.mean[0]),
+            One(scale.covariance[0] + scale.noise * noise[2]));
   return velocity.value() + yaw.value();
 }
 
