@@ -13,6 +13,8 @@ namespace {
 
 /// What weighs less adds nothing to a region [1].
 constexpr double kLeastWeight = 1e-4;
+/// Of the scales of a ground [1].
+constexpr double kLeastInRegion = 0.01;
 /// Most probable change ahead that a region counts [1]: what is rarer than one in ten lies outside
 /// of 90 % anyway.
 constexpr double kRegionHazard = 0.03;
@@ -54,6 +56,43 @@ double quantileOf(const std::vector<Distance>& distances) {
   return std::exp(low);
 }
 
+/// One hypothesis of ground, about the mixture's mean.
+struct Component {
+  double weight;
+  Moments moments;
+  Eigen::Matrix3d square() const {
+    return moments.covariance + moments.mean * moments.mean.transpose();
+  }
+  Distance from(const Eigen::Matrix3d& inverse) const {
+    const Eigen::Vector3d& d = moments.mean;
+    const Eigen::Matrix3d share = inverse * moments.covariance;
+    const Eigen::Vector3d scaled = inverse * d;
+    return {weight, share.trace() + d.dot(scaled),
+            2.0 * (share * share).trace() + 4.0 * scaled.dot(moments.covariance * scaled)};
+  }
+};
+
+/// Covariance of the nearest components that weigh 90 % together. Sorts them.
+Eigen::Matrix3d shapeOf(std::vector<Component>& components) {
+  Eigen::Matrix3d all = Eigen::Matrix3d::Zero();
+  for (const Component& component : components) all += component.weight * component.square();
+  const Eigen::Matrix3d inverse = all.inverse();
+  const auto distance = [&](const Component& component) {
+    return (inverse * component.square()).trace();
+  };
+  std::sort(components.begin(), components.end(), [&](const Component& a, const Component& b) {
+    return distance(a) < distance(b);
+  });
+  double weight = 0.0;
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const Component& component : components) {
+    if (weight >= kLevel) break;
+    weight += component.weight;
+    sum += component.weight * component.square();
+  }
+  return sum / weight;
+}
+
 PoseCovariance upperTriangle(const Eigen::Matrix3d& c) {
   return {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)};
 }
@@ -74,20 +113,16 @@ bool MultiModel::searching() const {
 }
 
 /// Mean of the mixture, and a covariance whose ellipsoid of 90 % holds the next execution in 90 %.
+/** Its shape is that of the components that make up the 90 %: what is rare and far, as new ground
+ * ahead is, would stretch it along the way that new ground is unsure of. */
 Moments MultiModel::region(const PatternPart& part) const {
-  struct Component {
-    double weight;
-    Moments moments;
-  };
   const double h = std::min(hazard(part.metres), kRegionHazard);
   std::vector<Component> components;
-  double total = 0.0;
   const auto put = [&](double weight, const Surface& surface) {
     if (weight < kLeastWeight) return;
-    Moments moments = surface.expected(part);
+    Moments moments = surface.expected(part, kLeastInRegion);
     moments.covariance.diagonal() += surface.executionNoise(part);
     components.push_back({weight, moments});
-    total += weight;
   };
   for (const Hypothesis& known : surfaces_)
     put((1.0 - h) * known.weight +
@@ -96,22 +131,16 @@ Moments MultiModel::region(const PatternPart& part) const {
   for (const Hypothesis& fresh : fresh_) put((1.0 - h) * fresh.weight, fresh.surface);
   put(h * config_.fresh, new_);
   Moments all{expected(part).added(part), Eigen::Matrix3d::Zero()};
+  double total = 0.0;
   for (Component& component : components) {
-    component.weight /= total;
+    total += component.weight;
     component.moments.mean -= all.mean;
-    const Eigen::Vector3d& d = component.moments.mean;
-    all.covariance += component.weight * (component.moments.covariance + d * d.transpose());
   }
+  for (Component& component : components) component.weight /= total;
+  all.covariance = shapeOf(components);
   const Eigen::Matrix3d inverse = all.covariance.inverse();
   std::vector<Distance> distances;
-  for (const Component& component : components) {
-    const Eigen::Vector3d& d = component.moments.mean;
-    const Eigen::Matrix3d share = inverse * component.moments.covariance;
-    const Eigen::Vector3d scaled = inverse * d;
-    distances.emplace_back(
-        component.weight, share.trace() + d.dot(scaled),
-        2.0 * (share * share).trace() + 4.0 * scaled.dot(component.moments.covariance * scaled));
-  }
+  for (const Component& component : components) distances.push_back(component.from(inverse));
   const Calibration& calibration = searching() ? searching_ : calm_;
   all.covariance *= quantileOf(distances) / kQuantile * std::exp(2.0 * calibration.log_factor);
   return all;

@@ -12,8 +12,7 @@ namespace tread::learner {
 namespace {
 
 constexpr double kLargestTwist = 100.0;
-/// What weighs less adds nothing: to moments, to a density, to the noise [1].
-constexpr double kLeastInMoments = 1e-3;
+/// What weighs less adds nothing: to a density, to the noise [1].
 constexpr double kLeastInDensity = 1e-6;
 constexpr double kLeastInNoise = 0.03;
 /// No ground's corrections are beyond this.
@@ -275,14 +274,14 @@ double Surface::logDensity(const TwistSample& sample, const Eigen::Vector3d& ret
   return velocity.value() + yaw.value();
 }
 
-Moments Surface::expected(const PatternPart& part) const {
+Moments Surface::expected(const PatternPart& part, double least) const {
   MomentSum<2> velocity;
   MomentSum<1> yaw;
   for (const auto& scale : posterior_->velocity.predict(
-           velocityCross(part), model_->velocity(part, part), kLeastInMoments))
+           velocityCross(part), model_->velocity(part, part), least))
     velocity.add(scale.weight, scale.mean, scale.covariance);
   for (const auto& scale :
-       posterior_->yaw.predict(yawCross(part), model_->yaw(part, part), kLeastInMoments))
+       posterior_->yaw.predict(yawCross(part), model_->yaw(part, part), least))
     yaw.add(scale.weight, scale.mean, scale.covariance);
   Moments moments{expectation_.centre.added(part), Eigen::Matrix3d::Zero()};
   moments.mean.head<2>() += velocity.mean / velocity.total;

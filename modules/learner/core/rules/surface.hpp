@@ -22,6 +22,8 @@ inline bool isCount(double number, double most) {
   return number >= 0.0 && number <= most && number == std::floor(number);
 }
 
+/// What weighs less adds nothing to moments [1].
+inline constexpr double kLeastInMoments = 1e-3;
 /// Nothing is that much calmer or rougher than expected: factors on variances [1].
 inline constexpr double kLeastNoise = 0.05;
 inline constexpr double kMostNoise = 50.0;
@@ -89,7 +91,8 @@ class Surface {
   /// Logarithm of the density of an execution; `returned`: variance beyond that, of each axis.
   double logDensity(const TwistSample& sample, const Eigen::Vector3d& returned) const;
   /// Of the mean twist's correction, of which one execution scatters by executionNoise().
-  Moments expected(const PatternPart& part) const;
+  /** Scales that weigh less than `least` do not count. */
+  Moments expected(const PatternPart& part, double least = kLeastInMoments) const;
   /// Variance of one execution's mean twist, along, across and of yaw.
   Eigen::Vector3d executionNoise(const PatternPart& part) const;
   /// E[(z - m - h' x)^2] of an execution over the model's noise.

@@ -132,7 +132,10 @@ bool NodeChecker::freeFromParent(const SearchNode& parent, SearchNode& node) con
     return true;
   }
   node.uncertainty = uncertaintyAfter(parent, *node.by);
-  const int wanted = onBranch(parent) ? CollisionChecker::kCheck : around.level(node.uncertainty);
+  // A later pattern is planned again from where the one before it really ends: it needs the room
+  // that it needs as the next one.
+  const Uncertainty& off = parent.depth == 0 ? node.uncertainty : node.by->uncertainty;
+  const int wanted = onBranch(parent) ? CollisionChecker::kCheck : around.level(off);
   if (around.sweepFree(parent.pose(), *node.by, wanted)) {
     node.level = static_cast<int8_t>(wanted);
     return true;
