@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include <chrono>
+#include <algorithm>
+#include <ctime>
 #include <limits>
 #include <string>
 
@@ -124,26 +125,30 @@ TEST_CASE("What could not be read again is not written") {
   CHECK_FALSE(std::filesystem::exists(folder.path("b")));
 }
 
-TEST_CASE(
-    "Recordings of four surfaces, five patterns and 300 executions are read within a second") {
+TEST_CASE("Four times as many recordings take about four times as long to read") {
   const Folder folder;
   std::vector<MotionPattern> patterns;
   for (int id = 1; id <= 5; ++id)
     patterns.push_back(
         samples::pattern(id, "pattern_" + std::to_string(id), {0.5, 0.0, 0.1 * id}, 20));
-  PatternRecordings recorded{samples::setOf(patterns), {}};
-  for (const char* surface : {"a", "b", "c", "d"})
-    recorded.surfaces.push_back(samples::scattered(recorded.patterns, surface, 300, 1));
-  writeRecordings(folder.path(), recorded);
-  const auto begin = std::chrono::steady_clock::now();
-  const PatternRecordings read = readRecordings(folder.path());
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-  CHECK(read.surfaces[3].executions[4].size() == 300);
-#ifndef TREAD_INSTRUMENTED
-  CHECK(took.count() < 1.0);
-#endif
-  INFO("120000 poses read in " << took.count() << " s");
-  CHECK(took.count() < 20.0);
+  for (const int executions : {75, 300}) {
+    PatternRecordings recorded{samples::setOf(patterns), {}};
+    for (const char* surface : {"a", "b", "c", "d"})
+      recorded.surfaces.push_back(samples::scattered(recorded.patterns, surface, executions, 1));
+    writeRecordings(folder.path(std::to_string(executions)), recorded);
+  }
+  // Processor time; the shortest of some is the least disturbed one.
+  const auto reading = [&](size_t executions) {
+    double shortest = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 5; ++i) {
+      const std::clock_t begin = std::clock();
+      const PatternRecordings read = readRecordings(folder.path(std::to_string(executions)));
+      shortest = std::min(shortest, static_cast<double>(std::clock() - begin));
+      CHECK(read.surfaces[3].executions[4].size() == executions);
+    }
+    return shortest;
+  };
+  CHECK(reading(300) < 12.0 * reading(75));  // measured 5 to 6; squared it were 16
 }
 
 TEST_CASE("A file is written whole or not at all, through links and into pipes") {
