@@ -60,7 +60,8 @@ learning_t reportOf(const execution_record_t& record, Rule rule) {
   return message;
 }
 
-/// One line for each key of a section that was given and that no rule reads any more.
+/// One line for each key of a section that was given and that no rule reads any more. It counts as
+/// read.
 template <size_t kCount>
 void addRetired(ConfigReader& reader, const char* section_name, const char* const (&keys)[kCount],
                 std::vector<std::string>& lines) {

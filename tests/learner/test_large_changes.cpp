@@ -71,59 +71,96 @@ std::vector<double> coverageAfterChange(const GroundEffect& ground, int seeds, i
   return held;
 }
 
+/// One scale of a bank, computed as the formulas stand.
+struct PlainScale {
+  double evidence;
+  Eigen::MatrixXd K;     ///< of what was measured, without noise
+  Eigen::MatrixXd left;  ///< covariance of what was measured, once it was measured
+  Eigen::VectorXd mean;
+};
+
+template <class Bank>
+PlainScale plainScale(const typename Bank::Scale& scale, const typename Bank::Grams& grams,
+                      const Eigen::VectorXd& y, const Eigen::VectorXd& noise) {
+  PlainScale plain;
+  plain.K = scale.variance[0] * grams[0];
+  for (size_t b = 1; b < grams.size(); ++b) plain.K += scale.variance[b] * grams[b];
+  const Eigen::MatrixXd S = plain.K + Eigen::MatrixXd((scale.noise * noise).asDiagonal());
+  plain.evidence =
+      scale.weight * std::exp(-0.5 * y.dot(S.inverse() * y)) / std::sqrt(S.determinant());
+  const Eigen::MatrixXd gain = plain.K * S.inverse();
+  plain.left = plain.K - gain * plain.K;
+  plain.mean = gain * y;
+  return plain;
+}
+
 }  // namespace
 
-TEST_CASE("a bank of scales predicts as the Gaussian of each scale, weighted by its evidence") {
-  using Bank = YawBank;
-  Bank::Scales scales{{{0.04, 0.01, 0.02}, 1.0, 0.3}, {{0.5, 0.1, 0.02}, 4.0, 0.2}};
-  for (int s = 1; s <= 10; ++s) scales.push_back({{0.01 * s, 0.3 / s, 0.02}, 1.0 + s % 3, 0.05});
-  Bank::Grams grams;
-  for (size_t b = 0; b < 3; ++b) {
-    Eigen::Matrix3d root;
-    root << 1.0, 0.2 * double(b), 0.1, 0.5, 0.7, 0.3, 0.2, 0.4, 1.1 - 0.3 * double(b);
-    grams[b] = root * root.transpose();
+TEMPLATE_TEST_CASE("a bank of scales predicts as the Gaussian of each, weighted by its evidence",
+                   "", VelocityBank, YawBank) {
+  using Bank = TestType;
+  constexpr Eigen::Index kAxes = Bank::Block::RowsAtCompileTime;
+  constexpr Eigen::Index kMeasured = 12;  // more than are multiplied before a logarithm
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  const auto drawn = [&](Eigen::Index rows, Eigen::Index columns) {
+    return Eigen::MatrixXd::NullaryExpr(rows, columns, [&](auto...) { return normal(random); });
+  };
+  typename Bank::Scales scales;
+  constexpr int kScales = 21;  // the last eight are not full
+  for (int s = 0; s < kScales; ++s) {
+    typename Bank::Scale scale;
+    for (double& variance : scale.variance) variance = 0.002 * std::exp(normal(random) + 0.3 * s);
+    scale.noise = 1.0 + s % 3;
+    scale.weight = 1.0 / kScales;
+    scales.push_back(scale);
   }
-  const Eigen::Vector3d y(0.5, -0.2, 0.4), noise(0.02, 0.03, 0.05);
+  typename Bank::Grams grams;
+  typename Bank::Cross cross;
+  typename Bank::Blocks own;
+  for (size_t b = 0; b < grams.size(); ++b) {
+    const Eigen::MatrixXd root = drawn(kMeasured, kMeasured + 2);
+    grams[b] = root * root.transpose() / 10.0;
+    cross[b] = grams[b].template leftCols<kAxes>();
+    own[b] = grams[b].template topLeftCorner<kAxes, kAxes>();
+  }
+  const Eigen::VectorXd y = 0.4 * drawn(kMeasured, 1);
+  const Eigen::VectorXd noise = drawn(kMeasured, 1).array().square() * 0.05 + 0.02;
   Bank bank(scales);
   bank.regress(grams, y, noise);
-  Bank::Cross cross;
-  Bank::Blocks own;
-  for (size_t b = 0; b < 3; ++b) {
-    cross[b] = grams[b].col(0);
-    own[b] = grams[b].topLeftCorner<1, 1>();
-  }
-  std::vector<double> evidence(scales.size());
-  std::vector<Eigen::Matrix3d> K(scales.size()), left(scales.size());
+  std::vector<PlainScale> plain;
   double total = 0.0;
-  for (size_t s = 0; s < scales.size(); ++s) {
-    K[s].setZero();
-    for (size_t b = 0; b < 3; ++b) K[s] += scales[s].variance[b] * grams[b];
-    const Eigen::Matrix3d S = K[s] + Eigen::Matrix3d((scales[s].noise * noise).asDiagonal());
-    evidence[s] =
-        scales[s].weight * std::exp(-0.5 * y.dot(S.inverse() * y)) / std::sqrt(S.determinant());
-    total += evidence[s];
-    const Eigen::Matrix3d gain = K[s] * S.inverse();  // what is left of y in the expectation
-    left[s] = Eigen::Matrix3d(K[s] - gain * K[s]);
-    K[s] = gain;
+  for (const auto& scale : scales) {
+    plain.push_back(plainScale<Bank>(scale, grams, y, noise));
+    total += plain.back().evidence;
   }
-  const auto predicted = bank.predict(cross, own, 0.0);
-  REQUIRE(predicted.size() == scales.size());
-  double mean = 0.0;
-  for (size_t s = 0; s < scales.size(); ++s) {
-    REQUIRE(predicted[s].weight == Approx(evidence[s] / total));
-    REQUIRE(predicted[s].mean[0] == Approx((K[s] * y)[0]));
-    REQUIRE(predicted[s].covariance(0, 0) == Approx(left[s](0, 0)));
-    REQUIRE(predicted[s].noise == scales[s].noise);
-    mean += predicted[s].weight * predicted[s].mean[0];
+  for (const double least : {0.0, 0.01, 0.1}) {
+    CAPTURE(least);
+    const auto predicted = bank.predict(cross, own, least);
+    auto next = predicted.begin();
+    double counted = 0.0;
+    Eigen::VectorXd variance = Eigen::VectorXd::Zero(kMeasured);
+    for (size_t s = 0; s < scales.size(); ++s) {
+      const double weight = plain[s].evidence / total;
+      if (weight < least) continue;
+      REQUIRE(next != predicted.end());
+      REQUIRE(next->weight == Approx(weight));
+      REQUIRE(next->noise == scales[s].noise);
+      REQUIRE((next->mean - plain[s].mean.template head<kAxes>()).norm() < 1e-9);
+      REQUIRE((next->covariance - plain[s].left.template topLeftCorner<kAxes, kAxes>()).norm() <
+              1e-9);
+      variance += weight * plain[s].left.diagonal();
+      counted += weight;
+      ++next;
+    }
+    REQUIRE(next == predicted.end());
+    REQUIRE(counted > 0.0);
+    REQUIRE((least == 0.0) == (predicted.size() == scales.size()));
+    REQUIRE((bank.doubt(noise, least) - variance / counted).norm() < 1e-9);
   }
-  const Eigen::VectorXd doubt = bank.doubt(noise, 0.0);
-  for (int i = 0; i < 3; ++i) {
-    double variance = 0.0;
-    for (size_t s = 0; s < scales.size(); ++s) variance += predicted[s].weight * left[s](i, i);
-    REQUIRE(doubt[i] == Approx(variance));
-  }
-  double by_alpha = 0.0;
-  for (size_t b = 0; b < 3; ++b) by_alpha += cross[b].col(0).dot(bank.meanAlpha(b));
+  double mean = 0.0, by_alpha = 0.0;
+  for (const PlainScale& scale : plain) mean += scale.evidence / total * scale.mean[0];
+  for (size_t b = 0; b < grams.size(); ++b) by_alpha += cross[b].col(0).dot(bank.meanAlpha(b));
   REQUIRE(by_alpha == Approx(mean));
 }
 
@@ -198,7 +235,8 @@ TEST_CASE("new ground that may lie ahead does not stretch a region along the way
     // The largest deviation in any direction over that of executions there.
     const double over = std::sqrt((scatter.inverse() * stated).eigenvalues().real().maxCoeff());
     CAPTURE(p, over);
-    // Measured 1.04 to 1.12; with new ground in its shape 1.21 to 1.36.
+    // Measured .91 to 1.12; with new ground in its shape 1.21 to 1.36.
+    REQUIRE(over > 0.85);
     REQUIRE(over < 1.18);
   }
 }

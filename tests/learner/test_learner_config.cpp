@@ -186,8 +186,7 @@ TEST_CASE("a key of an earlier version is read without effect, and a warning say
   REQUIRE(config.warnings.size() == 4);
   CHECK(config.warnings[1] ==
         "learner.yaml:3: scaling.min_turn: has no effect any more; take it out");
-  CHECK_THROWS_WITH(read("scaling: {min_turns: 0.05}\n"),
-                    !Catch::Contains("is min_turn meant"));
+  CHECK_THROWS_WITH(read("scaling: {min_turns: 0.05}\n"), !Catch::Contains("is min_turn meant"));
 }
 
 TEST_CASE("the effective configuration is itself YAML and names the shipped set") {

@@ -112,6 +112,7 @@ TEST_CASE("cells of two seeds differ beyond their joint interval as seldom as it
   // leave out a pattern, so that repetitions of one run are alike.
   const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
   ExperimentSettings settings = smallSettings();
+  // `multi_model_remembered` would double the time and shares all that is tested with `_home`.
   settings.rules = {"single", "collective_home", "multi_model_home"};
   settings.repetitions = 200;
   settings.excitations = 20;

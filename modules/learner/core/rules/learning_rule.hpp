@@ -37,7 +37,7 @@ struct GroundConfig {
   TwistNoise noise;               ///< expected where nothing was recorded
   double lever = 0.3;             ///< [m] half the gauge: turning against driving
   double noise_prior = 5.0;       ///< [1] executions that the expected noise counts for
-  double most_freedom = 12.0;      ///< [1] of Student's t: even a known surface has tails
+  double most_freedom = 12.0;     ///< [1] of Student's t: even a known surface has tails
   double change_prior = 10.0;     ///< [1] changes that the expected way to the next one counts for
   double change_metres = 10.0;    ///< [m] mean way to the next change of ground
   double fresh = 0.5;             ///< [1] probability that a change leads to ground not met before
@@ -66,7 +66,8 @@ struct RuleConfig {
 // The keys of learner.yaml, a section for each kind of rule. The reader is a ConfigReader; a core
 // does not know it by name.
 
-/// Keys that files of earlier versions have, and the configurations in their logs; without effect.
+/// Keys that files of earlier versions have, and the configurations in their logs. The learner
+/// reads them without effect; readRules() leaves them unknown.
 inline constexpr const char* kRetiredScalingKeys[] = {"min_turn", "min_length"};
 inline constexpr const char* kRetiredGroundKeys[] = {
     "recorded", "common", "vehicle", "residual", "shared", "shipped_spread", "far", "ahead"};
@@ -79,7 +80,6 @@ void readScaling(Reader& reader, RuleConfig& rule) {
   section.numbers("min_box", box, 3, {0.001, 1.0}, "m, m, rad");
   limits.min_box = {box[0], box[1], box[2]};
   section.number("min_box_sigmas", limits.min_box_sigmas, {0.0, 10.0}, "1");
-  for (const char* key : kRetiredScalingKeys) section.retired(key);
   section.number("min_factor", limits.min_factor, {0.1, 1.0}, "1");
   section.number("max_factor", limits.max_factor, {1.0, 10.0}, "1");
   section.number("sign_sigmas", rule.sign_sigmas, {0.0, 10.0}, "1");
@@ -111,7 +111,6 @@ void readGround(Reader& reader, GroundConfig& ground) {
   section.number("longest_memory", ground.longest_memory, {10.0, 1e6}, "1");
   section.integer("moments", ground.moments, {3, 64}, "1");
   section.integer("capacity", ground.capacity, {1, GroundConfig::kMostSurfaces}, "1");
-  for (const char* key : kRetiredGroundKeys) section.retired(key);
 }
 
 template <class Reader>

@@ -46,8 +46,9 @@ struct Calibration {
  *
  * Predictions are the mixture's mean, (1 - h / 2) sum_i w_i E[x_i] + (h / 2) sum_i pi_i E[x_i] for
  * a pattern in which the ground changes by h. The region of 90 % is found of the mixture itself,
- * with a change at most so probable that a region of 90 % could hold it, and follows how often it
- * held, apart while it knows the ground and while it searches. */
+ * with a change at most so probable that a region of 90 % could hold it; its shape is that of the
+ * nearest hypotheses that weigh 90 % together. It follows how often it held, apart while it knows
+ * the ground and while it searches. */
 class MultiModel : public LearningRule {
  public:
   MultiModel(const RuleConfig& config, const PatternSet& shipped);

@@ -13,7 +13,7 @@ namespace {
 
 /// What weighs less adds nothing to a region [1].
 constexpr double kLeastWeight = 1e-4;
-/// Of the scales of a ground [1].
+/// Scales of a ground that weigh less add nothing to its region either [1].
 constexpr double kLeastInRegion = 0.01;
 /// Most probable change ahead that a region counts [1]: what is rarer than one in ten lies outside
 /// of 90 % anyway.
@@ -26,7 +26,7 @@ constexpr double kCalibrationStep = 0.03;
 /// So probable must young ground be, for the rule to be searching [1].
 constexpr double kSearching = 0.3;
 
-/// d2 of a component about the mixture's mean, in the mixture's covariance: a gamma of its mean and
+/// d2 of a component about the mixture's mean, in the region's shape: a gamma of its mean and
 /// variance (Wilson-Hilferty), so that a 90 % quantile can be found.
 class Distance {
  public:
@@ -36,9 +36,8 @@ class Distance {
     slope_ = steep / std::cbrt(mean);
     offset_ = steep * (1.0 - 1.0 / (9.0 * k));
   }
-  double below(double root) const {
-    return weight_ * 0.5 * std::erfc(offset_ - slope_ * root);
-  }
+  /// Share of the mixture that this component adds below the cube of `root`.
+  double below(double root) const { return weight_ * 0.5 * std::erfc(offset_ - slope_ * root); }
 
  private:
   double weight_, slope_, offset_;  ///< of the cube root of d2, over the deviation times sqrt(2)
@@ -80,9 +79,8 @@ Eigen::Matrix3d shapeOf(std::vector<Component>& components) {
   const auto distance = [&](const Component& component) {
     return (inverse * component.square()).trace();
   };
-  std::sort(components.begin(), components.end(), [&](const Component& a, const Component& b) {
-    return distance(a) < distance(b);
-  });
+  std::sort(components.begin(), components.end(),
+            [&](const Component& a, const Component& b) { return distance(a) < distance(b); });
   double weight = 0.0;
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const Component& component : components) {
@@ -114,7 +112,7 @@ bool MultiModel::searching() const {
 
 /// Mean of the mixture, and a covariance whose ellipsoid of 90 % holds the next execution in 90 %.
 /** Its shape is that of the components that make up the 90 %: what is rare and far, as new ground
- * ahead is, would stretch it along the way that new ground is unsure of. */
+ * ahead is, would stretch it in the direction in which new ground is least sure. */
 Moments MultiModel::region(const PatternPart& part) const {
   const double h = std::min(hazard(part.metres), kRegionHazard);
   std::vector<Component> components;

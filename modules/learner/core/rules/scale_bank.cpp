@@ -108,7 +108,7 @@ auto ScaleBank<kAxes, kKinds>::solve(Chunk& chunk, const Eigen::VectorXd& y) con
 template <int kAxes, int kKinds>
 bool ScaleBank<kAxes, kKinds>::counts(size_t chunk, double least) const {
   const Eigen::Index begin = static_cast<Eigen::Index>(chunk) * kLanes;
-  return weights_.segment(begin, std::min(kLanes, weights_.size() - begin)).maxCoeff() >= least;
+  return !(weights_.segment(begin, std::min(kLanes, weights_.size() - begin)).maxCoeff() < least);
 }
 
 template <int kAxes, int kKinds>

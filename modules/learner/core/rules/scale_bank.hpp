@@ -42,7 +42,7 @@ class ScaleBank {
     Block covariance;
     double noise;  ///< [1] factor on the noise of what is measured
   };
-  /// Of each scale that weighs more than `least`; `cross` to what was measured, `own` of the mean.
+  /// Of each scale that weighs at least `least`; `cross` to what was measured, `own` of the mean.
   std::vector<Predicted> predict(const Cross& cross, const Blocks& own, double least) const;
 
   /// Variance of what was added to each measured mean, known with the noise that was given.

@@ -35,11 +35,11 @@ class LogMixture {
   }
   double value() const {
     const double half = 0.5 * (freedom_ + kAxes);
-    const Eigen::ArrayXd logs =
-        0.5 * squared_peak_.log() - half * (1.0 + square_ / freedom_).log();
+    const Eigen::ArrayXd logs = 0.5 * squared_peak_.log() - half * (1.0 + square_ / freedom_).log();
     const double highest = logs.maxCoeff();
     return std::lgamma(half) - std::lgamma(0.5 * freedom_) -
-           0.5 * kAxes * std::log(freedom_ * kPi) + highest + std::log((logs - highest).exp().sum());
+           0.5 * kAxes * std::log(freedom_ * kPi) + highest +
+           std::log((logs - highest).exp().sum());
   }
 
  private:
@@ -277,11 +277,10 @@ double Surface::logDensity(const TwistSample& sample, const Eigen::Vector3d& ret
 Moments Surface::expected(const PatternPart& part, double least) const {
   MomentSum<2> velocity;
   MomentSum<1> yaw;
-  for (const auto& scale : posterior_->velocity.predict(
-           velocityCross(part), model_->velocity(part, part), least))
-    velocity.add(scale.weight, scale.mean, scale.covariance);
   for (const auto& scale :
-       posterior_->yaw.predict(yawCross(part), model_->yaw(part, part), least))
+       posterior_->velocity.predict(velocityCross(part), model_->velocity(part, part), least))
+    velocity.add(scale.weight, scale.mean, scale.covariance);
+  for (const auto& scale : posterior_->yaw.predict(yawCross(part), model_->yaw(part, part), least))
     yaw.add(scale.weight, scale.mean, scale.covariance);
   Moments moments{expectation_.centre.added(part), Eigen::Matrix3d::Zero()};
   moments.mean.head<2>() += velocity.mean / velocity.total;

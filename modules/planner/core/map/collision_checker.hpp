@@ -17,7 +17,7 @@ namespace tread::planner {
 struct Margins {
   double check = 0.03;    ///< when what is already under way is checked again
   double plan = 0.05;     ///< when the next pattern is chosen
-  double growth = 0.5;    ///< [1] of the standard deviation of where a pattern ends
+  double growth = 0.5;    ///< [1] of the standard deviation of where the pattern ends
   double largest = 0.09;  ///< never more than this, so that narrow gaps stay open
   double regain =
       0.08;  ///< [1] where the vehicle begins with less, it must keep so much more per metre

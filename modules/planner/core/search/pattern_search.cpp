@@ -93,7 +93,6 @@ void PatternSearch::beginAgain(const SearchWeights& weights) {
   root.sin_yaw = static_cast<float>(std::sin(problem.T_map_start.yaw));
   root.parent = -1;
   root.number = -1;
-  root.uncertainty = problem.start_uncertainty;
   root.motion_class = static_cast<int8_t>(problem.start_class);
   if (problem.rules == nullptr) {
     const CollisionChecker& around = *problem.collision_checker;

@@ -46,7 +46,7 @@ class StateGrid {
  * and class the cheapest is kept; a pattern too short to leave its cell is repeated. It takes the
  * other's place while that one waits, and joins it when that one has been expanded.
  *  2. A node is made only if its pattern's sweep is free, with a margin that grows with the
- * uncertainty gathered, and if, unless at rest, a pattern to stop is free from there. So whatever
+ * pattern's uncertainty, and if, unless at rest, a pattern to stop is free from there. So whatever
  * is returned can stop after each of its patterns.
  *  3. Cost is time and penalties; the admissible heuristic is the distance to the goal at the least
  * cost of a metre, and the turn to the goal's heading at the least cost of a radian.

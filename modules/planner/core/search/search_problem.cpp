@@ -101,14 +101,17 @@ CostModel::Heuristic CostModel::heuristic(const SearchNode& node, bool on_blocke
   return {bound, weights_.heuristic * expected + weights_.turn * radian_cost_[1] * turn};
 }
 
-Uncertainty NodeChecker::uncertaintyAfter(const SearchNode& parent,
-                                          const TablePattern& pattern) const {
+int NodeChecker::levelOf(const SearchNode& parent, const TablePattern& pattern) const {
+  const CollisionChecker& around = *problem_->collision_checker;
+  if (onBranch(parent)) return CollisionChecker::kCheck;
+  if (parent.depth > 0) return around.level(pattern.uncertainty);
   const Eigen::Vector2d step = pattern.end().pose.position();
   const auto x = static_cast<float>(step.x());
   const auto y = static_cast<float>(step.y());
   const float c = parent.cos_yaw;
   const float s = parent.sin_yaw;
-  return compose(parent.uncertainty, pattern.uncertainty, c * x - s * y, s * x + c * y, c, s);
+  return around.level(compose(problem_->start_uncertainty, pattern.uncertainty, c * x - s * y,
+                              s * x + c * y, c, s));
 }
 
 bool NodeChecker::admit(const SearchNode& parent, SearchNode& node) const {
@@ -127,15 +130,10 @@ bool NodeChecker::freeFromParent(const SearchNode& parent, SearchNode& node) con
     const std::optional<Overlap> left = around.escape(parent.plainPose(), parent.overlap, *node.by);
     if (!left) return false;
     node.overlap = *left;
-    node.uncertainty = uncertaintyAfter(parent, *node.by);
     node.level = static_cast<int8_t>(around.freeLevel(node.plainPose(), CollisionChecker::kPlan));
     return true;
   }
-  node.uncertainty = uncertaintyAfter(parent, *node.by);
-  // A later pattern is planned again from where the one before it really ends: it needs the room
-  // that it needs as the next one.
-  const Uncertainty& off = parent.depth == 0 ? node.uncertainty : node.by->uncertainty;
-  const int wanted = onBranch(parent) ? CollisionChecker::kCheck : around.level(off);
+  const int wanted = levelOf(parent, *node.by);
   if (around.sweepFree(parent.pose(), *node.by, wanted)) {
     node.level = static_cast<int8_t>(wanted);
     return true;

@@ -40,7 +40,7 @@ struct SearchConfig {
   double top_speed = kNoLimit;  ///< [m/s] faster patterns are not used, but those that stop
   int improvements = 0;         ///< more searches after the first plan, each for a better one; the
                                 ///< last has weight 1 and ends when there is none
-  size_t most_nodes = 6'000'000;  ///< [1] of 112 bytes each; a search that needs more is cut off
+  size_t most_nodes = 6'000'000;  ///< [1] of 88 bytes each; a search that needs more is cut off
 };
 
 /// Rules of another planner that replace footprint, margins and penalties (see tools/plan).
@@ -136,10 +136,9 @@ struct SearchNode {
   int16_t depth;
   int16_t on_plan;  // patterns in common with the committed plan; -1 = left it
   int8_t motion_class;
-  int8_t repeats;           // of the pattern that led here
-  int8_t level;             // margin with which its end is free; -1 while on blocked ground
-  Overlap overlap;          // on blocked ground
-  Uncertainty uncertainty;  // in map axes
+  int8_t repeats;   // of the pattern that led here
+  int8_t level;     // margin with which its end is free; -1 while on blocked ground
+  Overlap overlap;  // on blocked ground
 
   TurnedPose pose() const {
     return {x, y, static_cast<double>(cos_yaw), static_cast<double>(sin_yaw)};
@@ -225,7 +224,11 @@ class NodeChecker {
  private:
   bool freeFromParent(const SearchNode& parent, SearchNode& node) const;
   bool canStop(const SearchNode& node) const;
-  Uncertainty uncertaintyAfter(const SearchNode& parent, const TablePattern& pattern) const;
+  /// Level of margin for a pattern: that of its own uncertainty and, where it is the next one, of
+  /// its start's.
+  /** What the patterns before a later one will be off by is known when it becomes the next one; it
+   * is planned again then, from where they led. */
+  int levelOf(const SearchNode& parent, const TablePattern& pattern) const;
 
   const SearchProblem* problem_ = nullptr;
   int escape_patterns_ = 0;
