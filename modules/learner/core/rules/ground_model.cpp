@@ -31,9 +31,6 @@ constexpr double kLeastTurn = 0.2;
 /// A correction beyond these is none that ground makes; predictions stay drivable.
 constexpr double kLargestFactor = 3.0;
 constexpr double kLargestBias = 0.5;  // [rad/m]
-constexpr double kLargestLag = 0.5;   // [s]
-/// How much of what a set's lags may be wrong by changes from execution to execution [1].
-constexpr double kLagNoise = 0.3;
 
 /// sin(x) / x and cos(x); the series are exact to 1e-16 where they are used.
 struct HalfTurn {
@@ -71,10 +68,9 @@ Eigen::Vector3d sampleMotion(const Pose2& from, const Pose2& to) {
   return {arc_over_chord * (c * dx + s * dy), arc_over_chord * (c * dy - s * dx), 2.0 * half};
 }
 
-/// Change of a sample's twist per unit of each correction; `change` is what became of the twist
-/// since the sample before, per second.
+/// Change of a sample's twist per unit of each correction.
 struct Response {
-  Response(const BodyScale& scale, const Eigen::Vector3d& twist, const Eigen::Vector3d& change) {
+  Response(const BodyScale& scale, const Eigen::Vector3d& twist) {
     const Eigen::Vector2d V = twist.head<2>();
     const Eigen::Vector2d left(-V[1], V[0]);  // J V
     const double w = twist[2];
@@ -90,8 +86,7 @@ struct Response {
     const double moves = std::hypot(speed, kTurnMoves * scale.speed / scale.turn * w);
     own.col(0) = moves * scale.axis;
     own.col(1) = moves * Eigen::Vector2d(-scale.axis[1], scale.axis[0]);
-    velocity.col(TwistCorrection::kLag) = -change.head<2>();
-    yaw << w, w * speed / scale.speed, V[0], V[1], -change[2];
+    yaw << w, w * speed / scale.speed, V[0], V[1];
     yaw_own = w;
     bias_own = speed;
   }
@@ -157,7 +152,7 @@ PatternPart TwistProfile::part(const BodyScale& scale, Eigen::Index samples) con
   part.yaw.setZero();
   const double share = 1.0 / static_cast<double>(samples);
   for (size_t t = 0; t < static_cast<size_t>(samples); ++t) {
-    const Response response(scale, twists_[t], (twists_[t] - twists_[t > 0 ? t - 1 : 0]) / period_);
+    const Response response(scale, twists_[t]);
     part.mean += share * twists_[t];
     part.velocity += share * response.velocity;
     part.own += share * response.own;
@@ -177,17 +172,6 @@ PatternPart TwistProfile::part(const BodyScale& scale, Eigen::Index samples) con
   return part;
 }
 
-/// What a velocity was some samples before, held at both ends.
-double TwistProfile::laterBy(double samples, size_t t, Eigen::Index axis) const {
-  if (samples == 0.0) return twists_[t][axis];
-  const double at =
-      std::clamp(static_cast<double>(t) - samples, 0.0, static_cast<double>(twists_.size() - 1));
-  const auto before = static_cast<size_t>(at);
-  const size_t after = std::min(before + 1, twists_.size() - 1);
-  return twists_[before][axis] +
-         (at - static_cast<double>(before)) * (twists_[after][axis] - twists_[before][axis]);
-}
-
 template <typename Put>
 Pose2 TwistProfile::walk(const BodyScale& scale, const TwistCorrection& x, Put&& put) const {
   const auto& c = x.common;
@@ -205,12 +189,10 @@ Pose2 TwistProfile::walk(const BodyScale& scale, const TwistCorrection& x, Put&&
   const Eigen::Vector2d own(scale.axis[0] * r_along - scale.axis[1] * r_across,
                             scale.axis[1] * r_along + scale.axis[0] * r_across);
   const double turn = scale.speed / scale.turn;
-  const double late = within(c[TwistCorrection::kLag], kLargestLag) / period_;
-  const double late_turn = within(c[TwistCorrection::kYawLag], kLargestLag) / period_;
   Pose2 at;
   double c_at = 1.0, s_at = 0.0;  // of at.yaw, turned along instead of computed anew
   for (size_t t = 0; t < twists_.size(); ++t) {
-    const double v = laterBy(late, t, 0), s = laterBy(late, t, 1), w = laterBy(late_turn, t, 2);
+    const double v = twists_[t][0], s = twists_[t][1], w = twists_[t][2];
     const double speed = std::sqrt(v * v + s * s);
     const double gain = std::clamp(
         1.0 + c[TwistCorrection::kGain] - c[TwistCorrection::kTurnLoss] * std::abs(w) / scale.turn,
@@ -279,9 +261,8 @@ GroundModel::GroundModel(const GroundConfig& config, const PatternSet& shipped)
   fillAlike();
   const double shear = kShearSpread * scale_.isotropy;
   const double bias = 1.0;
-  const double lag = config.noise.lag;
   spread_ << 1.0, kCrabSpread, shear, shear, kTurnLossSpread, kSideslipSpread, kShiftSpread,
-      kShiftSpread, lag, 1.0, kYawBySpeedSpread, bias, bias, lag;
+      kShiftSpread, 1.0, kYawBySpeedSpread, bias, bias;
   spread_ = spread_.cwiseAbs2().eval();
 }
 
@@ -314,10 +295,10 @@ PatternPart GroundModel::part(size_t pattern, Eigen::Index samples) const {
   const double moved = squared(noise_.position / seconds) + squared(noise_.turning * part.turning);
   Eigen::Matrix3d to_path = Eigen::Matrix3d::Identity();
   to_path.topLeftCorner<2, 2>() = part.to_path;
-  // A profile that comes later by dt loses dt of its change.
+  // A profile that comes later by dt loses dt of its change: no gain of ground explains that.
   const Eigen::Vector3d change =
       profile.twists()[static_cast<size_t>(samples - 1)] - profile.twists().front();
-  const Eigen::Vector3d late = kLagNoise * noise_.lag / seconds * (to_path * change);
+  const Eigen::Vector3d late = noise_.lag / seconds * (to_path * change);
   const Eigen::Vector3d expected =
       Eigen::Vector3d(squared(noise_.forward * part.speed) + moved,
                       squared(noise_.lateral * part.speed) + moved,
@@ -379,13 +360,11 @@ double entry(const Eigen::MatrixXd& matrix, const PatternPart& a, const PatternP
 }  // namespace
 
 VelocityBank::Blocks GroundModel::velocity(const PatternPart& a, const PatternPart& b) const {
-  constexpr int kLag = TwistCorrection::kLag;
   const Eigen::Vector2d alike(entry(alike_[TwistCorrection::kAlong], a, b),
                               entry(alike_[TwistCorrection::kAcross], a, b));
-  return {a.velocity.leftCols<kLag>() * spread_.head<kLag>().asDiagonal() *
-              b.velocity.leftCols<kLag>().transpose(),
-          a.own * alike.asDiagonal() * b.own.transpose(),
-          spread_[kLag] * a.velocity.col(kLag) * b.velocity.col(kLag).transpose()};
+  return {
+      a.velocity * spread_.head<TwistCorrection::kVelocity>().asDiagonal() * b.velocity.transpose(),
+      a.own * alike.asDiagonal() * b.own.transpose()};
 }
 
 double GroundModel::biasApart() const {
@@ -399,8 +378,7 @@ YawBank::Blocks GroundModel::yaw(const PatternPart& a, const PatternPart& b) con
           a.yaw[1] * b.yaw[1] * spread_[TwistCorrection::kYawBySpeed]),
       One(a.yaw[2] * b.yaw[2] + a.yaw[3] * b.yaw[3] +
           biasApart() * a.bias_own * b.bias_own * entry(alike_[TwistCorrection::kBiasOwn], a, b)),
-      One(a.yaw_own * b.yaw_own * entry(alike_[TwistCorrection::kYawOwn], a, b)),
-      One(spread_[TwistCorrection::kYawLag] * a.yaw[4] * b.yaw[4])};
+      One(a.yaw_own * b.yaw_own * entry(alike_[TwistCorrection::kYawOwn], a, b))};
 }
 
 }  // namespace tread::learner

@@ -38,13 +38,11 @@ struct PatternPart;
  * the turn by 90 degrees, B = [[b1, b2], [b2, -b1]]:
  *    V' = V (1 + a - tau |w|/w_ref) + J V (c + kappa w/w_ref) + B V + (v_ref/w_ref) w e + o A r
  *    w' = w (1 + g + eta |V|/v_ref + r_g) + b . V + |V| r_b
- * with V(t - l) for V(t) and w(t - l_w) for w(t): the vehicle, or this ground, follows later than
- * the set's did by the lags l and l_w [s]. a gain, c crab, b1 and b2 shear, tau turn loss, kappa
- * sideslip, e shift of the point about which it turns, g yaw gain, eta yaw gain by speed, all [1],
- * b yaw bias [rad/m] are common to all patterns; r [1], along and across the set's axis A, r_g [1]
- * and r_b [rad/m] are the pattern's own; o = hypot(|V|, v_ref |w| / (2 w_ref)). No term knows which
- * way is forward: in a frame that is turned everything turns along. Predictions are kept within
- * what ground can do. */
+ * a gain, c crab, b1 and b2 shear, tau turn loss, kappa sideslip, e shift of the point about which
+ * it turns, g yaw gain, eta yaw gain by speed, all [1], b yaw bias [rad/m] are common to all
+ * patterns; r [1], along and across the set's axis A, r_g [1] and r_b [rad/m] are the pattern's
+ * own; o = hypot(|V|, v_ref |w| / (2 w_ref)). No term knows which way is forward: in a frame that
+ * is turned everything turns along. Predictions are kept within what ground can do. */
 struct TwistCorrection {
   enum Common {
     kGain,
@@ -55,15 +53,13 @@ struct TwistCorrection {
     kSideslip,
     kShiftX,
     kShiftY,
-    kLag,
     kYaw,
     kYawBySpeed,
     kBiasX,
     kBiasY,
-    kYawLag,
     kCommon
   };
-  static constexpr int kVelocity = 9;  ///< of them act on V, the others on w
+  static constexpr int kVelocity = 8;  ///< of them act on V, the others on w
   static constexpr int kTurning = kCommon - kVelocity;
   enum Own { kAlong, kAcross, kYawOwn, kBiasOwn, kOwn };
 
@@ -120,7 +116,6 @@ class TwistProfile {
   const std::vector<Eigen::Vector3d>& twists() const { return twists_; }
 
  private:
-  double laterBy(double samples, size_t t, Eigen::Index axis) const;
   template <typename Put>
   Pose2 walk(const BodyScale& scale, const TwistCorrection& correction, Put&& put) const;
 
@@ -160,8 +155,8 @@ class GroundModel {
 
   /// Share of the variance of yaw bias by which patterns differ in it [1].
   double biasApart() const;
-  /// Variances of the common corrections on a ground of scale 1 (velocity and yaw gains, lags), and
-  /// of yaw bias 1 rad/m.
+  /// Variances of the common corrections on a ground of scale 1 (velocity and yaw gains), and of
+  /// yaw bias 1 rad/m.
   const Eigen::Matrix<double, TwistCorrection::kCommon, 1>& spread() const { return spread_; }
 
  private:

@@ -84,9 +84,9 @@ class ScaleBank {
   std::array<Eigen::VectorXd, kKinds> mean_alpha_;
 };
 
-/// Gain, residuals and lag of the velocity.
-using VelocityBank = ScaleBank<2, 3>;
-/// Gain, bias, residuals and lag of the turn rate.
-using YawBank = ScaleBank<1, 4>;
+/// Gain and residuals of the velocity.
+using VelocityBank = ScaleBank<2, 2>;
+/// Gain, bias and residuals of the turn rate.
+using YawBank = ScaleBank<1, 3>;
 
 }  // namespace tread::learner

@@ -200,8 +200,6 @@ void Surface::correct() {
   const Eigen::VectorXd& yaw = posterior_->yaw.meanAlpha(0);
   const Eigen::VectorXd& bias = posterior_->yaw.meanAlpha(1);
   const Eigen::VectorXd& yaw_own = posterior_->yaw.meanAlpha(2);
-  const Eigen::VectorXd& lag = posterior_->velocity.meanAlpha(2);
-  const Eigen::VectorXd& yaw_lag = posterior_->yaw.meanAlpha(3);
   Eigen::Matrix<double, TwistCorrection::kCommon, 1> common;
   common.setZero();
   const double bias_apart = model_->biasApart();
@@ -209,12 +207,10 @@ void Surface::correct() {
     const auto at = static_cast<Eigen::Index>(i);
     const PatternPart& part = measured_[i].part;
     const auto column = static_cast<Eigen::Index>(part.pattern);
-    constexpr int kLag = TwistCorrection::kLag;
-    common.head<kLag>() += part.velocity.leftCols<kLag>().transpose() * gain.segment<2>(2 * at);
-    common[kLag] += part.velocity.col(kLag).dot(lag.segment<2>(2 * at));
+    common.head<TwistCorrection::kVelocity>() +=
+        part.velocity.transpose() * gain.segment<2>(2 * at);
     common.segment<2>(TwistCorrection::kYaw) += part.yaw.head<2>().transpose() * yaw[at];
-    common.segment<2>(TwistCorrection::kBiasX) += part.yaw.segment<2>(2).transpose() * bias[at];
-    common[TwistCorrection::kYawLag] += part.yaw[4] * yaw_lag[at];
+    common.tail<2>() += part.yaw.tail<2>().transpose() * bias[at];
     const Eigen::Vector2d towards = part.own.transpose() * own.segment<2>(2 * at);
     for (int k = 0; k < 2; ++k)
       correction_.own.row(k) +=
@@ -366,7 +362,7 @@ bool Surface::restore(const GroundConfig& config, const std::vector<double>& mem
   SurfacePrior& e = expectation_;
   const size_t numbers =
       static_cast<size_t>(e.centre.common.size() + e.centre.own.size() + e.scatter.size() + 5) +
-      5 * e.velocity.size() + 6 * e.yaw.size();
+      4 * e.velocity.size() + 5 * e.yaw.size();
   if (memory.size() < at + numbers) return false;
   const auto take = [&](auto& matrix) {
     for (double& number : matrix.reshaped()) number = memory[at++];
