@@ -205,3 +205,30 @@ TEST_CASE(
     }
   }
 }
+
+TEST_CASE(
+    "A pattern asks for the room of its own uncertainty, the next one for its start's as well") {
+  // A corridor that leaves 0.25 m on both sides. "ahead" ends 0.3 m off: 0.2 m of room are asked
+  // for.
+  Playground ground;
+  for (const double y : {-0.69, 0.69}) ground.addWall({1.0, y}, {12.0, y}, 0.2);
+  const Grid grid = ground.paint(0.05, {-3.2, -3.2}, {12.8, 3.2});
+  constexpr int kAhead = 1;
+  Margins margins;
+  margins.largest = 0.45;
+  PatternSetContent content = latticePatterns().content();
+  content.patterns[0].end_covariance = {0.09, 0.0, 0.0, 0.09, 0.0, 0.0};
+  std::string why;
+  const auto set = PatternSet::make(std::move(content), why);
+  REQUIRE(set);
+  const SearchBench bench(grid, *set, {1, {8.0, 0.0, 0.0}, 0.2, 0.2}, margins, plainField());
+  PatternSearch search(exact());
+  SearchProblem problem = bench.problem({});
+  const SearchResult free = search.run(problem, after(100'000));
+  REQUIRE(free.end == SearchEnd::kGoal);
+  CHECK(free.steps.front().pattern_id == kAhead);
+  // All that gathers is promised to those who look at the plan.
+  CHECK(free.steps.back().uncertainty.yy == Approx(0.09 * static_cast<double>(free.steps.size())));
+  problem.start_uncertainty.xx = problem.start_uncertainty.yy = 0.36F;
+  CHECK(search.run(problem, after(100'000)).steps.empty());
+}

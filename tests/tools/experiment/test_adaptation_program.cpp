@@ -68,7 +68,7 @@ TEST_CASE("on real drives the default rule is better than no learning and holds 
   }
   Settings settings;
   settings.rules = {kOff, kJudged, "slip"};
-  settings.starts = 120;
+  settings.starts = 300;
   settings.threads = 2;
   const Recordings found = readRecordings(drive);
   const Errors errors = runAdaptation(found.sessions, settings, nullptr);
@@ -81,7 +81,7 @@ TEST_CASE("on real drives the default rule is better than no learning and holds 
       }
   CHECK(stated > 500);
   INFO(inside << " of " << stated << " within 90 % regions");
-  // Measured 74 %: the rule does not model the reference's own error.
+  // Measured 80 %: the rule does not model the reference's own error.
   CHECK(static_cast<double>(inside) > 0.70 * static_cast<double>(stated));
   CHECK(static_cast<double>(inside) < 0.95 * static_cast<double>(stated));
   size_t judged = 0;
@@ -90,15 +90,16 @@ TEST_CASE("on real drives the default rule is better than no learning and holds 
     CAPTURE(nameOf(line.kind), line.vehicle, line.rule, line.executions, line.horizon);
     if (line.rule == kJudged) {
       ++judged;
-      // Measured .77 to .93 and .60 to 1.00.
+      // Measured .74 to .95 and .58 to 1.00.
       CHECK(line.position.ratio.mean < 0.97);
       CHECK(line.yaw.ratio.mean < 1.03);
     }
-    // From all starts it is .00 to .08 better than slip regression and .01 to .12 in yaw, up to 5
-    // s; 10 s ahead its yaw is up to .03 worse. From the starts that are drawn here both are level.
+    // Measured .00 to .08 better than slip regression in position; in yaw .00 to .13 better, but
+    // .03 worse 10 s ahead in a session that was left out.
     if (line.rule == "slip" && line.executions == 3) {
-      CHECK(line.position.difference < 0.02);
-      CHECK(line.yaw.difference < (line.horizon == 10 ? 0.05 : 0.01));
+      const bool known_worse = line.kind == LeftOut::kSession && line.horizon == 10;
+      CHECK(line.position.difference < 0.01);
+      CHECK(line.yaw.difference < (known_worse ? 0.04 : 0.01));
     }
   }
   CHECK(judged == 27);  // session, surface, vehicle; 3, 10, 30 executions; 2, 5, 10 s

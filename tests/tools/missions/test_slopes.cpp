@@ -104,7 +104,7 @@ void addTo(MeanError& sum, const MeanError& more) {
 }  // namespace
 
 TEST_CASE("what a slope did is not learned with the gate, and spoils level ground without it") {
-  constexpr uint64_t kSeeds = 4;
+  constexpr uint64_t kSeeds = 8;  // with 4 the yaw of the default rule is chance
   MeanError with[2], without[2];
   int refused = 0;  // and LEARNING says for which slope
   for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -129,8 +129,6 @@ TEST_CASE("what a slope did is not learned with the gate, and spoils level groun
     REQUIRE(with[rule].count == 5 * static_cast<int>(kSeeds));
     REQUIRE(without[rule].count == 5 * static_cast<int>(kSeeds));
     CHECK(without[rule].position > 1.2 * with[rule].position);
-    // A slope takes a slipping vehicle down, and hardly turns it: 1.8 and 1.6 hundredths of a
-    // radian an execution of the default rule are chance.
-    CHECK(without[rule].yaw > 0.8 * with[rule].yaw);
+    CHECK(without[rule].yaw > with[rule].yaw);
   }
 }

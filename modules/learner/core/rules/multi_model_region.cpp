@@ -40,7 +40,8 @@ class Distance {
   double below(double root) const { return weight_ * 0.5 * std::erfc(offset_ - slope_ * root); }
 
  private:
-  double weight_, slope_, offset_;  ///< of the cube root of d2, over the deviation times sqrt(2)
+  double weight_;
+  double slope_, offset_;  ///< the cube root of d2, standardized: sqrt(2) (slope cbrt(d2) - offset)
 };
 
 double quantileOf(const std::vector<Distance>& distances) {

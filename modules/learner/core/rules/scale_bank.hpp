@@ -14,7 +14,7 @@ namespace tread::learner {
  * the b-th kind of spread, s_b what a scale says of it, N the (diagonal) noise. With K the sum of a
  * scale, its weight is its prior weight times N(y; 0, K + N); predictions are the mixture.
  * Scales are computed eight at a time, one in each lane of an array: the systems are small, and one
- * after the other they cost four times as much. */
+ * after the other most of the time would go into their set-up. */
 template <int kAxes, int kKinds>
 class ScaleBank {
  public:

@@ -24,9 +24,8 @@ class LogMixture {
  public:
   LogMixture(double freedom, size_t components)
       : freedom_(freedom),
-        size_(static_cast<Eigen::Index>(components)),
-        square_(size_),
-        squared_peak_(size_) {}
+        square_(static_cast<Eigen::Index>(components)),
+        squared_peak_(square_.size()) {}
   /// `y` from its centre, `scale` its scale matrix.
   void add(double weight, const Eigen::Matrix<double, kAxes, 1>& y,
            const Eigen::Matrix<double, kAxes, kAxes>& scale) {
@@ -44,7 +43,6 @@ class LogMixture {
 
  private:
   double freedom_;
-  Eigen::Index size_;
   Eigen::Index at_ = 0;
   Eigen::ArrayXd square_;        ///< y' scale^-1 y
   Eigen::ArrayXd squared_peak_;  ///< weight^2 / det(scale)

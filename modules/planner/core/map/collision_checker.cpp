@@ -52,7 +52,7 @@ int CollisionChecker::levelWithin(double margin) const {
 }
 
 int CollisionChecker::level(const Uncertainty& uncertainty) const {
-  // Two sums tell of many patterns that they are that uncertain.
+  // A lower bound that needs no root; often it is enough.
   const auto arm = static_cast<float>(arm_);
   const float least = std::max(uncertainty.xx, uncertainty.yy) + arm * arm * uncertainty.yawyaw;
   if (level_variances_.back() <= least) return kLevels - 1;
