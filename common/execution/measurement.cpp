@@ -120,7 +120,7 @@ class Cutter {
   void measureEntryAndSlope() {
     const auto twist =
         track_->twistBefore(cut_.started, limits_.entry_window_us, limits_.max_gap_us);
-    if (twist) result_.entry = *twist;
+    if (twist) result_.context.entry = *twist;
     result_.context.tilt = history_.meanTilt(cut_.started, cut_.ended);
   }
 
@@ -179,13 +179,14 @@ class Cutter {
     const bool any = std::isinf(limits_.entry_speed) && std::isinf(limits_.entry_yaw_rate);
     // What the ground makes of the right command is what is to be learned.
     if (any || cut_.steady_before) return;
-    if (!std::isfinite(result_.entry.v_x)) {
+    if (!std::isfinite(result_.context.entry.v_x)) {
       close(Gate::kEntryTwist, "the twist before the start was not measured");
       return;
     }
-    const double speed = std::max(std::abs(result_.entry.v_x - entry_class.twist.v_x),
-                                  std::abs(result_.entry.v_y - entry_class.twist.v_y));
-    const double turn = std::abs(result_.entry.omega - entry_class.twist.omega);
+    const Twist2& entry = result_.context.entry;
+    const double speed = std::max(std::abs(entry.v_x - entry_class.twist.v_x),
+                                  std::abs(entry.v_y - entry_class.twist.v_y));
+    const double turn = std::abs(entry.omega - entry_class.twist.omega);
     if (speed > limits_.entry_speed || turn > limits_.entry_yaw_rate)
       close(Gate::kEntryTwist, "entered " + fixed(speed, 2) + " m/s and " + fixed(turn, 2) +
                                    " rad/s off its entry class " + entry_class.name);

@@ -73,6 +73,8 @@ struct ExecutionCut {
 struct Context {
   Tilt tilt;                        ///< mean
   double voltage = Tilt::kUnknown;  ///< [V] mean, of the battery
+  /// v_body before the start.
+  Twist2 entry{Tilt::kUnknown, Tilt::kUnknown, Tilt::kUnknown};
 };
 
 /// M and what was measured beside it. Numbers that were not measured are NaN.
@@ -83,7 +85,6 @@ struct Measurement {
   std::string reason;             ///< of the gate: what, how much, what is allowed
   std::vector<Pose2> trajectory;  ///< M at the pattern's sample times; empty if there is none
   size_t covered = 0;  ///< leading samples that are measured; the rest moves on as predicted
-  Twist2 entry{kUnknown, kUnknown, kUnknown};  ///< v_body before the start
   Context context;
   double path_length = kUnknown;  ///< [m] driven over the covered samples
 

@@ -435,7 +435,7 @@ std::optional<Pose2> LearnerNode::scoredError(const execution_record_t& record,
 void LearnerNode::score(const execution_record_t& record, const Measurement& measurement,
                         learning_t& message) const {
   fill(message.measured_entry,
-       {measurement.entry.v_x, measurement.entry.v_y, measurement.entry.omega});
+       {measurement.context.entry.v_x, measurement.context.entry.v_y, measurement.context.entry.omega});
   message.slope = measurement.context.tilt.inclination;
   message.path_length = measurement.path_length;
   if (measurement.complete()) fill(message.measured_end, measurement.trajectory.back());

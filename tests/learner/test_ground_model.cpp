@@ -64,7 +64,8 @@ TEST_CASE("the mean twist of any part of a pattern is corrected exactly, also fa
       REQUIRE((part.mean - meanUnder(model, p, {}, samples)).norm() < 1e-12);
       for (int i = 0; i < TwistCorrection::kCommon + TwistCorrection::kOwn; ++i) {
         INFO(set.patterns()[p].name << ", samples " << samples << ", correction " << i);
-        const TwistCorrection step = only(i, 0.3);
+        // A lag beyond a sample is no longer linear where the profile winds.
+        const TwistCorrection step = only(i, i == TwistCorrection::kLag ? 0.05 : 0.3);
         SetCorrection all = SetCorrection::none(model.patterns());
         all.common = step.common;
         all.own.col(static_cast<Eigen::Index>(p)) = step.own;

@@ -79,7 +79,7 @@ TEST_CASE("an execution is cut at its start and interpolated at the pattern's sa
     REQUIRE(result.trajectory[t].y == Approx(truth[t].y).margin(1e-9));
     REQUIRE(result.trajectory[t].yaw == Approx(truth[t].yaw).margin(1e-9));
   }
-  REQUIRE(result.entry.v_x == Approx(1.0));
+  REQUIRE(result.context.entry.v_x == Approx(1.0));
   REQUIRE(result.context.tilt.inclination == Approx(0.02));
   REQUIRE(result.path_length == Approx(0.9).epsilon(1e-3));
 }

@@ -82,20 +82,20 @@ enum Place : size_t {
   kSurfacesAt = kEffectsAt + 5 * 6 + 4,
   kFirstAt,  ///< the hypothesis of the shipped set's ground
 };
-constexpr size_t kEachPart = 9;
+constexpr size_t kEachPart = 19;
 
 /// The same within a hypothesis, whose banks have so many scales.
 struct Hypothesis {
   explicit Hypothesis(size_t at, const Surface& surface)
       : weight(at),
         velocity(at + 3 + TwistCorrection::kCommon + TwistCorrection::kOwn * 7),
-        yaw(velocity + 4 * surface.velocity().scales().size()),
-        factors(yaw + 5 * surface.yaw().scales().size()) {}
+        yaw(velocity + 6 * surface.velocity().scales().size()),
+        factors(yaw + 6 * surface.yaw().scales().size()) {}
 
   size_t weight, velocity, yaw, factors;
   size_t last_met = weight + 1, since = weight + 2, centre = weight + 3;
   size_t noise = factors + 3 * 7, executions = noise + 3, parts = executions + 1;
-  size_t part = parts + 1;  ///< pattern, samples, count, three sums, three of squares
+  size_t part = parts + 1;  ///< pattern, samples, count, sums and squares; the same of entries
 
   /// Where the next hypothesis, or the number of fresh ones, begins.
   size_t end(const std::vector<double>& memory) const {
@@ -198,8 +198,8 @@ TEST_CASE("a memory with a number that cannot be is refused whole") {
     refused(each.since, {-1.0, 0.5, 58.0, 1e300});
     refused(each.centre, {1e300, -1e300});
     refused(each.velocity, {-0.1, 0.0, 1e300});      // a variance
-    refused(each.velocity + 2, {-1.0, 0.0, 1e300});  // a factor on the noise
-    refused(each.yaw + 4, {-0.1, 0.0, 2.0});         // a weight
+    refused(each.velocity + 4, {-1.0, 0.0, 1e300});  // a factor on the noise
+    refused(each.yaw + 5, {-0.1, 0.0, 2.0});         // a weight
     refused(each.factors, {0.0, -1.0, 51.0, 1e300});
     refused(each.noise, {0.0, -1.0, 51.0, 1e300});
     refused(each.executions, {-1.0, memory[each.executions] + 1.0, 1e300});
@@ -210,6 +210,10 @@ TEST_CASE("a memory with a number that cannot be is refused whole") {
     refused(each.part + 2, {-1.0, 0.0, memory[each.part + 2] + 0.5, 1e300});
     refused(each.part + 3, {1e300, -1e300});
     refused(each.part + 6, {-1e-3});
+    refused(each.part + 9, {-1.0, 0.5, 2.0, 1e300});
+    refused(each.part + 10, {1e300, -1e300});
+    refused(each.part + 13, {-1e-3});
+    refused(each.part + 16, {1e300, -1e300});
   }
 }
 

@@ -485,6 +485,41 @@ TEST_CASE("what a vehicle does on every ground it is expected to do on the next,
   REQUIRE(median(changed) < 0.6);
 }
 
+TEST_CASE("a vehicle that follows later than its set does so also in what it has not driven yet",
+          "[statistics]") {
+  const auto changing = [](double from, double to) {
+    std::vector<Pose2> poses;
+    Pose2 at;
+    for (int t = 0; t < 20; ++t) {
+      const double share = std::min(1.0, 0.1 * (t + 0.5));
+      at = at * integrate({from + share * (to - from), 0.0, 0.0}, 0.05);
+      poses.push_back(at);
+    }
+    return poses;
+  };
+  PatternSetContent content = richContent();
+  content.patterns.push_back(pattern(8, "set_off", {1.0, 1.0}, changing(0.0, 1.0)));
+  content.patterns.push_back(pattern(9, "stop", {0.0, 0.0}, changing(1.0, 0.0)));
+  constexpr size_t kSetOff = 7, kStop = 8;
+  constexpr size_t kDriven[] = {kAhead, kSetOff, kTurnLeft, kTurnRight};
+  const DrawnWorld world(checked(content));
+  DrawnGround later = world.shipped();
+  later.x.common[TwistCorrection::kLag] = 0.2;
+  const Pose2 truly = world.expected(later, kStop).back();
+  const double before = distance(world.set().patterns()[kStop].end(), truly);
+  REQUIRE(before > 0.1);
+  double after = 0.0;
+  constexpr int kSeeds = 10;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    std::mt19937_64 random(static_cast<uint64_t>(seed));
+    Pupil pupil(ruleConfig("multi_model"), world.set());
+    for (int i = 0; i < 10; ++i)
+      for (const size_t p : kDriven) pupil.learn(p, world.execution(later, p, random));
+    after += distance(pupil.end(kStop), truly) / kSeeds;
+  }
+  REQUIRE(after < 0.4 * before);
+}
+
 TEST_CASE("a surface that comes back is recognised faster than it was learned", "[statistics]") {
   int recognised = 0;
   double at_first = 0.0;

@@ -142,6 +142,85 @@ TEST_CASE("a surface stays symmetric, positive definite and finite, absurd or no
   }
 }
 
+namespace {
+
+/// An execution on the shipped ground that was entered `beside` the class's twist, which lasts for
+/// some seconds.
+TwistSample enteredWith(const Fixture& f, size_t pattern, const Eigen::Vector3d& beside,
+                        double seconds, std::mt19937_64& random) {
+  TwistSample sample = f.sample(pattern, 1.0, random);
+  sample.mean_twist += seconds * sample.part.settling * beside;
+  sample.entry = beside;
+  return sample;
+}
+
+Eigen::Vector3d drawnEntry(std::mt19937_64& random) {
+  return {0.3 * chanceOf(random), 0.1 * chanceOf(random), 0.5 * chanceOf(random)};
+}
+
+}  // namespace
+
+TEST_CASE("what executions were entered with is neither the ground's nor chance") {
+  const Fixture f;
+  Eigen::Vector3d told = Eigen::Vector3d::Zero(), not_told = told, on_slides = told;
+  double explained = 0.0;
+  const Eigen::Vector3d kSlide(0.6, 0.3, 0.9);
+  constexpr int kSeeds = 20;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    std::mt19937_64 random(static_cast<uint64_t>(seed));
+    Surface surface = f.surface(), without = f.surface();
+    for (int i = 0; i < 60; ++i) {
+      TwistSample sample =
+          enteredWith(f, random() % f.model->patterns(), drawnEntry(random), 0.5, random);
+      surface.add(f.config, sample);
+      sample.entry.setConstant(std::nan(""));
+      without.add(f.config, sample);
+    }
+    told += surface.noise() / kSeeds;
+    not_told += without.noise() / kSeeds;
+    // The next one, after a slide.
+    const TwistSample slide = enteredWith(f, kAhead, kSlide, 0.5, random);
+    const TwistSample usual = surface.asUsual(slide);
+    on_slides += (usual.deviation() - surface.expected(usual.part).mean).cwiseAbs() / kSeeds;
+    explained += (surface.logDensity(slide, Eigen::Vector3d::Zero()) -
+                  without.logDensity(slide, Eigen::Vector3d::Zero())) /
+                 kSeeds;
+  }
+  REQUIRE(explained > 2.0);
+  const PatternPart& ahead = f.model->whole(kAhead);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    CAPTURE(axis);
+    REQUIRE(told[axis] < 0.5 * not_told[axis]);
+    // Of what such a slide adds.
+    REQUIRE(on_slides[axis] < 0.6 * 0.5 * ahead.settling * kSlide[axis]);
+  }
+}
+
+TEST_CASE("an entry that is the same every time is what is usual there, and predicted") {
+  const Fixture f;
+  std::mt19937_64 random(4);
+  const Eigen::Vector3d always(0.3, 0.0, 0.0);
+  Surface surface = f.surface();
+  for (int i = 0; i < 60; ++i)
+    surface.add(f.config, enteredWith(f, random() % f.model->patterns(), always, 0.4, random));
+  const PatternPart& ahead = f.model->whole(kAhead);
+  REQUIRE(surface.expected(ahead).mean[0] == Approx(0.4 * ahead.settling * always[0]).epsilon(0.3));
+}
+
+TEST_CASE("a prediction is less sure where what comes before it differs more") {
+  const Fixture f;
+  std::mt19937_64 random(5);
+  Surface calm = f.surface(), slippery = f.surface();
+  for (int i = 0; i < 60; ++i) {
+    const size_t p = random() % f.model->patterns();
+    calm.add(f.config, enteredWith(f, p, Eigen::Vector3d::Zero(), 0.5, random));
+    slippery.add(f.config, enteredWith(f, p, drawnEntry(random), 0.5, random));
+  }
+  const PatternPart& ahead = f.model->whole(kAhead);
+  REQUIRE(slippery.executionNoise(ahead)[0] > 2.0 * calm.executionNoise(ahead)[0]);
+  REQUIRE(slippery.executionNoise(ahead)[2] > 2.0 * calm.executionNoise(ahead)[2]);
+}
+
 TEST_CASE("no measured twist counts as more than a vehicle can drive") {
   REQUIRE(plausible({1e300, -1e300, 99.0}) == Eigen::Vector3d(100.0, -100.0, 99.0));
 }

@@ -222,13 +222,12 @@ TEST_CASE("without multicast messages go over a relay, each channel to whoever s
     mark.mark_value = std::string(900, 'x') + std::to_string(i);
     REQUIRE(speaker.publish(kMark, mark));
     if (i % 100 == 0) REQUIRE(speaker.publish(kEstop, stop));
+    // However loaded the machine: 20 000 delayed acknowledgements would take 800 s.
     while (static_cast<int>(heard.size()) <= i && hostNow() - started < 60'000'000)
       listener.handle(10);
   }
   CHECK(heard.size() == 20000);
   CHECK(listener.statistics().lost == 0);
-  // An answer within a millisecond or so each, not after a delayed acknowledgement.
-  CHECK(hostNow() - started < 20'000'000);
 }
 
 TEST_CASE("who subscribes to no regular expression loses its own connection, not the publisher's") {

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <map>
 #include <optional>
+#include <string>
 
 #include <Eigen/LU>
 
@@ -31,6 +33,12 @@ constexpr double kLeastTurn = 0.2;
 /// A correction beyond these is none that ground makes; predictions stay drivable.
 constexpr double kLargestFactor = 3.0;
 constexpr double kLargestBias = 0.5;  // [rad/m]
+constexpr double kLargestLag = 0.5;   // [s]
+/// Of the velocity's lag: what changes from execution to execution, over what a set may be wrong
+/// by.
+constexpr double kLagNoise = 0.3;
+/// [s] in which what a pattern was entered with is gone, for the part of it that a pattern feels.
+constexpr double kGone = 0.5;
 
 /// sin(x) / x and cos(x); the series are exact to 1e-16 where they are used.
 struct HalfTurn {
@@ -70,7 +78,8 @@ Eigen::Vector3d sampleMotion(const Pose2& from, const Pose2& to) {
 
 /// Change of a sample's twist per unit of each correction.
 struct Response {
-  Response(const BodyScale& scale, const Eigen::Vector3d& twist) {
+  /// `change`: of the velocity since the sample before, per second.
+  Response(const BodyScale& scale, const Eigen::Vector3d& twist, const Eigen::Vector2d& change) {
     const Eigen::Vector2d V = twist.head<2>();
     const Eigen::Vector2d left(-V[1], V[0]);  // J V
     const double w = twist[2];
@@ -83,6 +92,7 @@ struct Response {
     velocity.col(TwistCorrection::kSideslip) = w / scale.turn * left;
     velocity.col(TwistCorrection::kShiftX) << w * scale.speed / scale.turn, 0.0;
     velocity.col(TwistCorrection::kShiftY) << 0.0, w * scale.speed / scale.turn;
+    velocity.col(TwistCorrection::kLag) = -change;
     const double moves = std::hypot(speed, kTurnMoves * scale.speed / scale.turn * w);
     own.col(0) = moves * scale.axis;
     own.col(1) = moves * Eigen::Vector2d(-scale.axis[1], scale.axis[0]);
@@ -152,7 +162,8 @@ PatternPart TwistProfile::part(const BodyScale& scale, Eigen::Index samples) con
   part.yaw.setZero();
   const double share = 1.0 / static_cast<double>(samples);
   for (size_t t = 0; t < static_cast<size_t>(samples); ++t) {
-    const Response response(scale, twists_[t]);
+    const Eigen::Vector2d before = twists_[t > 0 ? t - 1 : 0].head<2>();
+    const Response response(scale, twists_[t], (twists_[t].head<2>() - before) / period_);
     part.mean += share * twists_[t];
     part.velocity += share * response.velocity;
     part.own += share * response.own;
@@ -172,6 +183,17 @@ PatternPart TwistProfile::part(const BodyScale& scale, Eigen::Index samples) con
   return part;
 }
 
+/// What the velocity was some samples before t, held at both ends.
+Eigen::Vector2d TwistProfile::velocityBefore(double samples, size_t t) const {
+  if (samples == 0.0) return twists_[t].head<2>();
+  const double at =
+      std::clamp(static_cast<double>(t) - samples, 0.0, static_cast<double>(twists_.size() - 1));
+  const auto before = static_cast<size_t>(at);
+  const size_t after = std::min(before + 1, twists_.size() - 1);
+  return twists_[before].head<2>() +
+         (at - static_cast<double>(before)) * (twists_[after] - twists_[before]).head<2>();
+}
+
 template <typename Put>
 Pose2 TwistProfile::walk(const BodyScale& scale, const TwistCorrection& x, Put&& put) const {
   const auto& c = x.common;
@@ -189,10 +211,12 @@ Pose2 TwistProfile::walk(const BodyScale& scale, const TwistCorrection& x, Put&&
   const Eigen::Vector2d own(scale.axis[0] * r_along - scale.axis[1] * r_across,
                             scale.axis[1] * r_along + scale.axis[0] * r_across);
   const double turn = scale.speed / scale.turn;
+  const double late = within(c[TwistCorrection::kLag], kLargestLag) / period_;
   Pose2 at;
   double c_at = 1.0, s_at = 0.0;  // of at.yaw, turned along instead of computed anew
   for (size_t t = 0; t < twists_.size(); ++t) {
-    const double v = twists_[t][0], s = twists_[t][1], w = twists_[t][2];
+    const Eigen::Vector2d V = velocityBefore(late, t);
+    const double v = V[0], s = V[1], w = twists_[t][2];
     const double speed = std::sqrt(v * v + s * s);
     const double gain = std::clamp(
         1.0 + c[TwistCorrection::kGain] - c[TwistCorrection::kTurnLoss] * std::abs(w) / scale.turn,
@@ -250,8 +274,14 @@ Eigen::Vector3d meanTwist(const ConstTrajectory& trajectory, Eigen::Index sample
 
 GroundModel::GroundModel(const GroundConfig& config, const PatternSet& shipped)
     : period_(shipped.periodSeconds()), noise_(config.noise) {
+  std::map<std::string, size_t> classes;
+  for (const MotionClass& motion : shipped.content().classes) {
+    classes.emplace(motion.name, class_twists_.size());
+    class_twists_.emplace_back(motion.twist.v_x, motion.twist.v_y, motion.twist.omega);
+  }
   for (const MotionPattern& pattern : shipped.patterns()) {
     profiles_.emplace_back(pattern, period_);
+    entry_classes_.push_back(classes.at(pattern.entry_class));
     const auto recorded = recordedNoise(pattern, profiles_.back());
     recorded_share_.push_back(recorded ? kRecorded : 0.0);
     recorded_.push_back(recorded.value_or(Eigen::Matrix3d::Zero()));
@@ -262,7 +292,7 @@ GroundModel::GroundModel(const GroundConfig& config, const PatternSet& shipped)
   const double shear = kShearSpread * scale_.isotropy;
   const double bias = 1.0;
   spread_ << 1.0, kCrabSpread, shear, shear, kTurnLossSpread, kSideslipSpread, kShiftSpread,
-      kShiftSpread, 1.0, kYawBySpeedSpread, bias, bias;
+      kShiftSpread, config.noise.lag, 1.0, kYawBySpeedSpread, bias, bias;
   spread_ = spread_.cwiseAbs2().eval();
 }
 
@@ -291,14 +321,17 @@ PatternPart GroundModel::part(size_t pattern, Eigen::Index samples) const {
   const TwistProfile& profile = profiles_[pattern];
   PatternPart part = profile.part(scale_, samples);
   part.pattern = pattern;
+  part.entry_class = entry_classes_[pattern];
   const double seconds = period_ * static_cast<double>(samples);
+  part.settling = (1.0 - std::exp(-seconds / kGone)) / seconds;
   const double moved = squared(noise_.position / seconds) + squared(noise_.turning * part.turning);
   Eigen::Matrix3d to_path = Eigen::Matrix3d::Identity();
   to_path.topLeftCorner<2, 2>() = part.to_path;
-  // A profile that comes later by dt loses dt of its change: no gain of ground explains that.
+  // A profile that comes later by dt loses dt of its change.
   const Eigen::Vector3d change =
       profile.twists()[static_cast<size_t>(samples - 1)] - profile.twists().front();
-  const Eigen::Vector3d late = noise_.lag / seconds * (to_path * change);
+  Eigen::Vector3d late = noise_.lag / seconds * (to_path * change);
+  late.head<2>() *= kLagNoise;
   const Eigen::Vector3d expected =
       Eigen::Vector3d(squared(noise_.forward * part.speed) + moved,
                       squared(noise_.lateral * part.speed) + moved,
@@ -315,6 +348,11 @@ PatternPart GroundModel::part(size_t pattern, Eigen::Index samples) const {
   // A recording of nothing is no proof that an execution is exact.
   part.noise = ((1.0 - share) * expected + share * recorded).cwiseMax(kLeast * expected);
   return part;
+}
+
+Eigen::Vector3d GroundModel::besideClass(size_t pattern, const Twist2& entry) const {
+  return Eigen::Vector3d(entry.v_x, entry.v_y, entry.omega) -
+         class_twists_[entry_classes_[pattern]];
 }
 
 void GroundModel::fillAlike() {
@@ -360,11 +398,14 @@ double entry(const Eigen::MatrixXd& matrix, const PatternPart& a, const PatternP
 }  // namespace
 
 VelocityBank::Blocks GroundModel::velocity(const PatternPart& a, const PatternPart& b) const {
+  constexpr int kLag = TwistCorrection::kLag;
   const Eigen::Vector2d alike(entry(alike_[TwistCorrection::kAlong], a, b),
                               entry(alike_[TwistCorrection::kAcross], a, b));
-  return {
-      a.velocity * spread_.head<TwistCorrection::kVelocity>().asDiagonal() * b.velocity.transpose(),
-      a.own * alike.asDiagonal() * b.own.transpose()};
+  return {a.velocity.leftCols<kLag>() * spread_.head<kLag>().asDiagonal() *
+              b.velocity.leftCols<kLag>().transpose(),
+          a.own * alike.asDiagonal() * b.own.transpose(),
+          spread_[kLag] * a.velocity.col(kLag) * b.velocity.col(kLag).transpose(),
+          squared(kEntrySpread) * a.entry.head<2>() * b.entry.head<2>().transpose()};
 }
 
 double GroundModel::biasApart() const {
@@ -378,7 +419,8 @@ YawBank::Blocks GroundModel::yaw(const PatternPart& a, const PatternPart& b) con
           a.yaw[1] * b.yaw[1] * spread_[TwistCorrection::kYawBySpeed]),
       One(a.yaw[2] * b.yaw[2] + a.yaw[3] * b.yaw[3] +
           biasApart() * a.bias_own * b.bias_own * entry(alike_[TwistCorrection::kBiasOwn], a, b)),
-      One(a.yaw_own * b.yaw_own * entry(alike_[TwistCorrection::kYawOwn], a, b))};
+      One(a.yaw_own * b.yaw_own * entry(alike_[TwistCorrection::kYawOwn], a, b)),
+      One(squared(kEntrySpread) * a.entry[2] * b.entry[2])};
 }
 
 }  // namespace tread::learner

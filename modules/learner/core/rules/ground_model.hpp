@@ -38,8 +38,9 @@ struct PatternPart;
  * the turn by 90 degrees, B = [[b1, b2], [b2, -b1]]:
  *    V' = V (1 + a - tau |w|/w_ref) + J V (c + kappa w/w_ref) + B V + (v_ref/w_ref) w e + o A r
  *    w' = w (1 + g + eta |V|/v_ref + r_g) + b . V + |V| r_b
- * a gain, c crab, b1 and b2 shear, tau turn loss, kappa sideslip, e shift of the point about which
- * it turns, g yaw gain, eta yaw gain by speed, all [1], b yaw bias [rad/m] are common to all
+ * with V(t - l) for V: the vehicle, or this ground, follows later than the set's did by a lag l
+ * [s]. a gain, c crab, b1 and b2 shear, tau turn loss, kappa sideslip, e shift of the point about
+ * which it turns, g yaw gain, eta yaw gain by speed, all [1], b yaw bias [rad/m] are common to all
  * patterns; r [1], along and across the set's axis A, r_g [1] and r_b [rad/m] are the pattern's
  * own; o = hypot(|V|, v_ref |w| / (2 w_ref)). No term knows which way is forward: in a frame that
  * is turned everything turns along. Predictions are kept within what ground can do. */
@@ -53,13 +54,14 @@ struct TwistCorrection {
     kSideslip,
     kShiftX,
     kShiftY,
+    kLag,
     kYaw,
     kYawBySpeed,
     kBiasX,
     kBiasY,
     kCommon
   };
-  static constexpr int kVelocity = 8;  ///< of them act on V, the others on w
+  static constexpr int kVelocity = 9;  ///< of them act on V, the others on w
   static constexpr int kTurning = kCommon - kVelocity;
   enum Own { kAlong, kAcross, kYawOwn, kBiasOwn, kOwn };
 
@@ -81,6 +83,10 @@ struct PatternPart {
   double metres = 0.0;                ///< driven, as shipped
   double speed = 0.0, turning = 0.0;  ///< mean |V| [m/s], mean |w| [rad/s]
   double shape = 0.0;                 ///< [m2] variance of x and y of its end beyond that
+  size_t entry_class = 0;
+  double settling = 0.0;  ///< [1/s] share by which what it was entered with lasts: see Surface
+  /// That share of the twist that it was entered with beside the usual one, as the others.
+  Eigen::Vector3d entry = Eigen::Vector3d::Zero();
   /// Change of the mean velocity per unit of each correction of it, and of the pattern's own.
   Eigen::Matrix<double, 2, TwistCorrection::kVelocity> velocity;
   Eigen::Matrix2d own;
@@ -116,6 +122,7 @@ class TwistProfile {
   const std::vector<Eigen::Vector3d>& twists() const { return twists_; }
 
  private:
+  Eigen::Vector2d velocityBefore(double samples, size_t t) const;
   template <typename Put>
   Pose2 walk(const BodyScale& scale, const TwistCorrection& correction, Put&& put) const;
 
@@ -140,6 +147,10 @@ class GroundModel {
   PatternPart part(size_t pattern, Eigen::Index samples) const;
   const PatternPart& whole(size_t pattern) const { return whole_[pattern]; }
 
+  size_t classes() const { return class_twists_.size(); }
+  /// A body twist before a pattern less the steady one of its entry class, as shipped.
+  Eigen::Vector3d besideClass(size_t pattern, const Twist2& entry) const;
+
   /// Correlation of what two patterns have of their own: along the set's axis, across it, of yaw
   /// gain and of yaw bias.
   /** .1 k + .7 m + .2 [i = j] where the set moves along one axis: k = exp(-d^2 / 2), d the distance
@@ -155,9 +166,11 @@ class GroundModel {
 
   /// Share of the variance of yaw bias by which patterns differ in it [1].
   double biasApart() const;
-  /// Variances of the common corrections on a ground of scale 1 (velocity and yaw gains), and of
-  /// yaw bias 1 rad/m.
+  /// Variances of the common corrections on a ground of scale 1 (velocity and yaw gains, lag), and
+  /// of yaw bias 1 rad/m.
   const Eigen::Matrix<double, TwistCorrection::kCommon, 1>& spread() const { return spread_; }
+  /// Standard deviation of how long what a pattern was entered with lasts [s].
+  static constexpr double kEntrySpread = 0.3;
 
  private:
   void measureScale(double lever);
@@ -167,6 +180,8 @@ class GroundModel {
   TwistNoise noise_;
   BodyScale scale_;
   std::vector<TwistProfile> profiles_;
+  std::vector<Eigen::Vector3d> class_twists_;
+  std::vector<size_t> entry_classes_;  ///< by pattern
   std::vector<double> recorded_share_;
   std::vector<Eigen::Matrix3d> recorded_;  ///< covariance of the mean twist, body frame
   std::vector<PatternPart> whole_;

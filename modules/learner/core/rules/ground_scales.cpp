@@ -22,6 +22,10 @@ const Widths kVelocityNoise{{1.0, 0.8}, {3.2, 0.2}};
 /// Where the gain changes patterns change otherwise by such a share of it [1].
 constexpr double kResidualOfGain = 0.12;
 
+/// Variances of the lag and of how long an entry lasts, over those of new ground: a set is of the
+/// vehicle itself, as a rule.
+constexpr double kShippedLag = 0.1;
+
 const Widths kShippedGain{{0.02, 1.0}};
 const Widths kShippedBias{{0.003, 1.0}};
 const Widths kShippedResidual{{0.01, 0.7}, {0.05, 0.3}};
@@ -30,25 +34,26 @@ double residual(const Width& gain, const Width& own) {
   return squared(kResidualOfGain * gain.deviation) + squared(own.deviation);
 }
 
-VelocityBank::Scales velocityScales(const Widths& gains, const Widths& residuals, double share) {
+VelocityBank::Scales velocityScales(const Widths& gains, const Widths& residuals, double lag,
+                                    double share) {
   VelocityBank::Scales scales;
   for (const Width& gain : gains)
     for (const Width& own : residuals)
       for (const Width& noise : kVelocityNoise)
-        scales.push_back({{share * squared(gain.deviation), share * residual(gain, own)},
+        scales.push_back({{share * squared(gain.deviation), share * residual(gain, own), lag, lag},
                           squared(noise.deviation),
                           gain.weight * own.weight * noise.weight});
   return scales;
 }
 
 YawBank::Scales yawScales(const Widths& gains, const Widths& biases, const Widths& residuals,
-                          double lever, double share) {
+                          double lever, double lag, double share) {
   YawBank::Scales scales;
   for (const Width& gain : gains)
     for (const Width& bias : biases)
       for (const Width& own : residuals)
         scales.push_back({{share * squared(gain.deviation), share * squared(bias.deviation / lever),
-                           share * residual(gain, own)},
+                           share * residual(gain, own), lag},
                           1.0,
                           gain.weight * bias.weight * own.weight});
   return scales;
@@ -57,19 +62,19 @@ YawBank::Scales yawScales(const Widths& gains, const Widths& biases, const Width
 }  // namespace
 
 VelocityBank::Scales velocityScalesOfNewGround(double share) {
-  return velocityScales(kGain, kResidual, share);
+  return velocityScales(kGain, kResidual, 1.0, share);
 }
 
 YawBank::Scales yawScalesOfNewGround(double lever, double share) {
-  return yawScales(kYawGain, kYawBias, kResidual, lever, share);
+  return yawScales(kYawGain, kYawBias, kResidual, lever, 1.0, share);
 }
 
 VelocityBank::Scales velocityScalesAsShipped() {
-  return velocityScales(kShippedGain, kShippedResidual, 1.0);
+  return velocityScales(kShippedGain, kShippedResidual, kShippedLag, 1.0);
 }
 
 YawBank::Scales yawScalesAsShipped(double lever) {
-  return yawScales(kShippedGain, kShippedBias, kShippedResidual, lever, 1.0);
+  return yawScales(kShippedGain, kShippedBias, kShippedResidual, lever, kShippedLag, 1.0);
 }
 
 }  // namespace tread::learner

@@ -24,7 +24,7 @@ struct TwistNoise {
   double yaw = 0.08;       ///< [1] of |omega|
   double turning = 0.05;   ///< [m] of |omega|, added to the first two: where it turns about
   double wander = 0.005;   ///< [rad/m] of |v_x|, added to the third: the course is not kept
-  double lag = 0.15;       ///< [s] of the change of each velocity inside, over the time it took
+  double lag = 0.15;       ///< [s] by which a vehicle may follow later than its set says
   double shape = 0.02;     ///< [1] of the way: where it ends apart from what its mean twist says
   double position = 0.01;  ///< [m] of a measured end, added to the first two over the time it took
   double heading = 0.01;   ///< [rad] the same, added to the third

@@ -349,16 +349,18 @@ void MultiModel::learn(size_t executed, const ConstTrajectory& measured, RuleNot
                                                                 : measured.rows();
   const Eigen::Vector3d mean_twist = meanTwist(measured, samples, model_->period());
   if (!mean_twist.allFinite()) return;  // beyond all numbers
-  TwistSample sample{samples == whole.samples ? whole : model_->part(executed, samples),
-                     mean_twist};
+  const Eigen::Vector3d entry = model_->besideClass(executed, context_.entry);
+  TwistSample sample{samples == whole.samples ? whole : model_->part(executed, samples), mean_twist,
+                     entry.allFinite() ? plausible(entry) : entry};
   const ContextEffects::Inputs inputs =
       effects_.inputs(sample.part, model_->period() * static_cast<double>(samples), context_);
   const Eigen::Vector3d effect = effects_.effect(inputs);
   sample.mean_twist = plausible(mean_twist - effect);
   const Surface& before = likeliest().surface;
-  const Moments expected = before.expected(sample.part);
+  const TwistSample usual = before.asUsual(sample);
+  const Moments expected = before.expected(usual.part);
   const Eigen::Matrix3d turn = sample.part.toBody();
-  const Eigen::Vector3d beyond = turn * (sample.deviation() - expected.mean);
+  const Eigen::Vector3d beyond = turn * (usual.deviation() - expected.mean);
   Eigen::Matrix3d spread = expected.covariance;
   spread.diagonal() += before.executionNoise(sample.part);
   const Eigen::Vector3d variance = (turn * spread * turn.transpose()).diagonal();

@@ -86,8 +86,9 @@ Eigen::Matrix3d shapeOf(std::vector<Component>& components) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const Component& component : components) {
     if (weight >= kLevel) break;
-    weight += component.weight;
-    sum += component.weight * component.square();
+    const double share = std::min(component.weight, kLevel - weight);
+    weight += share;
+    sum += share * component.square();
   }
   return sum / weight;
 }

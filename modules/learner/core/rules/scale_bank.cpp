@@ -187,7 +187,7 @@ Eigen::VectorXd ScaleBank<kAxes, kKinds>::doubt(const Eigen::VectorXd& noise, do
   return doubt;
 }
 
-template class ScaleBank<2, 2>;
-template class ScaleBank<1, 3>;
+template class ScaleBank<2, 4>;
+template class ScaleBank<1, 4>;
 
 }  // namespace tread::learner

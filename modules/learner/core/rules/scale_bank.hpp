@@ -84,9 +84,9 @@ class ScaleBank {
   std::array<Eigen::VectorXd, kKinds> mean_alpha_;
 };
 
-/// Gain and residuals of the velocity.
-using VelocityBank = ScaleBank<2, 2>;
-/// Gain, bias and residuals of the turn rate.
-using YawBank = ScaleBank<1, 3>;
+/// Gain, residuals, lag and entry of the velocity.
+using VelocityBank = ScaleBank<2, 4>;
+/// Gain, bias, residuals and entry of the turn rate.
+using YawBank = ScaleBank<1, 4>;
 
 }  // namespace tread::learner

@@ -15,6 +15,11 @@ constexpr double kLargestTwist = 100.0;
 /// What weighs less adds nothing: to a density, to the noise [1].
 constexpr double kLeastInDensity = 1e-6;
 constexpr double kLeastInNoise = 0.03;
+/// [s] what every vehicle needs to settle.
+constexpr double kSettles = 0.1;
+/// Executions that the class's own steady twist counts for in what is usual before its patterns
+/// [1].
+constexpr double kUsualEntries = 0.5;
 /// No ground's corrections are beyond this.
 constexpr double kLargestCorrection = 1e9;
 
@@ -65,6 +70,12 @@ struct MomentSum {
 
 using One = Eigen::Matrix<double, 1, 1>;
 
+Eigen::Vector3d inPath(const PatternPart& part, const Eigen::Vector3d& body) {
+  Eigen::Vector3d turned = body;
+  turned.head<2>() = part.to_path * body.head<2>();
+  return turned;
+}
+
 }  // namespace
 
 Eigen::Vector3d plausible(const Eigen::Vector3d& twist) {
@@ -84,21 +95,28 @@ Surface::Surface(std::shared_ptr<const GroundModel> model, const GroundConfig& c
   follow(config);
 }
 
-Surface::Measured& Surface::measuredOf(const PatternPart& part) {
+Surface::Measured& Surface::measuredOf(const PatternPart& part, bool entered) {
   for (Measured& measured : measured_)
-    if (measured.part.pattern == part.pattern && measured.part.samples == part.samples)
+    if (measured.part.pattern == part.pattern && measured.part.samples == part.samples &&
+        measured.entered == entered)
       return measured;
-  measured_.push_back({part});
+  measured_.push_back({part, entered});
   return measured_.back();
 }
 
 void Surface::add(const GroundConfig& config, const TwistSample& sample) {
-  Measured& measured = measuredOf(sample.part);
+  Measured& measured = measuredOf(sample.part, sample.entry.allFinite());
   const Eigen::Vector3d deviation = sample.deviation();
   expected_noise_ = noise_;
   measured.count += 1.0;
   measured.sum += deviation;
   measured.squares += deviation.cwiseAbs2();
+  if (measured.entered) {
+    const Eigen::Vector3d entry = inPath(sample.part, sample.entry);
+    measured.entries += entry;
+    measured.entry_squares += entry.cwiseAbs2();
+    measured.products += entry.cwiseProduct(deviation);
+  }
   executions_ += 1.0;
   if (executions_ > config.longest_memory) {
     const double kept = config.longest_memory / executions_;
@@ -106,6 +124,9 @@ void Surface::add(const GroundConfig& config, const TwistSample& sample) {
       each.count *= kept;
       each.sum *= kept;
       each.squares *= kept;
+      each.entries *= kept;
+      each.entry_squares *= kept;
+      each.products *= kept;
     }
     executions_ = config.longest_memory;
   }
@@ -117,7 +138,43 @@ void Surface::expect(const GroundConfig& config, const Eigen::Matrix3Xd& scatter
   follow(config);
 }
 
+/// What is usual before the patterns of each class.
+void Surface::followEntries() {
+  std::vector<double> counts(model_->classes(), kUsualEntries);
+  std::vector<Eigen::Vector3d> sums(counts.size(), Eigen::Vector3d::Zero());
+  entries_.assign(counts.size(), {});
+  for (const Measured& measured : measured_) {
+    if (!measured.entered) continue;
+    const size_t c = measured.part.entry_class;
+    const Eigen::Matrix3d to_body = measured.part.toBody();
+    counts[c] += measured.count;
+    sums[c] += to_body * measured.entries;
+    entries_[c].variance += to_body.cwiseAbs2() * measured.entry_squares;
+  }
+  for (size_t c = 0; c < counts.size(); ++c) {
+    entries_[c].mean = sums[c] / counts[c];
+    entries_[c].variance =
+        (entries_[c].variance / counts[c] - entries_[c].mean.cwiseAbs2()).cwiseMax(0.0);
+  }
+  for (Measured& measured : measured_) {
+    if (!measured.entered) continue;
+    const PatternPart& part = measured.part;
+    measured.part.entry = part.settling * (measured.entries / measured.count -
+                                           inPath(part, entries_[part.entry_class].mean));
+  }
+}
+
+TwistSample Surface::asUsual(const TwistSample& sample) const {
+  if (!sample.entry.allFinite()) return sample;
+  TwistSample usual = sample;
+  PatternPart& part = usual.part;
+  part.entry = part.settling * inPath(part, sample.entry - entries_[part.entry_class].mean);
+  usual.mean_twist -= kSettles * (part.toBody() * part.entry);
+  return usual;
+}
+
 void Surface::follow(const GroundConfig& config) {
+  followEntries();
   regress();
   correct();
   estimateNoise(config);
@@ -165,8 +222,8 @@ void Surface::regress() {
   for (auto& gram : yaw_grams) gram.resize(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Measured& measured = measured_[static_cast<size_t>(i)];
-    const Eigen::Vector3d mean =
-        measured.sum / measured.count - expectation_.centre.added(measured.part);
+    const Eigen::Vector3d mean = measured.sum / measured.count - kSettles * measured.part.entry -
+                                 expectation_.centre.added(measured.part);
     velocity.segment<2>(2 * i) = mean.head<2>();
     yaw[i] = mean[2];
     for (Eigen::Index axis = 0; axis < 2; ++axis)
@@ -195,18 +252,25 @@ void Surface::correct() {
   const auto& spread = model_->spread();
   const Eigen::VectorXd& gain = posterior_->velocity.meanAlpha(0);
   const Eigen::VectorXd& own = posterior_->velocity.meanAlpha(1);
+  const Eigen::VectorXd& lag = posterior_->velocity.meanAlpha(2);
+  const Eigen::VectorXd& entry = posterior_->velocity.meanAlpha(3);
   const Eigen::VectorXd& yaw = posterior_->yaw.meanAlpha(0);
   const Eigen::VectorXd& bias = posterior_->yaw.meanAlpha(1);
   const Eigen::VectorXd& yaw_own = posterior_->yaw.meanAlpha(2);
+  const Eigen::VectorXd& yaw_entry = posterior_->yaw.meanAlpha(3);
   Eigen::Matrix<double, TwistCorrection::kCommon, 1> common;
   common.setZero();
+  constexpr int kLag = TwistCorrection::kLag;
+  double lasts = 0.0, turn_lasts = 0.0;
   const double bias_apart = model_->biasApart();
   for (size_t i = 0; i < measured_.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const PatternPart& part = measured_[i].part;
     const auto column = static_cast<Eigen::Index>(part.pattern);
-    common.head<TwistCorrection::kVelocity>() +=
-        part.velocity.transpose() * gain.segment<2>(2 * at);
+    common.head<kLag>() += part.velocity.leftCols<kLag>().transpose() * gain.segment<2>(2 * at);
+    common[kLag] += part.velocity.col(kLag).dot(lag.segment<2>(2 * at));
+    lasts += part.entry.head<2>().dot(entry.segment<2>(2 * at));
+    turn_lasts += part.entry[2] * yaw_entry[at];
     common.segment<2>(TwistCorrection::kYaw) += part.yaw.head<2>().transpose() * yaw[at];
     common.tail<2>() += part.yaw.tail<2>().transpose() * bias[at];
     const Eigen::Vector2d towards = part.own.transpose() * own.segment<2>(2 * at);
@@ -221,6 +285,23 @@ void Surface::correct() {
         model_->alike(TwistCorrection::kBiasOwn).col(column).transpose();
   }
   correction_.common += spread.cwiseProduct(common);
+  lasts_ = squared(GroundModel::kEntrySpread) * Eigen::Vector3d(lasts, lasts, turn_lasts);
+}
+
+/// What the squared errors of executions grow by as their entries count.
+Eigen::Vector3d Surface::growthByEntries(const Measured& measured,
+                                         const Eigen::Vector3d& moved) const {
+  const PatternPart& part = measured.part;
+  const double n = measured.count;
+  // As what an entry beside the usual one adds, for each unit of it.
+  const Eigen::Vector3d adds = part.settling * (lasts_.array() + kSettles).matrix();
+  const Eigen::Vector3d usual = inPath(part, entries_[part.entry_class].mean);
+  const Eigen::Vector3d sum = measured.entries - n * usual;
+  const Eigen::Vector3d squares =
+      measured.entry_squares - 2.0 * usual.cwiseProduct(measured.entries) + n * usual.cwiseAbs2();
+  const Eigen::Vector3d products =
+      measured.products - usual.cwiseProduct(measured.sum) - moved.cwiseProduct(sum);
+  return adds.cwiseProduct(adds.cwiseProduct(squares) - 2.0 * products);
 }
 
 void Surface::estimateNoise(const GroundConfig& config) {
@@ -236,8 +317,9 @@ void Surface::estimateNoise(const GroundConfig& config) {
       const auto at = static_cast<Eigen::Index>(i);
       const Eigen::Vector3d moved = correction_.added(measured.part);
       const Eigen::Vector3d doubt(velocity[2 * at], velocity[2 * at + 1], yaw[at]);
-      const Eigen::Vector3d error = measured.squares - 2.0 * moved.cwiseProduct(measured.sum) +
-                                    measured.count * (moved.cwiseAbs2() + doubt);
+      Eigen::Vector3d error = measured.squares - 2.0 * moved.cwiseProduct(measured.sum) +
+                              measured.count * (moved.cwiseAbs2() + doubt);
+      if (measured.entered) error += growthByEntries(measured, moved);
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         certainty_[axis] += 0.5 * measured.count;
         b[axis] += 0.5 * std::max(0.0, error[axis]) / R(measured.part, axis);
@@ -250,7 +332,8 @@ void Surface::estimateNoise(const GroundConfig& config) {
   }
 }
 
-double Surface::logDensity(const TwistSample& sample, const Eigen::Vector3d& returned) const {
+double Surface::logDensity(const TwistSample& measured, const Eigen::Vector3d& returned) const {
+  const TwistSample sample = asUsual(measured);
   const PatternPart& part = sample.part;
   const Eigen::Vector3d y = sample.deviation() - expectation_.centre.added(part);
   Eigen::Vector3d noise = returned;
@@ -295,10 +378,14 @@ Eigen::Vector3d Surface::executionNoise(const PatternPart& part) const {
     noise[axis] = noise_[axis] * R(part, axis) * certainty_[axis] / (certainty_[axis] - 1.0);
   noise.head<2>() *= posterior_->velocity.meanNoise();
   noise[2] *= posterior_->yaw.meanNoise();
+  Eigen::Vector3d entry = squared(part.settling) * entries_[part.entry_class].variance;
+  entry.head<2>() = part.to_path.cwiseAbs2() * entry.head<2>();
+  noise += (lasts_.array() + kSettles).square().matrix().cwiseProduct(entry);
   return noise;
 }
 
-Eigen::Vector3d Surface::squaredError(const TwistSample& sample) const {
+Eigen::Vector3d Surface::squaredError(const TwistSample& measured) const {
+  const TwistSample sample = asUsual(measured);
   const Moments moments = expected(sample.part);
   const Eigen::Vector3d y = sample.deviation() - moments.mean;
   return (y.cwiseAbs2() + moments.covariance.diagonal()).cwiseQuotient(sample.part.noise);
@@ -327,11 +414,15 @@ void Surface::save(std::vector<double>& memory) const {
                                  static_cast<double>(measured.part.samples), measured.count});
     put(measured.sum);
     put(measured.squares);
+    memory.push_back(measured.entered ? 1.0 : 0.0);
+    put(measured.entries);
+    put(measured.entry_squares);
+    put(measured.products);
   }
 }
 
 bool Surface::restoreMeasured(const std::vector<double>& memory, size_t& at) {
-  constexpr size_t kEach = 9;
+  constexpr size_t kEach = 19;
   const double parts = memory[at++];
   if (!isCount(parts, static_cast<double>((memory.size() - at) / kEach))) return false;
   measured_.clear();
@@ -346,9 +437,17 @@ bool Surface::restoreMeasured(const std::vector<double>& memory, size_t& at) {
     measured.count = memory[at + 2];
     measured.sum = Eigen::Map<const Eigen::Vector3d>(&memory[at + 3]);
     measured.squares = Eigen::Map<const Eigen::Vector3d>(&memory[at + 6]);
+    measured.entered = memory[at + 9] == 1.0;
+    measured.entries = Eigen::Map<const Eigen::Vector3d>(&memory[at + 10]);
+    measured.entry_squares = Eigen::Map<const Eigen::Vector3d>(&memory[at + 13]);
+    measured.products = Eigen::Map<const Eigen::Vector3d>(&memory[at + 16]);
+    const double most = kLargestTwist * 3.0;
     if (!(measured.count > 0.0 && measured.count <= kMostExecutions) ||
         measured.squares.minCoeff() < 0.0 ||
-        measured.sum.cwiseAbs().maxCoeff() > kLargestTwist * 3.0 * measured.count)
+        measured.sum.cwiseAbs().maxCoeff() > most * measured.count ||
+        !isCount(memory[at + 9], 1.0) || measured.entry_squares.minCoeff() < 0.0 ||
+        measured.entries.cwiseAbs().maxCoeff() > most * measured.count ||
+        measured.products.cwiseAbs().maxCoeff() > most * most * measured.count)
       return false;
     executions += measured.count;
     measured_.push_back(measured);
@@ -360,7 +459,7 @@ bool Surface::restore(const GroundConfig& config, const std::vector<double>& mem
   SurfacePrior& e = expectation_;
   const size_t numbers =
       static_cast<size_t>(e.centre.common.size() + e.centre.own.size() + e.scatter.size() + 5) +
-      4 * e.velocity.size() + 5 * e.yaw.size();
+      6 * e.velocity.size() + 6 * e.yaw.size();
   if (memory.size() < at + numbers) return false;
   const auto take = [&](auto& matrix) {
     for (double& number : matrix.reshaped()) number = memory[at++];

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -32,6 +33,8 @@ inline constexpr double kMostNoise = 50.0;
 struct TwistSample {
   PatternPart part;
   Eigen::Vector3d mean_twist;  ///< measured, body frame [m/s, m/s, rad/s]
+  /// v_body before it less the steady one of the part's entry class, as shipped; NaN: not measured.
+  Eigen::Vector3d entry = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 
   /// z - m, in the frame of the path.
   Eigen::Vector3d deviation() const {
@@ -77,8 +80,15 @@ struct Moments {
  * surface's own factor for each axis:
  *    q = b / a,   a = a0 + sum n / 2,   b = a0 + sum E[(z - m - h' x)^2] / (2 R)
  * with a0 half the executions that the expected noise counts for; in the regression q is that of
- * the step before (one step of expectation-maximisation an execution). A next execution is expected
- * from a mixture over the scales of Student's t with 2 a degrees of freedom. */
+ * the step before (one step of expectation-maximisation an execution).
+ * What an execution is entered with lasts for a while: with d the twist before it less the usual
+ * one on this surface before patterns of its class, it moves by
+ *    (tau + x) d sigma,   sigma = (1 - exp(-T / 0.5 s)) / T
+ * more, tau = 0.1 s what every vehicle needs to settle, x of velocity and of turn a part of the two
+ * regressions: from what patterns differ by in their mean d. Within a pattern d is mostly the noise
+ * of the INS, and a slope over that too flat. Predictions are for what is usual; how much entries
+ * differ is in their regions. A next execution is expected from a mixture over the scales of
+ * Student's t with 2 a degrees of freedom. */
 class Surface {
  public:
   Surface(std::shared_ptr<const GroundModel> model, const GroundConfig& config,
@@ -90,10 +100,12 @@ class Surface {
   void expect(const GroundConfig& config, const Eigen::Matrix3Xd& scatter);
   /// Logarithm of the density of an execution; `returned`: variance beyond that, of each axis.
   double logDensity(const TwistSample& sample, const Eigen::Vector3d& returned) const;
+  /// The sample as if it had been entered as usual; x's part of it is a response of the part.
+  TwistSample asUsual(const TwistSample& sample) const;
   /// Of the mean twist's correction, of which one execution scatters by executionNoise().
   /** Scales that weigh less than `least` do not count. */
   Moments expected(const PatternPart& part, double least = kLeastInMoments) const;
-  /// Variance of one execution's mean twist, along, across and of yaw.
+  /// Variance of one execution's mean twist, along, across and of yaw, whatever it is entered with.
   Eigen::Vector3d executionNoise(const PatternPart& part) const;
   /// E[(z - m - h' x)^2] of an execution over the model's noise.
   Eigen::Vector3d squaredError(const TwistSample& sample) const;
@@ -110,23 +122,37 @@ class Surface {
   bool restore(const GroundConfig& config, const std::vector<double>& memory, size_t& at);
 
  private:
+  /// Executions of a pattern, or of one beginning of it; those whose entry is known for themselves.
   struct Measured {
     PatternPart part;
+    bool entered = false;
     double count = 0.0;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+    // Of the entries, in the frame of the path: sums, of their squares, of products with
+    // deviations.
+    Eigen::Vector3d entries = Eigen::Vector3d::Zero();
+    Eigen::Vector3d entry_squares = Eigen::Vector3d::Zero();
+    Eigen::Vector3d products = Eigen::Vector3d::Zero();
+  };
+  /// What is usual before the patterns of a class.
+  struct Entries {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();      ///< as TwistSample::entry
+    Eigen::Vector3d variance = Eigen::Vector3d::Zero();  ///< about that
   };
   struct Posterior {
     VelocityBank velocity;
     YawBank yaw;
   };
-  Measured& measuredOf(const PatternPart& part);
+  Measured& measuredOf(const PatternPart& part, bool entered);
   double R(const PatternPart& part, Eigen::Index axis) const {
     return part.noise[axis] * expectation_.scatter(axis, static_cast<Eigen::Index>(part.pattern));
   }
   void follow(const GroundConfig& config);
+  void followEntries();
   void regress();
   void correct();
+  Eigen::Vector3d growthByEntries(const Measured& measured, const Eigen::Vector3d& moved) const;
   void estimateNoise(const GroundConfig& config);
   VelocityBank::Cross velocityCross(const PatternPart& part) const;
   YawBank::Cross yawCross(const PatternPart& part) const;
@@ -136,10 +162,12 @@ class Surface {
   SurfacePrior expectation_;
   std::vector<Measured> measured_;
   double executions_ = 0.0;
+  std::vector<Entries> entries_;                ///< by class
   std::shared_ptr<const Posterior> posterior_;  ///< immutable, so that copies share it
   Eigen::Matrix2Xd velocity_noise_;             ///< q R / n, by measured part
   Eigen::VectorXd yaw_noise_;
   SetCorrection correction_;
+  Eigen::Vector3d lasts_;                                     ///< [s] x, for each axis
   Eigen::Vector3d expected_noise_ = Eigen::Vector3d::Ones();  ///< q before the last execution
   Eigen::Vector3d noise_ = Eigen::Vector3d::Ones();           ///< q
   Eigen::Vector3d certainty_;                                 ///< a
