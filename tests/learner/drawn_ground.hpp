@@ -43,7 +43,8 @@ class DrawnWorld {
     const DrawnWidths widths;
     DrawnGround drawn = centre;
     for (Eigen::Index i = 0; i < TwistCorrection::kCommon; ++i) {
-      if (i == TwistCorrection::kLag) continue;  // patterns of one twist would not show it
+      if (i == TwistCorrection::kLag || i == TwistCorrection::kYawLag)
+        continue;  // patterns of one twist would not show it
       const double width = i < TwistCorrection::kVelocity ? widths.gain
                            : i < TwistCorrection::kBiasX  ? widths.yaw
                                                           : widths.yaw_bias;

@@ -63,6 +63,8 @@ TEST_CASE("the mean twist of any part of a pattern is corrected exactly, also fa
       REQUIRE(part.samples == samples);
       REQUIRE((part.mean - meanUnder(model, p, {}, samples)).norm() < 1e-12);
       for (int i = 0; i < TwistCorrection::kCommon + TwistCorrection::kOwn; ++i) {
+        // What turns lose by lag is spread over the whole pattern.
+        if (i == TwistCorrection::kYawLag && samples < model.profile(p).samples()) continue;
         INFO(set.patterns()[p].name << ", samples " << samples << ", correction " << i);
         // A lag beyond a sample is no longer linear where the profile winds.
         const TwistCorrection step = only(i, i == TwistCorrection::kLag ? 0.05 : 0.3);
@@ -191,9 +193,11 @@ TEST_CASE("whatever the corrections are, a predicted pattern stays one that can 
       const Pose2 end = model.profile(p).integrateEnd(model.scale(), correction);
       const PatternPart& whole = model.whole(p);
       const double seconds = 0.05 * static_cast<double>(whole.samples);
+      const double lag = std::abs(whole.yaw[TwistCorrection::kYawLag - TwistCorrection::kVelocity]);
       REQUIRE(std::hypot(end.x, end.y) <=
               (8.0 * whole.speed + 4.0 * turn * whole.turning) * seconds + 1e-9);
-      REQUIRE(std::abs(end.yaw) <= (3.0 * whole.turning + 2.0 * whole.speed) * seconds + 1e-9);
+      REQUIRE(std::abs(end.yaw) <=
+              (3.0 * whole.turning + 2.0 * whole.speed + 0.5 * lag) * seconds + 1e-9);
     }
   }
 }

@@ -90,7 +90,7 @@ struct Hypothesis {
       : weight(at),
         velocity(at + 3 + TwistCorrection::kCommon + TwistCorrection::kOwn * 7),
         yaw(velocity + 6 * surface.velocity().scales().size()),
-        factors(yaw + 6 * surface.yaw().scales().size()) {}
+        factors(yaw + 7 * surface.yaw().scales().size()) {}
 
   size_t weight, velocity, yaw, factors;
   size_t last_met = weight + 1, since = weight + 2, centre = weight + 3;
@@ -199,7 +199,7 @@ TEST_CASE("a memory with a number that cannot be is refused whole") {
     refused(each.centre, {1e300, -1e300});
     refused(each.velocity, {-0.1, 0.0, 1e300});      // a variance
     refused(each.velocity + 4, {-1.0, 0.0, 1e300});  // a factor on the noise
-    refused(each.yaw + 5, {-0.1, 0.0, 2.0});         // a weight
+    refused(each.yaw + 6, {-0.1, 0.0, 2.0});         // a weight
     refused(each.factors, {0.0, -1.0, 51.0, 1e300});
     refused(each.noise, {0.0, -1.0, 51.0, 1e300});
     refused(each.executions, {-1.0, memory[each.executions] + 1.0, 1e300});

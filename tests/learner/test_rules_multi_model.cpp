@@ -487,37 +487,48 @@ TEST_CASE("what a vehicle does on every ground it is expected to do on the next,
 
 TEST_CASE("a vehicle that follows later than its set does so also in what it has not driven yet",
           "[statistics]") {
-  const auto changing = [](double from, double to) {
+  const auto changing = [](const Twist2& from, const Twist2& to) {
     std::vector<Pose2> poses;
     Pose2 at;
     for (int t = 0; t < 20; ++t) {
       const double share = std::min(1.0, 0.1 * (t + 0.5));
-      at = at * integrate({from + share * (to - from), 0.0, 0.0}, 0.05);
+      at = at * integrate({from.v_x + share * (to.v_x - from.v_x), 0.0,
+                           from.omega + share * (to.omega - from.omega)},
+                          0.05);
       poses.push_back(at);
     }
     return poses;
   };
+  const Twist2 stands, drives{1.0, 0.0, 0.0}, turns{1.0, 0.0, 0.8};
   PatternSetContent content = richContent();
-  content.patterns.push_back(pattern(8, "set_off", {1.0, 1.0}, changing(0.0, 1.0)));
-  content.patterns.push_back(pattern(9, "stop", {0.0, 0.0}, changing(1.0, 0.0)));
-  constexpr size_t kSetOff = 7, kStop = 8;
-  constexpr size_t kDriven[] = {kAhead, kSetOff, kTurnLeft, kTurnRight};
+  content.patterns.push_back(pattern(8, "set_off", {1.0, 1.0}, changing(stands, drives)));
+  content.patterns.push_back(pattern(9, "turn_in", {0.5, 1.0}, changing(drives, turns)));
+  content.patterns.push_back(pattern(10, "stop", {0.0, 0.0}, changing(drives, stands)));
+  content.patterns.push_back(pattern(11, "turn_out", {1.0, 1.0}, changing(turns, drives)));
+  constexpr size_t kDriven[] = {kAhead, kTurnLeft, kTurnRight, 7, 8};
+  constexpr size_t kStop = 9, kTurnOut = 10;
   const DrawnWorld world(checked(content));
   DrawnGround later = world.shipped();
-  later.x.common[TwistCorrection::kLag] = 0.2;
-  const Pose2 truly = world.expected(later, kStop).back();
-  const double before = distance(world.set().patterns()[kStop].end(), truly);
-  REQUIRE(before > 0.1);
-  double after = 0.0;
+  later.x.common[TwistCorrection::kLag] = later.x.common[TwistCorrection::kYawLag] = 0.2;
+  const double stops = world.expected(later, kStop).back().x;
+  const double turned = world.expected(later, kTurnOut).back().yaw;
+  const double off = std::abs(stops - world.set().patterns()[kStop].end().x);
+  const double yaw_off = std::abs(turned - world.set().patterns()[kTurnOut].end().yaw);
+  REQUIRE(off > 0.1);
+  REQUIRE(yaw_off > 0.1);
+  double left = 0.0, yaw_left = 0.0;
   constexpr int kSeeds = 10;
   for (int seed = 1; seed <= kSeeds; ++seed) {
     std::mt19937_64 random(static_cast<uint64_t>(seed));
     Pupil pupil(ruleConfig("multi_model"), world.set());
     for (int i = 0; i < 10; ++i)
       for (const size_t p : kDriven) pupil.learn(p, world.execution(later, p, random));
-    after += distance(pupil.end(kStop), truly) / kSeeds;
+    left += std::abs(stops - pupil.end(kStop).x) / kSeeds;
+    yaw_left += std::abs(turned - pupil.end(kTurnOut).yaw) / kSeeds;
   }
-  REQUIRE(after < 0.4 * before);
+  CAPTURE(left, off, yaw_left, yaw_off);
+  REQUIRE(left < 0.4 * off);
+  REQUIRE(yaw_left < 0.5 * yaw_off);
 }
 
 TEST_CASE("a surface that comes back is recognised faster than it was learned", "[statistics]") {

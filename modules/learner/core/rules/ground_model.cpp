@@ -37,6 +37,8 @@ constexpr double kLargestLag = 0.5;   // [s]
 /// Of the velocity's lag: what changes from execution to execution, over what a set may be wrong
 /// by.
 constexpr double kLagNoise = 0.3;
+/// What a turn rate is at an end of a pattern is its mean over this [s].
+constexpr double kEndOfTurn = 0.15;
 /// [s] in which what a pattern was entered with is gone, for the part of it that a pattern feels.
 constexpr double kGone = 0.5;
 
@@ -96,7 +98,7 @@ struct Response {
     const double moves = std::hypot(speed, kTurnMoves * scale.speed / scale.turn * w);
     own.col(0) = moves * scale.axis;
     own.col(1) = moves * Eigen::Vector2d(-scale.axis[1], scale.axis[0]);
-    yaw << w, w * speed / scale.speed, V[0], V[1];
+    yaw << w, w * speed / scale.speed, V[0], V[1], 0.0;  // the lag: of a part as a whole
     yaw_own = w;
     bias_own = speed;
   }
@@ -172,6 +174,7 @@ PatternPart TwistProfile::part(const BodyScale& scale, Eigen::Index samples) con
     part.bias_own += share * response.bias_own;
     part.turning += share * std::abs(twists_[t][2]);
   }
+  part.yaw[TwistCorrection::kYawLag - TwistCorrection::kVelocity] = lossByLag(scale, samples);
   part.speed = part.bias_own;
   part.metres = part.speed * period_ * static_cast<double>(samples);
   const double length = part.mean.head<2>().norm();
@@ -181,6 +184,22 @@ PatternPart TwistProfile::part(const BodyScale& scale, Eigen::Index samples) con
   part.velocity = part.to_path * part.velocity;
   part.own = part.to_path * part.own;
   return part;
+}
+
+/// What a turn rate of the first samples loses on average, for each second that turns come later:
+/// what becomes of it from their beginning to their end, over the time; less what looks like a
+/// gain.
+double TwistProfile::lossByLag(const BodyScale& scale, Eigen::Index samples) const {
+  const auto edge = static_cast<Eigen::Index>(std::lround(kEndOfTurn / period_));
+  const Eigen::Index n = std::clamp<Eigen::Index>(edge, 1, std::max<Eigen::Index>(1, samples / 3));
+  double change = 0.0, mean = 0.0;
+  for (Eigen::Index t = 0; t < samples; ++t) {
+    const double w = twists_[static_cast<size_t>(t)][2];
+    mean += w / static_cast<double>(samples);
+    if (t < n) change -= w / static_cast<double>(n);
+    if (t >= samples - n) change += w / static_cast<double>(n);
+  }
+  return scale.lag_as_turn * mean - change / (period_ * static_cast<double>(samples));
 }
 
 /// What the velocity was some samples before t, held at both ends.
@@ -212,6 +231,8 @@ Pose2 TwistProfile::walk(const BodyScale& scale, const TwistCorrection& x, Put&&
                             scale.axis[1] * r_along + scale.axis[0] * r_across);
   const double turn = scale.speed / scale.turn;
   const double late = within(c[TwistCorrection::kLag], kLargestLag) / period_;
+  const double lost = within(c[TwistCorrection::kYawLag], kLargestLag) *
+                      lossByLag(scale, static_cast<Eigen::Index>(twists_.size()));
   Pose2 at;
   double c_at = 1.0, s_at = 0.0;  // of at.yaw, turned along instead of computed anew
   for (size_t t = 0; t < twists_.size(); ++t) {
@@ -230,7 +251,7 @@ Pose2 TwistProfile::walk(const BodyScale& scale, const TwistCorrection& x, Put&&
     const double yaw = std::clamp(1.0 + c[TwistCorrection::kYaw] + x.own[TwistCorrection::kYawOwn] +
                                       c[TwistCorrection::kYawBySpeed] * speed / scale.speed,
                                   0.0, kLargestFactor);
-    const double w_new = yaw * w + bias[0] * v + bias[1] * s + bias_own * speed;
+    const double w_new = yaw * w + bias[0] * v + bias[1] * s + bias_own * speed + lost;
     const double half = 0.5 * w_new * period_;
     const HalfTurn turned(half);
     const double chord = chordShare(half, turned.sinc) * period_;
@@ -292,13 +313,13 @@ GroundModel::GroundModel(const GroundConfig& config, const PatternSet& shipped)
   const double shear = kShearSpread * scale_.isotropy;
   const double bias = 1.0;
   spread_ << 1.0, kCrabSpread, shear, shear, kTurnLossSpread, kSideslipSpread, kShiftSpread,
-      kShiftSpread, config.noise.lag, 1.0, kYawBySpeedSpread, bias, bias;
+      kShiftSpread, config.noise.lag, 1.0, kYawBySpeedSpread, bias, bias, config.noise.lag;
   spread_ = spread_.cwiseAbs2().eval();
 }
 
 /// References, and along which axis the set moves: half the angle of the sum of squared velocities.
 void GroundModel::measureScale(double lever) {
-  scale_ = {1e-3, 0.0, lever, {1.0, 0.0}, 0.0};
+  scale_ = {1e-3, 0.0, lever};
   std::complex<double> sum;
   double length = 1e-12;
   for (const TwistProfile& profile : profiles_) {
@@ -315,6 +336,13 @@ void GroundModel::measureScale(double lever) {
     const double angle = 0.5 * std::arg(sum);
     scale_.axis = {std::cos(angle), std::sin(angle)};
   }
+  double as_gain = 0.0, turns = 1e-12;
+  for (const TwistProfile& profile : profiles_) {
+    const PatternPart all = profile.part(scale_, profile.samples());
+    as_gain -= all.mean[2] * all.yaw[TwistCorrection::kYawLag - TwistCorrection::kVelocity];
+    turns += squared(all.mean[2]);
+  }
+  scale_.lag_as_turn = as_gain / turns;
 }
 
 PatternPart GroundModel::part(size_t pattern, Eigen::Index samples) const {
@@ -420,6 +448,7 @@ YawBank::Blocks GroundModel::yaw(const PatternPart& a, const PatternPart& b) con
       One(a.yaw[2] * b.yaw[2] + a.yaw[3] * b.yaw[3] +
           biasApart() * a.bias_own * b.bias_own * entry(alike_[TwistCorrection::kBiasOwn], a, b)),
       One(a.yaw_own * b.yaw_own * entry(alike_[TwistCorrection::kYawOwn], a, b)),
+      One(spread_[TwistCorrection::kYawLag] * a.yaw[4] * b.yaw[4]),
       One(squared(kEntrySpread) * a.entry[2] * b.entry[2])};
 }
 

@@ -28,6 +28,7 @@ struct BodyScale {
   double turn = 1.0;               ///< [rad/s] w_ref, at least .2 v_ref / lever
   double lever = 0.3;              ///< [m]
   Eigen::Vector2d axis{1.0, 0.0};  ///< along which the set moves
+  double lag_as_turn = 0.0;        ///< [1/s] the yaw gain that lags of turns look like in this set
   double isotropy = 0.0;           ///< [1] 0: along one axis only; 1: as much in all directions
 };
 
@@ -37,13 +38,15 @@ struct PatternPart;
 /** With V the shipped velocity (forward, lateral) [m/s] and w the turn rate [rad/s] of a sample, J
  * the turn by 90 degrees, B = [[b1, b2], [b2, -b1]]:
  *    V' = V (1 + a - tau |w|/w_ref) + J V (c + kappa w/w_ref) + B V + (v_ref/w_ref) w e + o A r
- *    w' = w (1 + g + eta |V|/v_ref + r_g) + b . V + |V| r_b
+ *    w' = w (1 + g + eta |V|/v_ref + r_g) + b . V + |V| r_b + l_w u
  * with V(t - l) for V: the vehicle, or this ground, follows later than the set's did by a lag l
- * [s]. a gain, c crab, b1 and b2 shear, tau turn loss, kappa sideslip, e shift of the point about
- * which it turns, g yaw gain, eta yaw gain by speed, all [1], b yaw bias [rad/m] are common to all
- * patterns; r [1], along and across the set's axis A, r_g [1] and r_b [rad/m] are the pattern's
- * own; o = hypot(|V|, v_ref |w| / (2 w_ref)). No term knows which way is forward: in a frame that
- * is turned everything turns along. Predictions are kept within what ground can do. */
+ * [s], in turns by l_w [s]; u [rad/s2] is what the pattern's turn rate loses on average for each
+ * second of that, less what looks like a yaw gain over the set. a gain, c crab, b1 and b2 shear,
+ * tau turn loss, kappa sideslip, e shift of the point about which it turns, g yaw gain, eta yaw
+ * gain by speed, all [1], b yaw bias [rad/m] are common to all patterns; r [1], along and across
+ * the set's axis A, r_g [1] and r_b [rad/m] are the pattern's own; o = hypot(|V|, v_ref |w| / (2
+ * w_ref)). No term knows which way is forward: in a frame that is turned everything turns along.
+ * Predictions are kept within what ground can do. */
 struct TwistCorrection {
   enum Common {
     kGain,
@@ -59,6 +62,7 @@ struct TwistCorrection {
     kYawBySpeed,
     kBiasX,
     kBiasY,
+    kYawLag,
     kCommon
   };
   static constexpr int kVelocity = 9;  ///< of them act on V, the others on w
@@ -126,6 +130,8 @@ class TwistProfile {
   template <typename Put>
   Pose2 walk(const BodyScale& scale, const TwistCorrection& correction, Put&& put) const;
 
+  double lossByLag(const BodyScale& scale, Eigen::Index samples) const;
+
   double period_;
   std::vector<Eigen::Vector3d> twists_;  ///< [m/s, m/s, rad/s]
   Eigen::Matrix3d end_lever_;
@@ -166,7 +172,7 @@ class GroundModel {
 
   /// Share of the variance of yaw bias by which patterns differ in it [1].
   double biasApart() const;
-  /// Variances of the common corrections on a ground of scale 1 (velocity and yaw gains, lag), and
+  /// Variances of the common corrections on a ground of scale 1 (velocity and yaw gains, lags), and
   /// of yaw bias 1 rad/m.
   const Eigen::Matrix<double, TwistCorrection::kCommon, 1>& spread() const { return spread_; }
   /// Standard deviation of how long what a pattern was entered with lasts [s].

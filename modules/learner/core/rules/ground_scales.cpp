@@ -53,7 +53,7 @@ YawBank::Scales yawScales(const Widths& gains, const Widths& biases, const Width
     for (const Width& bias : biases)
       for (const Width& own : residuals)
         scales.push_back({{share * squared(gain.deviation), share * squared(bias.deviation / lever),
-                           share * residual(gain, own), lag},
+                           share * residual(gain, own), lag, lag},
                           1.0,
                           gain.weight * bias.weight * own.weight});
   return scales;

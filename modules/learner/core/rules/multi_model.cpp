@@ -94,8 +94,9 @@ SetCorrection MultiModel::commonOf(const std::vector<const Surface*>& met) const
   mean.common.segment<2>(TwistCorrection::kYaw) *= agreement([](const SetCorrection& x) {
     return Eigen::Vector2d(x.common.segment<2>(TwistCorrection::kYaw));
   });
-  mean.common.tail<2>() *=
-      agreement([](const SetCorrection& x) { return Eigen::Vector2d(x.common.tail<2>()); });
+  mean.common.segment<2>(TwistCorrection::kBiasX) *= agreement([](const SetCorrection& x) {
+    return Eigen::Vector2d(x.common.segment<2>(TwistCorrection::kBiasX));
+  });
   for (Eigen::Index k = 0; k < TwistCorrection::kOwn; ++k)
     mean.own.row(k) *= agreement(
         [k](const SetCorrection& x) { return Eigen::VectorXd(x.own.row(k).transpose()); });

@@ -188,6 +188,6 @@ Eigen::VectorXd ScaleBank<kAxes, kKinds>::doubt(const Eigen::VectorXd& noise, do
 }
 
 template class ScaleBank<2, 4>;
-template class ScaleBank<1, 4>;
+template class ScaleBank<1, 5>;
 
 }  // namespace tread::learner

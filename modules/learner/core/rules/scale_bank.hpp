@@ -86,7 +86,7 @@ class ScaleBank {
 
 /// Gain, residuals, lag and entry of the velocity.
 using VelocityBank = ScaleBank<2, 4>;
-/// Gain, bias, residuals and entry of the turn rate.
-using YawBank = ScaleBank<1, 4>;
+/// Gain, bias, residuals, lag and entry of the turn rate.
+using YawBank = ScaleBank<1, 5>;
 
 }  // namespace tread::learner

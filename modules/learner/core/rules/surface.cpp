@@ -257,7 +257,8 @@ void Surface::correct() {
   const Eigen::VectorXd& yaw = posterior_->yaw.meanAlpha(0);
   const Eigen::VectorXd& bias = posterior_->yaw.meanAlpha(1);
   const Eigen::VectorXd& yaw_own = posterior_->yaw.meanAlpha(2);
-  const Eigen::VectorXd& yaw_entry = posterior_->yaw.meanAlpha(3);
+  const Eigen::VectorXd& yaw_lag = posterior_->yaw.meanAlpha(3);
+  const Eigen::VectorXd& yaw_entry = posterior_->yaw.meanAlpha(4);
   Eigen::Matrix<double, TwistCorrection::kCommon, 1> common;
   common.setZero();
   constexpr int kLag = TwistCorrection::kLag;
@@ -272,7 +273,8 @@ void Surface::correct() {
     lasts += part.entry.head<2>().dot(entry.segment<2>(2 * at));
     turn_lasts += part.entry[2] * yaw_entry[at];
     common.segment<2>(TwistCorrection::kYaw) += part.yaw.head<2>().transpose() * yaw[at];
-    common.tail<2>() += part.yaw.tail<2>().transpose() * bias[at];
+    common.segment<2>(TwistCorrection::kBiasX) += part.yaw.segment<2>(2).transpose() * bias[at];
+    common[TwistCorrection::kYawLag] += part.yaw[4] * yaw_lag[at];
     const Eigen::Vector2d towards = part.own.transpose() * own.segment<2>(2 * at);
     for (int k = 0; k < 2; ++k)
       correction_.own.row(k) +=
@@ -459,7 +461,7 @@ bool Surface::restore(const GroundConfig& config, const std::vector<double>& mem
   SurfacePrior& e = expectation_;
   const size_t numbers =
       static_cast<size_t>(e.centre.common.size() + e.centre.own.size() + e.scatter.size() + 5) +
-      6 * e.velocity.size() + 6 * e.yaw.size();
+      6 * e.velocity.size() + 7 * e.yaw.size();
   if (memory.size() < at + numbers) return false;
   const auto take = [&](auto& matrix) {
     for (double& number : matrix.reshaped()) number = memory[at++];
