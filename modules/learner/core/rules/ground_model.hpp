@@ -176,7 +176,7 @@ class GroundModel {
   /// of yaw bias 1 rad/m.
   const Eigen::Matrix<double, TwistCorrection::kCommon, 1>& spread() const { return spread_; }
   /// Standard deviation of how long what a pattern was entered with lasts [s].
-  static constexpr double kEntrySpread = 0.3;
+  static constexpr double kEntrySpread = 0.15;
 
  private:
   void measureScale(double lever);

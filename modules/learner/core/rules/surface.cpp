@@ -16,7 +16,7 @@ constexpr double kLargestTwist = 100.0;
 constexpr double kLeastInDensity = 1e-6;
 constexpr double kLeastInNoise = 0.03;
 /// [s] what every vehicle needs to settle.
-constexpr double kSettles = 0.1;
+constexpr double kSettles = 0.05;
 /// Executions that the class's own steady twist counts for in what is usual before its patterns
 /// [1].
 constexpr double kUsualEntries = 0.5;

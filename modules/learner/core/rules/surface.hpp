@@ -84,7 +84,7 @@ struct Moments {
  * What an execution is entered with lasts for a while: with d the twist before it less the usual
  * one on this surface before patterns of its class, it moves by
  *    (tau + x) d sigma,   sigma = (1 - exp(-T / 0.5 s)) / T
- * more, tau = 0.1 s what every vehicle needs to settle, x of velocity and of turn a part of the two
+ * more, tau = 0.05 s what every vehicle needs to settle, x of velocity and of turn a part of the two
  * regressions: from what patterns differ by in their mean d. Within a pattern d is mostly the noise
  * of the INS, and a slope over that too flat. Predictions are for what is usual; how much entries
  * differ is in their regions. A next execution is expected from a mixture over the scales of
