@@ -32,10 +32,12 @@ class Driven {
     bus_->subscribe<health_t>(kHealth, [this](const health_t& message) { health = message; });
     file_ = "lidar_" + std::to_string(getpid()) + ".yaml";
     std::ofstream(file_) << "address: " << address << "\nrange_max: 12\n" << kRobot;
-    process = std::make_unique<Process>(
-        "tread-lidar-driver", std::vector<std::string>{"--config", file_, "--lcm-url", url});
+    arguments_ = {"--config", file_, "--lcm-url", url};
+    start();
   }
   ~Driven() { std::remove(file_.c_str()); }
+
+  void start() { process = std::make_unique<Process>("tread-lidar-driver", arguments_); }
 
   /// Listens until the condition holds, at most so many seconds.
   template <class Condition>
@@ -56,6 +58,7 @@ class Driven {
  private:
   std::unique_ptr<LcmBus> bus_;
   std::string file_;
+  std::vector<std::string> arguments_;
 };
 
 bool haveMulticast() {
@@ -105,7 +108,15 @@ TEST_CASE("a range finder that goes away and comes back is connected again") {
   REQUIRE(driven.until([&] { return says(driven.health, "no scan for"); }, 20));
   const int before = driven.scans;
   ScipServer again(ScipServer::Manner::kGood, port);
-  REQUIRE(driven.until([&] { return driven.scans >= before + 3; }, 30));
+  REQUIRE(again.port() == port);
+  // A library that hangs on the lost connection ends the process after 20 s, for its supervisor.
+  const auto scans_again = [&] {
+    if (!driven.process->running()) driven.start();
+    return driven.scans >= before + 3;
+  };
+  const bool connected = driven.until(scans_again, 45);
+  INFO(driven.health.health_reason);
+  REQUIRE(connected);
 }
 
 TEST_CASE("a range finder that starts up and never scans is connected again") {
