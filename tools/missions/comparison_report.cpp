@@ -87,7 +87,8 @@ void printTable(std::ostream& out, const std::vector<Row>& rows) {
          "yaw [rad/rad]\n";
   const std::pair<const char*, MeanError ErrorsAroundChanges::*> parts[] = {
       {"before a change", &ErrorsAroundChanges::before},
-      {"1..3 after it", &ErrorsAroundChanges::after},
+      {"the 1st after it", &ErrorsAroundChanges::first},
+      {"2nd, 3rd after it", &ErrorsAroundChanges::next},
       {"5..15 after it", &ErrorsAroundChanges::settled}};
   for (const auto& [when, part] : parts)
     for (const Row& row : rows) printErrors(out, row.rule, when, row.errors.*part);
@@ -144,6 +145,7 @@ void printDifferences(std::ostream& out, const std::vector<MissionResult>& resul
   };
   const std::pair<const char*, PartOf> parts[] = {
       {"1..3 after it", around(&ErrorsAroundChanges::after)},
+      {"2nd, 3rd after it", around(&ErrorsAroundChanges::next)},
       {"5..15 after it", around(&ErrorsAroundChanges::settled)},
       {"all on one surface", meanErrorOf}};
   for (const auto& [when, part] : parts)
@@ -233,6 +235,8 @@ Json rowsJson(const std::vector<Row>& rows) {
     json.push_back({{"rule", row.rule},
                     {"before", errorJson(row.errors.before)},
                     {"after_1_to_3", errorJson(row.errors.after)},
+                    {"after_1", errorJson(row.errors.first)},
+                    {"after_2_to_3", errorJson(row.errors.next)},
                     {"settled_5_to_15", errorJson(row.errors.settled)},
                     {"all", errorJson(row.all)},
                     {"settling", settlingJson(row.settling)},
@@ -278,6 +282,8 @@ void writeComparison(const std::string& path, const RuleComparison& comparison) 
   const Row best = omniscientRow(driven.results, omniscient);
   json["omniscient"] = {{"before", errorJson(best.errors.before)},
                         {"after_1_to_3", errorJson(best.errors.after)},
+                        {"after_1", errorJson(best.errors.first)},
+                        {"after_2_to_3", errorJson(best.errors.next)},
                         {"settled_5_to_15", errorJson(best.errors.settled)},
                         {"all", errorJson(best.all)}};
   json["batches"] = Json::array();

@@ -46,7 +46,7 @@ struct ErrorSums {
 };
 
 struct SumsAround {
-  ErrorSums before, after, settled;
+  ErrorSums before, after, first, next, settled;
 
   void add(const MissionResult& result, size_t change, const ErrorOf& error) {
     const Executions on_old = segmentOf(result, change);
@@ -54,9 +54,13 @@ struct SumsAround {
     before.add(on_old, result.seed, on_old.size() > 5 ? on_old.size() - 4 : 1, on_old.size(),
                error);
     after.add(on_new, result.seed, 1, 3, error);
+    first.add(on_new, result.seed, 1, 1, error);
+    next.add(on_new, result.seed, 2, 3, error);
     settled.add(on_new, result.seed, 5, 15, error);
   }
-  ErrorsAroundChanges means() const { return {before.mean(), after.mean(), settled.mean()}; }
+  ErrorsAroundChanges means() const {
+    return {before.mean(), after.mean(), first.mean(), next.mean(), settled.mean()};
+  }
 };
 
 /// Walks through one mission and adds the executions whose index since the last change is within

@@ -35,6 +35,8 @@ struct MeanError {
 struct ErrorsAroundChanges {
   MeanError before;   ///< the last five executions on the old surface
   MeanError after;    ///< the first three on the new one
+  MeanError first;    ///< of these the first, which nobody can know
+  MeanError next;     ///< and the two after it
   MeanError settled;  ///< the fifth to the fifteenth
 };
 

@@ -219,9 +219,9 @@ void readLogs(const std::vector<fs::path>& logs, Recordings& found) {
 Recordings readRecordings(const std::string& folder) {
   Recordings found;
   std::vector<fs::path> logs;
-  if (fs::is_directory(folder))
-    for (const auto& entry : fs::directory_iterator(folder))
-      if (entry.path().extension() == ".lcmlog") logs.push_back(entry.path());
+  std::error_code unreadable;
+  for (const auto& entry : fs::directory_iterator(folder, unreadable))
+    if (entry.path().extension() == ".lcmlog") logs.push_back(entry.path());
   std::sort(logs.begin(), logs.end());
   if (fs::exists(fs::path(folder) / "sessions.csv"))
     readDrives(folder, found);
