@@ -3,6 +3,8 @@
 #include "modules/learner/core/learner.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace tread::learner {
 namespace {
@@ -17,6 +19,10 @@ constexpr int64_t kFewestResiduals = 3;
 constexpr int64_t kShippedCount = 5;
 /// [1] of the newest residual, however many there were.
 constexpr double kLeastWeight = 0.10;
+/// An execution that begins so soon after another follows it without a pause [us].
+constexpr int64_t kNoPause = 100'000;
+/// [s] before an execution the planner has chosen it.
+constexpr double kChosenBefore = 0.25;
 
 /// The guards of a note in words.
 std::string guardsOf(const RuleNote& note) {
@@ -66,7 +72,8 @@ Learner::Learner(const RuleConfig& config, PatternSet shipped)
       set_(shipped_),
       rule_(makeRule(config, shipped_)),
       settled_version_(set_.version()),
-      settled_(rule_->clone()) {
+      settled_(rule_->clone()),
+      coasting_(largestSpeed(shipped_)) {
   for (const MotionPattern& pattern : shipped_.patterns()) {
     index_.emplace(pattern.id, index_.size());
     residuals_[pattern.id] = residualsOf(pattern);
@@ -95,15 +102,20 @@ void Learner::renumber(int64_t version, int64_t parent) {
   settled_version_ = set_.version();
 }
 
-PatternSetContent Learner::predicted() const {
+std::vector<Pose2> Learner::predictionOf(const LearningRule& rule, size_t pattern,
+                                         size_t samples) const {
+  std::vector<double> numbers(3 * samples);
+  const auto rows = static_cast<Eigen::Index>(samples);
+  rule.predict(pattern, Trajectory(numbers.data(), rows, 3));
+  return posesOf(ConstTrajectory(numbers.data(), rows, 3));
+}
+
+PatternSetContent Learner::predicted(const std::optional<Eigen::Vector2d>& beside) const {
   PatternSetContent content = set_.content();
-  std::vector<double> numbers;
   for (size_t p = 0; p < content.patterns.size(); ++p) {
     MotionPattern& pattern = content.patterns[p];
-    const auto samples = static_cast<Eigen::Index>(pattern.trajectory.size());
-    numbers.resize(static_cast<size_t>(3 * samples));
-    rule_->predict(p, Trajectory(numbers.data(), samples, 3));
-    pattern.trajectory = posesOf(ConstTrajectory(numbers.data(), samples, 3));
+    pattern.trajectory = predictionOf(*rule_, p, pattern.trajectory.size());
+    if (beside) coasting_.add(*beside, set_.periodSeconds(), pattern.trajectory);
     if (const auto covariance = rule_->endCovariance(p)) pattern.end_covariance = *covariance;
   }
   return content;
@@ -135,15 +147,42 @@ bool Learner::adopt(PatternSetContent content, int64_t version, int64_t utime, s
   return next.has_value();
 }
 
+/// From how far it ended beside what was predicted before it, and with what it began.
+void Learner::learnCoasting(size_t executed, const Measurement& measurement, int64_t utime) {
+  const std::optional<Ended> before = std::exchange(ended_, std::nullopt);
+  if (!rule_->learnsParts() || !measurement.complete()) return;
+  const double period = set_.periodSeconds();
+  const std::vector<Pose2> expected =
+      predictionOf(*settled_, executed, measurement.trajectory.size());
+  const double seconds = period * static_cast<double>(expected.size());
+  const int64_t pause = utime - std::llround(1e6 * seconds) - (before ? before->utime : 0);
+  if (before && std::abs(pause) < kNoPause) {
+    const Pose2& end = measurement.trajectory.back();
+    coasting_.learn(before->beside, {end.x - expected.back().x, end.y - expected.back().y},
+                    seconds);
+  }
+  // As late as a part of it that is known when the next one is chosen.
+  const auto known = static_cast<size_t>(std::llround(kChosenBefore / period));
+  if (known >= expected.size()) return;
+  if (const auto beside =
+          coasting_.beside(measurement.trajectory, expected, expected.size() - known, period))
+    ended_ = {utime, *beside};
+}
+
 bool Learner::follow(int pattern_id, const Measurement& beginning, int64_t part, int64_t utime) {
   const MotionPattern* pattern = set_.find(pattern_id);
   if (!rule_->learnsParts() || pattern == nullptr || !beginning.fair() || beginning.covered == 0)
     return false;
   const int64_t version = settled_version_ + part;
   if (part >= kVersions || version <= set_.version()) return false;
-  update(index_.at(pattern_id), beginning);
+  const size_t executed = index_.at(pattern_id);
+  const size_t samples = pattern->trajectory.size();
+  const auto beside =
+      coasting_.beside(beginning.trajectory, predictionOf(*settled_, executed, samples),
+                       beginning.covered, set_.periodSeconds());
+  update(executed, beginning);
   std::string why;
-  following_ = adopt(predicted(), version, utime, why);
+  following_ = adopt(predicted(beside), version, utime, why);
   if (!following_) rule_->assign(*settled_);
   return following_;
 }
@@ -165,6 +204,7 @@ Correction Learner::learn(int pattern_id, const Measurement& measurement,
   if (!rule_->learns() || pattern == nullptr || !measurement.fair()) return correction;
   if (measurement.trajectory.size() != pattern->trajectory.size()) return correction;
   const size_t executed = index_.at(pattern_id);
+  learnCoasting(executed, measurement, utime);
   correction.note = update(executed, measurement);
   correction.guards = guardsOf(correction.note);
 

@@ -11,6 +11,7 @@
 #include "common/execution/execution_tracker.hpp"
 #include "common/execution/measurement.hpp"
 #include "common/pattern/pattern.hpp"
+#include "modules/learner/core/coasting.hpp"
 #include "modules/learner/core/rules/learning_rule.hpp"
 
 namespace tread::learner {
@@ -91,8 +92,17 @@ class Learner {
   void renumber(int64_t version, int64_t parent);
 
  private:
-  /// The newest set with what the rule predicts now, not yet checked.
-  PatternSetContent predicted() const;
+  /// The end of an execution that the next may follow without a pause.
+  struct Ended {
+    int64_t utime;           ///< [us]
+    Eigen::Vector2d beside;  ///< see Coasting
+  };
+  /// The newest set with what the rule predicts now, not yet checked; for an execution that
+  /// begins with a velocity beside the predicted one, if there is one.
+  PatternSetContent predicted(const std::optional<Eigen::Vector2d>& beside = std::nullopt) const;
+  void learnCoasting(size_t executed, const Measurement& measurement, int64_t utime);
+  /// What the rule predicts of a pattern.
+  std::vector<Pose2> predictionOf(const LearningRule& rule, size_t pattern, size_t samples) const;
   RuleNote update(size_t executed, const Measurement& measurement);
   /// The predictions as a version; one clear line in `why` if they are no set.
   bool adopt(PatternSetContent content, int64_t version, int64_t utime, std::string& why);
@@ -106,6 +116,8 @@ class Learner {
   bool following_ = false;                 ///< the set holds what still runs
   std::unique_ptr<LearningRule> settled_;  ///< without what is learned from a running execution
   ResidualTable residuals_;
+  Coasting coasting_;
+  std::optional<Ended> ended_;
   std::vector<double> measured_;
 };
 
