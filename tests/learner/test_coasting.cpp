@@ -20,6 +20,18 @@ namespace {
 constexpr double kStep = 0.05;          // [s]
 constexpr int64_t kLength = 1'000'000;  // [us] of a pattern of the small set
 
+RuleConfig ofDefault() {
+  RuleConfig config;
+  config.rule = "multi_model";
+  return config;
+}
+
+/// Three quarters of a measurement of the small set.
+Measurement beginningOf(Measurement measurement) {
+  measurement.covered = 15;
+  return measurement;
+}
+
 /// Velocity beside the predicted one at each sample; true at the first one of an execution.
 using Beside = std::function<Eigen::Vector2d(bool begins)>;
 
@@ -31,9 +43,7 @@ struct Errors {
 };
 
 Errors driveOn(const Beside& beside, int executions) {
-  RuleConfig config;
-  config.rule = "multi_model";
-  Learner learner(config, smallSet());
+  Learner learner(ofDefault(), smallSet());
   std::mt19937_64 random(3);
   const std::vector<int> ids{kStraight, kLeft, kRight};
   const std::vector<Twist2> twists{{1.0, 0.0, 0.0}, {0.9, 0.0, 0.5}, {0.9, 0.0, -0.5}};
@@ -58,10 +68,8 @@ Errors driveOn(const Beside& beside, int executions) {
       errors.published += distance(published->find(id)->end());
       errors.of_rule += distance(of_rule[choice]);
     }
-    Measurement beginning = fair(driven);
-    beginning.covered = 15;
     const int64_t ended = (n + 1) * kLength;
-    REQUIRE(learner.follow(id, beginning, 4, ended - kLength / 4));
+    REQUIRE(learner.follow(id, beginningOf(fair(driven)), 4, ended - kLength / 4));
     published = learner.set();
     of_rule.clear();
     for (size_t p = 0; p < ids.size(); ++p) of_rule.push_back(learner.rule().predictEnd(p));
@@ -103,15 +111,82 @@ TEST_CASE("where no execution tells of the next one, coasting is unlearned") {
   CHECK(errors.published < 1.03 * errors.of_rule);
 }
 
-TEST_CASE("a vehicle that stood before is not expected to coast, nor one after a pause") {
-  RuleConfig config;
-  config.rule = "multi_model";
-  Learner learner(config, smallSet());
+TEST_CASE("what is published between executions is what the rule says") {
+  Learner learner(ofDefault(), smallSet());
   const auto faster = fair(arc({1.2, 0.0, 0.0}));
+  REQUIRE(learner.follow(kStraight, beginningOf(faster), 4, kLength - kLength / 4));
+  CHECK(learner.set().find(kLeft)->end().x > learner.rule().predictEnd(1).x + 0.01);
   REQUIRE(learner.learn(kStraight, faster, {}, kLength).changed);
-  // What is published between executions is what the rule says.
   for (size_t p = 0; p < learner.set().patterns().size(); ++p)
     CHECK(learner.set().patterns()[p].end().x == learner.rule().predictEnd(p).x);
+}
+
+TEST_CASE("only patterns that may follow begin with what is kept, and none from rest") {
+  PatternSetContent content = smallContent();
+  content.classes.push_back({"rest", {}, {0.0, 0.0}});
+  content.patterns[1].exit_class = "rest";
+  content.patterns[2].entry_class = "rest";
+  Learner learner(ofDefault(), checked(std::move(content)));
+  const auto shiftOf = [&](size_t p) {
+    return learner.set().patterns()[p].end().x - learner.rule().predictEnd(p).x;
+  };
+  const Measurement beginning = beginningOf(fair(arc({1.2, 0.0, 0.0})));
+  REQUIRE(learner.follow(kStraight, beginning, 4, kLength - kLength / 4));
+  CHECK(shiftOf(0) > 0.01);
+  CHECK(shiftOf(1) > 0.01);
+  CHECK(shiftOf(2) == 0.0);
+  REQUIRE(learner.unfollow(kLength));
+  REQUIRE(learner.follow(kLeft, beginning, 4, 2 * kLength));
+  for (size_t p = 0; p < learner.set().patterns().size(); ++p) CHECK(shiftOf(p) == 0.0);
+}
+
+TEST_CASE("executions after a pause tell nothing of coasting") {
+  Learner learner(ofDefault(), smallSet());
+  const auto faster = fair(arc({1.2, 0.0, 0.0}));
+  // Behind the numbers of the rule: two sums, then the end of the last execution and its d.
+  const auto sumsOf = [](const Learner& of) {
+    const std::vector<double> memory = of.memory();
+    return std::vector<double>(memory.end() - 5, memory.end() - 3);
+  };
+  const std::vector<double> none{0.0, 0.0};
+  REQUIRE(learner.learn(kStraight, faster, {}, kLength).changed);
+  CHECK(sumsOf(learner) == none);
+  REQUIRE(learner.learn(kStraight, faster, {}, 3 * kLength).changed);
+  CHECK(sumsOf(learner) == none);
+  REQUIRE(learner.learn(kLeft, fair(arc({1.0, 0.0, 0.5})), {}, 4 * kLength).changed);
+  CHECK(sumsOf(learner)[1] > 0.0);
+}
+
+TEST_CASE("a restored learner goes on as if it had never ended, also from an older state") {
+  Learner learner(ofDefault(), smallSet());
+  const auto faster = fair(arc({1.2, 0.0, 0.0}));
+  for (int n = 1; n <= 3; ++n) REQUIRE(learner.learn(kStraight, faster, {}, n * kLength).changed);
+  Learner restored(ofDefault(), smallSet());
+  REQUIRE(restored.restore(learner.set(), learner.residuals(), learner.memory()));
+  REQUIRE(restored.memory() == learner.memory());
+  std::vector<double> older = learner.memory();
+  older.resize(older.size() - 5);
+  Learner from_older(ofDefault(), smallSet());
+  REQUIRE(from_older.restore(learner.set(), learner.residuals(), older));
+  for (Learner* each : {&learner, &restored, &from_older}) {
+    REQUIRE(each->learn(kLeft, fair(arc({1.0, 0.0, 0.5})), {}, 4 * kLength).changed);
+    REQUIRE(each->follow(kStraight, beginningOf(faster), 3, 5 * kLength - kLength / 4));
+  }
+  CHECK(restored.set().checksum() == learner.set().checksum());
+  CHECK(restored.memory() == learner.memory());
+  // The older one knows less of coasting, and the rest as well.
+  CHECK(from_older.set().checksum() != learner.set().checksum());
+  CHECK(from_older.rule().predictEnd(0).x == learner.rule().predictEnd(0).x);
+}
+
+TEST_CASE("a set that is renumbered while a pattern runs is that of the last end") {
+  Learner learner(ofDefault(), smallSet());
+  REQUIRE(learner.follow(kStraight, beginningOf(fair(arc({1.2, 0.0, 0.0}))), 4, kLength));
+  REQUIRE(learner.set().find(kStraight)->end().x > 1.01);
+  learner.renumber(1000, 1);
+  CHECK(learner.set().version() == 1000);
+  CHECK(learner.set().find(kStraight)->end().x == Approx(1.0));
+  CHECK_FALSE(learner.unfollow(kLength));
 }
 
 TEST_CASE("coasting is learned from what follows, and kept within what a vehicle can do") {
@@ -130,6 +205,7 @@ TEST_CASE("coasting is learned from what follows, and kept within what a vehicle
   CHECK(coasting.tau() == 0.0);
   for (int i = 0; i < 1000; ++i) coasting.learn({0.1, 0.0}, {5.0, 0.0}, 1.0);
   CHECK(coasting.tau() == 1.0);
+  CHECK(Coasting(0.0).tau() == Approx(0.2));  // a set that moves nowhere
   // Numbers that are none change nothing.
   coasting.learn({testing::kNan, 0.0}, {0.0, 0.0}, 1.0);
   coasting.learn({0.1, 0.0}, {testing::kNan, 0.0}, 1.0);
@@ -147,7 +223,11 @@ TEST_CASE("a velocity beside the predicted one is measured in the body frame, at
   CHECK((*beside)[1] == Approx(0.2).margin(0.02));
   CHECK_FALSE(coasting.beside(measured, predicted, 4, kStep));
   CHECK_FALSE(coasting.beside(measured, arc({0.5, 0.0, 0.0}, 5), 20, kStep));
-  // Beyond half of the fastest it is no coasting.
+  // Another turn rate is no sideways velocity.
+  const auto turned = coasting.beside(arc({1.0, 0.0, 0.6}), arc({1.0, 0.0, 1.2}), 20, kStep);
+  REQUIRE(turned);
+  CHECK(turned->norm() < 0.005);
+  // No more than half of the fastest is believed.
   const auto thrown = coasting.beside(arc({9.0, 0.0, 0.0}), predicted, 20, kStep);
   REQUIRE(thrown);
   CHECK(thrown->cwiseAbs().maxCoeff() == Approx(0.5));

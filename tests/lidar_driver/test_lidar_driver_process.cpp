@@ -110,8 +110,13 @@ TEST_CASE("a range finder that goes away and comes back is connected again") {
   ScipServer again(ScipServer::Manner::kGood, port);
   REQUIRE(again.port() == port);
   // A library that hangs on the lost connection ends the process after 20 s, for its supervisor.
+  int starts = 0;
   const auto scans_again = [&] {
-    if (!driven.process->running()) driven.start();
+    if (!driven.process->running()) {
+      REQUIRE(driven.process->exitCode() == 1);
+      REQUIRE(++starts == 1);
+      driven.start();
+    }
     return driven.scans >= before + 3;
   };
   const bool connected = driven.until(scans_again, 45);

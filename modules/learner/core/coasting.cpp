@@ -13,21 +13,21 @@ constexpr double kGone = 0.5;        // [s]
 constexpr double kExpected = 0.2;    // [s] tau_0
 constexpr double kLongest = 1.0;     // [s] tau at most
 constexpr double kCertainty = 0.05;  // [1] L over the square of the fastest
-constexpr double kMost = 0.5;        // [1] of the fastest: d beyond that is none
-constexpr double kFading = 0.99;       // [1] of the sums, from execution to execution
+constexpr double kMost = 0.5;        // [1] of the fastest: no more is believed
+constexpr double kFading = 0.99;     // [1] of the sums, from execution to execution
 
 double share(double seconds) {
   return 1.0 - std::exp(-seconds / kGone);
 }
 
-/// Mean velocity between two samples, in the body frame of the later one [m/s].
+/// Mean velocity between two samples, in the body frame at the middle: the chord of an arc [m/s].
 Eigen::Vector2d velocityIn(const std::vector<Pose2>& poses, size_t from, size_t to,
                            double seconds) {
-  const Pose2& end = poses[to];
-  const double dx = end.x - poses[from].x;
-  const double dy = end.y - poses[from].y;
-  const double c = std::cos(end.yaw);
-  const double s = std::sin(end.yaw);
+  const double dx = poses[to].x - poses[from].x;
+  const double dy = poses[to].y - poses[from].y;
+  const double yaw = 0.5 * (poses[from].yaw + poses[to].yaw);
+  const double c = std::cos(yaw);
+  const double s = std::sin(yaw);
   return Eigen::Vector2d(c * dx + s * dy, c * dy - s * dx) / seconds;
 }
 
@@ -51,7 +51,8 @@ std::optional<Eigen::Vector2d> Coasting::beside(const std::vector<Pose2>& measur
 }
 
 double Coasting::tau() const {
-  const double certainty = kCertainty * fastest_ * fastest_;
+  // A set that moves nowhere has nothing to coast with.
+  const double certainty = std::max(1e-12, kCertainty * fastest_ * fastest_);
   return std::clamp((certainty * kExpected + products_) / (certainty + squares_), 0.0, kLongest);
 }
 
@@ -60,6 +61,11 @@ void Coasting::learn(const Eigen::Vector2d& beside, const Eigen::Vector2d& error
   const double s = share(seconds);
   products_ = kFading * products_ + s * beside.dot(error);
   squares_ = kFading * squares_ + s * s * beside.squaredNorm();
+}
+
+void Coasting::restore(const std::array<double, kNumbers>& memory) {
+  products_ = memory[0];
+  squares_ = std::max(0.0, memory[1]);
 }
 
 void Coasting::add(const Eigen::Vector2d& beside, double period, std::vector<Pose2>& poses) const {

@@ -21,8 +21,10 @@ constexpr int64_t kShippedCount = 5;
 constexpr double kLeastWeight = 0.10;
 /// An execution that begins so soon after another follows it without a pause [us].
 constexpr int64_t kNoPause = 100'000;
-/// [s] before an execution the planner has chosen it.
-constexpr double kChosenBefore = 0.25;
+/// [s] before an execution the planner has chosen it, by what was known then.
+constexpr double kChosenBefore = 0.3;
+/// Numbers about coasting behind those of the rule in the memory.
+constexpr size_t kOfCoasting = Coasting::kNumbers + 3;
 
 /// The guards of a note in words.
 std::string guardsOf(const RuleNote& note) {
@@ -84,7 +86,9 @@ bool Learner::restore(PatternSet set, ResidualTable residuals, const std::vector
   set_ = std::move(set);
   settled_version_ = set_.version();
   residuals_ = std::move(residuals);
-  if (rule_->restore(TrajectoryTable(set_.patterns()), memory)) {
+  coasting_ = Coasting(largestSpeed(shipped_));
+  ended_ = {};
+  if (restoreMemory(memory)) {
     settled_->assign(*rule_);
     return true;
   }
@@ -93,8 +97,41 @@ bool Learner::restore(PatternSet set, ResidualTable residuals, const std::vector
   return false;
 }
 
+std::vector<double> Learner::memory() const {
+  std::vector<double> memory = settled_->memory();
+  if (!rule_->learnsParts()) return memory;
+  const auto of_coasting = coasting_.memory();
+  memory.insert(memory.end(), of_coasting.begin(), of_coasting.end());
+  memory.insert(memory.end(),
+                {static_cast<double>(ended_.utime), ended_.beside[0], ended_.beside[1]});
+  return memory;
+}
+
+/// States of before 28 November 2026 have nothing about coasting.
+bool Learner::restoreMemory(const std::vector<double>& memory) {
+  const TrajectoryTable table(set_.patterns());
+  if (rule_->learnsParts() && memory.size() >= kOfCoasting) {
+    const auto of_coasting = memory.end() - static_cast<std::ptrdiff_t>(kOfCoasting);
+    const auto of_end = of_coasting + static_cast<std::ptrdiff_t>(Coasting::kNumbers);
+    // A whole number of microseconds that a double holds exactly.
+    constexpr double kLatest = 9e15;
+    const bool numbers = std::all_of(of_coasting, memory.end(),
+                                     [](double number) { return std::isfinite(number); }) &&
+                         of_end[0] >= 0.0 && of_end[0] < kLatest;
+    if (numbers && rule_->restore(table, {memory.begin(), of_coasting})) {
+      coasting_.restore({of_coasting[0], of_coasting[1]});
+      ended_ = {static_cast<int64_t>(of_end[0]), {of_end[1], of_end[2]}};
+      return true;
+    }
+  }
+  return rule_->restore(table, memory);
+}
+
 void Learner::renumber(int64_t version, int64_t parent) {
-  PatternSetContent content = set_.content();
+  // What still runs is published, not kept.
+  if (following_) rule_->assign(*settled_);
+  PatternSetContent content = following_ ? predicted() : set_.content();
+  following_ = false;
   content.version = version;
   content.parent_version = parent;
   std::string why;
@@ -110,12 +147,13 @@ std::vector<Pose2> Learner::predictionOf(const LearningRule& rule, size_t patter
   return posesOf(ConstTrajectory(numbers.data(), rows, 3));
 }
 
-PatternSetContent Learner::predicted(const std::optional<Eigen::Vector2d>& beside) const {
+PatternSetContent Learner::predicted(const std::optional<Coming>& coming) const {
   PatternSetContent content = set_.content();
   for (size_t p = 0; p < content.patterns.size(); ++p) {
     MotionPattern& pattern = content.patterns[p];
     pattern.trajectory = predictionOf(*rule_, p, pattern.trajectory.size());
-    if (beside) coasting_.add(*beside, set_.periodSeconds(), pattern.trajectory);
+    if (coming && pattern.entry_class == coming->entry_class)
+      coasting_.add(coming->beside, set_.periodSeconds(), pattern.trajectory);
     if (const auto covariance = rule_->endCovariance(p)) pattern.end_covariance = *covariance;
   }
   return content;
@@ -149,24 +187,36 @@ bool Learner::adopt(PatternSetContent content, int64_t version, int64_t utime, s
 
 /// From how far it ended beside what was predicted before it, and with what it began.
 void Learner::learnCoasting(size_t executed, const Measurement& measurement, int64_t utime) {
-  const std::optional<Ended> before = std::exchange(ended_, std::nullopt);
+  const Ended before = std::exchange(ended_, Ended{});
   if (!rule_->learnsParts() || !measurement.complete()) return;
   const double period = set_.periodSeconds();
+  const MotionPattern& pattern = set_.patterns()[executed];
   const std::vector<Pose2> expected =
       predictionOf(*settled_, executed, measurement.trajectory.size());
   const double seconds = period * static_cast<double>(expected.size());
-  const int64_t pause = utime - std::llround(1e6 * seconds) - (before ? before->utime : 0);
-  if (before && std::abs(pause) < kNoPause) {
+  const int64_t begun = utime - std::llround(1e6 * seconds);
+  if (before.utime > 0 && std::abs(begun - before.utime) < kNoPause &&
+      !set_.classNamed(pattern.entry_class).standing()) {
     const Pose2& end = measurement.trajectory.back();
-    coasting_.learn(before->beside, {end.x - expected.back().x, end.y - expected.back().y},
-                    seconds);
+    coasting_.learn(before.beside, {end.x - expected.back().x, end.y - expected.back().y}, seconds);
   }
-  // As late as a part of it that is known when the next one is chosen.
-  const auto known = static_cast<size_t>(std::llround(kChosenBefore / period));
-  if (known >= expected.size()) return;
+  const auto unknown = static_cast<size_t>(std::llround(kChosenBefore / period));
+  if (unknown >= expected.size()) return;
   if (const auto beside =
-          coasting_.beside(measurement.trajectory, expected, expected.size() - known, period))
+          coasting_.beside(measurement.trajectory, expected, expected.size() - unknown, period))
     ended_ = {utime, *beside};
+}
+
+std::optional<Learner::Coming> Learner::comingAfter(const MotionPattern& running,
+                                                    const Measurement& beginning) const {
+  // Whoever stands coasts no further.
+  if (set_.classNamed(running.exit_class).standing()) return std::nullopt;
+  const std::vector<Pose2> expected =
+      predictionOf(*settled_, index_.at(running.id), running.trajectory.size());
+  const auto beside =
+      coasting_.beside(beginning.trajectory, expected, beginning.covered, set_.periodSeconds());
+  if (!beside) return std::nullopt;
+  return Coming{running.exit_class, *beside};
 }
 
 bool Learner::follow(int pattern_id, const Measurement& beginning, int64_t part, int64_t utime) {
@@ -175,16 +225,15 @@ bool Learner::follow(int pattern_id, const Measurement& beginning, int64_t part,
     return false;
   const int64_t version = settled_version_ + part;
   if (part >= kVersions || version <= set_.version()) return false;
-  const size_t executed = index_.at(pattern_id);
-  const size_t samples = pattern->trajectory.size();
-  const auto beside =
-      coasting_.beside(beginning.trajectory, predictionOf(*settled_, executed, samples),
-                       beginning.covered, set_.periodSeconds());
-  update(executed, beginning);
+  const auto coming = comingAfter(*pattern, beginning);
+  update(index_.at(pattern_id), beginning);
   std::string why;
-  following_ = adopt(predicted(beside), version, utime, why);
-  if (!following_) rule_->assign(*settled_);
-  return following_;
+  const bool adopted = adopt(predicted(coming), version, utime, why);
+  if (adopted)
+    following_ = true;
+  else
+    rule_->assign(*settled_);
+  return adopted;
 }
 
 bool Learner::unfollow(int64_t utime) {
@@ -204,7 +253,6 @@ Correction Learner::learn(int pattern_id, const Measurement& measurement,
   if (!rule_->learns() || pattern == nullptr || !measurement.fair()) return correction;
   if (measurement.trajectory.size() != pattern->trajectory.size()) return correction;
   const size_t executed = index_.at(pattern_id);
-  learnCoasting(executed, measurement, utime);
   correction.note = update(executed, measurement);
   correction.guards = guardsOf(correction.note);
 
@@ -220,6 +268,7 @@ Correction Learner::learn(int pattern_id, const Measurement& measurement,
     append(correction.guards, "not learned, the set would be wrong: " + why);
     return correction;
   }
+  learnCoasting(executed, measurement, utime);
   settled_->assign(*rule_);
   settled_version_ = set_.version();
   following_ = false;

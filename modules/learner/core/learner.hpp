@@ -86,7 +86,7 @@ class Learner {
   bool restore(PatternSet set, ResidualTable residuals, const std::vector<double>& memory);
 
   /// What the rule knows beside the set, for the state file; without what still runs.
-  std::vector<double> memory() const { return settled_->memory(); }
+  std::vector<double> memory() const;
   const LearningRule& rule() const { return *rule_; }
   /// The same content under a higher version number, with `parent`.
   void renumber(int64_t version, int64_t parent);
@@ -94,12 +94,20 @@ class Learner {
  private:
   /// The end of an execution that the next may follow without a pause.
   struct Ended {
-    int64_t utime;           ///< [us]
-    Eigen::Vector2d beside;  ///< see Coasting
+    int64_t utime = 0;                                 ///< [us]; 0 = there is none
+    Eigen::Vector2d beside = Eigen::Vector2d::Zero();  ///< d of Coasting
   };
-  /// The newest set with what the rule predicts now, not yet checked; for an execution that
-  /// begins with a velocity beside the predicted one, if there is one.
-  PatternSetContent predicted(const std::optional<Eigen::Vector2d>& beside = std::nullopt) const;
+  /// What an execution that still runs says of the next one.
+  struct Coming {
+    std::string entry_class;  ///< of the patterns that may follow
+    Eigen::Vector2d beside;   ///< d of Coasting
+  };
+  /// The newest set with what the rule predicts now, not yet checked; patterns that may follow,
+  /// with the way that the vehicle coasts.
+  PatternSetContent predicted(const std::optional<Coming>& coming = std::nullopt) const;
+  std::optional<Coming> comingAfter(const MotionPattern& running,
+                                    const Measurement& beginning) const;
+  bool restoreMemory(const std::vector<double>& memory);
   void learnCoasting(size_t executed, const Measurement& measurement, int64_t utime);
   /// What the rule predicts of a pattern.
   std::vector<Pose2> predictionOf(const LearningRule& rule, size_t pattern, size_t samples) const;
@@ -117,7 +125,7 @@ class Learner {
   std::unique_ptr<LearningRule> settled_;  ///< without what is learned from a running execution
   ResidualTable residuals_;
   Coasting coasting_;
-  std::optional<Ended> ended_;
+  Ended ended_;
   std::vector<double> measured_;
 };
 

@@ -105,6 +105,8 @@ TEST_CASE("errors around changes count the last five before, three after, and th
   CHECK(errors.after.position == Approx((2 * 0.2 + 0.01) / 3));
   CHECK(errors.after.yaw == Approx((2 * 0.3 + 0.02) / 3));
   CHECK(errors.after.yaw_per_rad == Approx((2 * 0.3 + 0.02) / 3 / 0.1));
+  CHECK(errors.first.position == Approx(0.2));
+  CHECK(errors.next.yaw == Approx((0.3 + 0.02) / 2));
   CHECK(errors.settled.count == 8 * 11 + 4 * 4);
   CHECK(errors.settled.position_per_m == Approx(0.01));
   CHECK(meanErrorOf(results, errorAsDriven()).count == 12 * 10 + 8 * 20 + 4 * 8);
@@ -169,14 +171,14 @@ TEST_CASE("a comparison says in text and in JSON what each rule did") {
   std::ostringstream text;
   printComparison(text, comparison);
   for (const char* words : {"the same worlds", "those of the drives with collective", "omniscient",
-                            "1..3 after it", "never"})
+                            "the 1st after it", "2nd, 3rd after it", "1..3 after it", "never"})
     CHECK(text.str().find(words) != std::string::npos);
   const std::string path = "test_comparison_" + std::to_string(getpid()) + ".json";
   writeComparison(path, comparison);
   const std::string json = contentOf(path);
   std::remove(path.c_str());
-  for (const char* key : {"same_worlds", "same_executions", "omniscient", "median_both",
-                          "after_1_to_3", "settled_5_to_15", "batches"})
+  for (const char* key : {"same_worlds", "same_executions", "omniscient", "median_both", "after_1",
+                          "after_2_to_3", "after_1_to_3", "settled_5_to_15", "batches"})
     CHECK(json.find('"' + std::string(key) + "\":") != std::string::npos);
   CHECK(json.find("\"median_position\": null") != std::string::npos);
   CHECK_THROWS_WITH(writeComparison("/nowhere/report.json", comparison),

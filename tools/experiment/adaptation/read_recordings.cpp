@@ -223,7 +223,7 @@ Recordings readRecordings(const std::string& folder) {
   for (const auto& entry : fs::directory_iterator(folder, unreadable))
     if (entry.path().extension() == ".lcmlog") logs.push_back(entry.path());
   std::sort(logs.begin(), logs.end());
-  if (fs::exists(fs::path(folder) / "sessions.csv"))
+  if (fs::exists(fs::path(folder) / "sessions.csv", unreadable))
     readDrives(folder, found);
   else if (!logs.empty())
     readLogs(logs, found);
