@@ -65,7 +65,7 @@ void Coasting::learn(const Eigen::Vector2d& beside, const Eigen::Vector2d& error
 
 void Coasting::restore(const std::array<double, kNumbers>& memory) {
   products_ = memory[0];
-  squares_ = std::max(0.0, memory[1]);
+  squares_ = memory[1];
 }
 
 void Coasting::add(const Eigen::Vector2d& beside, double period, std::vector<Pose2>& poses) const {

@@ -39,7 +39,7 @@ class Coasting {
 
   static constexpr size_t kNumbers = 2;
   std::array<double, kNumbers> memory() const { return {products_, squares_}; }
-  /// Finite numbers.
+  /// Finite numbers, the second not negative.
   void restore(const std::array<double, kNumbers>& memory);
 
  private:

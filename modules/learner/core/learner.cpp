@@ -117,7 +117,7 @@ bool Learner::restoreMemory(const std::vector<double>& memory) {
     constexpr double kLatest = 9e15;
     const bool numbers = std::all_of(of_coasting, memory.end(),
                                      [](double number) { return std::isfinite(number); }) &&
-                         of_end[0] >= 0.0 && of_end[0] < kLatest;
+                         of_coasting[1] >= 0.0 && of_end[0] >= 0.0 && of_end[0] < kLatest;
     if (numbers && rule_->restore(table, {memory.begin(), of_coasting})) {
       coasting_.restore({of_coasting[0], of_coasting[1]});
       ended_ = {static_cast<int64_t>(of_end[0]), {of_end[1], of_end[2]}};
