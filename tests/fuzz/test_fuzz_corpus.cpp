@@ -41,7 +41,7 @@ void drive(learner::Learner& learner, int executions, double bend) {
 void writeMemory(const learner::Learner& learner, const std::string& name) {
   std::ofstream file(kCorpus + "rule_memory/" + name);
   file.precision(17);
-  for (const double number : learner.memory()) file << number << '\n';
+  for (const double number : learner.rule().memory()) file << number << '\n';
 }
 
 }  // namespace
@@ -79,8 +79,9 @@ TEST_CASE("what the learner has written into the corpus it takes back today") {
                           fuzz::shippedSet(), why);
   CHECK(why.empty());
   REQUIRE(state);
-  const auto rule = learner::makeRule(learner::RuleConfig{}, fuzz::shippedSet());
-  CHECK(rule->restore(learner::TrajectoryTable(state->set.patterns()), state->memory));
+  learner::Learner learner(learner::RuleConfig{}, fuzz::shippedSet());
+  CHECK(learner.restore(state->set, state->residuals, state->memory));
+  CHECK(learner.memory() == state->memory);
 }
 
 // test_fuzz_corpus "[.write]", once the rule remembers otherwise.
