@@ -67,4 +67,10 @@ std::string UnpackedFile::named(std::string message) const {
   return message;
 }
 
+std::string UnpackedFile::reasonOf(const std::string& failure) const {
+  if (problem_.empty()) return named(failure);
+  return problem_ + "; get a whole copy of it (unpacked as far as possible: " + named(failure) +
+         ")";
+}
+
 }  // namespace tread

@@ -22,6 +22,8 @@ class UnpackedFile {
   const std::string& problem() const { return problem_; }
   /// A message about the unpacked file, with the name of the packed one.
   std::string named(std::string message) const;
+  /// The same where reading failed: damage of the packed file comes before what follows from it.
+  std::string reasonOf(const std::string& failure) const;
 
  private:
   struct Close {

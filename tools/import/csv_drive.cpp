@@ -125,7 +125,7 @@ class CsvContent {
     try {
       read(CsvTable(unpacked.path(), source.layout), file, source);
     } catch (const RecordingError& error) {
-      throw RecordingError(unpacked.named(error.what()));
+      throw RecordingError(unpacked.reasonOf(error.what()));
     }
     if (!unpacked.problem().empty()) result_.losses.push_back({unpacked.problem(), 0.0, 0.0, ""});
   }

@@ -310,7 +310,7 @@ int unpacked(Arguments arguments, const std::string& name, const Take& take) {
     if (file.problem().empty()) return verdict;
     return std::max(verdict, verdictOn({{file.problem(), 0.0, 0.0, ""}}, arguments));
   } catch (const std::exception& error) {
-    throw RecordingError(file.named(error.what()));
+    throw RecordingError(file.reasonOf(error.what()));
   }
 }
 

@@ -48,6 +48,9 @@ TEST_CASE("a packed file that was cut off gives what is whole, and says so") {
   const std::string text = contentOf(file.path());
   CHECK(text.size() > 10'000);
   CHECK(numbers().rfind(text, 0) == 0);
+  CHECK_THAT(file.reasonOf(file.path() + ":3: no number"),
+             Catch::StartsWith(packed.path + ": what gzip packed is damaged or cut off") &&
+                 Catch::Contains(packed.path + ":3: no number"));
 }
 
 TEST_CASE("a plain file is read where it is, other packers are named with what unpacks them") {
