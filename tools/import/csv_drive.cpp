@@ -202,7 +202,8 @@ class CsvContent {
     if (!source.time.empty())
       for (const Row& row : rows) raw.push_back(table.number(row.row, source.time));
     if (const auto problem = timeUnitProblem(raw, source.time_unit))
-      throw table.error(rows.front().row, "column " + source.time + ": " + *problem);
+      throw table.error(rows.front().row,
+                        "column " + source.time + ": " + *problem + ": give that unit");
     double newest = rows.front().time;
     for (const Row& row : rows) {
       const double since = row.time - rows.front().time;

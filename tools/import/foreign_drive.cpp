@@ -54,7 +54,6 @@ std::optional<std::string> timeUnitProblem(std::vector<double> times, double uni
       {"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}};
   if (times.size() < 3) return std::nullopt;
   const double first = times.front();
-  const auto isCalendar = [&](double as) { return first * as > 1.2e9 && first * as < 2.2e9; };
   std::sort(times.begin(), times.end());
   const double period = usualPeriod(times);
   const double seconds = period * unit;
@@ -66,13 +65,13 @@ std::optional<std::string> timeUnitProblem(std::vector<double> times, double uni
     if (as < 1e-4 || as > 20.0 || other.second == unit || first * other.second > 4e9) continue;
     const bool nearer = best == nullptr || std::abs(std::log(as / kPeriod)) <
                                                std::abs(std::log(period * best->second / kPeriod));
-    if (isCalendar(other.second) || nearer) best = &other;
-    if (isCalendar(other.second)) break;
+    if (isCalendar(first * other.second) || nearer) best = &other;
+    if (isCalendar(first * other.second)) break;
   }
-  if (period <= 0.0 || isCalendar(unit) || best == nullptr) return std::nullopt;
-  if (!strange && !(unusual && isCalendar(best->second))) return std::nullopt;
+  if (period <= 0.0 || isCalendar(first * unit) || best == nullptr) return std::nullopt;
+  if (!strange && !(unusual && isCalendar(first * best->second))) return std::nullopt;
   return "the times are " + threeDigits(seconds) + " s apart; in " + best->first +
-         " they would be " + threeDigits(period * best->second) + " s apart: give that unit";
+         " they would be " + threeDigits(period * best->second) + " s apart";
 }
 
 double holdOf(double period) {

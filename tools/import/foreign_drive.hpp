@@ -37,6 +37,7 @@ struct ForeignDrive {
   std::map<std::string, size_t> left_out;  ///< what is no part of a drive, and why
   std::vector<Loss> losses;
 
+  std::vector<std::string> notes;  ///< what else is unusual about it, a line each
   void lose(const std::string& what, size_t lost, size_t of, const std::string& unit) {
     if (lost > 0) losses.push_back({what, double(lost), double(of), unit});
   }
@@ -97,6 +98,11 @@ std::optional<std::string> timeUnitProblem(std::vector<double> times, double uni
 double holdOf(double period);
 
 /// Commands as they came, in order of time, become a sample every 50 ms: the newest command.
+/// Whether a clock that counts from 1970 shows this in one of the years 2008 to 2039 [s].
+constexpr bool isCalendar(double seconds) {
+  return seconds > 1.2e9 && seconds < 2.2e9;
+}
+
 /** Between two that are further apart than `hold` [s] nothing is known, so that there are no
  * samples from one `period` after the first on. */
 void holdCommands(const std::vector<recordings::DriveSample>& commands, double period, double hold,

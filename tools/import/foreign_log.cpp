@@ -86,27 +86,67 @@ class Damage {
   double seconds_ = 0.0;
 };
 
-/// How fast the messages' own times go beside the logger's clock.
-class Pace {
+/// Times of a log: those of its messages, and when the recorder wrote them; an LCM log has both
+/// in us.
+class LogTimes {
  public:
-  void add(double own, double logged) {
-    if (!first_) first_ = {own, logged};
-    last_ = {own, logged};
+  /// When an event was recorded [us]. Of a recorder that counts ns, which its dates show, in us.
+  int64_t recorded(const LogEvent& event) {
+    ++events_;
+    if (!isCalendar(1e-9 * static_cast<double>(event.utime))) return event.utime;
+    ++in_ns_;
+    return event.utime / 1000;
   }
-  /// The unit of the messages' times if it is not that of the logger, us.
-  std::optional<std::string> unit() const {
-    constexpr double kLeast = 1e5;  // [us] of which a pace can be told
-    if (!first_ || last_.second - first_->second < kLeast) return std::nullopt;
-    const double pace = (last_.first - first_->first) / (last_.second - first_->second);
-    for (const auto& [name, of] :
-         {std::pair("ns", 1e3), std::pair("ms", 1e-3), std::pair("s", 1e-6)})
-      if (std::abs(pace / of - 1.0) < 0.2) return name;
-    return std::nullopt;
+
+  void add(const std::string& channel, double own, double recorded) {
+    if (!first_) first_ = {own, recorded};
+    last_ = {own, recorded};
+    own_[channel].push_back(own);
+  }
+
+  /// Throws where messages or recorder count another unit.
+  void check(const std::string& path, ForeignDrive& result) const {
+    if (2 * in_ns_ > events_)
+      result.notes.push_back("the recorder's times are ns, not us; read as such");
+    if (!first_) return;
+    const bool own_is_date = isCalendar(1e-6 * first_->first);
+    if (const auto pace = thousands())
+      throw RecordingError(path +
+                           (own_is_date ? ": its recorder counts time in " + unitOf(-*pace) +
+                                              ", its messages in us; let the recorder count us"
+                                        : ": its messages count time in " + unitOf(*pace) +
+                                              ", their types say us; let their sender say us") +
+                           ", or correct the log");
+    const auto& [channel, times] = *std::max_element(
+        own_.begin(), own_.end(),
+        [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
+    if (const auto problem = timeUnitProblem(times, 1e-6))
+      throw RecordingError(path + ": " + channel + ": " + *problem +
+                           "; let the sender count us, or correct the log");
   }
 
  private:
-  std::optional<std::pair<double, double>> first_;
+  static std::string unitOf(int thousands) {
+    return thousands == 1 ? "ns" : thousands == -1 ? "ms" : "s";
+  }
+
+  /// How many times a thousandfold the messages' times go as fast as the recorder's; nothing where
+  /// both count one unit.
+  std::optional<int> thousands() const {
+    constexpr double kLeast = 1e5;  // of which a pace can be told
+    const double own = last_.first - first_->first;
+    const double recorded = last_.second - first_->second;
+    if (std::max(own, recorded) < kLeast || recorded <= 0.0) return std::nullopt;
+    for (const int thousands : {1, -1, -2})
+      if (std::abs(own / recorded / std::pow(1e3, thousands) - 1.0) < 0.2) return thousands;
+    return std::nullopt;
+  }
+
+  size_t events_ = 0;
+  size_t in_ns_ = 0;  // of these
+  std::optional<std::pair<double, double>> first_;  // [us] of a message, and when it was recorded
   std::pair<double, double> last_;
+  std::map<std::string, std::vector<double>> own_;  // [us] by channel
 };
 
 class LogContent {
@@ -117,13 +157,12 @@ class LogContent {
     Damage damage;
     uint64_t at = 0;
     for (; reader.next(event); at = reader.position()) {
+      event.utime = times_.recorded(event);
       damage.add(at, reader.position(), event);
       take(event);
     }
     damage.finish(at, reader.position(), result_);
-    if (const auto unit = pace_.unit())
-      throw RecordingError(path + ": its messages count time in " + *unit +
-                           ", their types say us; let their sender say us, or correct the log");
+    times_.check(path, result_);
     for (const auto& [what, count] : broken_)
       result_.lose(what, count, events_, "messages of known types");
     if (by_type_.empty())
@@ -173,7 +212,7 @@ class LogContent {
     // Some senders leave the time empty; then the logger's clock is moved to the senders'.
     const double utime = content->at("utime").at(0);
     if (utime > 0.0 && !offset_) offset_ = utime - static_cast<double>(event.utime);
-    if (utime > 0.0) pace_.add(utime, static_cast<double>(event.utime));
+    if (utime > 0.0) times_.add(event.channel, utime, static_cast<double>(event.utime));
     const double at =
         utime > 0.0 ? utime : static_cast<double>(event.utime) + offset_.value_or(0.0);
     if (!begin_) begin_ = at;
@@ -191,7 +230,7 @@ class LogContent {
   std::map<std::string, size_t> broken_;  // of these, and how
   std::optional<double> offset_;          // [us] of the senders' clock from the logger's
   std::optional<double> begin_;           // [us] of the first message
-  Pace pace_;
+  LogTimes times_;
 };
 
 void takePoses(const std::string& path, std::vector<Timed> poses, ForeignDrive& result) {

@@ -119,6 +119,7 @@ Reading taken(import::ForeignDrive foreign) {
   for (const auto& [what, count] : foreign.left_out)
     std::printf("left out: %zu of %s\n", count, what.c_str());
   if (!foreign.poses.empty()) std::printf("poses: %s\n", foreign.poses.c_str());
+  for (const std::string& note : foreign.notes) std::printf("%s\n", note.c_str());
   return {std::move(foreign.drive), std::move(foreign.losses)};
 }
 

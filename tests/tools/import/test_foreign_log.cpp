@@ -208,6 +208,44 @@ TEST_CASE("a foreign log whose messages count nanoseconds is named") {
   REQUIRE_THROWS_WITH(log.read(), Catch::Contains("count time in ns"));
 }
 
+TEST_CASE("a foreign log whose recorder and messages count another unit together is named") {
+  for (const auto& [unit, in_us] : {std::pair("ns", 1000.0), std::pair("ms", 0.001)}) {
+    ForeignLog log;
+    for (int i = 0; i < 100; ++i) {
+      const auto time = static_cast<int64_t>(static_cast<double>(kBegin + 50'000 * i) * in_us);
+      log.pose(time, "POSE", 0.01 * i);
+    }
+    REQUIRE_THROWS_WITH(log.read(), Catch::Contains(std::string("in ") + unit));
+  }
+}
+
+TEST_CASE(
+    "a recorder that counts another unit than its messages is named, and its dates in ns read") {
+  const auto logged = [](int64_t recorder_begin, int64_t recorder_period) {
+    auto log = std::make_unique<ForeignLog>();
+    for (int i = 0; i < 100; ++i) {
+      const int64_t utime = kBegin + 50'000 * i;
+      const int64_t recorded = recorder_begin + recorder_period * i;
+      log->add(recorded, "POSE",
+               Bytes("pose_xyt_t").time(utime).number(0.01 * i).number(0).number(0));
+      // Without a time of its own it has the recorder's.
+      log->add(recorded, "PWM", Bytes("mbot_motor_pwm_t").time(0).number(0.5).number(0.5));
+    }
+    return log;
+  };
+  const ForeignDrive foreign = logged(1000 * kBegin, 50'000'000)->read();
+  REQUIRE(foreign.notes ==
+          std::vector<std::string>{"the recorder's times are ns, not us; read as such"});
+  REQUIRE(foreign.losses.empty());
+  REQUIRE(foreign.drive.fixes.size() == 100);
+  REQUIRE(foreign.drive.fixes.back().time == Approx(4.95));
+  REQUIRE(foreign.drive.drive.back().time == Approx(4.95));
+  for (const auto& [unit, begin, period] :
+       {std::tuple("ms", kBegin / 1000, 50), std::tuple("ns", int64_t{0}, 50'000'000)})
+    REQUIRE_THROWS_WITH(logged(begin, period)->read(),
+                        Catch::Contains(std::string("recorder counts time in ") + unit));
+}
+
 TEST_CASE("a foreign scan becomes points, its angles clockwise, its times in us or ms") {
   ForeignLog log;
   Bytes scan = Bytes("lidar_t").time(kBegin).count(3);
