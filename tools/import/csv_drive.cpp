@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <utility>
 
 #include "common/config/scalars.hpp"
 #include "common/geometry/degrees.hpp"
@@ -319,8 +320,9 @@ void setAttitude(const CsvContent& content, const CsvMapping& mapping, Fix& fix)
 /// Heading from the fixes before and after; NaN at low speed.
 double courseAt(const std::vector<Fix>& fixes, size_t i, const CsvContent& content,
                 double course_above) {
-  const Fix& before = fixes[i > 0 ? i - 1 : i];
-  const Fix& after = fixes[std::min(i + 1, fixes.size() - 1)];
+  const bool ends = i + 1 == fixes.size() || fixes[i + 1].new_track;
+  const Fix& before = fixes[fixes[i].new_track ? i : i - 1];
+  const Fix& after = fixes[ends ? i : i + 1];
   const Eigen::Vector2d way = after.T_map_body.position() - before.T_map_body.position();
   const double time = after.time - before.time;
   if (time <= 0.0 || time > kCourseGap || way.norm() / time < course_above) return kUnknown;
@@ -337,6 +339,7 @@ void takePoses(const CsvContent& content, const CsvMapping& mapping, ForeignDriv
   const Series& times = content.of(along);
   Placing placing(content, mapping);
   std::vector<Fix> fixes;
+  std::vector<size_t> measured;  // whose positions they are
   for (size_t i = 0; i < times.size(); ++i) {
     Fix fix;
     fix.time = times.time(i);
@@ -354,19 +357,24 @@ void takePoses(const CsvContent& content, const CsvMapping& mapping, ForeignDriv
     fix.z = p_map.z();
     if (!mapping.course_above) setAttitude(content, mapping, fix);
     fix.yaw_rate = content.at("yaw_rate", fix.time, kRateAge);
+    fix.new_track = fixes.empty() || content.isApart(fixes.back().time, fix.time);
     fixes.push_back(fix);
+    measured.push_back(i);
   }
+  takeJumpsOut(
+      fixes, [&](size_t i) { return content.placeOf(along, measured[i]); }, result);
+  bool new_track = false;
   for (size_t i = 0; i < fixes.size(); ++i) {
     Fix fix = fixes[i];
+    new_track = new_track || fix.new_track;
     if (mapping.course_above)
       fix.T_map_body.yaw = courseAt(fixes, i, content, *mapping.course_above);
     if (!std::isfinite(fix.T_map_body.yaw)) {
       ++result.left_out["poses without a heading"];
       continue;
     }
-    std::vector<Fix>& taken = result.drive.fixes;
-    fix.new_track = taken.empty() || content.isApart(taken.back().time, fix.time);
-    taken.push_back(fix);
+    fix.new_track = std::exchange(new_track, false);
+    result.drive.fixes.push_back(fix);
   }
 }
 

@@ -10,9 +10,32 @@
 namespace tread::import {
 
 using recordings::DriveSample;
+using recordings::Fix;
 using recordings::kLongestHold;
 using recordings::kPeriod;
 using recordings::RecordedDrive;
+
+namespace {
+
+/// Whether no ground vehicle goes from one pose to the other in the time between them.
+bool isBeyondReach(const Fix& a, const Fix& b) {
+  constexpr double kFastest = 30.0;  // [m/s]
+  constexpr double kNoise = 1.0;     // [m] of poses that are near each other in time
+  return distanceBetween(a.T_map_body, b.T_map_body) >
+         kNoise + kFastest * std::abs(b.time - a.time);
+}
+
+/// Whether the i-th pose is beyond reach from the one before, with which it is connected.
+bool jumps(const std::vector<Fix>& poses, size_t i) {
+  return i > 0 && i < poses.size() && !poses[i].new_track && isBeyondReach(poses[i - 1], poses[i]);
+}
+
+/// Whether the i-th pose alone lies apart: the ones before and after it are near each other.
+bool isAlone(const std::vector<Fix>& poses, size_t i) {
+  return jumps(poses, i) && jumps(poses, i + 1) && !isBeyondReach(poses[i - 1], poses[i + 1]);
+}
+
+}  // namespace
 
 bool CommandOrder::operator()(const Command& a, const Command& b) const {
   for (size_t c = 0; c < Command::kMaxChannels; ++c)
@@ -38,6 +61,39 @@ std::string lineOf(const Loss& loss) {
   };
   return number(loss.lost) + " of " + number(loss.of) + " " + loss.unit +
          formatted(" (%.2g %%): ", 100.0 * loss.lost / loss.of) + loss.what;
+}
+
+void takeJumpsOut(std::vector<Fix>& poses, const std::function<std::string(size_t)>& place,
+                  ForeignDrive& result) {
+  size_t all = 0, alone = 0, first_alone = 0, tracks = 0, first_track = 0;
+  for (size_t i = 1; i < poses.size(); ++i) all += jumps(poses, i);
+  if (all * 10 > poses.size() && all > 2) {
+    result.notes.push_back(std::to_string(all) + " of " + std::to_string(poses.size()) +
+                           " poses are farther from the one before than a ground vehicle can go; "
+                           "are the units of positions and times right?");
+    return;
+  }
+  std::vector<Fix> kept;
+  for (size_t i = 0; i < poses.size(); ++i) {
+    if (isAlone(poses, i)) {
+      if (alone++ == 0) first_alone = i;
+      kept.push_back(poses[++i]);
+      continue;
+    }
+    kept.push_back(poses[i]);
+    if (!jumps(poses, i)) continue;
+    kept.back().new_track = true;
+    if (tracks++ == 0) first_track = i;
+  }
+  if (alone > 0)
+    result.lose("farther from both neighbours than a ground vehicle can go, the first at " +
+                    place(first_alone),
+                alone, poses.size(), "poses");
+  if (tracks > 0)
+    result.notes.push_back("poses jump farther than a ground vehicle can go: a new track begins " +
+                           std::to_string(tracks) + (tracks == 1 ? " time" : " times") +
+                           ", the first at " + place(first_track));
+  poses = std::move(kept);
 }
 
 double usualPeriod(const std::vector<double>& times) {

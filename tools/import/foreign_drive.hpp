@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -36,8 +37,8 @@ struct ForeignDrive {
   std::string poses;                       ///< whose poses were taken, in words
   std::map<std::string, size_t> left_out;  ///< what is no part of a drive, and why
   std::vector<Loss> losses;
-
   std::vector<std::string> notes;  ///< what else is unusual about it, a line each
+
   void lose(const std::string& what, size_t lost, size_t of, const std::string& unit) {
     if (lost > 0) losses.push_back({what, double(lost), double(of), unit});
   }
@@ -86,8 +87,20 @@ void sortByTime(std::vector<Item>& items, const std::string& unit, const Same& s
   result.lose("the same time as the one before", other, all, unit);
 }
 
+/// Leaves out each pose to which no ground vehicle can have gone and come back, and begins a new
+/// track at both ends of what lies apart for longer; both are counted and told.
+/** `place` says where the i-th of the poses stands. Where more than a tenth of them are so far from
+ * each other, units or times are wrong: they stay as they are, and that is told. */
+void takeJumpsOut(std::vector<recordings::Fix>& poses,
+                  const std::function<std::string(size_t)>& place, ForeignDrive& result);
+
 /// The usual time between two of these times, which are in order; 0 of fewer than two.
 double usualPeriod(const std::vector<double>& times);
+
+/// Whether a clock that counts from 1970 shows this in one of the years 2008 to 2039 [s].
+constexpr bool isCalendar(double seconds) {
+  return seconds > 1.2e9 && seconds < 2.2e9;
+}
 
 /// Why times cannot be in a unit [s], and in which they are instead; nothing where they can.
 /** Measurements of vehicles are .1 ms to 20 s apart, and no clock shows a later century. */
@@ -98,11 +111,6 @@ std::optional<std::string> timeUnitProblem(std::vector<double> times, double uni
 double holdOf(double period);
 
 /// Commands as they came, in order of time, become a sample every 50 ms: the newest command.
-/// Whether a clock that counts from 1970 shows this in one of the years 2008 to 2039 [s].
-constexpr bool isCalendar(double seconds) {
-  return seconds > 1.2e9 && seconds < 2.2e9;
-}
-
 /** Between two that are further apart than `hold` [s] nothing is known, so that there are no
  * samples from one `period` after the first on. */
 void holdCommands(const std::vector<recordings::DriveSample>& commands, double period, double hold,

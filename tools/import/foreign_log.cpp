@@ -250,6 +250,9 @@ void takePoses(const std::string& path, std::vector<Timed> poses, ForeignDrive& 
     fix.new_track = fixes.empty();
     fixes.push_back(fix);
   }
+  takeJumpsOut(
+      fixes, [&](size_t i) { return fixed(poses[i].time, 2) + " s on " + poses[i].channel; },
+      result);
 }
 
 void takeCommands(std::vector<DriveSample> commands, ForeignDrive& result) {

@@ -8,6 +8,7 @@
 
 #include "common/messages/scan_messages.hpp"
 #include "common/recordings/csv_table.hpp"
+#include "common/report/text.hpp"
 #include "tools/import/rawlog_records.hpp"
 
 namespace tread::import {
@@ -62,6 +63,8 @@ class RawlogDrive {
         },
         result_);
     if (!drive.fixes.empty()) drive.fixes.front().new_track = true;
+    takeJumpsOut(
+        drive.fixes, [&](size_t i) { return fixed(drive.fixes[i].time, 2) + " s"; }, result_);
     std::stable_sort(drive.scans.begin(), drive.scans.end(),
                      [](const auto& a, const auto& b) { return a.time < b.time; });
   }

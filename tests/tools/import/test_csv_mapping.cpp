@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "common/config/config_reader.hpp"
 #include "common/geometry/se2.hpp"
