@@ -68,7 +68,7 @@ size_t agreement(std::string_view text, char delimiter) {
 char likelyDelimiter(std::string_view text) {
   char likely = ',';
   size_t best = 0;
-  for (const char delimiter : {'\t', ';', ',', ' '}) {
+  for (const char delimiter : {'\t', ';', '|', ',', ' '}) {
     const size_t lines = agreement(text, delimiter);
     if (lines > best) likely = delimiter;
     best = std::max(best, lines);
@@ -161,7 +161,7 @@ void CsvLines::readQuoted(std::string& field) {
 CsvStart findStart(std::string_view text, const CsvLayout& layout) {
   CsvStart start;
   const char given = layout.delimiter;
-  for (const char delimiter : {given != '\0' ? given : '\t', '\t', ';', ',', ' '}) {
+  for (const char delimiter : {given != '\0' ? given : '\t', '\t', ';', '|', ',', ' '}) {
     if (!layout.header || layout.columns.empty()) break;
     const auto header = headerWith(text, delimiter, layout.columns);
     if (!header) continue;

@@ -90,6 +90,10 @@ void CsvTable::read(std::string text, CsvLayout layout) {
   CsvLine line;
   while (lines.next(line)) {
     if (line.comment || line.number == header_.number) continue;
+    if (!rows_.empty() && header_.number > 0 && line.fields == header_.fields)
+      throw RecordingError(path_ + ":" + std::to_string(line.number) +
+                           ": the header comes again: are these two drives, joined? Part them "
+                           "here");
     if (line.number > header_.number) {
       if (!takeUnits(line, layout.columns)) addRow(line);
     } else if (line.fields.size() >= width_ && holdsNumbers(line)) {

@@ -157,10 +157,11 @@ class MappingReader {
   CsvSource readSource(ConfigReader& table) {
     CsvSource source;
     table.text("file", source.file);
-    static const std::map<std::string, char> kDelimiters{
-        {"auto", '\0'}, {"comma", ','}, {"semicolon", ';'}, {"space", ' '}, {"tab", '\t'}};
+    static const std::map<std::string, char> kDelimiters{{"auto", '\0'}, {"bar", '|'},
+                                                         {"comma", ','}, {"semicolon", ';'},
+                                                         {"space", ' '}, {"tab", '\t'}};
     std::string delimiter = "auto";
-    table.choice("delimiter", delimiter, {"auto", "comma", "semicolon", "space", "tab"});
+    table.choice("delimiter", delimiter, {"auto", "bar", "comma", "semicolon", "space", "tab"});
     source.layout.delimiter = kDelimiters.at(delimiter);
     table.flag("header", source.layout.header);
     table.flag("decimal_comma", source.layout.decimal_comma);

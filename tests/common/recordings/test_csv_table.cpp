@@ -49,6 +49,8 @@ TEST_CASE("separators are found, and those behind the last column say nothing") 
   CHECK(numbers("t,x\n0,0.5\n1,-2.25\n") == kTwoRows);
   CHECK(numbers("t;x\n0;0.5\n1;-2.25\n") == kTwoRows);
   CHECK(numbers("t\tx\n0\t0.5\n1\t-2.25\n") == kTwoRows);
+  CHECK(numbers("t|x\n0|0.5\n1|-2.25\n") == kTwoRows);
+  CHECK(numbers("t | x\n0 | 0.5\n1 | -2.25\n") == kTwoRows);
   CHECK(numbers("t  x\n 0 0.5\n1   -2.25 \n") == kTwoRows);
   CHECK(numbers("t, x\n0, 0.5\n1, -2.25\n") == kTwoRows);
   CHECK(numbers("sep=;\nt;x\n0;0.5\n1;-2.25\n") == kTwoRows);
@@ -185,6 +187,13 @@ TEST_CASE("text in another encoding and lost bytes are named") {
   CHECK(complaint("\n# t\n\n") ==
         "a.csv: cannot be read or is empty; give a CSV file with a header line");
   CHECK(complaint("t,x\n") == "a.csv:1: no rows after the header; is the file truncated?");
+}
+
+TEST_CASE("a header that comes again between rows is named, one that is a comment is none") {
+  CHECK(complaint("t,x\n0,0.5\n1,-2.25\nt,x\n0,0.5\n") ==
+        "a.csv:4: the header comes again: are these two drives, joined? Part them here");
+  CHECK(complaint("note,t,x\na,0,0.5\nnote,t,x\nb,0,0.5\n").find("a.csv:3: the header") == 0);
+  CHECK(numbers("# t x\n0 0.5\n# t x\n1 -2.25\n") == kTwoRows);
 }
 
 TEST_CASE("a row of another length is named as what it is") {

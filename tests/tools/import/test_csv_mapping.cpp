@@ -237,6 +237,52 @@ TEST_CASE("rows that overtake each other are sorted by their times") {
   CHECK(read.losses.empty());
 }
 
+TEST_CASE(
+    "a pose to which no vehicle goes is left out and named, an excursion is a track of its own") {
+  const auto driven = [](const std::function<void(int, double&, double&)>& change) {
+    std::string csv = "t,x,y,yaw\n";
+    for (int i = 0; i < 300; ++i) {
+      double x = 20.0 + 0.05 * i, y = 5.0;
+      change(i, x, y);
+      csv += line("%.1f,%.3f,%.3f,0\n", 50.0 * i, x, y);
+    }
+    return readText(csv, kPoses);
+  };
+  for (const double far : {99'999.0, 40.0, -40.0}) {
+    const ForeignDrive spike = driven([&](int i, double& x, double&) { x = i == 100 ? far : x; });
+    REQUIRE(spike.drive.fixes.size() == 299);
+    REQUIRE(spike.losses.size() == 1);
+    CHECK_THAT(lineOf(spike.losses[0]),
+               Catch::Contains("1 of 300 poses") && Catch::Contains("drive.csv:102"));
+    CHECK(spike.notes.empty());
+    for (size_t i = 0; i < 299; ++i) CHECK(spike.drive.fixes[i].new_track == (i == 0));
+  }
+
+  const ForeignDrive zeros = driven([](int i, double& x, double& y) {
+    if (i >= 100 && i < 110) x = y = 0.0;
+  });
+  REQUIRE(zeros.drive.fixes.size() == 300);
+  CHECK(zeros.losses.empty());
+  for (size_t i = 0; i < 300; ++i)
+    CHECK(zeros.drive.fixes[i].new_track == (i == 0 || i == 100 || i == 110));
+  REQUIRE(zeros.notes.size() == 1);
+  CHECK_THAT(zeros.notes[0], Catch::Contains("2 times") && Catch::Contains("drive.csv:102"));
+
+  // Metres that are millimetres are no jumps: what the commands explain says so.
+  const ForeignDrive millimetres = driven([](int, double& x, double&) { x *= 1000.0; });
+  CHECK(millimetres.drive.fixes.size() == 300);
+  CHECK_THAT(millimetres.notes.at(0), Catch::Contains("299 of 300") && Catch::Contains("units"));
+  for (size_t i = 0; i < 300; ++i) CHECK(millimetres.drive.fixes[i].new_track == (i == 0));
+}
+
+TEST_CASE("columns between bars are read, found or asked for") {
+  const std::string csv = "t|x|y|yaw\n0|1|2|0\n50|1.1|2|0\n";
+  CHECK(readText(csv, kPoses).drive.fixes.size() == 2);
+  std::string asked = kPoses;
+  asked.replace(asked.find("- time"), 2, "- delimiter: bar\n    ");
+  CHECK(readText(csv, asked).drive.fixes.at(1).T_map_body.x == 1.1);
+}
+
 TEST_CASE("times in another unit than the mapping says are named with their unit") {
   const auto rows = [](double begin, double period) {
     std::string csv = "t,x,y,yaw\n";
