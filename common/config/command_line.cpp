@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <sstream>
 #include <thread>
 #include <vector>
 
@@ -20,9 +21,11 @@
 namespace tread {
 namespace {
 
+/// Groups of options are commands without a name to CLI11.
 std::vector<std::string> commandsOf(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  for (const CLI::App* command : app.get_subcommands({}))
+    if (!command->get_name().empty()) names.push_back(command->get_name());
   return names;
 }
 
@@ -72,14 +75,30 @@ std::string wrongValue(const std::string& what) {
          "' is no value for it";
 }
 
+/// "Exactly 1 option from [--a,--b] is required and 2 were given" of CLI11.
+std::optional<std::string> wrongChoice(const std::string& what) {
+  const size_t begin = what.find('[');
+  const size_t end = what.find(']', begin);
+  if (end == std::string::npos) return std::nullopt;
+  std::vector<std::string> names;
+  std::istringstream list(what.substr(begin + 1, end - begin - 1));
+  for (std::string name; std::getline(list, name, ',');) names.push_back(name);
+  const bool none = what.find("given") == std::string::npos;
+  return none ? "one of these is required: " + joinWords(names)
+              : joinWords(names) + ": only one of them";
+}
+
 std::string whatIsWrong(const CLI::App& app, const CLI::App& part, const CLI::Error& error) {
   const std::vector<std::string> left = app.remaining(true);
   const std::vector<std::string> commands = commandsOf(part);
   // A mistyped option comes first: it is why another one seems to be missing.
   const auto mistyped = std::find_if(left.begin(), left.end(), isOption);
+  const auto choice =
+      is(error, CLI::ExitCodes::RequiredError) ? wrongChoice(error.what()) : std::nullopt;
   const bool command_first = !commands.empty() && !left.empty() && mistyped != left.begin();
   if (mistyped != left.end() && !command_first)
     return unknown(*mistyped, "is not known", optionsOf(part));
+  if (choice) return *choice;
   if (!commands.empty()) {
     if (!left.empty()) return unknown(left.front(), "is no command", commands);
     if (is(error, CLI::ExitCodes::RequiredError) && error.what()[0] != '-')

@@ -28,6 +28,15 @@ std::string errorOf(const std::string& arguments) {
   find->add_option("--threads", number, "number")->check(CLI::Range(1, 8));
   CLI::App* explain = app.add_subcommand("explain", "explains");
   explain->add_option("EFFECT", text, "name");
+  CLI::App* learn = app.add_subcommand("learn", "learns");
+  auto* some = learn->add_option_group("prediction", "at most one of");
+  some->add_option("--patterns", text, "file");
+  some->add_option("--model", text, "file");
+  some->require_option(0, 1);
+  auto* one = learn->add_option_group("log", "exactly one of");
+  one->add_option("--log", text, "file");
+  one->add_option("--folder", text, "folder");
+  one->require_option(1);
   try {
     app.parse(arguments);
   } catch (const CLI::ParseError& error) {
@@ -77,12 +86,13 @@ TEST_CASE("a program ends with its own code, or with that of bad input where it 
 
 TEST_CASE("a usage error is one line that says where, what, and what would be right") {
   const std::pair<std::string, std::string> kBad[] = {
-      {"", "tread-sample: a command is missing; one of find, explain; see tread-sample --help"},
+      {"",
+       "tread-sample: a command is missing; one of find, explain, learn; see tread-sample --help"},
       {"fnd --model a",
-       "tread-sample: 'fnd' is no command; did you mean find? Known: find, explain; see "
+       "tread-sample: 'fnd' is no command; did you mean find? Known: find, explain, learn; see "
        "tread-sample --help"},
       {"guess",
-       "tread-sample: 'guess' is no command; known: find, explain; see tread-sample --help"},
+       "tread-sample: 'guess' is no command; known: find, explain, learn; see tread-sample --help"},
       {"find", "tread-sample find: --model is required; see tread-sample find --help"},
       {"find --model a --thread 2",
        "tread-sample find: '--thread' is not known; did you mean --threads? Known: --help, "
@@ -96,7 +106,14 @@ TEST_CASE("a usage error is one line that says where, what, and what would be ri
       {"find --model a b",
        "tread-sample find: 'b' is one argument too many; see tread-sample find --help"},
       {"explain a b",
-       "tread-sample explain: 'b' is one argument too many; see tread-sample explain --help"}};
+       "tread-sample explain: 'b' is one argument too many; see tread-sample explain --help"},
+      {"learn --log a --patterns b --model c",
+       "tread-sample learn: --patterns, --model: only one of them; see tread-sample learn --help"},
+      {"learn --log a --folder b",
+       "tread-sample learn: --log, --folder: only one of them; see tread-sample learn --help"},
+      {"learn --model a",
+       "tread-sample learn: one of these is required: --log, --folder; see tread-sample learn "
+       "--help"}};
   for (const auto& [arguments, words] : kBad) CHECK(errorOf(arguments) == words);
   for (const char* bad : {"find --model a --threads 0", "find --model a --threads x",
                           "find --model", "find --threads 2 --model"}) {
