@@ -46,6 +46,7 @@ std::optional<DriveClock::Dated> DriveClock::next() {
   else
     return std::nullopt;
   dated.utime = last_ = std::max(last_, dated.utime);
+  dated.restarts = restarts_.size();
   ticks_.pop_front();
   stamps_ -= tick.utime ? 1 : 0;
   return dated;

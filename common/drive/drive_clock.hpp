@@ -23,8 +23,9 @@ class DriveClock {
  public:
   /// When an event took place.
   struct Dated {
-    int64_t utime = 0;   ///< [us] of the robot's clock; never decreases, never negative
-    bool wrong = false;  ///< what the event says of its time cannot be
+    int64_t utime = 0;    ///< [us] of the robot's clock; never decreases, never negative
+    bool wrong = false;   ///< what the event says of its time cannot be
+    size_t restarts = 0;  ///< times that the robot's clock began anew before it
   };
 
   /// The next event: when it was recorded, and what time of the robot it tells, if any [us].

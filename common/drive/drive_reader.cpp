@@ -99,6 +99,8 @@ bool DriveReader::date(DriveEvent& event) {
   const auto dated = clock_.next();
   if (!dated) return false;
   event.utime = dated->utime;
+  event.wrong_time = dated->wrong;
+  event.restarts = dated->restarts;
   if (dated->wrong) ++wrong_times_[event.channel];
   return true;
 }

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/drive/drive_clock.hpp"
@@ -28,6 +29,12 @@ struct DriveEvent : LogEvent {
   int64_t recorded = 0;   ///< [us] by the recorder's clock: any number
   uint64_t position = 0;  ///< see EventPlace
   uint32_t file = 0;
+  bool wrong_time = false;  ///< what it says of its time cannot be
+  size_t restarts = 0;      ///< times that the robot's clock began anew before it
+
+  DriveEvent() = default;
+  /// Of a log in memory, as it was recorded.
+  DriveEvent(LogEvent event) : LogEvent(std::move(event)), recorded(utime) {}
 
   EventPlace place() const { return {utime, position, file}; }
 };

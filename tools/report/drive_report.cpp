@@ -103,7 +103,8 @@ class Reader {
  public:
   explicit Reader(DriveRecord& drive) : drive_(drive) {}
 
-  void take(const LogEvent& event) {
+  void take(const DriveEvent& event) {
+    event_ = &event;
     ++drive_.events;
     drive_.latencies.add(event);
     drive_.chronicle.take(event);
@@ -126,6 +127,7 @@ class Reader {
     const auto pose = planarPose(ins);
     if (!pose || !drive_.has_goal || drive_.arrived) return;
     drive_.ended = ins.utime;
+    drive_.odometer.add(*event_, ins);
     if (drive_.track.empty() ||
         (drive_.track.back().T_map_body.position() - pose->position()).norm() > kTrackStep)
       drive_.track.push_back({sinceBegin(ins.utime), *pose});
@@ -184,6 +186,7 @@ class Reader {
   }
 
   DriveRecord& drive_;
+  const DriveEvent* event_ = nullptr;  // that is taken
   std::set<ExecutionKey> ended_;
   bool may_drive_ = false;
 };
@@ -235,13 +238,6 @@ std::vector<RuleSeries> seriesOf(const RuleErrors& by_rule, int64_t begun) {
 }
 
 }  // namespace
-
-double DriveRecord::distance() const {
-  double sum = 0.0;
-  for (size_t i = 1; i < track.size(); ++i)
-    sum += (track[i].T_map_body.position() - track[i - 1].T_map_body.position()).norm();
-  return sum;
-}
 
 double DriveRecord::straightLine() const {
   if (track.empty()) return 0.0;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "common/drive/odometer.hpp"
 #include "common/geometry/se2.hpp"
 #include "common/grid/grid.hpp"
 #include "common/log/event_log.hpp"
@@ -167,7 +168,8 @@ struct DriveRecord {
   int disarmed = 0;                  ///< times that a permission to drive was lost
   std::vector<PatternError> errors;  ///< time since begun
   std::vector<TrackPoint> track;     ///< as the INS measured, time since begun
-  std::vector<TreeEdge> tree;        ///< the richest one on the way
+  Odometer odometer;
+  std::vector<TreeEdge> tree;  ///< the richest one on the way
   std::unique_ptr<TileMap> map;
   std::optional<FootprintSize> outline;  ///< of the robot; none = the log does not say
   Latencies latencies;
@@ -175,8 +177,7 @@ struct DriveRecord {
   HandRecord hand;      ///< of the whole log
 
   double seconds() const { return static_cast<double>(ended - begun) * 1e-6; }
-  /// Length of the track [m].
-  double distance() const;
+  double distance() const { return odometer.distance(); }  ///< [m] driven
   double straightLine() const;
 };
 

@@ -57,14 +57,16 @@ double percent(int part, int whole) {
 
 }  // namespace
 
-void HandRecord::take(const LogEvent& event) {
+void HandRecord::take(const DriveEvent& event) {
   dispatch(
       event,
       [&](const auto& message) {
         using Message = std::decay_t<decltype(message)>;
         if constexpr (std::is_same_v<Message, ins_t>) {
           const std::optional<Pose2> pose = planarPose(message);
-          if (pose && by_hand_) places_.push_back({message.utime, *pose});
+          if (!by_hand_) return odometer_.interrupt();
+          odometer_.add(event, message);
+          if (pose) places_.push_back({message.utime, *pose});
         } else {
           hear(message);
         }
@@ -118,14 +120,6 @@ void HandRecord::hear(const pattern_set_part_t& part) {
 double HandRecord::seconds() const {
   double sum = 0.0;
   for (const Span& span : spans_) sum += secondsOf(span.end - span.begin);
-  return sum;
-}
-
-double HandRecord::distance() const {
-  double sum = 0.0;
-  for (size_t i = 1; i < places_.size(); ++i)
-    if (places_[i].utime - places_[i - 1].utime < kPoseGap)
-      sum += (places_[i].T_map_body.position() - places_[i - 1].T_map_body.position()).norm();
   return sum;
 }
 

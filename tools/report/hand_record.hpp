@@ -14,8 +14,8 @@
 #include <tread/pattern_set_part_t.hpp>
 #include <tread/plan_t.hpp>
 
+#include "common/drive/odometer.hpp"
 #include "common/geometry/se2.hpp"
-#include "common/log/event_log.hpp"
 
 namespace tread::report {
 
@@ -33,7 +33,7 @@ struct ShadowComparison {
 /// What a person drove by hand, and what the planner would have done.
 class HandRecord {
  public:
-  void take(const LogEvent& event);
+  void take(const DriveEvent& event);
 
   int takenOver() const { return taken_over_; }
   int givenBack() const { return given_back_; }
@@ -42,7 +42,7 @@ class HandRecord {
   /// [s] in the hand, and of it with a command other than zero.
   double seconds() const;
   double moving() const { return moving_; }
-  double distance() const;  ///< [m]
+  double distance() const { return odometer_.distance(); }  ///< [m]
   /// For each plan the first pattern, against where the robot was led in the same time.
   ShadowComparison comparison() const;
   /// Some lines; empty where nobody drove by hand.
@@ -73,6 +73,7 @@ class HandRecord {
   std::vector<Span> spans_;
   std::vector<ShadowPlan> plans_;
   std::vector<Place> places_;             ///< while in the hand
+  Odometer odometer_;                     ///< the same
   std::map<int32_t, int64_t> durations_;  ///< [us] by pattern
   bool by_hand_ = false;
   bool was_armed_ = false;

@@ -7,6 +7,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "common/drive/odometer.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "common/messages/pattern_messages.hpp"
 
@@ -21,13 +22,13 @@ constexpr double kGhostSize = 0.7;    // [m]
 constexpr double kGhostLife = 12.0;   // [s]
 constexpr double kAlone = 0.4;        // [m] flickering beside a wall is no ghost
 constexpr double kFarthest = 1e6;     // [m] from the origin of map; farther is a broken number
-constexpr double kStep = 0.02;        // [m] below this an INS that stands wanders
 
 class TimelineReader {
  public:
   explicit TimelineReader(DriveTimeline& drive) : drive_(drive) {}
 
-  void take(const LogEvent& event) {
+  void take(const DriveEvent& event) {
+    event_ = &event;
     if (drive_.begun < 0) drive_.begun = event.utime;
     now_ = static_cast<double>(event.utime - drive_.begun) * 1e-6;
     drive_.duration = std::max(drive_.duration, now_);
@@ -41,14 +42,9 @@ class TimelineReader {
   void hear(const ins_t& ins) {
     auto pose = planarPose(ins);
     if (pose && pose->position().norm() > kFarthest) pose.reset();
-    if (pose) {
-      if (last_ && distanceBetween(*last_, *pose) > kStep) {
-        if ((ins.ins_status & ins_t::STATUS_JUMP) == 0)
-          drive_.distance += distanceBetween(*last_, *pose);
-        last_ = pose;
-      }
-      if (!last_) last_ = pose;
-    }
+    if (pose) last_ = pose;
+    odometer_.add(*event_, ins);
+    drive_.distance = odometer_.distance();
     const bool same = !drive_.ins.empty() && drive_.ins.back().status == ins.ins_status;
     if (same && now_ - drive_.ins.back().time < kInsStep) return;
     drive_.ins.push_back(
@@ -170,6 +166,8 @@ class TimelineReader {
 
   DriveTimeline& drive_;
   double now_ = 0.0;
+  const DriveEvent* event_ = nullptr;  // that is taken
+  Odometer odometer_;
   std::optional<Pose2> last_;
   std::set<ExecutionKey> ended_;
 };
