@@ -231,6 +231,11 @@ std::vector<HostFinding> checkFolder(const FolderFacts& facts) {
                             std::to_string(facts.longest_socket - kMaxSocketPath) +
                             " bytes too long for the supervisor's socket in it",
                         "use a shorter folder with --run"});
+  if (!facts.no_folder.empty()) {
+    findings.push_back({true, facts.no_folder + " is a file or a link to nothing, not a folder",
+                        "move it away, or use another folder with --run"});
+    return findings;
+  }
   if (!facts.writable) {
     findings.push_back({true, "the run folder " + facts.path + " cannot be written",
                         "mkdir -p " + facts.path + "; chown it to yourself; or use --run DIR"});

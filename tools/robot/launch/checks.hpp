@@ -90,6 +90,8 @@ struct FolderFacts {
   bool occupied = false;      ///< somebody runs in it
   std::string foreign{};      ///< something in it that we may not write; empty = nothing
   std::string owner_of_foreign{};
+  std::string
+      no_folder{};  ///< a file, or a link to nothing, where a folder should be; empty = none
 };
 
 std::vector<HostFinding> checkFolder(const FolderFacts& facts);

@@ -351,7 +351,9 @@ FolderFacts folderFacts(const RunPaths& paths) {
   // A folder that is not there yet counts as writable if its nearest parent is.
   fs::path nearest = paths.folder;
   std::error_code none;
-  while (!fs::exists(nearest, none) && nearest.has_relative_path()) nearest = nearest.parent_path();
+  const auto isThere = [&] { return fs::exists(fs::symlink_status(nearest, none)); };
+  while (!isThere() && nearest.has_relative_path()) nearest = nearest.parent_path();
+  if (isThere() && !fs::is_directory(nearest, none)) facts.no_folder = nearest.string();
   facts.writable = takesFiles(nearest.string());
   findForeign(paths.folder, facts);
   struct statvfs disk {};
