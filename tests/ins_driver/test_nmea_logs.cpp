@@ -83,6 +83,19 @@ TEST_CASE("bursts of a log together are the log, in the device's own time") {
   CHECK(scheduleNmeaLog("no sentence at all").size() == 1);
 }
 
+TEST_CASE("a log is cut into the same bursts whatever ends its lines") {
+  const std::string log = gga(10.0) + line("GPHDT,1.0,T") + gga(10.5) + line("GPHDT,1.0,T");
+  for (const std::string end : {"\r", "\n", "\r\n", "\n\r"}) {
+    std::string ended;
+    for (const char byte : log)
+      if (byte != '\r') ended += byte == '\n' ? end : std::string(1, byte);
+    const auto bursts = scheduleNmeaLog(ended);
+    REQUIRE(bursts.size() == 2);
+    CHECK(bursts[1].utime - bursts[0].utime == 500'000);
+    CHECK(std::string(bursts[0].bytes) + std::string(bursts[1].bytes) == ended);
+  }
+}
+
 TEST_CASE("a log across midnight plays without a break") {
   std::string log;
   for (int i = 0; i < 10; ++i) log += gga(86399.6 + i * 0.1) + pashr(86399.6 + i * 0.1, 90.0);

@@ -53,8 +53,9 @@ std::vector<RawBurst> cutIntoBursts(std::string_view log) {
   std::array<bool, kSentenceTypes> seen{};
   size_t line_start = 0;
   while (line_start < log.size()) {
-    const size_t newline = log.find('\n', line_start);
-    const size_t line_end = newline == std::string_view::npos ? log.size() : newline + 1;
+    const size_t end = log.find_first_of("\r\n", line_start);
+    const bool both = end != std::string_view::npos && log.substr(end, 2) == "\r\n";
+    const size_t line_end = end == std::string_view::npos ? log.size() : end + (both ? 2 : 1);
     const std::string_view line = log.substr(line_start, line_end - line_start);
     const std::optional<NmeaSentence> sentence = sentenceOf(line);
     const auto time_of_day = sentence ? timeOfDay(*sentence) : std::nullopt;
