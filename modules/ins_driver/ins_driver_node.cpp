@@ -281,9 +281,10 @@ std::string InsDriverNode::lineProblem(int64_t utime) const {
   }
   const int64_t without_message = utime - source_->lastMessage().value_or(start_);
   if (without_message <= silence_us_) return {};
-  return address + "bytes, but " + source_->advice().unreadable + " for " +
-         inSeconds(without_message) + " (" + source_->refusals() +
-         "); check baud rate and output format";
+  const InsAdvice advice = source_->advice();
+  return address + "bytes, but " + advice.unreadable + " for " + inSeconds(without_message) + " (" +
+         source_->refusals() + "); " +
+         (advice.refused.empty() ? "check baud rate and output format" : advice.refused);
 }
 
 std::string InsDriverNode::measurementProblem(int64_t utime) const {

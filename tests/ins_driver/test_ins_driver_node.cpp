@@ -288,6 +288,37 @@ TEST_CASE("garbage is one clear line in health, and good lines after it are deco
   CHECK(rig.health.health_state == health_t::HEALTH_OK);
 }
 
+TEST_CASE("sentences without or with wrong checksums are named in health, not the baud rate") {
+  for (const auto& [end, words] : {std::pair("\r\n", "NMEA sentences without checksums"),
+                                   std::pair("*00\r\n", "NMEA sentences with wrong checksums")}) {
+    Rig rig;
+    for (int i = 0; i < 100; ++i) {
+      const std::string good = gga(10.0 + 0.02 * i) + pashr(10.0 + 0.02 * i, 90.0);
+      std::istringstream lines(good);
+      for (std::string one; std::getline(lines, one);) rig.say(one.substr(0, one.find('*')) + end);
+      rig.wait(0.02);
+    }
+    CHECK(rig.health.health_state == health_t::HEALTH_FAILED);
+    CHECK(rig.healthSays(words));
+    CHECK_FALSE(rig.healthSays("baud rate"));
+  }
+}
+
+TEST_CASE("a heading sentence that is sent, but marked invalid, is named in health") {
+  Rig rig;
+  const auto positions = [&](const std::string& heading) {
+    for (int i = 0; i < 100; ++i) {
+      rig.say(gga(43200.0 + static_cast<double>(rig.bus.now()) * 1e-6, 5.0) + heading);
+      rig.bus.runUntil(rig.bus.now() + 20'000);
+    }
+  };
+  positions("");
+  CHECK(rig.healthSays("does the device send HDT, THS or PASHR?"));
+  positions(line("GNTHS,0.5,V"));
+  CHECK(rig.healthSays("the device sends THS without a valid heading (mode V"));
+  CHECK_FALSE(rig.healthSays("does the device send"));
+}
+
 TEST_CASE("refusals are counted in health by their reason") {
   Rig rig;
   rig.drive(0.5);

@@ -246,6 +246,7 @@ InsReplay replayIns(const std::string& log, ins::InsDriverConfig config) {
   const ins::InsSource& source =
       dynamic_cast<ins::InsDriverNode&>(*bus.node("ins_driver")).source();
   replay.tally = source.tally();
+  replay.remedy = source.advice().refused;
   replay.epochs = source.epochs();
   replay.origin = source.origin();
   findPoses(replay);
@@ -266,7 +267,10 @@ std::string reportOf(const InsReplay& replay) {
   if (decoded > 0) out << ", " << ins::listed(tally.decoded);
   out << "\nrefused: " << sumOf(tally.refused);
   if (!tally.refused.empty()) out << ", " << ins::listed(tally.refused);
-  if (decoded == 0) out << "\nno message of this instrument: name another `source` with --config";
+  if (decoded == 0 && !replay.remedy.empty())
+    out << "\n" << replay.remedy;
+  else if (decoded == 0)
+    out << "\nno message of this instrument: name another `source` with --config";
   out << "\nINS messages: " << replay.track.size() << ", with position and heading " << replay.poses
       << ", gaps " << replay.epochs.gaps << ", jumps " << replay.epochs.jumps << "\n";
   if (!replay.health.empty()) out << "HEALTH at the end: " << replay.health << "\n";

@@ -70,6 +70,7 @@ struct InsReplay {
   std::optional<ins_t> last_pose;   ///< last likewise
   int64_t poses = 0;                ///< messages with position and heading
   std::string health;               ///< last line of HEALTH; empty if all is well
+  std::string remedy;               ///< why all messages were refused; empty = not all, or no idea
   std::string notes;                ///< what of the log was not played, and why; lines of text
 };
 

@@ -188,6 +188,9 @@ struct InsAdvice {
   std::string unreadable;   ///< what is missing among the bytes, for instance "no good sentence"
   std::string no_position;  ///< bytes are understood, but no position comes
   std::string no_heading;
+  /// Messages of the protocol come, but none is good: what is wrong with all of them. Empty = none
+  /// comes, or nothing is common to them.
+  std::string refused{};
 };
 
 /// An INS at the end of a byte stream: the door for the next one.

@@ -2,8 +2,10 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/ins_driver/nmea/nmea_ins.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "modules/ins_driver/nmea/nmea_epoch.hpp"
 
@@ -101,10 +103,39 @@ InsTally NmeaIns::tally() const {
   return tally;
 }
 
+/// Sentences that are there for a heading and hold none are named: they need not be asked for.
+std::string NmeaIns::headingAdvice() const {
+  std::string names;
+  for (const auto& [sentence, when] : {std::pair("HDT", ""), std::pair("PASHR", ""),
+                                       std::pair("THS", " (mode V, or an empty field)")}) {
+    const auto* const found =
+        std::find(std::begin(kSentenceNames), std::end(kSentenceNames), std::string_view(sentence));
+    const auto i = static_cast<size_t>(found - std::begin(kSentenceNames));
+    if (counts_.empty[i] > 0)
+      names +=
+          (names.empty() ? "" : ", ") + std::string(sentence) + " without a valid heading" + when;
+  }
+  if (names.empty()) return "does the device send HDT, THS or PASHR?";
+  return "the device sends " + names +
+         ": is it aligned, does it see enough satellites with both antennas?";
+}
+
+/// Bytes of other instruments are refused for other reasons.
+std::string NmeaIns::checksumAdvice() const {
+  const SentenceRefusals& refusals = framer_.refusals();
+  const int64_t without = refusals[SentenceRefusal::kNoChecksum];
+  const int64_t wrong = refusals[SentenceRefusal::kWrongChecksum];
+  if (2 * (without + wrong) <= framer_.sentences()) return "";
+  return without > wrong
+             ? "these are NMEA sentences without checksums (*hh): let the device send them"
+             : "these are NMEA sentences with wrong checksums: let the device send right ones, and "
+               "check the line";
+}
+
 InsAdvice NmeaIns::advice() const {
   return {"is the device powered and set to send NMEA?", "no good sentence",
-          "does the device have a fix, and does it send GGA or RMC?",
-          "does the device send HDT, THS or PASHR?"};
+          "does the device have a fix, and does it send GGA or RMC?", headingAdvice(),
+          checksumAdvice()};
 }
 
 std::vector<std::pair<std::string, int64_t>> NmeaIns::counters() const {

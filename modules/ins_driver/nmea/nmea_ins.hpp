@@ -46,6 +46,8 @@ class NmeaIns : public PipelineIns {
   void take(std::string_view body);
   bool collect(const NmeaSentence& sentence);
   void refuse(std::string_view type, SentenceRefusal reason);
+  std::string headingAdvice() const;
+  std::string checksumAdvice() const;
 
   NmeaFramer framer_;
   int64_t sentence_start_ = 0;

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <sstream>
 
 #include "modules/ins_driver/nmea/nmea_ins.hpp"
 #include "modules/simulator/emulators/nmea/nmea_ins_emulator.hpp"
@@ -164,6 +165,21 @@ TEST_CASE("hemi.log through the real node: 753 sentences in, a heading four time
   CHECK(replay.tally.messages == 753);
   CHECK(decoded(replay) == 753);
   CHECK(replay.poses == 4);
+}
+
+TEST_CASE("a log of sentences without good checksums is named as that, not as another instrument") {
+  std::string good;
+  for (int i = 0; i < 50; ++i) good += gga(10.0 + 0.02 * i) + pashr(10.0 + 0.02 * i, 90.0);
+  for (const auto& [end, words] :
+       {std::pair("\r\n", "without checksums (*hh): let the device send them"),
+        std::pair("*00\r\n", "with wrong checksums")}) {
+    std::istringstream lines(good);
+    std::string log;
+    for (std::string one; std::getline(lines, one);) log += one.substr(0, one.find('*')) + end;
+    const std::string report = reportOf(replayIns(log, {}));
+    CHECK_THAT(report, Catch::Contains(words));
+    CHECK_THAT(report, !Catch::Contains("name another `source`"));
+  }
 }
 
 TEST_CASE("a log that is no log is reported, not crashed upon") {
