@@ -43,6 +43,17 @@ Primitive readPrimitive(ConfigReader& reader, const PrimitiveFile& file) {
   return primitive;
 }
 
+/// The file's own counts, where it has them, are those of what it holds.
+void checkCount(ConfigReader& reader, const char* key, size_t found, const char* of) {
+  if (!reader.has(key)) return;
+  int64_t count = 0;
+  reader.integer(key, count, {0.0, 1e9}, "");
+  if (count != static_cast<int64_t>(found))
+    throw reader.error(key, "says " + std::to_string(count) + ", but there are " +
+                                std::to_string(found) + " " + of +
+                                "; is the file cut off or edited? Generate it again");
+}
+
 }  // namespace
 
 PrimitiveFile readLattice(const std::string& path) {
@@ -58,6 +69,8 @@ PrimitiveFile readLattice(const std::string& path) {
   if (file.headings.empty()) throw about.error("heading_angles", "none are there");
   for (ConfigReader& primitive : reader.sections("primitives", true))
     file.primitives.push_back(readPrimitive(primitive, file));
+  checkCount(about, "num_of_headings", file.headings.size(), "headings");
+  checkCount(about, "number_of_trajectories", file.primitives.size(), "primitives");
   return file;
 }
 

@@ -99,6 +99,20 @@ TEST_CASE("a lattice that cannot be used is one clear line") {
   CHECK_THROWS_WITH(read("\"grid_resolution\"", "\"resolution\""), Contains("grid_resolution"));
 }
 
+TEST_CASE("a lattice whose own counts are not those of what it holds is refused") {
+  const Folder folder;
+  const auto read = [&](const std::string& from, const std::string& to) {
+    std::string text = kLattice;
+    text.replace(text.find(from), from.size(), to);
+    return readLattice(folder.write("a.json", text)).primitives.size();
+  };
+  CHECK_THROWS_WITH(read("\"number_of_trajectories\": 2", "\"number_of_trajectories\": 80"),
+                    Contains("number_of_trajectories: says 80, but there are 2 primitives"));
+  CHECK_THROWS_WITH(read("\"num_of_headings\": 4", "\"num_of_headings\": 8"),
+                    Contains("num_of_headings: says 8, but there are 4 headings"));
+  CHECK(read("\"num_of_headings\": 4,", "") == 2);
+}
+
 TEST_CASE("primitives may state uneven headings and their turning radius") {
   std::string text =
       replaced("numberofangles: 4\n",
