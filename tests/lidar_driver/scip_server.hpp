@@ -29,6 +29,7 @@ class ScipServer {
     kGarbage,  ///< random bytes between the scans
     kCloses,   ///< accepts and closes at once
     kOnce,     ///< good to the first who comes, closes at once on all others
+    kRefuses,  ///< answers each command with an error, as of SCIP 1.1
     kLazy      ///< answers the first two who come, scans only for those after them
   };
 
@@ -80,6 +81,11 @@ class ScipServer {
     }
   }
 
+  static bool refuse(int client, const std::string& command) {
+    const std::string answer = command.substr(0, command.find('\n')) + "\n0E\n\n";
+    return send(client, answer.data(), answer.size(), MSG_NOSIGNAL) >= 0;
+  }
+
   void talk(int client) {
     sim::ScipEmulator device(sim::scipSettingsOf(sim::LaserParameters{}), 1);
     sim::ScipFaults faults;
@@ -92,6 +98,10 @@ class ScipServer {
         char buffer[512];
         const ssize_t size = read(client, buffer, sizeof buffer);
         if (size <= 0) return;
+        if (manner_ == Manner::kRefuses) {
+          if (!refuse(client, {buffer, static_cast<size_t>(size)})) return;
+          continue;
+        }
         device.receive({buffer, static_cast<size_t>(size)}, hostNow());
       }
       const bool scans = manner_ != Manner::kLazy || connections_ > 2;

@@ -163,6 +163,14 @@ TEST_CASE("a silent device, a deaf port and a mistyped key are each one clear li
     Driven driven(server.address());
     REQUIRE(driven.until([&] { return says(driven.health, "does not answer SCIP 2.0"); }, 20));
   }
+  SECTION("refuses SCIP 2.0") {
+    ScipServer server(ScipServer::Manner::kRefuses);
+    Driven driven(server.address());
+    REQUIRE(driven.until(
+        [&] { return says(driven.health, "refuses commands of SCIP 2.0, status '0E' to QT"); },
+        20));
+    REQUIRE_FALSE(says(driven.health, "ARES"));
+  }
   SECTION("nobody listens") {
     int port = 0;
     { port = ScipServer(ScipServer::Manner::kGood).port(); }

@@ -58,6 +58,7 @@ TEST_CASE("angles of a SCIP device come from its own parameters and honour the f
 
 TEST_CASE("a device with invalid parameters is refused in one line") {
   REQUIRE(ScipGeometry{0, 1080, 540, 0}.problem());
+  REQUIRE(ScipGeometry{}.problem()->find("does not tell its parameters") != std::string::npos);
   REQUIRE(ScipGeometry{10, 10, 0, 1440}.problem());
   REQUIRE(ScipGeometry{0, 1440, 540, 1440}.problem());
   REQUIRE(ScipGeometry{0, 1080, 1440, 1440}.problem());

@@ -2,9 +2,11 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/lidar_driver/hokuyo/hokuyo_source.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include <mrpt/comms/CClientTCPSocket.h>
@@ -119,7 +121,7 @@ class HokuyoSource::Worker {
       const auto size = link->read(buffer, sizeof buffer);
       if (!size) break;
       heard.append(reinterpret_cast<const char*>(buffer), *size);
-      if (heard.find("QT\n") != std::string::npos) return true;
+      if (const auto status = statusIn(heard)) return isGood(*status);
     }
     if (!asked)
       note(Rank::kSilent, "cannot connect: " + link->problem());
@@ -128,6 +130,25 @@ class HokuyoSource::Worker {
     else
       note(Rank::kUnreadable, "connected, but it does not answer SCIP 2.0: answers of another kind",
            kWhichPort);
+    return false;
+  }
+
+  /// What the device answers to the command: two characters, and in SCIP 2.0 their sum.
+  static std::optional<std::string> statusIn(const std::string& heard) {
+    const size_t echo = heard.find("QT\n");
+    if (echo == std::string::npos) return std::nullopt;
+    const size_t end = heard.find('\n', echo + 3);
+    if (end == std::string::npos) return std::nullopt;
+    std::string status = heard.substr(echo + 3, std::min<size_t>(2, end - echo - 3));
+    for (char& letter : status)
+      if (letter < ' ' || letter > '~') letter = '?';
+    return status;
+  }
+
+  bool isGood(const std::string& status) {
+    if (status == "00") return true;
+    note(Rank::kRefused, "the device refuses commands of SCIP 2.0, status '" + status + "' to QT",
+         "does its firmware speak SCIP 2.0? Its manual lists the status");
     return false;
   }
 

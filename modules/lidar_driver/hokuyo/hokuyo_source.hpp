@@ -29,6 +29,9 @@ struct ScipGeometry {
 
   /// One clear line if these numbers cannot be a device's; nothing if they can.
   std::optional<std::string> problem() const {
+    if (first_step == 0 && last_step == 0 && front_step == 0 && steps_per_turn == 0)
+      return "the device does not tell its parameters: it refuses or does not answer PP of SCIP "
+             "2.0";
     if (steps_per_turn < 8 || steps_per_turn > 100000)
       return "the device says ARES " + std::to_string(steps_per_turn) +
              " steps a turn; allowed 8..100000";
