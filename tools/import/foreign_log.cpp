@@ -143,7 +143,7 @@ class LogTimes {
   }
 
   size_t events_ = 0;
-  size_t in_ns_ = 0;  // of these
+  size_t in_ns_ = 0;                                // of these
   std::optional<std::pair<double, double>> first_;  // [us] of a message, and when it was recorded
   std::pair<double, double> last_;
   std::map<std::string, std::vector<double>> own_;  // [us] by channel
