@@ -108,6 +108,17 @@ TEST_CASE("nothing found is no discrepancy only if nothing is left over") {
   CHECK(judged(findingOf({}, kAlpha)) == GapVerdict::kNotInCatalogue);
 }
 
+TEST_CASE("a search that was cut short is partial with what it has, and cannot tell without") {
+  Finding finding = findingOf({foundEffect("slip_ratio")});
+  finding.search.cut_short = true;
+  CHECK(judged(finding) == GapVerdict::kPartial);
+  finding.identified.effects.clear();
+  CHECK(judged(finding) == GapVerdict::kCannotTell);
+  Finding width = findingWith({moved("track_width.widening", 0.2, 0.4)}, 0.8);
+  width.search.cut_short = true;
+  CHECK(judged(width) == GapVerdict::kPartial);
+}
+
 TEST_CASE("effects that leave something over are part of the answer") {
   CHECK(judged(findingOf({foundEffect("slip_ratio")}, 0.001)) == GapVerdict::kPartial);
   CHECK(judged(findingOf({foundEffect("slip_ratio")})) == GapVerdict::kFound);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
@@ -33,6 +34,7 @@ struct FindOptions {
   int threads = 1;
   bool calibrate = false;
   bool keep_small = false;
+  double limit = 0.0;  ///< [s]; 0 = none
   std::vector<std::string> accepted;
   std::vector<std::string> rejected;
   std::string by;
@@ -44,7 +46,8 @@ constexpr const char* kFindFooter =
     "CANNOT_TELL), report.md and report.html. Exit status: 0 NO_DISCREPANCY, 10 FOUND, 11 "
     "AMBIGUOUS, 12 PARTIAL,\n"
     "13 NOT_IN_CATALOGUE, 14 MEASUREMENT, 15 CANNOT_TELL, 2 bad input (one line says which).\n"
-    "The same files and the same seed give the same bytes, with any number of threads.";
+    "The same files and the same seed give the same bytes, with any number of threads, unless "
+    "--limit ends it.";
 
 std::string fileName(const std::string& path) {
   return std::filesystem::path(path).filename().string();
@@ -111,6 +114,11 @@ GapTask taskOf(const FindOptions& options, std::vector<InputFile>& inputs) {
   task.parallel = onThreads(options.threads);
   task.calibrate = options.calibrate;
   task.keep_small = options.keep_small;
+  if (options.limit > 0.0)
+    task.is_over = [end = std::chrono::steady_clock::now() +
+                          std::chrono::duration<double>(options.limit)] {
+      return std::chrono::steady_clock::now() > end;
+    };
   return task;
 }
 
@@ -209,6 +217,10 @@ void addFind(CLI::App& app, int& status) {
   command->add_flag("--keep-small", options->keep_small,
                     "effects that are real stay in the model, even if they change the end error "
                     "by less than 1 %: for a model that others are to be compared with");
+  command
+      ->add_option("--limit", options->limit,
+                   "time for the search [s]; then find ends with the best so far, as PARTIAL")
+      ->check(CLI::Range(0.001, 1e6));
   command
       ->add_option("--accept", options->accepted,
                    "effects that are in the model from the start and stay, whatever the tests say")

@@ -183,6 +183,17 @@ void takeOut(std::vector<Candidate>& candidates,
   candidates.erase(std::remove_if(candidates.begin(), candidates.end(), which), candidates.end());
 }
 
+/// What a state has free is no candidate, though a fit may have taken its size to 0.
+void forgetFree(const FitState& state, std::vector<Candidate>& candidates) {
+  const auto isFree = [&state](const std::string& path) {
+    return std::any_of(state.free.begin(), state.free.end(),
+                       [&path](const FreeParameter& free) { return free.path == path; });
+  };
+  takeOut(candidates, [&](const Candidate& candidate) {
+    return std::any_of(candidate.free.begin(), candidate.free.end(), isFree);
+  });
+}
+
 /// Effects that are a number of the nominal model under another name.
 void forgetNominal(std::vector<Candidate>& candidates) {
   takeOut(candidates, [](const Candidate& candidate) {
@@ -229,6 +240,7 @@ std::vector<Candidate> candidatesFor(const ModelDocument& model, const Excitatio
 
 std::vector<Candidate> candidatesFor(const FitState& state, const Excitation& most) {
   std::vector<Candidate> candidates = candidatesFor(state.model, most);
+  forgetFree(state, candidates);
   addGivenTerms(state, most, candidates);
   if (isNominalFree(state)) forgetNominal(candidates);
   return candidates;
@@ -238,6 +250,7 @@ std::vector<Candidate> candidatesOf(const std::string& effect, const FitState& s
                                     const Excitation& most) {
   std::vector<Candidate> candidates;
   addCandidates(effectNamed(effect), state.model, most, candidates);
+  forgetFree(state, candidates);
   if (isNominalFree(state)) forgetNominal(candidates);
   return candidates;
 }

@@ -179,15 +179,17 @@ void dropIrrelevantMoves(Finding& finding, double least_gain) {
     estimate.moved = estimate.moved && (matters || hasInstrumentChanged(estimate));
 }
 
+bool anyMoved(const Finding& finding) {
+  return std::any_of(finding.identified.calibrated.begin(), finding.identified.calibrated.end(),
+                     [](const ParameterEstimate& estimate) { return estimate.moved; });
+}
+
 GapVerdict verdictWithoutEffects(const Finding& finding, bool adequate) {
-  bool any = false;
   bool vehicle = false;
-  for (const ParameterEstimate& estimate : finding.identified.calibrated) {
-    if (!estimate.moved) continue;
-    any = true;
-    vehicle = vehicle || kindOf(estimate) == EffectKind::kVehicle;
-  }
-  if (!any) return adequate ? GapVerdict::kNoDiscrepancy : GapVerdict::kNotInCatalogue;
+  for (const ParameterEstimate& estimate : finding.identified.calibrated)
+    vehicle = vehicle || (estimate.moved && kindOf(estimate) == EffectKind::kVehicle);
+  if (!anyMoved(finding))
+    return adequate ? GapVerdict::kNoDiscrepancy : GapVerdict::kNotInCatalogue;
   if (!adequate) return GapVerdict::kPartial;
   return vehicle ? GapVerdict::kFound : GapVerdict::kMeasurement;
 }
@@ -306,6 +308,12 @@ void judge(Finding& finding, double adequacy_alpha, double least_gain) {
     finding.verdict = GapVerdict::kCannotTell;
     finding.reason = finding.search.at_bound.front() + " runs to the end of its plausible range";
   }
+  if (finding.search.cut_short) {
+    const bool any = !shown.empty() || anyMoved(finding);
+    finding.verdict = any ? GapVerdict::kPartial : GapVerdict::kCannotTell;
+    if (!any)
+      finding.reason = "the time limit ended the search before anything was found; give it more";
+  }
   for (const ParameterEstimate& estimate : finding.identified.calibrated)
     refuseOnBound(estimate, finding);
   for (const FoundEffect& effect : finding.identified.effects)
@@ -332,6 +340,7 @@ SearchSettings settingsOf(const GapTask& task) {
   for (const Decision& decision : task.decisions)
     (decision.accepted ? settings.accepted : settings.rejected).push_back(decision.effect);
   settings.all_sized = true;
+  settings.is_over = task.is_over;
   return settings;
 }
 
@@ -370,17 +379,19 @@ UnseenErrors errorsOnHalves(const GapTask& task, const Fitter& fitter, const Fou
                             SearchSettings settings, SearchMemory& memory) {
   const Observations& data = fitter.data();
   UnseenErrors unseen;
-  unseen.gap.structure_nested = data.measuredBlocks() >= 2 * kLeastHalf;
+  bool& nested = unseen.gap.structure_nested;
+  nested = data.measuredBlocks() >= 2 * kLeastHalf && !result.record.cut_short;
   unseen.gap.before = summaryOf(endErrors(data, task.model));
   std::vector<ExecutionError> outside;  // of either half
   settings.all_sized = false;           // half of the driving may not show all
   const Progress silent = [](const std::string&) {};
   for (int half : {0, 1}) {
     const Fitter on_half = fitter.onRows(halfMask(data, half));
-    const ModelDocument model =
-        unseen.gap.structure_nested
-            ? search(on_half, task.model, settings, memory, silent).state.model
-            : refitted(on_half, result).model;
+    std::optional<FoundTerms> alone;
+    if (nested) alone = search(on_half, task.model, settings, memory, silent);
+    // What has no time left chooses no effects: they are those of all.
+    nested = alone && !alone->record.cut_short;
+    const ModelDocument model = nested ? alone->state.model : refitted(on_half, result).model;
     unseen.parts.push_back({&data, model, {}, 0});
     std::vector<ExecutionError>& errors = unseen.parts.back().errors;
     for (const ExecutionError& error : endErrors(data, model))

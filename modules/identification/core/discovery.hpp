@@ -59,7 +59,8 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
 /// The headline of a finding whose effects, calibrated terms, adequacy and errors are known: one
 /// verdict, with its reason where it is kCannotTell.
 /** Adequate is a p-value above `adequacy_alpha`. Terms of the model that moved count if the end
- * error falls by more than the share `least_gain`. */
+ * error falls by more than the share `least_gain`. A search that was cut short is kPartial with
+ * what it has found, and kCannotTell if that is nothing. */
 void judge(Finding& finding, double adequacy_alpha, double least_gain);
 
 /// What `tread-gap find` is asked.
@@ -76,6 +77,7 @@ struct GapTask {
   std::vector<Decision> decisions;
   uint64_t seed = 1;
   ParallelFor parallel = serialFor;  ///< does not change a bit of the result
+  TimeLimit is_over = neverOver;     ///< then the best so far is the result
 };
 
 /// Where simulation and measurement disagree, what it is most likely called, how sure that is.

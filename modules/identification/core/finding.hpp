@@ -232,6 +232,7 @@ struct SearchRecord {
   std::vector<CandidateTest> candidates;  ///< of the calibrated model, each effect's best direction
   std::vector<std::string> negligible;    ///< real but below 1 % of the end error: not added
   std::vector<std::string> at_bound;      ///< seen, but their sizes ran to the ends of their ranges
+  bool cut_short = false;  ///< its time was over before its end: these are the best terms so far
 };
 
 /// What the residuals of a model still depend on.

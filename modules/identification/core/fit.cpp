@@ -329,7 +329,7 @@ void Fitter::fit(FitState& state) const {
     double damping = 1e-3;
     double gained = 0.0;
     double together = 0.0;
-    while (stepOnce(state, damping, gained)) {
+    for (int i = 0; i < kMostSteps && stepOnce(state, damping, gained); ++i) {
       together += gained;
       if (gained < kEnough) break;
     }
@@ -358,7 +358,8 @@ void refineChangePoint(const Fitter& fitter, FitState& state, const std::string&
   for (double step = kFirstStep; step >= kLastStep;) {
     const double later = lossAt(fitter, state, path, time + step);
     const double earlier = time > step ? lossAt(fitter, state, path, time - step) : least;
-    if (std::min(later, earlier) >= least) {
+    // Not where a loss is no number, either; each step has less, of finitely many times.
+    if (!(std::min(later, earlier) < least)) {
       step /= 2.0;
       continue;
     }

@@ -121,7 +121,7 @@ bool chooseLags(const SearchState& search) {
     std::vector<std::string> names;
     for (const auto& [lag, value] : lags)
       if (!nominal || lag != lag_names.drive) names.push_back(lag);
-    if (names == now) continue;
+    if (names == now || search.isCutShort()) continue;
     std::optional<Trial> trial = tryOut(search, lags, loss_now);
     if (!trial) continue;
     // One lag in the place of two need only be as good.

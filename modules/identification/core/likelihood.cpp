@@ -43,7 +43,7 @@ ChannelNoise estimated(const ChannelResiduals& of) {
       const ChannelNoise tried{std::max(kLeastScale, best.still * std::exp(still * step)),
                                best.share * std::exp(share * step)};
       const double loss = negativeLogLikelihood(of, tried);
-      if (loss >= least - 1e-9) continue;
+      if (!(loss < least - 1e-9)) continue;  // nor where it is no number
       least = loss;
       best = tried;
       better = true;

@@ -273,7 +273,7 @@ FitState withoutLinearly(const Fitter& fitter, const FitState& state, const std:
 }
 
 void pruneEffects(const SearchState& search, const Needed& needed) {
-  while (removeOne(search, needed)) continue;
+  while (removeOne(search, needed)) continue;  // no more often than there are effects
 }
 
 }  // namespace tread::gap

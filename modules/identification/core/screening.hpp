@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -175,9 +176,9 @@ Excitation excitationOf(const Observations& data, const ModelDocument& model);
  * are another one under a second name are left to their groups. */
 std::vector<Candidate> candidatesFor(const ModelDocument& model, const Excitation& excitation);
 
-/// Those of a state: also effects that are on and held by what is known of them, to be freed; where
-/// numbers of the nominal model are free without limits, effects that are the same under another
-/// name are left out.
+/// Those of a state, without what it has free already: also effects that are on and held by what is
+/// known of them, to be freed; where numbers of the nominal model are free without limits, effects
+/// that are the same under another name are left out.
 std::vector<Candidate> candidatesFor(const FitState& state, const Excitation& excitation);
 
 /// Those of one effect, even if it is another one under a second name.
@@ -200,6 +201,12 @@ void addCandidate(const Fitter& fitter, FitState& state, const Candidate& candid
 /// Whether a size is nothing beside what is typical.
 bool isVanishing(const std::string& effect, const std::string& parameter, double size);
 
+/// Whether the time that a search may take is over; it asks between its steps and needs no clock.
+using TimeLimit = std::function<bool()>;
+inline bool neverOver() {
+  return false;
+}
+
 /// How a search is done.
 struct SearchSettings {
   double alpha =
@@ -216,6 +223,7 @@ struct SearchSettings {
   std::vector<std::string> rejected;  ///< never considered
   bool all_sized = false;             ///< ends at once where an accepted one cannot be sized
   uint64_t seed = 1;
+  TimeLimit is_over = neverOver;  ///< then a search adds nothing more, prunes and ends
 };
 
 /// Directions of candidates that were simulated once and serve again.

@@ -33,17 +33,18 @@ class EffectSelection {
     Screening screening = test(memory_.calibrated);
     result_.record.candidates = screening.tests;
     const Screening first = screening;
-    if (!significant(screening).empty()) {
+    if (!significant(screening).empty() && !underWay().isCutShort()) {
       freeNuisanceTerms();
       screening = test(memory_.with_nuisance);
-      while (result_.effects.size() < settings_.most + nuisance_terms_ && addBest(screening)) {
+      // Each addition frees a path that was not: see search().
+      while (mayAdd(settings_.most + nuisance_terms_) && addBest(screening)) {
         renewLikeliest(screening);
         screening = test(memory_.with_nuisance);
       }
       prune(screening);
-      if (addBesideLags()) prune(screening);
+      if (!underWay().isCutShort() && addBesideLags()) prune(screening);
       noteDetectable(test(memory_.with_nuisance));
-      if (foundNothing()) searchWithoutNuisance(first);
+      if (foundNothing() && !underWay().isCutShort()) searchWithoutNuisance(first);
     } else if (!result_.effects.empty()) {
       prune(screening);
     }
@@ -53,6 +54,9 @@ class EffectSelection {
  private:
   FitState& state() { return result_.state; }
   const FitState& state() const { return result_.state; }
+  SearchState underWay() { return {fitter_, settings_, say_, result_}; }
+
+  bool mayAdd(size_t most) { return result_.effects.size() < most && !underWay().isCutShort(); }
 
   /// Neither an effect nor a term that was re-estimated nor something too small to matter.
   bool foundNothing() const {
@@ -67,7 +71,7 @@ class EffectSelection {
   void searchWithoutNuisance(Screening screening) {
     state() = result_.calibrated;
     SensitivityCache cache = memory_.calibrated;
-    while (result_.effects.size() < settings_.most && addBest(screening)) {
+    while (mayAdd(settings_.most) && addBest(screening)) {
       cache.renew(fitter_, state(), likeliestOf(screening));
       screening = test(cache);
     }
@@ -233,7 +237,8 @@ class EffectSelection {
     const Trial* best = nullptr;
     for (size_t begin = 0; begin < found.size() && best == nullptr; begin += settings_.tried) {
       const size_t end = std::min(found.size(), begin + settings_.tried);
-      for (size_t i = begin; i < end; ++i) trials.push_back(tryOut(screening, found[i], now));
+      for (size_t i = begin; i < end && !underWay().isCutShort(); ++i)
+        trials.push_back(tryOut(screening, found[i], now));
       for (const Trial& trial : trials)
         if (trial.refused.empty() && trial.gain.value > 0.0 &&
             (best == nullptr || trial.gain.value > best->gain.value))
@@ -312,7 +317,7 @@ class EffectSelection {
   }
 
   void prune(const Screening& last) {
-    const SearchState search{fitter_, settings_, say_, result_};
+    const SearchState search = underWay();
     const Needed needed{criticalScore(last.chance, settings_.alpha_more), last.overdispersion,
                         false, true};
     pruneEffects(search, needed);
@@ -378,7 +383,7 @@ std::vector<FreeParameter> givenParameters(const ModelDocument& model, bool cali
 FoundTerms search(const Fitter& fitter, const ModelDocument& model, const SearchSettings& settings,
                   SearchMemory& memory, const Progress& say) {
   FoundTerms found = EffectSelection(fitter, settings, memory, say).run(model);
-  if (found.released.empty()) return found;
+  if (found.released.empty() || found.record.cut_short) return found;
   // To take a given term for wrong is easy: it bends to much. Fewer effects may do, with all that
   // the model says.
   say("  once more, with all that the model says:");
@@ -390,7 +395,8 @@ FoundTerms search(const Fitter& fitter, const ModelDocument& model, const Search
   const bool has_new =
       std::any_of(other.effects.begin(), other.effects.end(),
                   [&](const std::string& effect) { return !contains(settings.accepted, effect); });
-  if (!has_new || other.effects.size() >= found.effects.size() + found.released.size())
+  if (!has_new || other.record.cut_short ||
+      other.effects.size() >= found.effects.size() + found.released.size())
     return found;
   // Each has noise of its own size: losses compare by one.
   FitState judged = other.state;

@@ -52,6 +52,11 @@ struct SearchState {
 
   const Observations& data() const { return fitter.data(); }
   bool isAccepted(const std::string& effect) const { return contains(settings.accepted, effect); }
+  /// Asks for the time, and remembers that it is over.
+  bool isCutShort() const {
+    if (!result.record.cut_short) result.record.cut_short = settings.is_over();
+    return result.record.cut_short;
+  }
 };
 
 /// Which parameters of a model are free: strengths of effects that are on, and the numbers of the
@@ -66,7 +71,8 @@ std::vector<FreeParameter> givenParameters(const ModelDocument& model, bool cali
  * long as something is significant, 5. removes what the rest makes superfluous, nuisance terms
  * included, and what runs to its bound. Where nothing is left the candidates of step 2 are tried
  * without nuisance terms. Given terms are held by the model's covariance; to free a held term is a
- * candidate like an effect. */
+ * candidate like an effect. It ends: steps 3 and 4 only free paths, each once, of which there are
+ * as many as the catalogue and the model have; step 5 only takes effects away, or two for one. */
 FoundTerms search(const Fitter& fitter, const ModelDocument& model, const SearchSettings& settings,
                   SearchMemory& memory, const Progress& say);
 

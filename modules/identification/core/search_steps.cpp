@@ -154,7 +154,7 @@ void tryExchange(const SearchState& search, const Single& imitated_one, const st
 /// The exchange whose single effect fits best, if any is bearable.
 std::optional<Exchange> bestExchange(const SearchState& search) {
   const std::vector<std::string>& effects = search.result.effects;
-  if (effects.size() < 2) return std::nullopt;
+  if (effects.size() < 2 || search.isCutShort()) return std::nullopt;
   const std::vector<Single> singles = imitated(search);
   if (singles.empty()) return std::nullopt;
   const FitState& state = search.result.state;
@@ -162,7 +162,7 @@ std::optional<Exchange> bestExchange(const SearchState& search) {
   std::optional<Exchange> best;
   for (const Single& single : singles)
     for (size_t a = 0; a < effects.size(); ++a)
-      for (size_t b = a + 1; b < effects.size(); ++b)
+      for (size_t b = a + 1; b < effects.size() && !search.isCutShort(); ++b)
         tryExchange(search, single, effects[a], effects[b], loss, best);
   return best;
 }
@@ -244,6 +244,7 @@ std::string takeIn(const Fitter& fitter, FitState& state, const std::string& eff
 }
 
 void replacePairs(const SearchState& search) {
+  // Each exchange takes an effect away.
   while (const auto exchange = bestExchange(search)) {
     const auto& [single, a, b, state, pair_gain] = *exchange;
     const std::string remark = "in the place of " + a + " and " + b;

@@ -110,4 +110,19 @@ TEST_CASE("a decision that makes no sense ends with 2 and one line, before a log
   CHECK_FALSE(std::filesystem::exists(folder.path("out")));
 }
 
+TEST_CASE("find with a time limit ends when that is over, and says so") {
+  const Folder folder;
+  writeDrive(folder.path("drive.lcmlog"), 204.0, 0.40);
+  const std::string find = "find --model " + kModels + "warthog_asphalt.yaml --train " +
+                           folder.path("drive.lcmlog") + " --out " + folder.path("out");
+  const Run over = run(find + " --limit 0.001");
+  INFO(over.printed);
+  CHECK(over.status == 15);
+  CHECK(over.says("The search had no time left (--limit)"));
+  CHECK(nlohmann::json::parse(folder.text("out/verdict.json"))["cut_short"] == true);
+  CHECK(run(find + " --limit 0").says("--limit"));
+  run(find + " --force --limit 1000");
+  CHECK(nlohmann::json::parse(folder.text("out/verdict.json"))["cut_short"] == false);
+}
+
 }  // namespace tread::gap

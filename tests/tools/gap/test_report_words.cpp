@@ -235,4 +235,16 @@ TEST_CASE("a term of the model that has changed is said in its natural numbers")
         "to 1.28 rad/s) instead of 2 rad/s.");
 }
 
+TEST_CASE("a search that was cut short says so in one line, and not that something is left over") {
+  Finding finding = samples::finding(GapVerdict::kPartial);
+  const std::string rest = "something more without a name";
+  const std::string limit = "The search had no time left (--limit)";
+  CHECK(has(closingLines(finding).front(), rest));
+  CHECK_FALSE(has(report(finding), limit));
+  finding.search.cut_short = true;
+  CHECK_FALSE(has(closingLines(finding).front(), rest));
+  CHECK(has(closingLines(finding)[1], limit));
+  CHECK(has(report(finding), limit));
+}
+
 }  // namespace tread::gap

@@ -163,6 +163,7 @@ nlohmann::ordered_json verdictJson(const Finding& finding, const std::vector<Inp
                                {"like", rest.like.empty() ? Json(nullptr) : Json(rest.like)}});
   return {{"verdict", verdictName(finding.verdict)},
           {"reason", finding.reason},
+          {"cut_short", finding.search.cut_short},
           {"effects", effects},
           {"calibrated", calibratedJson(finding.identified.calibrated)},
           {"gap", gapJson(finding.gap)},

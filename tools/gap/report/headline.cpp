@@ -12,6 +12,9 @@ constexpr size_t kNamed = 3;  // effects that a line or a list of the first scre
 /// Before what a fit came to that is none to build on.
 constexpr const char* kNoResult = "Where the fit ended, to look at and not to use:";
 
+constexpr const char* kCutShort =
+    "The search had no time left (--limit): these are the best terms so far.";
+
 constexpr const char* kFittedNumbers =
     "Numbers that the model already has were fitted to the log; they stand under the parameters. "
     "That done: ";
@@ -181,7 +184,9 @@ std::string headlineOf(const Finding& finding) {
     case GapVerdict::kAmbiguous:
       return foundWords(finding);
     case GapVerdict::kPartial:
-      return foundWords(finding) + "; and something more without a name";
+      return foundWords(finding) + (finding.search.cut_short
+                                        ? "; the search is not at its end"
+                                        : "; and something more without a name");
     case GapVerdict::kNotInCatalogue:
       return "Something that is not in the catalogue";
     case GapVerdict::kMeasurement:
@@ -207,6 +212,7 @@ std::string verdictLine(const Finding& finding) {
 
 std::vector<std::string> closingLines(const Finding& finding) {
   std::vector<std::string> lines{verdictLine(finding)};
+  if (finding.search.cut_short) lines.push_back(std::string("  ") + kCutShort);
   if (finding.verdict == GapVerdict::kCannotTell) {
     lines.push_back("  " + finding.reason);
     if (!finding.identified.effects.empty()) lines.push_back(std::string("  ") + kNoResult);
@@ -228,6 +234,7 @@ std::vector<Block> firstBlocks(const Finding& finding) {
   std::vector<Block> blocks;
   const std::string words = opening(finding);
   if (!words.empty()) blocks.push_back(Paragraph{words});
+  if (finding.search.cut_short) blocks.push_back(Paragraph{kCutShort});
   if (finding.verdict == GapVerdict::kCannotTell && !finding.identified.effects.empty())
     blocks.push_back(Paragraph{kNoResult});
   const Points sentences{sentencesOf(finding)};

@@ -229,11 +229,11 @@ struct DecisionWords {
 std::vector<Decision> decisionsOf(const DecisionWords& words, const ModelDocument& model);
 
 /// What verdict.json holds; numbers that are not finite are null.
-/** Keys: verdict, reason, effects [{name, kind, parameters {name: {value, unit, low, high}}, group,
- * runner_up}], calibrated, gap {horizon_s, before, after, floor: {position_m, yaw_rad: {median,
- * rms}}}, unexplained [{channel, variable}], not_excited, seed, inputs {model, train, test}. A
- * limit that the model holds as its reciprocal stands there as inverse_limit and under its natural
- * name, too. */
+/** Keys: verdict, reason, cut_short, effects [{name, kind, parameters {name: {value, unit, low,
+ * high}}, group, runner_up}], calibrated, gap {horizon_s, before, after, floor: {position_m,
+ * yaw_rad: {median, rms}}}, unexplained [{channel, variable}], not_excited, seed, inputs {model,
+ * train, test}. A limit that the model holds as its reciprocal stands there as inverse_limit and
+ * under its natural name, too. */
 nlohmann::ordered_json verdictJson(const Finding& finding, const std::vector<InputFile>& inputs);
 
 /// The new model with where it comes from: tool, seed, logs, and how often it was worked on them.
