@@ -3,6 +3,7 @@
 #include "common/vehicle/model_document.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -102,6 +103,24 @@ double valueOf(const ModelDocument& document, const EffectParameter& parameter) 
   return valueOf(const_cast<ModelDocument&>(document), parameter);
 }
 
+namespace {
+
+const std::string kRest = "rest.";
+
+}  // namespace
+
+std::string restPath(size_t term) {
+  return kRest + std::to_string(term);
+}
+
+std::optional<size_t> restTermOf(const std::string& path) {
+  size_t term = 0;
+  const char* const end = path.data() + path.size();
+  if (path.compare(0, kRest.size(), kRest) != 0) return std::nullopt;
+  const auto [last, error] = std::from_chars(path.data() + kRest.size(), end, term);
+  return error == std::errc{} && last == end ? std::optional(term) : std::nullopt;
+}
+
 double* findParameter(ModelDocument& document, const std::string& path) {
   static const std::map<std::string, double VehicleModel::*> nominal{
       {"lag", &VehicleModel::lag},
@@ -112,6 +131,8 @@ double* findParameter(ModelDocument& document, const std::string& path) {
       {"yaw_gain", &VehicleModel::yaw_gain}};
   const auto number = nominal.find(path);
   if (number != nominal.end()) return &(document.vehicle.*number->second);
+  if (const auto term = restTermOf(path))
+    return document.rest && *term < document.rest->size() ? &(*document.rest)[*term].size : nullptr;
   const EffectParameter* parameter = findEffectParameter(path);
   return parameter != nullptr ? &valueOf(document, *parameter) : nullptr;
 }

@@ -27,6 +27,15 @@ struct ParameterCovariance {
   std::vector<std::vector<double>> matrix;  ///< in the parameters' units, symmetric
 };
 
+/// What a model did not explain when it was made: how its residuals (measured less predicted)
+/// depended on one condition that tread-gap tests.
+struct RestTerm {
+  std::string channel;     ///< of the residuals: "yaw rate", "heading rate", "along", "lateral"
+  std::string condition;   ///< "turns before", "v x yaw rate"
+  double size = 0.0;       ///< [rad/s or m/s] per unit of the condition
+  double deviation = 0.0;  ///< standard deviation of the size
+};
+
 /// A log from which a model was made.
 struct SourceLog {
   std::string name;
@@ -67,6 +76,8 @@ struct ModelDocument {
   MeasurementModel measurement;
   std::vector<ParameterBounds> bounds;
   ParameterCovariance covariance;
+  /// Empty where nothing was left; nothing where that is not known, as of a model made by hand.
+  std::optional<std::vector<RestTerm>> rest;
   Provenance provenance;
   std::optional<Envelope> envelope;
 };
@@ -85,9 +96,14 @@ inline bool isOn(const Effect& effect, const ModelDocument& document) {
 }
 
 /// The number of a document that a path names: lag, delay, forward_gain, yaw_gain, full_speed,
-/// gauge, or effect.parameter (icr_offset.offset); nullptr for anything else.
+/// gauge, effect.parameter (icr_offset.offset), or rest.0, rest.1 .. (the size of a term of the
+/// rest); nullptr for anything else.
 double* findParameter(ModelDocument& document, const std::string& path);
 const double* findParameter(const ModelDocument& document, const std::string& path);
+
+/// The path of a term of the rest, and the term that a path names; nothing for another path.
+std::string restPath(size_t term);
+std::optional<size_t> restTermOf(const std::string& path);
 
 /// Its unit.
 std::string unitOf(const std::string& path);

@@ -120,6 +120,19 @@ void readCovariance(ConfigReader reader, const ModelDocument& document,
                        "diagonal");
 }
 
+void readRest(ConfigReader& reader, std::optional<std::vector<RestTerm>>& rest) {
+  if (!reader.has("rest")) return;
+  rest.emplace();
+  for (ConfigReader& entry : reader.sections("rest")) {
+    RestTerm term;
+    entry.text("channel", term.channel, true);
+    entry.text("condition", term.condition, true);
+    entry.number("size", term.size, kAnything, "", true);
+    entry.number("deviation", term.deviation, {0.0, kAnything.max}, "", true);
+    rest->push_back(term);
+  }
+}
+
 /// Whoever decides by hand may mistype; a decision about nothing would be kept for ever.
 void requireEffect(const ConfigReader& reader, const std::string& name) {
   try {
@@ -180,6 +193,7 @@ ModelDocument readDocument(ConfigReader reader) {
   spread.number("forward", model.spread.forward, kSpread, "");
   spread.number("yaw", model.spread.yaw, kSpread, "");
   spread.number("crab", model.spread.crab, kSpread, "rad");
+  readRest(reader, document.rest);
   readBounds(reader.section("bounds"), document);
   readCovariance(reader.section("covariance"), document, document.covariance);
   readProvenance(reader.section("provenance"), document.provenance);
@@ -287,6 +301,13 @@ void writeEstimate(std::ostringstream& out, const ModelDocument& document) {
   if (!document.bounds.empty()) out << "bounds:  # narrower than what is plausible\n";
   for (const ParameterBounds& bounds : document.bounds)
     out << "  " << bounds.parameter << ": " << list({bounds.min, bounds.max}) << '\n';
+  if (document.rest)
+    out << "rest:" << (document.rest->empty() ? " []" : "")
+        << "  # what it did not explain, in m/s or rad/s per unit of the condition\n";
+  for (const RestTerm& term : document.rest.value_or(std::vector<RestTerm>{}))
+    out << "  - {channel: " << formatText(term.channel)
+        << ", condition: " << formatText(term.condition) << ", size: " << formatNumber(term.size)
+        << ", deviation: " << formatNumber(term.deviation) << "}\n";
   if (document.covariance.parameters.empty()) return;
   out << "covariance:  # of the estimate, in the parameters' units\n";
   out << "  parameters: [" << joinWords(document.covariance.parameters) << "]\n  matrix:\n";

@@ -36,6 +36,8 @@ ModelDocument fullDocument() {
   document.covariance.parameters = {"icr_offset.offset", "ins_latency.latency", "yaw_gain"};
   document.covariance.matrix = {
       {1e-4 / 3.0, 1e-9, 0.0}, {1e-9, 2e-5, -1e-7}, {0.0, -1e-7, 1.0 / 3e6}};
+  document.rest = {{"yaw rate", "sign of v, just reversed", -0.1 / 3.0, 1.0 / 7e3},
+                   {"along", "|v| x yaw rate", 1e-3 / 7.0, 0.0}};
   document.provenance = {"tread-gap 0.1",
                          42,
                          3,
@@ -59,6 +61,12 @@ TEST_CASE("Everything in a model file comes back bit for bit") {
   CHECK(again.bounds[0].min == document.bounds[0].min);
   CHECK(again.covariance.parameters == document.covariance.parameters);
   CHECK(again.covariance.matrix == document.covariance.matrix);
+  REQUIRE(again.rest);
+  REQUIRE(again.rest->size() == 2);
+  CHECK((*again.rest)[0].channel == "yaw rate");
+  CHECK((*again.rest)[0].condition == "sign of v, just reversed");
+  CHECK((*again.rest)[0].size == (*document.rest)[0].size);
+  CHECK((*again.rest)[0].deviation == (*document.rest)[0].deviation);
   CHECK(again.provenance.tool == "tread-gap 0.1");
   CHECK(again.provenance.seed == document.provenance.seed);
   CHECK(again.provenance.runs == 3);
@@ -72,6 +80,15 @@ TEST_CASE("Everything in a model file comes back bit for bit") {
   CHECK(again.provenance.decisions[1].by.empty());
   REQUIRE(again.envelope);
   CHECK(again.envelope->v_omega == document.envelope->v_omega);
+}
+
+TEST_CASE("A model that left nothing unexplained is another one than a model that does not say") {
+  ModelDocument document = parseModelDocument(kDocumentHead, "m.yaml");
+  CHECK_FALSE(document.rest);
+  document.rest.emplace();
+  const ModelDocument again = parseModelDocument(formatModelDocument(document), "again.yaml");
+  REQUIRE(again.rest);
+  CHECK(again.rest->empty());
 }
 
 TEST_CASE("The vehicle part and the measurement part of a file stand apart") {
@@ -98,6 +115,10 @@ TEST_CASE("Bad bounds, covariances, origins and envelopes are refused in one cle
   expectDocumentError(two + "[[1, 0]]\n", "10", "one row per parameter");
   expectDocumentError(two + "[[1, 0], [0.1, 1]]\n", "10", "symmetric");
   expectDocumentError(two + "[[1, 0], [0, -1]]\n", "10", "negative");
+  expectDocumentError(base + "rest:\n  - {channel: along, condition: v, size: 1}\n", "9",
+                      "deviation");
+  expectDocumentError(base + "rest:\n  - {channel: along, condition: v, size: 1, deviation: -1}\n",
+                      "9", "deviation");
   expectDocumentError(base + "provenance:\n  seed: 1.5\n", "9", "seed");
   expectDocumentError(base + "provenance:\n  logs:\n    - name: a\n      sha256: beef\n", "11",
                       "64 digits");
@@ -141,6 +162,12 @@ TEST_CASE("A path names every parameter of a document and nothing else") {
   CHECK(document.measurement.lever_arm_x == 0.3);
   *findParameter(document, "yaw_gain") = 0.7;
   CHECK(document.vehicle.yaw_gain == 0.7);
+  for (const char* path : {"rest.0", "rest.", "rest.x", "rest.0x", "rest.-1"})
+    CHECK(findParameter(document, path) == nullptr);
+  document.rest = {{"along", "v", 0.1, 0.01}, {"along", "v^2", 0.2, 0.01}};
+  CHECK(findParameter(document, restPath(1)) == &(*document.rest)[1].size);
+  CHECK(restTermOf("rest.1") == 1);
+  CHECK(findParameter(document, "rest.2") == nullptr);
   CHECK(findParameter(document, "lever_arm_x") == nullptr);
   CHECK(findParameter(document, "") == nullptr);
 }
