@@ -40,7 +40,7 @@ TEST_CASE("a wave over a condition, which no variable follows, is found and name
   const Rig rig({}, 400.0, 3);
   const FitState state = rig.stateOf(wavedNoise(rig, 3, 1.0), 1.0);
   const std::vector<SmoothRest> rests =
-      smoothRests(rig.fitter, state, inputsOf(rig.data, state.model), 0.005, 3);
+      smoothRests(rig.fitter, state, inputsOf(rig.data, state.model), {}, 0.005, 3);
   REQUIRE(rests.size() == 3);
   for (const SmoothRest& rest : rests) {
     const bool along = rest.channels.front() == Channel::kAlong;
@@ -73,7 +73,7 @@ TEST_CASE("what the free parameters can still explain is no function that is lef
   const Eigen::VectorXd turned = inputNamed(inputs, "yaw rate").values;
   state.predicted -= 2.0 * turned;
   const auto chance = [&] {
-    return smoothRests(rig.fitter, state, inputs, 0.0, 4).front().p_value;
+    return smoothRests(rig.fitter, state, inputs, {}, 0.0, 4).front().p_value;
   };
   CHECK(chance() <= 0.005);
   state.free.push_back(freeParameter(state.model, "yaw_gain"));
@@ -88,8 +88,8 @@ TEST_CASE("the order in which channels are tested changes no bit of what is left
     for (size_t i = count; i-- > 0;) run(i);
   });
   const std::vector<Variable> inputs = inputsOf(rig.data, state.model);
-  const auto one = smoothRests(rig.fitter, state, inputs, 0.01, 5);
-  const auto other = smoothRests(backwards, state, inputs, 0.01, 5);
+  const auto one = smoothRests(rig.fitter, state, inputs, {}, 0.01, 5);
+  const auto other = smoothRests(backwards, state, inputs, {}, 0.01, 5);
   for (size_t i = 0; i < one.size(); ++i) {
     CHECK(one[i].p_value == other[i].p_value);
     CHECK(one[i].score == other[i].score);

@@ -108,6 +108,17 @@ TEST_CASE("nothing found is no discrepancy only if nothing is left over") {
   CHECK(judged(findingOf({}, kAlpha)) == GapVerdict::kNotInCatalogue);
 }
 
+TEST_CASE("with a known rest nothing found is nothing new, and what is left over is new") {
+  Finding finding = findingOf({});
+  finding.before.rest = {{"along", "v", 0.1, 0.01}};
+  CHECK(judged(finding) == GapVerdict::kNothingNew);
+  finding.adequacy.p_value = 0.001;
+  CHECK(judged(finding) == GapVerdict::kNotInCatalogue);
+  finding.adequacy.p_value = 0.5;
+  finding.before.rest->clear();
+  CHECK(judged(finding) == GapVerdict::kNoDiscrepancy);
+}
+
 TEST_CASE("a search that was cut short is partial with what it has, and cannot tell without") {
   Finding finding = findingOf({foundEffect("slip_ratio")});
   finding.search.cut_short = true;
@@ -182,14 +193,15 @@ TEST_CASE("a size at the end of its range tells nothing, and says of which param
   CHECK(finding.reason.empty());
 }
 
-TEST_CASE("every verdict has a name of its own and an exit status of its own") {
+TEST_CASE("every verdict has a name of its own, and 0 or an exit status of its own") {
   std::set<std::string> names;
+  std::set<int> statuses;
   for (const GapVerdict verdict :
-       {GapVerdict::kNoDiscrepancy, GapVerdict::kFound, GapVerdict::kAmbiguous,
-        GapVerdict::kPartial, GapVerdict::kNotInCatalogue, GapVerdict::kMeasurement,
-        GapVerdict::kCannotTell}) {
+       {GapVerdict::kNoDiscrepancy, GapVerdict::kNothingNew, GapVerdict::kFound,
+        GapVerdict::kAmbiguous, GapVerdict::kPartial, GapVerdict::kNotInCatalogue,
+        GapVerdict::kMeasurement, GapVerdict::kCannotTell}) {
     CHECK(names.insert(verdictName(verdict)).second);
-    const int status = static_cast<int>(verdict);
-    CHECK((status == 0 || (status >= 10 && status <= 15)));
+    const int status = exitStatus(verdict);
+    CHECK((status == 0 || (status >= 10 && status <= 15 && statuses.insert(status).second)));
   }
 }

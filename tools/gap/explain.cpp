@@ -16,6 +16,11 @@ const std::vector<Advice>& advices() {
        "nothing beyond chance; the report says from which size on each effect would have been seen",
        "Keep the model (after --calibrate: take model.yaml). To look deeper, drive longer or what "
        "this drive did not show."},
+      {GapVerdict::kNothingNew,
+       "the log differs from the model as the drive did that the model was made from, and in "
+       "nothing else",
+       "Keep the model; the vehicle is as it was. What the model does not explain stands in its "
+       "file as its rest."},
       {GapVerdict::kFound, "effects by name, with sizes and intervals; the model has them in",
        "Check each in two minutes, as the report says; run find with --test and a log of another "
        "day; then take model.yaml."},
@@ -146,9 +151,8 @@ std::string entries(const std::vector<Word>& words) {
 std::string verdicts() {
   std::string text;
   for (const Advice& advice : advices())
-    text +=
-        entry(std::to_string(static_cast<int>(advice.verdict)) + " " + verdictName(advice.verdict),
-              advice.meaning + ". " + advice.next, kTopicIndent);
+    text += entry(std::to_string(exitStatus(advice.verdict)) + " " + verdictName(advice.verdict),
+                  advice.meaning + ". " + advice.next, kTopicIndent);
   return text + entry("2", "bad input, in one line", kTopicIndent);
 }
 

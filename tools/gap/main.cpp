@@ -43,9 +43,10 @@ struct FindOptions {
 constexpr const char* kFindFooter =
     "Into --out: verdict.json, model.yaml (the new model; nothing is applied by itself; none "
     "after\n"
-    "CANNOT_TELL), report.md and report.html. Exit status: 0 NO_DISCREPANCY, 10 FOUND, 11 "
-    "AMBIGUOUS, 12 PARTIAL,\n"
-    "13 NOT_IN_CATALOGUE, 14 MEASUREMENT, 15 CANNOT_TELL, 2 bad input (one line says which).\n"
+    "CANNOT_TELL), report.md and report.html. Exit status: 0 NO_DISCREPANCY or "
+    "NOTHING_NEW,\n"
+    "10 FOUND, 11 AMBIGUOUS, 12 PARTIAL, 13 NOT_IN_CATALOGUE, 14 MEASUREMENT, 15 CANNOT_TELL, 2 "
+    "bad input (one line says which).\n"
     "The same files and the same seed give the same bytes, with any number of threads, unless "
     "--limit ends it.";
 
@@ -131,7 +132,7 @@ int find(const FindOptions& options) {
   folder.commit();
   for (const std::string& line : closingLines(finding)) say(line);
   sayWhere(options.out, finding);
-  return static_cast<int>(finding.verdict);
+  return exitStatus(finding.verdict);
 }
 
 constexpr int kSomethingMoved = 10;
@@ -161,7 +162,7 @@ int repeat(const FindOptions& options) {
   folder.commit();
   std::cout << '\n' << text;
   sayWhere(options.out, repetition.together);
-  if (cannot_tell) return static_cast<int>(GapVerdict::kCannotTell);
+  if (cannot_tell) return exitStatus(GapVerdict::kCannotTell);
   for (const std::string& file : files)
     say("The same with what is that day's: " + options.out + "/" + file);
   return repetition.differs() ? kSomethingMoved : 0;

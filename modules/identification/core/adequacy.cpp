@@ -8,6 +8,7 @@
 #include <set>
 
 #include "modules/identification/core/observations.hpp"
+#include "modules/identification/core/rest.hpp"
 #include "modules/identification/core/screening.hpp"
 #include "modules/identification/core/smooth_test.hpp"
 
@@ -15,20 +16,6 @@ namespace tread::gap {
 namespace {
 
 constexpr int kDraws = 1999;  // of the bootstrap over the variables
-
-/// Each variable in the rows of one channel only, for every channel.
-Eigen::MatrixXd perChannel(const Observations& data, const std::vector<Variable>& variables) {
-  const auto count = static_cast<Eigen::Index>(variables.size());
-  Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(data.all().size()),
-                                                     count * static_cast<Eigen::Index>(kChannels));
-  for (size_t i = 0; i < data.all().size(); ++i)
-    for (Eigen::Index v = 0; v < count; ++v) {
-      const auto row = static_cast<Eigen::Index>(i);
-      const auto channel = static_cast<Eigen::Index>(data.all()[i].channel);
-      directions(row, channel * count + v) = variables[static_cast<size_t>(v)].values[row];
-    }
-  return directions;
-}
 
 constexpr int kCells = 9;
 constexpr size_t kLeastRows = 12;
@@ -230,7 +217,7 @@ EffectDirections effectDirections(const Fitter& fitter, const FitState& state) {
   all.columns.rightCols(static_cast<Eigen::Index>(state.free.size())) = state.jacobian;
   for (const Candidate& candidate : candidates) all.effects.push_back(candidate.effect);
   for (const FreeParameter& parameter : state.free)
-    all.effects.push_back(effectOfPath(parameter.path));
+    all.effects.push_back(restTermOf(parameter.path) ? "" : effectOfPath(parameter.path));
   return all;
 }
 
@@ -287,7 +274,9 @@ constexpr double kSmoothShare = 0.5;  // of the chance of an error, beside that 
 double restsOnAll(const Fitter& fitter, const FitState& state, double alpha, uint64_t seed,
                   std::vector<Rest>& rests) {
   double least = 1.0;
-  for (SmoothRest& rest : smoothRests(fitter, state, inputsOf(fitter.data(), state.model),
+  const std::vector<RestTerm> known =
+      fitter.rest().cols() > 0 ? *state.model.rest : std::vector<RestTerm>{};
+  for (SmoothRest& rest : smoothRests(fitter, state, inputsOf(fitter.data(), state.model), known,
                                       kSmoothShare * alpha, seed)) {
     const double p = std::min(1.0, rest.p_value / kSmoothShare);
     least = std::min(least, p);

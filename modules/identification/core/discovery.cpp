@@ -9,8 +9,11 @@
 #include <stdexcept>
 #include <tuple>
 
+#include <Eigen/Eigenvalues>
+
 #include "modules/identification/core/end_errors.hpp"
 #include "modules/identification/core/log_validation.hpp"
+#include "modules/identification/core/rest.hpp"
 #include "modules/identification/core/witness.hpp"
 
 namespace tread::gap {
@@ -24,6 +27,7 @@ constexpr double kInvisible = 2.0;    // times its typical size: not excited
 /// the catalogue's equations, and no drive shows by how much their sizes are off for that: 1 to 5 %
 /// in the blind study, of effects that are only like them.
 constexpr double kForm = 0.05;
+constexpr double kLeastTogether = 1e-3;  // of a variance, in any combination of terms
 
 /// `half` of the 95 % interval.
 ParameterEstimate estimateOf(const std::string& path, const ModelDocument& before,
@@ -52,6 +56,35 @@ bool hasMoved(const ParameterEstimate& estimate, double most_by_chance, bool cal
   const bool number = estimate.parameter.find('.') == std::string::npos;
   if (number && calibrate) return false;
   return std::abs(estimate.value - estimate.before) > most_by_chance;
+}
+
+/// Terms that move further than chance together though each alone may: a delay and a lag may both
+/// be vague where their sum is well known. Of each such combination the term that makes most of it.
+/** Where a rest is known, which makes each vaguer. */
+std::vector<char> movedTogether(const FitState& state, const Eigen::MatrixXd& moves, double most) {
+  std::vector<char> moved(state.free.size(), 0);
+  std::vector<Eigen::Index> held;
+  for (size_t i = 0; i < state.free.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (std::isfinite(state.free[i].deviation) && !restTermOf(state.free[i].path) &&
+        std::isfinite(moves(at, at)) && moves(at, at) > 0.0)
+      held.push_back(at);
+  }
+  if (held.empty() || !state.model.rest || state.model.rest->empty()) return moved;
+  const Eigen::MatrixXd covariance = moves(held, held);
+  const Eigen::VectorXd unit = covariance.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::VectorXd off = unit.cwiseProduct(Eigen::VectorXd(offExpected(state)(held)));
+  const Eigen::MatrixXd correlation = unit.asDiagonal() * covariance * unit.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
+  for (Eigen::Index k = 0; k < off.size(); ++k) {
+    const Eigen::VectorXd parts = eigen.eigenvectors().col(k).cwiseProduct(off);
+    const double variance = std::max(kLeastTogether, eigen.eigenvalues()[k]);
+    if (std::abs(parts.sum()) <= most * std::sqrt(variance)) continue;
+    Eigen::Index largest = 0;
+    parts.cwiseAbs().maxCoeff(&largest);
+    moved[static_cast<size_t>(held[static_cast<size_t>(largest)])] = 1;
+  }
+  return moved;
 }
 
 FoundEffect foundEffect(const std::string& name, const FoundTerms& result,
@@ -116,6 +149,7 @@ ParameterCovariance knownCovariance(const FitState& state, const Eigen::MatrixXd
   for (size_t i = 0; i < state.free.size(); ++i) {
     const FreeParameter& parameter = state.free[i];
     const auto at = static_cast<Eigen::Index>(i);
+    if (restTermOf(parameter.path)) continue;  // it has its own deviation
     if (!(std::sqrt(covariance(at, at)) < parameter.max - parameter.min)) continue;
     known.parameters.push_back(parameter.path);
     sure.push_back(at);
@@ -188,8 +222,11 @@ GapVerdict verdictWithoutEffects(const Finding& finding, bool adequate) {
   bool vehicle = false;
   for (const ParameterEstimate& estimate : finding.identified.calibrated)
     vehicle = vehicle || (estimate.moved && kindOf(estimate) == EffectKind::kVehicle);
+  const bool known = finding.before.rest && !finding.before.rest->empty();
   if (!anyMoved(finding))
-    return adequate ? GapVerdict::kNoDiscrepancy : GapVerdict::kNotInCatalogue;
+    return !adequate ? GapVerdict::kNotInCatalogue
+           : known   ? GapVerdict::kNothingNew
+                     : GapVerdict::kNoDiscrepancy;
   if (!adequate) return GapVerdict::kPartial;
   return vehicle ? GapVerdict::kFound : GapVerdict::kMeasurement;
 }
@@ -226,18 +263,18 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
   const Eigen::MatrixXd covariance = parameterCovariance(fitter, state);
   const double freedom = data.measuredBlocks() - 1;
   const double quantile = studentQuantile(freedom);
-  const auto given = std::count_if(state.free.begin(), state.free.end(),
-                                   [&result](const FreeParameter& parameter) {
-                                     return !contains(result.effects, effectOf(parameter.path));
-                                   });
-  const Eigen::VectorXd most_by_chance =
-      studentQuantile(
-          freedom,
-          normalQuantileOf(kMoved / static_cast<double>(std::max<std::ptrdiff_t>(1, given)))) *
-      moveDeviations(fitter, state);
+  const auto given = std::count_if(
+      state.free.begin(), state.free.end(), [&result](const FreeParameter& parameter) {
+        return !contains(result.effects, effectOf(parameter.path)) && !restTermOf(parameter.path);
+      });
+  const double most = studentQuantile(
+      freedom, normalQuantileOf(kMoved / static_cast<double>(std::max<std::ptrdiff_t>(1, given))));
+  const Eigen::MatrixXd moves = moveCovariance(fitter, state);
+  const std::vector<char> moved_together = movedTogether(state, moves, most);
   IdentifiedModel identified;
   std::map<std::string, std::vector<ParameterEstimate>> of_effect;
   for (size_t i = 0; i < state.free.size(); ++i) {
+    if (restTermOf(state.free[i].path)) continue;  // adequacy tells of it
     const auto at = static_cast<Eigen::Index>(i);
     const double error = std::sqrt(covariance(at, at));
     const std::string effect = effectOf(state.free[i].path);
@@ -251,7 +288,8 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
     if (found) {
       of_effect[effect].push_back(estimate);
     } else {
-      estimate.moved = hasMoved(estimate, most_by_chance[at], settings.calibrate);
+      estimate.moved = hasMoved(estimate, most * std::sqrt(moves(at, at)), settings.calibrate) ||
+                       moved_together[i];
       identified.calibrated.push_back(estimate);
     }
   }
@@ -304,7 +342,7 @@ void judge(Finding& finding, double adequacy_alpha, double least_gain) {
   } else {
     finding.verdict = verdictOf(finding, shown, adequate);
   }
-  if (finding.verdict == GapVerdict::kNoDiscrepancy && !finding.search.at_bound.empty()) {
+  if (exitStatus(finding.verdict) == 0 && !finding.search.at_bound.empty()) {
     finding.verdict = GapVerdict::kCannotTell;
     finding.reason = finding.search.at_bound.front() + " runs to the end of its plausible range";
   }
@@ -375,20 +413,21 @@ UnseenErrors errorsOnTest(const GapTask& task, const Observations& test,
 }
 
 /// Alternate blocks: what one half found predicts the other.
-UnseenErrors errorsOnHalves(const GapTask& task, const Fitter& fitter, const FoundTerms& result,
-                            SearchSettings settings, SearchMemory& memory) {
+UnseenErrors errorsOnHalves(const ModelDocument& before, const Fitter& fitter,
+                            const FoundTerms& result, SearchSettings settings,
+                            SearchMemory& memory) {
   const Observations& data = fitter.data();
   UnseenErrors unseen;
   bool& nested = unseen.gap.structure_nested;
   nested = data.measuredBlocks() >= 2 * kLeastHalf && !result.record.cut_short;
-  unseen.gap.before = summaryOf(endErrors(data, task.model));
+  unseen.gap.before = summaryOf(endErrors(data, before));
   std::vector<ExecutionError> outside;  // of either half
   settings.all_sized = false;           // half of the driving may not show all
   const Progress silent = [](const std::string&) {};
   for (int half : {0, 1}) {
     const Fitter on_half = fitter.onRows(halfMask(data, half));
     std::optional<FoundTerms> alone;
-    if (nested) alone = search(on_half, task.model, settings, memory, silent);
+    if (nested) alone = search(on_half, before, settings, memory, silent);
     // What has no time left chooses no effects: they are those of all.
     nested = alone && !alone->record.cut_short;
     const ModelDocument model = nested ? alone->state.model : refitted(on_half, result).model;
@@ -431,13 +470,16 @@ Noise residualNoise(const Fitter& fitter, const ModelDocument& model) {
 
 Finding findGap(const GapTask& task, const Progress& say) {
   const Observations data(task.train, {});
-  const Fitter fitter(data, task.parallel);
+  ModelDocument before = task.model;
+  // What is calibrated is as if new: nothing of it is known.
+  if (task.calibrate) before.rest.reset();
+  const Fitter fitter(data, task.parallel, restConditions(data, before));
   const int blocks = data.measuredBlocks();
   Finding finding;
   finding.source = {task.seed, task.log_notes, task.decisions, static_cast<size_t>(blocks),
                     data.blockLength()};
-  finding.before = task.model;
-  finding.identified.model = task.model;
+  finding.before = before;
+  finding.identified.model = before;
   finding.reason = reasonNotToTell(task, data);
   if (!finding.reason.empty()) return finding;
   say("1 calibrate: " + std::to_string(data.all().size()) + " rows in " + std::to_string(blocks) +
@@ -445,21 +487,26 @@ Finding findGap(const GapTask& task, const Progress& say) {
   say("2-5 test, refit, validate, prune");
   const SearchSettings settings = settingsOf(task);
   SearchMemory memory;
-  FoundTerms result = search(fitter, task.model, settings, memory, say);
+  FoundTerms result = search(fitter, before, settings, memory, say);
   requireSized(result, settings);
   // What was seen but does not matter is no rest without a name.
   const FitState tested = result.state;
   if (!task.keep_small) dropUnconfirmed({fitter, settings, say, result});
-  finding.identified = identifiedModel(fitter, task.model, settings, result);
   finding.search = result.record;
   say("6 adequacy");
   finding.adequacy = testAdequacy(fitter, tested, kAdequacyAlpha, task.seed);
+  // A rest in which nothing is new stays what it was.
+  if (!before.rest || finding.adequacy.p_value <= kAdequacyAlpha)
+    result.state.model.rest = restOf(fitter, result.state, task.seed);
+  else
+    result.state.model.rest = before.rest;
+  finding.identified = identifiedModel(fitter, before, settings, result);
   say("7 error on driving that was not used");
   std::optional<Observations> test;
   if (!task.test.empty()) test.emplace(task.test, ObservationSettings{});
   const ModelDocument& after = finding.identified.model;
   const UnseenErrors unseen = test ? errorsOnTest(task, *test, after)
-                                   : errorsOnHalves(task, fitter, result, settings, memory);
+                                   : errorsOnHalves(before, fitter, result, settings, memory);
   if (!test) widenByHalves(unseen.parts, finding.identified);
   finding.gap = unseen.gap;
   finding.gap->apart = apart(test ? *test : data, task.model, after);

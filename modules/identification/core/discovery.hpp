@@ -33,7 +33,8 @@ std::vector<Variable> inputsOf(const Observations& data, const ModelDocument& mo
  * their channel. It is not taken for that effect: its size was free to explain it, or no test, or a
  * person, took it in. The chance of an error is `alpha` over all variables and half of it more for
  * the smooth functions, so that these cost the variables no power; they are told where no variable
- * of their channel is, by the condition that matters most. */
+ * of their channel is, by the condition that matters most. Where the fitter predicts a rest, both
+ * are tested for what is beyond it. */
 Adequacy testAdequacy(const Fitter& fitter, const FitState& state, double alpha, uint64_t seed);
 
 /// Where the residuals of two models are: curves of every channel over variables that a person

@@ -12,9 +12,10 @@
 
 namespace tread::gap {
 
-/// The headline; the number is the exit status of `tread-gap find`.
+/// The headline; see exitStatus().
 enum class GapVerdict {
   kNoDiscrepancy = 0,
+  kNothingNew = 1,  ///< only the model's known rest is there
   kFound = 10,
   kAmbiguous = 11,
   kPartial = 12,
@@ -26,9 +27,15 @@ enum class GapVerdict {
 /// Name as in verdict.json.
 inline const char* verdictName(GapVerdict verdict) {
   if (verdict == GapVerdict::kNoDiscrepancy) return "NO_DISCREPANCY";
+  if (verdict == GapVerdict::kNothingNew) return "NOTHING_NEW";
   static constexpr const char* kNames[] = {
       "FOUND", "AMBIGUOUS", "PARTIAL", "NOT_IN_CATALOGUE", "MEASUREMENT", "CANNOT_TELL"};
   return kNames[static_cast<int>(verdict) - static_cast<int>(GapVerdict::kFound)];
+}
+
+/// The exit status of `tread-gap find`: 0 where nothing is to be done.
+inline int exitStatus(GapVerdict verdict) {
+  return verdict == GapVerdict::kNothingNew ? 0 : static_cast<int>(verdict);
 }
 
 /// A parameter as it was estimated.
@@ -275,7 +282,7 @@ struct Finding {
   GapVerdict verdict = GapVerdict::kCannotTell;
   std::string reason;  ///< of CANNOT_TELL; empty else
   FindingSource source;
-  ModelDocument before;
+  ModelDocument before;  ///< with the rest that was known; none where it was calibrated
   IdentifiedModel identified;
   SearchRecord search;
   Adequacy adequacy;

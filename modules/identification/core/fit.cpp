@@ -212,6 +212,14 @@ Normal normalOf(const FitState& state, const Eigen::VectorXd& residuals,
   return {half.selfadjointView<Eigen::Lower>(), weighted.transpose() * residuals};
 }
 
+Eigen::VectorXd Fitter::predict(const ModelDocument& model) const {
+  Eigen::VectorXd predicted =
+      data_.predict(data_.simulate(model.vehicle, segments_), model.measurement);
+  for (Eigen::Index i = 0; i < rest_.cols(); ++i)
+    predicted += (*model.rest)[static_cast<size_t>(i)].size * rest_.col(i);
+  return predicted;
+}
+
 Fitter Fitter::onRows(std::vector<char> mask) const {
   Fitter other = *this;
   other.mask_ = std::move(mask);
@@ -265,6 +273,8 @@ Eigen::VectorXd Fitter::secant(const FitState& state, const ModelDocument& chang
 
 Eigen::VectorXd Fitter::column(const FitState& state, size_t index) const {
   const FreeParameter& parameter = state.free[index];
+  if (const auto term = restTermOf(parameter.path))
+    return rest_.col(static_cast<Eigen::Index>(*term));
   ModelDocument changed = state.model;
   double& value = valueOf(changed, parameter.path);
   // Inwards where the next step would leave the bounds.

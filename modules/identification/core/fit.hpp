@@ -47,24 +47,25 @@ struct FitState {
 /// Fits models to rows by iterated, damped least squares within bounds.
 class Fitter {
  public:
-  /// To all rows; the rows must outlive it.
-  explicit Fitter(const Observations& data, ParallelFor parallel = serialFor)
+  /// To all rows; the rows must outlive it. `rest`: the conditions of the models' rest, see
+  /// restConditions() (rows x terms); without columns models have none.
+  explicit Fitter(const Observations& data, ParallelFor parallel = serialFor,
+                  Eigen::MatrixXd rest = {})
       : data_(data),
         mask_(data.all().size(), 1),
         segments_(data.segmentsOf(mask_)),
-        parallel_(std::move(parallel)) {}
+        parallel_(std::move(parallel)),
+        rest_(std::move(rest)) {}
 
   /// The same with other rows; those whose mask is 0 do not count.
   Fitter onRows(std::vector<char> mask) const;
 
   /// The same with all rows.
-  Fitter onAllRows() const { return Fitter(data_, parallel_); }
+  Fitter onAllRows() const { return Fitter(data_, parallel_, rest_); }
 
-  /// What the rows would be if the vehicle and the INS were the model's (rows x 1); 0 in segments
-  /// of which no row counts, which need no simulation.
-  Eigen::VectorXd predict(const ModelDocument& model) const {
-    return data_.predict(data_.simulate(model.vehicle, segments_), model.measurement);
-  }
+  /// What the rows would be if the vehicle and the INS were the model's, with its rest (rows x 1);
+  /// segments of which no row counts are not simulated.
+  Eigen::VectorXd predict(const ModelDocument& model) const;
   /// A state of a model with its prediction and own noise; nothing is fitted.
   FitState start(const ModelDocument& model, std::vector<FreeParameter> free) const;
   /// Noise and scales of the state's residuals (and its loss with them).
@@ -87,6 +88,8 @@ class Fitter {
   /// Which blocks have rows that count.
   std::vector<char> blocksThatCount() const { return data_.blocksOf(mask_); }
   const ParallelFor& parallel() const { return parallel_; }
+  /// Conditions of the rest that its models have (rows x terms).
+  const Eigen::MatrixXd& rest() const { return rest_; }
 
  private:
   double lossOf(const FitState& state) const;
@@ -97,6 +100,7 @@ class Fitter {
   std::vector<char> mask_;
   std::vector<char> segments_;  ///< those with rows that count
   ParallelFor parallel_;
+  Eigen::MatrixXd rest_;  ///< rows x terms
 };
 
 /// Normal equations of one iterated least squares step.

@@ -41,11 +41,11 @@ Gain gainOf(const Fitter& fitter, const Eigen::VectorXd& first, const Eigen::Vec
  * (a diagonal of 1e12 times the square of its step). */
 Eigen::MatrixXd parameterCovariance(const Fitter& fitter, const FitState& state);
 
-/// How far each free parameter goes from what the model says of it by chance, where that is right
-/// (free x 1): of blocks that scatter, and of how sure the model is of its numbers; infinite where
-/// neither says anything.
+/// Covariance of how far the free parameters go from what the model says of them by chance, where
+/// that is right (free x free): of blocks that scatter, of how sure the model is of its numbers,
+/// and of how a known rest varies; a diagonal is infinite where none says anything.
 /** A number that is held by what is known moves only as far as the rows can pull it. */
-Eigen::VectorXd moveDeviations(const Fitter& fitter, const FitState& state);
+Eigen::MatrixXd moveCovariance(const Fitter& fitter, const FitState& state);
 
 /// Changes of the free parameters that imitate directions best (free x directions).
 /** `metric`: 1 / scale^2 of the rows that count, 0 of others (rows x 1); `shared`: Jacobian^T
@@ -60,7 +60,8 @@ Eigen::MatrixXd imitation(const FitState& state, const Eigen::VectorXd& metric,
  * block's pull a random sign (wild bootstrap), the same for all columns, so that correlated columns
  * do not count twice. Blocks, not samples: the ground's noise is correlated. What was known of the
  * free parameters counts as one more measurement, with twice the scatter that it says: a direction
- * that they could follow only against it shows in how far they went. */
+ * that they could follow only against it shows in how far they went. A known rest scatters by what
+ * it varies from drive to drive, see restVariation(). */
 class ScoreTest {
  public:
   /// `directions` rows x candidates.
@@ -111,6 +112,7 @@ class ScoreTest {
   Eigen::MatrixXd block_information_;  ///< blocks x candidates
   Eigen::VectorXd prior_pulls_;        ///< candidates
   Eigen::MatrixXd prior_parts_;        ///< what is known x candidates; squares sum to information
+  Eigen::VectorXd variation_;          ///< of a pull, from drive to drive, by a known rest
 };
 
 /// What a score must reach to count.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "modules/identification/core/log_validation.hpp"
+#include "modules/identification/core/rest.hpp"
 
 namespace tread::gap {
 namespace {
@@ -79,7 +80,10 @@ class EffectSelection {
   }
 
   void calibrate(const ModelDocument& model) {
-    state() = fitter_.start(model, givenParameters(model, settings_.calibrate));
+    std::vector<FreeParameter> given = givenParameters(model, settings_.calibrate);
+    const std::vector<FreeParameter> rest = restParameters(fitter_, model);
+    given.insert(given.end(), rest.begin(), rest.end());
+    state() = fitter_.start(model, given);
     settle(state());
     result_.calibrated = state();
   }

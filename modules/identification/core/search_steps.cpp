@@ -168,12 +168,13 @@ std::optional<Exchange> bestExchange(const SearchState& search) {
 }
 
 /// Adds what a state misses on every other block: position, yaw, yaw rate and nats (blocks x 4).
-void addMissed(const Observations& data, const FitState& state, const Eigen::VectorXd& scales,
-               int half, Eigen::MatrixXd& sums) {
+void addMissed(const Fitter& fitter, const FitState& state, const Eigen::VectorXd& scales, int half,
+               Eigen::MatrixXd& sums) {
+  const Observations& data = fitter.data();
   for (const ExecutionError& error : endErrors(data, state.model))
     if (error.block % 2 == half)
       sums.row(error.block).head(2) += Eigen::RowVector2d(error.position, error.yaw);
-  const Eigen::VectorXd residuals = data.residuals(data.predict(state.model));
+  const Eigen::VectorXd residuals = data.residuals(fitter.predict(state.model));
   for (size_t i = 0; i < data.all().size(); ++i) {
     const Observation& row = data.all()[i];
     const auto at = static_cast<Eigen::Index>(i);
@@ -204,8 +205,8 @@ bool isConfirmed(const SearchState& search, const FitState& lacking) {
     const Fitter on_half = search.fitter.onRows(halfMask(data, half));
     FitState lacks = lacking;
     on_half.fit(lacks);
-    addMissed(data, refitted(on_half, result), result.state.scales, 1 - half, with);
-    addMissed(data, lacks, result.state.scales, 1 - half, without);
+    addMissed(search.fitter, refitted(on_half, result), result.state.scales, 1 - half, with);
+    addMissed(search.fitter, lacks, result.state.scales, 1 - half, without);
   }
   const bool measurement =
       std::all_of(result.effects.begin(), result.effects.end(), [](const std::string& effect) {

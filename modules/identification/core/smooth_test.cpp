@@ -9,6 +9,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "modules/identification/core/rest.hpp"
 #include "modules/identification/core/screening.hpp"
 
 namespace tread::gap {
@@ -188,23 +189,44 @@ Eigen::MatrixXd agreement(const Pulls& pulls, const std::vector<Eigen::Index>& f
   return blocks * overlap.ldlt().solve(blocks.transpose());
 }
 
-/// Standard deviations of chance by which the blocks agree more than with random signs.
-double scoreOf(const Eigen::MatrixXd& agreement) {
-  const double deviation =
-      std::sqrt(2.0 * (agreement.squaredNorm() - agreement.diagonal().squaredNorm()));
-  return deviation > 0.0 ? (agreement.sum() - agreement.trace()) / deviation : 0.0;
+/// By how much blocks agree with random signs: standard deviation.
+double deviationOf(const Eigen::MatrixXd& agreement) {
+  return std::sqrt(2.0 * (agreement.squaredNorm() - agreement.diagonal().squaredNorm()));
 }
 
-double chanceOf(const Eigen::MatrixXd& agreement, uint64_t seed) {
+/// Standard deviations of chance by which the blocks agree more than with random signs and what is
+/// known.
+double scoreOf(const Eigen::MatrixXd& agreement, double known = 0.0) {
+  const double deviation = deviationOf(agreement);
+  return deviation > 0.0 ? (agreement.sum() - agreement.trace() - known) / deviation : 0.0;
+}
+
+double chanceOf(const Eigen::MatrixXd& agreement, double known, uint64_t seed) {
   std::mt19937_64 random(seed);
   Eigen::VectorXd signs(agreement.rows());
-  const double found = agreement.sum();
+  const double found = agreement.sum() - known;
   int larger = 0;
   for (int draw = 0; draw < kDraws; ++draw) {
     for (Eigen::Index b = 0; b < signs.size(); ++b) signs[b] = (random() >> 63U) != 0U ? 1.0 : -1.0;
     larger += !(signs.dot(agreement * signs) < found * (1.0 - 1e-12));
   }
   return (larger + 1.0) / (kDraws + 1.0);
+}
+
+/// How much the blocks agree by a function of root mean square 1.
+/** A pull has (f + 1) / (f + 3) of the slope that its scale has, see ScoreTest. */
+double agreementOfUnit(const Rows& rows) {
+  double sum = 0.0;
+  for (const size_t row : rows.of_channels) sum += rows.metric[static_cast<Eigen::Index>(row)];
+  return sum * std::pow((kFreedom + 1.0) / (kFreedom + 3.0), 2);
+}
+
+/// The largest size that a rest which is known would have in another drive.
+double mostKnown(const SmoothRest& rest, const std::vector<RestTerm>& known) {
+  for (const RestTerm& term : known)
+    if (term.condition == kAllConditions && term.channel == channelName(rest.channels.front()))
+      return (1.0 + kRestVaries) * term.size + term.deviation;
+  return 0.0;
 }
 
 /// Features for which something holds.
@@ -238,7 +260,8 @@ size_t mostTelling(const Pulls& pulls, const std::vector<Feature>& features, con
 }  // namespace
 
 std::vector<SmoothRest> smoothRests(const Fitter& fitter, const FitState& state,
-                                    const std::vector<Variable>& variables, double alpha,
+                                    const std::vector<Variable>& variables,
+                                    const std::vector<RestTerm>& known, double alpha,
                                     uint64_t seed) {
   const Inputs inputs = inputsFrom(variables);
   const std::vector<Feature> features = drawFeatures(inputs, seed);
@@ -251,8 +274,14 @@ std::vector<SmoothRest> smoothRests(const Fitter& fitter, const FitState& state,
     if (rows.of_channels.empty()) return;
     const Pulls pulls = pullsOf(fitter, state, inputs, features, rows);
     const Eigen::MatrixXd agree = agreement(pulls, all);
-    rest.score = scoreOf(agree);
-    rest.p_value = std::min(1.0, static_cast<double>(rests.size()) * chanceOf(agree, seed));
+    const double unit = agreementOfUnit(rows);
+    const double beyond = agree.sum() - agree.trace();
+    rest.size = std::sqrt(std::max(0.0, beyond) / unit);
+    rest.deviation = std::sqrt((std::max(0.0, beyond) + deviationOf(agree)) / unit) - rest.size;
+    const double expected = unit * std::pow(mostKnown(rest, known), 2);
+    rest.score = scoreOf(agree, expected);
+    rest.p_value =
+        std::min(1.0, static_cast<double>(rests.size()) * chanceOf(agree, expected, seed));
     if (rest.p_value > alpha) return;
     rest.variable = variables[mostTelling(pulls, features, inputs)].name;
     const Eigen::VectorXd sizes =

@@ -19,6 +19,8 @@ struct SmoothRest {
   double score = 0.0;             ///< standard deviations of chance above its mean
   std::string variable{};         ///< on which it depends most; empty where chance explains it
   Eigen::VectorXd function{};     ///< as fitted, 0 in other channels (rows x 1); empty likewise
+  double size = 0.0;              ///< its root mean square, without chance [rad/s or m/s]
+  double deviation = 0.0;         ///< by which chance makes the size larger
 };
 
 /// Tests channels for a smooth function of all inputs, of which no form is known beforehand.
@@ -28,9 +30,11 @@ struct SmoothRest {
  * quadratic score: the pulls of blocks on one another, as far as they agree where conditions are
  * alike. Its distribution under "nothing is there" comes from random signs of the blocks, as in
  * ScoreTest. Where it is beyond chance (`alpha`) the variable is the input that says most, by
- * itself and beyond all others. `inputs`: speed and yaw rate first. */
+ * itself and beyond all others. Of a channel of whose rest so much is `known` (see kAllConditions)
+ * only what exceeds it counts. `inputs`: speed and yaw rate first. */
 std::vector<SmoothRest> smoothRests(const Fitter& fitter, const FitState& state,
-                                    const std::vector<Variable>& inputs, double alpha,
+                                    const std::vector<Variable>& inputs,
+                                    const std::vector<RestTerm>& known, double alpha,
                                     uint64_t seed);
 
 }  // namespace tread::gap

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "modules/identification/core/rest.hpp"
 #include "modules/identification/core/screening.hpp"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ constexpr double kAlmostOne = 0.999;
 constexpr double kSparse = 3.9;  // normal quantile: 1e-4
 /// The same of a first effect: 1e-3 each. With it 2 of 400 null logs of ten blocks named something.
 constexpr double kFirst = 3.3;
-constexpr double kLeastActive = 3.0;   // blocks that must excite it
+constexpr double kLeastActive = 3.0;  // blocks that must excite it
 /// Deviations that count for one that a model says of its numbers: it was estimated on some days,
 /// and others differ more. Chosen on seed 14; with 1, five of 120 logs without effects got a name.
 constexpr double kDaysDiffer = 2.0;
@@ -129,6 +130,9 @@ struct Curvature {
   Eigen::MatrixXd scatter;  ///< of the blocks' pulls, with its small-sample factor
   Eigen::MatrixXd inverse;  ///< of information and prior, without directions of neither
   std::vector<char> lost;   ///< parameters in such directions
+  /// Variance of each by what a known rest varies, all others held: what two of them share is as
+  /// well known with a rest as without (free x 1).
+  Eigen::VectorXd by_rest;
 };
 
 Curvature curvatureOf(const Fitter& fitter, const FitState& state, const Eigen::MatrixXd& prior) {
@@ -166,6 +170,8 @@ Curvature curvatureOf(const Fitter& fitter, const FitState& state, const Eigen::
   of.inverse = unit.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() *
                eigen.eigenvectors().transpose() * unit.asDiagonal();
   for (Eigen::Index i = 0; i < count; ++i) of.lost.push_back(lost[i] > 1e-3);
+  of.by_rest = (state.jacobian.cwiseAbs2().transpose() * restVariation(fitter, state))
+                   .cwiseProduct(unit.cwiseProduct(unit).cwiseAbs2());
   return of;
 }
 
@@ -176,6 +182,7 @@ Eigen::MatrixXd parameterCovariance(const Fitter& fitter, const FitState& state)
   const Eigen::MatrixXd prior = priorPrecision(state);
   const Curvature of = curvatureOf(fitter, state, prior);
   Eigen::MatrixXd covariance = of.inverse * (of.scatter + prior) * of.inverse;
+  covariance.diagonal() += of.by_rest;
   for (size_t i = 0; i < of.lost.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     if (of.lost[i]) covariance(at, at) += kUnknownVariance * std::pow(state.free[i].step, 2);
@@ -183,17 +190,23 @@ Eigen::MatrixXd parameterCovariance(const Fitter& fitter, const FitState& state)
   return covariance;
 }
 
-Eigen::VectorXd moveDeviations(const Fitter& fitter, const FitState& state) {
+Eigen::MatrixXd moveCovariance(const Fitter& fitter, const FitState& state) {
   if (state.free.empty()) return {};
   const Curvature of = curvatureOf(fitter, state, priorPrecision(state));
   FitState known = state;
+  // A vehicle with a rest is not of the model's form, so that its terms differ more, too.
+  const double differ = state.model.rest && !state.model.rest->empty() ? kDaysDiffer : 1.0;
   for (FreeParameter& parameter : known.free)
-    parameter.deviation = knownDeviation(state.model, parameter.path);
+    if (!restTermOf(parameter.path))
+      parameter.deviation = differ * knownDeviation(state.model, parameter.path);
   // A vehicle as the model says lies so far from its best numbers, and the rows pull towards it.
   const Eigen::MatrixXd pull = of.scatter + of.rows * priorCovariance(known) * of.rows.transpose();
-  Eigen::VectorXd moves = (of.inverse * pull * of.inverse).diagonal().cwiseMax(0.0).cwiseSqrt();
-  for (size_t i = 0; i < of.lost.size(); ++i)
-    if (of.lost[i]) moves[static_cast<Eigen::Index>(i)] = std::numeric_limits<double>::infinity();
+  Eigen::MatrixXd moves = of.inverse * pull * of.inverse;
+  moves.diagonal() = moves.diagonal().cwiseMax(0.0) + of.by_rest;
+  for (size_t i = 0; i < of.lost.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (of.lost[i]) moves(at, at) = std::numeric_limits<double>::infinity();
+  }
   return moves;
 }
 
@@ -224,6 +237,7 @@ ScoreTest::ScoreTest(const Fitter& fitter, const FitState& state,
       pulls_.row(block) += pull[i] * own_.row(i);
       block_information_.row(block) += kInformation * metric[i] * own_.row(i).cwiseAbs2();
     }
+  variation_ = own_.cwiseAbs2().transpose() * restVariation(fitter, state);
   weighPrior(priorPrecision(state) / (kDaysDiffer * kDaysDiffer), follow, offExpected(state));
   scores_ = Eigen::VectorXd::Zero(count);
   uniqueness_ = Eigen::VectorXd::Zero(count);
@@ -235,6 +249,7 @@ ScoreTest::ScoreTest(const Fitter& fitter, const FitState& state,
       pulls_.col(c).setZero();
       block_information_.col(c).setZero();
       prior_pulls_[c] = 0.0;
+      variation_[c] = 0.0;
       prior_parts_.col(c).setZero();
       continue;
     }
@@ -270,7 +285,8 @@ double ScoreTest::priorInformation(Eigen::Index candidate) const {
 }
 
 double ScoreTest::rootOf(Eigen::Index candidate) const {
-  return std::sqrt(pulls_.col(candidate).squaredNorm() + priorInformation(candidate));
+  return std::sqrt(pulls_.col(candidate).squaredNorm() + priorInformation(candidate) +
+                   variation_[candidate]);
 }
 
 double ScoreTest::size(Eigen::Index candidate) const {
@@ -315,7 +331,8 @@ double ScoreTest::usualOverdispersion() const {
 double ScoreTest::sparseScore(Eigen::Index candidate, double usual) const {
   if (information_[candidate] <= 0.0) return 0.0;
   const double scatter = information_[candidate] * std::max(usual, overdispersion(candidate));
-  return pullOn(candidate) / std::sqrt(scatter + priorInformation(candidate));
+  return pullOn(candidate) /
+         std::sqrt(scatter + priorInformation(candidate) + variation_[candidate]);
 }
 
 std::vector<double> ScoreTest::largestByChance(int draws, uint64_t seed) const {
@@ -323,17 +340,24 @@ std::vector<double> ScoreTest::largestByChance(int draws, uint64_t seed) const {
   std::normal_distribution<double> normal;
   Eigen::MatrixXd normalised(pulls_.rows() + prior_parts_.rows(), pulls_.cols());
   normalised << pulls_, prior_parts_;
+  Eigen::RowVectorXd varies = variation_.cwiseSqrt().transpose();
   for (Eigen::Index c = 0; c < normalised.cols(); ++c) {
-    const double root = normalised.col(c).norm();
-    if (root > 0.0) normalised.col(c) /= root;
+    const double root = std::hypot(normalised.col(c).norm(), varies[c]);
+    if (!(root > 0.0)) continue;
+    normalised.col(c) /= root;
+    varies[c] /= root;
   }
+  const bool any_varies = varies.size() > 0 && varies.maxCoeff() > 0.0;
   std::vector<double> largest;
   largest.reserve(static_cast<size_t>(draws));
   Eigen::RowVectorXd sign(normalised.rows());
   for (int draw = 0; draw < draws; ++draw) {
     for (Eigen::Index b = 0; b < pulls_.rows(); ++b) sign[b] = (random() >> 63U) != 0U ? 1.0 : -1.0;
     for (Eigen::Index i = pulls_.rows(); i < sign.size(); ++i) sign[i] = normal(random);
-    largest.push_back(normalised.cols() > 0 ? (sign * normalised).cwiseAbs().maxCoeff() : 0.0);
+    Eigen::RowVectorXd scores = sign * normalised;
+    if (any_varies)
+      for (Eigen::Index c = 0; c < scores.size(); ++c) scores[c] += varies[c] * normal(random);
+    largest.push_back(scores.size() > 0 ? scores.cwiseAbs().maxCoeff() : 0.0);
   }
   std::sort(largest.begin(), largest.end());
   return largest;

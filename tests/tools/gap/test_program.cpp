@@ -44,8 +44,9 @@ TEST_CASE("explain says how to begin, what to do after each verdict, and what wo
     CHECK(list.says(std::string("\n  ") + topic + " "));
   CHECK(run("explain start").says("tread-import --format steps --keep-lag --gyro all"));
   const Run verdicts = run("explain verdicts");
-  for (const char* verdict : {"0 NO_DISCREPANCY", "10 FOUND", "11 AMBIGUOUS", "12 PARTIAL",
-                              "13 NOT_IN_CATALOGUE", "14 MEASUREMENT", "15 CANNOT_TELL"})
+  for (const char* verdict :
+       {"0 NO_DISCREPANCY", "0 NOTHING_NEW", "10 FOUND", "11 AMBIGUOUS", "12 PARTIAL",
+        "13 NOT_IN_CATALOGUE", "14 MEASUREMENT", "15 CANNOT_TELL"})
     CHECK(verdicts.says(verdict));
   for (const char* word : {"block ", "nats ", "adequacy ", "held-out ", "floor ", "group "})
     CHECK(run("explain words").says(word));

@@ -16,10 +16,10 @@ namespace {
 
 using samples::has;
 
-const GapVerdict kVerdicts[] = {GapVerdict::kNoDiscrepancy,  GapVerdict::kFound,
-                                GapVerdict::kAmbiguous,      GapVerdict::kPartial,
-                                GapVerdict::kNotInCatalogue, GapVerdict::kMeasurement,
-                                GapVerdict::kCannotTell};
+const GapVerdict kVerdicts[] = {GapVerdict::kNoDiscrepancy, GapVerdict::kNothingNew,
+                                GapVerdict::kFound,         GapVerdict::kAmbiguous,
+                                GapVerdict::kPartial,       GapVerdict::kNotInCatalogue,
+                                GapVerdict::kMeasurement,   GapVerdict::kCannotTell};
 
 std::string html(GapVerdict verdict) {
   return htmlOf(reportPage(samples::finding(verdict), samples::inputs()));

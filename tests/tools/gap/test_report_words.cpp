@@ -235,6 +235,15 @@ TEST_CASE("a term of the model that has changed is said in its natural numbers")
         "to 1.28 rad/s) instead of 2 rad/s.");
 }
 
+TEST_CASE("only a vehicle of which it is known what is new is to be looked at") {
+  Finding finding = samples::finding(GapVerdict::kNotInCatalogue);
+  CHECK_FALSE(has(report(finding), "Look at the vehicle"));
+  CHECK(has(report(finding), "The vehicle may be as it always was"));
+  finding.before.rest.emplace();
+  CHECK(has(report(finding), "Look at the vehicle"));
+  CHECK_FALSE(has(report(samples::finding(GapVerdict::kNothingNew)), "Look at the vehicle"));
+}
+
 TEST_CASE("a search that was cut short says so in one line, and not that something is left over") {
   Finding finding = samples::finding(GapVerdict::kPartial);
   const std::string rest = "something more without a name";

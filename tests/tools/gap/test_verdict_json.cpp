@@ -11,18 +11,18 @@ using Json = nlohmann::ordered_json;
 
 TEST_CASE("verdict.json names the verdict, and the verdict is the exit status") {
   const std::pair<GapVerdict, int> kExpected[] = {
-      {GapVerdict::kNoDiscrepancy, 0},   {GapVerdict::kFound, 10},
-      {GapVerdict::kAmbiguous, 11},      {GapVerdict::kPartial, 12},
-      {GapVerdict::kNotInCatalogue, 13}, {GapVerdict::kMeasurement, 14},
-      {GapVerdict::kCannotTell, 15}};
-  const char* const kNames[] = {"NO_DISCREPANCY",   "FOUND",       "AMBIGUOUS",  "PARTIAL",
-                                "NOT_IN_CATALOGUE", "MEASUREMENT", "CANNOT_TELL"};
-  for (size_t i = 0; i < 7; ++i) {
+      {GapVerdict::kNoDiscrepancy, 0}, {GapVerdict::kNothingNew, 0},
+      {GapVerdict::kFound, 10},        {GapVerdict::kAmbiguous, 11},
+      {GapVerdict::kPartial, 12},      {GapVerdict::kNotInCatalogue, 13},
+      {GapVerdict::kMeasurement, 14},  {GapVerdict::kCannotTell, 15}};
+  const char* const kNames[] = {"NO_DISCREPANCY", "NOTHING_NEW",      "FOUND",       "AMBIGUOUS",
+                                "PARTIAL",        "NOT_IN_CATALOGUE", "MEASUREMENT", "CANNOT_TELL"};
+  for (size_t i = 0; i < 8; ++i) {
     const Json json = verdictJson(samples::finding(kExpected[i].first), samples::inputs());
     CHECK(json["verdict"] == kNames[i]);
-    CHECK(static_cast<int>(kExpected[i].first) == kExpected[i].second);
-    for (const char* key :
-         {"effects", "calibrated", "gap", "unexplained", "not_excited", "seed", "inputs"})
+    CHECK(exitStatus(kExpected[i].first) == kExpected[i].second);
+    for (const char* key : {"cut_short", "effects", "calibrated", "gap", "unexplained",
+                            "not_excited", "seed", "inputs"})
       CHECK(json.contains(key));
   }
 }

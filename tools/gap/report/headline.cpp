@@ -15,6 +15,12 @@ constexpr const char* kNoResult = "Where the fit ended, to look at and not to us
 constexpr const char* kCutShort =
     "The search had no time left (--limit): these are the best terms so far.";
 
+/// Of a model that does not say what it left unexplained, so that nobody knows what is new.
+constexpr const char* kUnknownRest =
+    "The vehicle may be as it always was: this model does not say what it never explained. The new "
+    "one does (rest): the next find with it says what is new. Do not trust either where the "
+    "residuals depend on something.";
+
 constexpr const char* kFittedNumbers =
     "Numbers that the model already has were fitted to the log; they stand under the parameters. "
     "That done: ";
@@ -160,6 +166,9 @@ std::string opening(const Finding& finding) {
              (finding.search.negligible.empty()
                   ? std::string()
                   : " Real, but too small to matter: " + titlesOf(finding.search.negligible) + ".");
+    case GapVerdict::kNothingNew:
+      return "The log differs from the model as the drive did that the model was made from, and in "
+             "nothing else.";
     case GapVerdict::kNotInCatalogue:
       return "There is a disagreement, and no effect of the catalogue explains it. A term by "
              "another name would be a guess; the model stays as it was but for its calibration.";
@@ -180,6 +189,8 @@ std::string headlineOf(const Finding& finding) {
     case GapVerdict::kNoDiscrepancy:
       return std::string("Simulation and measurement agree") +
              (isMadeByFit(finding) ? ", once the model's own numbers are fitted" : "");
+    case GapVerdict::kNothingNew:
+      return "Nothing new: only what the model has never explained";
     case GapVerdict::kFound:
     case GapVerdict::kAmbiguous:
       return foundWords(finding);
@@ -250,13 +261,15 @@ std::vector<Block> firstBlocks(const Finding& finding) {
     blocks.push_back(Pictures{{gapPicture(*finding.gap, false), gapPicture(*finding.gap, true)},
                               "End errors on executions that were not used for the fit."});
   }
-  blocks.push_back(Paragraph{"What to do: " + adviceFor(finding.verdict).next});
+  const bool unknown = finding.verdict == GapVerdict::kNotInCatalogue && !finding.before.rest;
+  blocks.push_back(
+      Paragraph{"What to do: " + (unknown ? kUnknownRest : adviceFor(finding.verdict).next)});
   addNext(finding, blocks);
   return blocks;
 }
 
 std::string moodOf(GapVerdict verdict) {
-  if (verdict == GapVerdict::kNoDiscrepancy) return "good";
+  if (exitStatus(verdict) == 0) return "good";
   if (verdict == GapVerdict::kFound || verdict == GapVerdict::kMeasurement) return "change";
   return "doubt";
 }

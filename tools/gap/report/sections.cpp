@@ -284,7 +284,7 @@ Page reportPage(const Finding& finding, const std::vector<InputFile>& inputs) {
   page.first = firstBlocks(finding);
   page.first.push_back(Paragraph{std::string("Verdict ") + verdictName(finding.verdict) +
                                      ", exit status " +
-                                     std::to_string(static_cast<int>(finding.verdict)) +
+                                     std::to_string(exitStatus(finding.verdict)) +
                                      (finding.verdict == GapVerdict::kCannotTell
                                           ? ". No model was written."
                                           : ". Nothing is applied by itself: the new model is "
