@@ -10,6 +10,7 @@
 #include <tread/execution_t.hpp>
 #include <tread/fence_t.hpp>
 #include <tread/goal_t.hpp>
+#include <tread/grip_t.hpp>
 #include <tread/health_t.hpp>
 #include <tread/ins_t.hpp>
 #include <tread/learner_state_t.hpp>
@@ -65,6 +66,7 @@ inline constexpr Channel<learner_state_t> kLearnerState{
     {"LEARNER_STATE", "learner_state_t", "learner", 0, 0, 60000}};
 inline constexpr Channel<learning_t> kLearning{{"LEARNING", "learning_t", "learner", 0, 0, 1000}};
 inline constexpr Channel<shock_t> kShock{{"SHOCK", "shock_t", "learner", 1, 3000, 300}};
+inline constexpr Channel<grip_t> kGrip{{"GRIP", "grip_t", "learner", 2, 3000, 100}};
 inline constexpr Channel<health_t> kHealth{{"HEALTH", "health_t", "every process", 1, 3000, 8000}};
 inline constexpr Channel<arm_t> kArm{{"ARM", "arm_t", "tread-arm", 0, 1000, 1000}};
 inline constexpr Channel<operator_t> kOperator{
@@ -100,9 +102,9 @@ inline void forgetSender(fence_t& message) {
 }
 
 /// The whole table, for README, health checks and tests.
-inline constexpr std::array<ChannelSpec, 23> kChannels{
-    kIns,      kScanMatching, kScan,       kMap,          kGoal,     kPlan,  kPlanTree, kProgram,
-    kMotor,    kExecution,    kPatternSet, kLearnerState, kLearning, kShock, kHealth,   kArm,
-    kOperator, kManual,       kEstop,      kStoppingTime, kFence,    kMark,  kConfig};
+inline constexpr std::array<ChannelSpec, 24> kChannels{
+    kIns,   kScanMatching, kScan,       kMap,          kGoal,         kPlan,  kPlanTree, kProgram,
+    kMotor, kExecution,    kPatternSet, kLearnerState, kLearning,     kShock, kGrip,     kHealth,
+    kArm,   kOperator,     kManual,     kEstop,        kStoppingTime, kFence, kMark,     kConfig};
 
 }  // namespace tread

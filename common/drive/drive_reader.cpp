@@ -49,8 +49,8 @@ const Headings& headings() {
     };
     add(true, kIns, kMotor, kExecution);
     add(false, kScanMatching, kScan, kMap, kGoal, kPlan, kPlanTree, kProgram, kPatternSet,
-        kLearnerState, kLearning, kShock, kHealth, kArm, kOperator, kManual, kEstop, kStoppingTime,
-        kFence, kMark, kConfig);
+        kLearnerState, kLearning, kShock, kGrip, kHealth, kArm, kOperator, kManual, kEstop,
+        kStoppingTime, kFence, kMark, kConfig);
     return table;
   }();
   return all;

@@ -7,12 +7,9 @@
 namespace tread {
 namespace {
 
-constexpr double kFarthestPlace = 1e6;  // [m] from the origin of map; farther is a broken number
 /// Below this an INS that stands wanders: with .02 its noise of 1 cm lengthened a drive by 2 %,
 /// with .05 the length agrees with the measured speeds [m].
 constexpr double kLeastMotion = 0.05;
-constexpr double kFastestVehicle = 30.0;  // [m/s] of ground vehicles
-constexpr double kPoseNoise = 1.0;        // [m] of poses that are near each other in time
 
 }  // namespace
 
@@ -35,8 +32,7 @@ void Odometer::add(const DriveEvent& event, const ins_t& ins) {
 
 bool Odometer::follows(const Place& place) const {
   const double seconds = 1e-6 * static_cast<double>(place.utime - newest_->utime);
-  return distanceBetween(newest_->T_map_body, place.T_map_body) <=
-         kPoseNoise + kFastestVehicle * seconds;
+  return isWithinReach(newest_->T_map_body.position(), place.T_map_body.position(), seconds);
 }
 
 }  // namespace tread

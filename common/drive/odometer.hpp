@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -11,6 +12,17 @@
 #include "common/geometry/se2.hpp"
 
 namespace tread {
+
+/// Farther from the origin of map a position is a broken number [m].
+inline constexpr double kFarthestPlace = 1e6;
+
+/// Whether a ground vehicle may have come from one measured position to the other in so many
+/// seconds.
+inline bool isWithinReach(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double seconds) {
+  constexpr double kFastest = 30.0;  // [m/s]
+  constexpr double kNoise = 1.0;     // [m] of poses that are near each other in time
+  return (to - from).norm() <= kNoise + kFastest * std::abs(seconds);
+}
 
 /// Adds up the metres that a robot drove, from the INS messages of a log.
 /** Only what lies between poses that follow each other was driven: not over a jump that the INS

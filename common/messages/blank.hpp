@@ -37,6 +37,9 @@ inline void markUnknown(execution_record_t& m) {
 inline void markUnknown(goal_t& m) {
   setAllUnknown(m.goal_pose, m.position_tolerance, m.yaw_tolerance);
 }
+inline void markUnknown(grip_t& m) {
+  setUnknown(m.deceleration);
+}
 inline void markUnknown(health_t& m) {
   m.utc = -1;
 }

@@ -39,6 +39,8 @@ constexpr int kBelievedAfter = 3;
 /// How far above a higher version of a former life we go on.
 constexpr int64_t kAboveUnknown = 100;
 
+constexpr int64_t kGripPeriod = 500'000;  // [us]
+
 void fill(double (&target)[3], const Pose2& pose) {
   target[0] = pose.x;
   target[1] = pose.y;
@@ -225,6 +227,7 @@ void LearnerNode::step(int64_t utime) {
     publisher_.step(utime, false);  // a log is replayed from the first state on
   }
   if (shock_ && !passive_) shock_->step(utime);
+  if (!passive_) publishGrip(utime);
   ++steps_;
   reportHealth(utime);
 }
@@ -259,7 +262,7 @@ void LearnerNode::noteRunning(const execution_t& message) {
 /// What is known of a running execution teaches at once: the next one is being chosen. All parts up
 /// to `until`, so that those who name a set later find it whichever came in time.
 void LearnerNode::followRunning(int64_t until) {
-  if (!running_ || config_.follow_us <= 0 || !learner_.learnsParts()) return;
+  if (!running_ || config_.follow_us <= 0) return;
   const MotionPattern* pattern = learner_.set().find(running_->record_pattern_id);
   if (pattern == nullptr || running_->started < ins_.begin()) return;
   const int64_t end = running_->started + learner_.set().content().period_us *
@@ -273,10 +276,40 @@ void LearnerNode::followRunning(int64_t until) {
     cut.ended = ended;
     cut.beginning = true;
     const Measurement measurement = measureCut(cut, *pattern);
+    feelGrip(cut, measurement, pattern->id);
+    if (!learner_.learnsParts()) continue;
     if (measurement.fair() && learner_.follow(pattern->id, measurement, part, ended))
       publishVersion();
     pattern = learner_.set().find(running_->record_pattern_id);
   }
+}
+
+/// The shipped pattern says what was asked: a learned one knows the ground already.
+void LearnerNode::feelGrip(const ExecutionCut& cut, const Measurement& measurement,
+                           int pattern_id) {
+  const MotionPattern* pattern = learner_.shipped().find(pattern_id);
+  if (pattern == nullptr || !cut.unexpected_command.empty()) return;
+  const auto sign =
+      gripSign(measurement, *pattern, learner_.shipped().classNamed(pattern->entry_class),
+               learner_.shipped().periodSeconds());
+  if (!sign) return;
+  grip_.take(*sign, cut.started);
+  grip_felt_ = cut.ended;
+  next_grip_ = 0;
+}
+
+void LearnerNode::publishGrip(int64_t utime) {
+  // A clock that jumped back must not silence it.
+  if (utime < next_grip_ && next_grip_ - utime <= kGripPeriod) return;
+  next_grip_ = utime + kGripPeriod;
+  auto message = blank<grip_t>();
+  message.utime = grip_felt_;
+  message.seq = seq_grip_++;
+  const Grip grip = grip_.grip();
+  message.deceleration = grip.deceleration;
+  message.gave_way = static_cast<int8_t>(grip.gave_way);
+  message.grip_signs = static_cast<int32_t>(grip_.signs());
+  bus_.publish(kGrip, message);
 }
 
 /// By steps and not by time, which jumps when the first message is heard.
@@ -363,8 +396,12 @@ void LearnerNode::handle(const execution_record_t& record) {
         "pattern " + std::to_string(record.record_pattern_id) + " is not in the set";
   } else {
     message.learned_pattern_name = pattern->name;
-    measurement = measureCut(cutOf(record, *pattern), *pattern);
+    const ExecutionCut cut = cutOf(record, *pattern);
+    measurement = measureCut(cut, *pattern);
     score(record, measurement, message);
+    feelGrip(cut, measurement, pattern->id);
+    const bool known = measurement.gate == Gate::kNone || measurement.gate == Gate::kEntryTwist;
+    if (known && std::isfinite(measurement.path_length)) grip_.drive(measurement.path_length);
   }
   message.accepted = measurement.fair();
   message.gate_reason = measurement.reason;
@@ -434,8 +471,8 @@ std::optional<Pose2> LearnerNode::scoredError(const execution_record_t& record,
 
 void LearnerNode::score(const execution_record_t& record, const Measurement& measurement,
                         learning_t& message) const {
-  fill(message.measured_entry,
-       {measurement.context.entry.v_x, measurement.context.entry.v_y, measurement.context.entry.omega});
+  fill(message.measured_entry, {measurement.context.entry.v_x, measurement.context.entry.v_y,
+                                measurement.context.entry.omega});
   message.slope = measurement.context.tilt.inclination;
   message.path_length = measurement.path_length;
   if (measurement.complete()) fill(message.measured_end, measurement.trajectory.back());

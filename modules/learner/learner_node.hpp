@@ -18,6 +18,7 @@
 #include "common/messages/pattern_messages.hpp"
 #include "common/pattern/pattern.hpp"
 #include "common/store/store.hpp"
+#include "modules/learner/core/grip.hpp"
 #include "modules/learner/core/hand_watch.hpp"
 #include "modules/learner/core/learner.hpp"
 #include "modules/learner/shock_publisher.hpp"
@@ -126,7 +127,7 @@ LearnerNodeConfig readLearnerConfig(ConfigReader& reader);
 void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config);
 
 /// The learner process. INS, EXECUTION, MOTOR, MAP in; PATTERN_SET, LEARNER_STATE, LEARNING, SHOCK,
-/// HEALTH, CONFIG out.
+/// GRIP, HEALTH, CONFIG out.
 /** 1. Inputs wait until they are settle_us old and are then taken in the order of (utime, seq).
  *  2. An execution is cut, gated and scored against the set version that its record names.
  *     What a person drives by hand is an execution, too, where its commands are a pattern's or
@@ -136,6 +137,8 @@ void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config);
  *     ended there, but neither written nor reported. What it teaches in the end replaces them.
  *  5. With `shock` it also learns from INS and MAP how hard ground shakes the robot
  *     (ShockPublisher).
+ *  6. From executions that are fair, or refused for their entry only, it learns how much the ground
+ *     gives (GripEstimator), also while they run, and publishes it.
  *
  * Each (run id, execution id) is handled once. Versions only go up: see LearnerMemory. While a
  * learner that was started earlier lives, this one publishes and learns nothing; then it goes on
@@ -176,6 +179,8 @@ class LearnerNode : public Node {
   void handle(const execution_record_t& record);
   void noteRunning(const execution_t& message);
   void followRunning(int64_t until);
+  void feelGrip(const ExecutionCut& cut, const Measurement& measurement, int pattern_id);
+  void publishGrip(int64_t utime);
   ExecutionCut cutOf(const execution_record_t& record, const MotionPattern& pattern) const;
   Measurement measureCut(const ExecutionCut& cut, const MotionPattern& pattern) const;
   void score(const execution_record_t& record, const Measurement& measurement,
@@ -205,6 +210,10 @@ class LearnerNode : public Node {
   SetPublisher publisher_;
   HealthReporter health_;
   std::optional<ShockPublisher> shock_;
+  GripEstimator grip_;
+  int64_t grip_felt_ = 0;  ///< [us] end of the newest execution that told something
+  int64_t next_grip_ = 0;  ///< [us]
+  int64_t seq_grip_ = 0;
   std::map<int64_t, PatternSet> versions_;  ///< the last sets by version
   std::map<int64_t, int>
       unknown_versions_;  ///< versions above ours that records named, and how often

@@ -35,10 +35,13 @@ void readRobotInto(ConfigReader& reader, bool logged, PlannerConfig& config) {
 void readMargins(ConfigReader reader, Margins& margins) {
   reader.number("check", margins.check, {0.0, 1.0}, "m");
   reader.number("plan", margins.plan, {0.0, 1.0}, "m");
+  reader.number("narrow", margins.narrow, {0.0, 1.0}, "m, 0 = off");
   reader.number("growth", margins.growth, {0.0, 3.0}, "1");
   reader.number("largest", margins.largest, {0.0, 2.0}, "m");
   reader.number("regain", margins.regain, {0.0, 1.0}, "1");
   if (margins.check > margins.plan) throw reader.error("check", "must not be more than plan");
+  if (margins.narrow > 0.0 && (margins.narrow < margins.check || margins.narrow > margins.plan))
+    throw reader.error("narrow", "must not be less than check or more than plan");
   if (margins.largest < margins.plan) throw reader.error("largest", "must not be less than plan");
 }
 
@@ -227,6 +230,17 @@ void PlannerNode::subscribe() {
     const std::optional<ShockKnowledge> shock = shockFrom(message);
     if (!shock) return health_.addToCounter("SHOCK refused: no such ground");
     supervisor_.setShock(*shock);
+  });
+  bus_.subscribe<grip_t>(kGrip, [this](const grip_t& message) {
+    // A learner that begins anew lifts no limit of the one before with the little that it felt.
+    constexpr int kFew = 3;
+    const GripKnowledge& known = supervisor_.grip();
+    const bool begins = message.grip_signs < kFew && message.gave_way == 0;
+    if (begins && (known.gave_way || (message.grip_signs <= 0 && known.deceleration < kNoLimit)))
+      return;
+    const bool possible = message.deceleration >= 0.05 && message.deceleration <= 20.0;
+    if (!possible) return health_.addToCounter("GRIP refused: no such deceleration");
+    supervisor_.setGrip({message.deceleration, message.gave_way != 0});
   });
   bus_.overhear<health_t>(kHealth, [this](const health_t& message) { take(message); });
   bus_.subscribe<goal_t>(kGoal, [this](const goal_t& message) { take(message); });

@@ -279,6 +279,17 @@ inline shock_t sampleOf<shock_t>() {
 }
 
 template <>
+inline grip_t sampleOf<grip_t>() {
+  grip_t m{};
+  m.utime = 1'000'025;
+  m.seq = 25;
+  m.deceleration = 0.625;
+  m.gave_way = 1;
+  m.grip_signs = 5;
+  return m;
+}
+
+template <>
 inline stopping_t sampleOf<stopping_t>() {
   stopping_t m{};
   m.utime = 1'000'020;
@@ -431,7 +442,8 @@ void forEachType(Visitor&& visit) {
            sampleOf<learning_t>(), sampleOf<map_tile_t>(), sampleOf<mark_t>(), sampleOf<motor_t>(),
            sampleOf<operator_t>(), sampleOf<manual_t>(), sampleOf<pattern_set_part_t>(),
            sampleOf<plan_t>(), sampleOf<plan_tree_t>(), sampleOf<program_slot_t>(),
-           sampleOf<program_t>(), sampleOf<scan_t>(), sampleOf<shock_t>(), sampleOf<stopping_t>());
+           sampleOf<program_t>(), sampleOf<scan_t>(), sampleOf<shock_t>(), sampleOf<stopping_t>(),
+           sampleOf<grip_t>());
 }
 
 /// Calls `visit` with each typed channel and a sample of its type.
@@ -449,6 +461,7 @@ void forEachChannel(Visitor&& visit) {
   visitOne(kMotor, sampleOf<motor_t>());
   visitOne(kExecution, sampleOf<execution_t>());
   visitOne(kShock, sampleOf<shock_t>());
+  visitOne(kGrip, sampleOf<grip_t>());
   visitOne(kStoppingTime, sampleOf<stopping_t>());
   visitOne(kPatternSet, sampleOf<pattern_set_part_t>());
   visitOne(kLearnerState, sampleOf<learner_state_t>());

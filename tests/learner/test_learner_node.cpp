@@ -208,3 +208,30 @@ TEST_CASE("while the INS is silent executions are refused, and learning goes on 
           6);
   REQUIRE(bench.learned.back().changed);
 }
+
+TEST_CASE(
+    "GRIP says twice a second what the ground gives, and only what was really driven tells it") {
+  const auto newestGrip = [](bool wrong_commands, double slide) {
+    Driving driving;
+    driving.wrong_commands = wrong_commands;
+    driving.truth[kLeft] = {0.8, -slide, 0.6};
+    Bench bench(driving);
+    std::vector<grip_t> said;
+    bench.bus.outside().subscribe<grip_t>(kGrip, [&](const grip_t& m) { said.push_back(m); });
+    bench.run(12.0);
+    CHECK(said.size() >= 23);
+    CHECK(said.size() <= 25);
+    CHECK(said.front().grip_signs == 0);
+    CHECK(said.front().utime == 0);
+    CHECK(said.front().deceleration == GripEstimator::kUnseen);
+    return said.back();
+  };
+  const grip_t slid = newestGrip(false, 0.5);
+  CHECK(slid.grip_signs >= 2);
+  CHECK(slid.gave_way);
+  CHECK(slid.deceleration < 1.0);
+  CHECK(slid.deceleration > 0.15);
+  CHECK(slid.utime > 0);
+  CHECK_FALSE(newestGrip(false, 0.0).gave_way);
+  CHECK(newestGrip(true, 0.5).grip_signs == 0);
+}

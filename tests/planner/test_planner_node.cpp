@@ -676,3 +676,31 @@ TEST_CASE("A second learner is told: its older versions are ignored, and the pla
   CHECK_THAT(yard.health.health_reason, Catch::Contains("does a second learner run?"));
   CHECK(yard.robot().speed() > 0.3);
 }
+
+TEST_CASE("GRIP that no ground can have is refused, and one that nobody felt lifts no limit") {
+  Yard yard;
+  yard.run(1.5);
+  const auto say = [&](double deceleration, bool gave_way, int signs) {
+    grip_t message{};
+    message.utime = yard.bus.now();
+    message.seq = yard.seq++;
+    message.deceleration = deceleration;
+    message.gave_way = static_cast<int8_t>(gave_way);
+    message.grip_signs = signs;
+    yard.bus.outside().publish(kGrip, message);
+    yard.run(0.1);
+  };
+  for (const double impossible : {0.0, -1.0, 100.0, std::numeric_limits<double>::quiet_NaN()})
+    say(impossible, true, 1);
+  yard.run(1.1);
+  int64_t refused = 0;
+  for (const counter_t& counter : yard.health.counters)
+    if (counter.counter_name == "GRIP refused: no such deceleration") refused = counter.counted;
+  CHECK(refused == 4);
+  say(0.4, true, 3);
+  say(1.0, false, 0);
+  const auto* node = dynamic_cast<PlannerNode*>(yard.bus.node("planner"));
+  REQUIRE(node != nullptr);
+  CHECK(node->supervisor().grip().gave_way);
+  CHECK(node->supervisor().grip().deceleration == 0.4);
+}

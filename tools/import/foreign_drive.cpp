@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/drive/odometer.hpp"
 #include "common/report/text.hpp"
 
 namespace tread::import {
@@ -19,10 +20,7 @@ namespace {
 
 /// Whether no ground vehicle goes from one pose to the other in the time between them.
 bool isBeyondReach(const Fix& a, const Fix& b) {
-  constexpr double kFastest = 30.0;  // [m/s]
-  constexpr double kNoise = 1.0;     // [m] of poses that are near each other in time
-  return distanceBetween(a.T_map_body, b.T_map_body) >
-         kNoise + kFastest * std::abs(b.time - a.time);
+  return !isWithinReach(a.T_map_body.position(), b.T_map_body.position(), b.time - a.time);
 }
 
 /// Whether the i-th pose is beyond reach from the one before, with which it is connected.

@@ -21,7 +21,7 @@ const std::map<std::string, std::set<std::string>>& inputs() {
       {"mapping", {"INS", "SCAN"}},
       {"planner",
        {"INS", "MAP", "GOAL", "PATTERN_SET", "MOTOR", "EXECUTION", "OPERATOR", "ARM", "ESTOP",
-        "FENCE", "STOPPING", "SHOCK"}}};
+        "FENCE", "STOPPING", "SHOCK", "GRIP"}}};
   return kInputs;
 }
 

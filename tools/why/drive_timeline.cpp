@@ -21,7 +21,6 @@ constexpr double kDead = 2.5;         // [s] without HEALTH, which comes every s
 constexpr double kGhostSize = 0.7;    // [m]
 constexpr double kGhostLife = 12.0;   // [s]
 constexpr double kAlone = 0.4;        // [m] flickering beside a wall is no ghost
-constexpr double kFarthest = 1e6;     // [m] from the origin of map; farther is a broken number
 
 class TimelineReader {
  public:
@@ -41,7 +40,7 @@ class TimelineReader {
  private:
   void hear(const ins_t& ins) {
     auto pose = planarPose(ins);
-    if (pose && pose->position().norm() > kFarthest) pose.reset();
+    if (pose && pose->position().norm() > kFarthestPlace) pose.reset();
     if (pose) last_ = pose;
     odometer_.add(*event_, ins);
     drive_.distance = odometer_.distance();

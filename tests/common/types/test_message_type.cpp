@@ -65,6 +65,7 @@ TEST_CASE("every channel's type is described as lcm-gen made it, fingerprint and
   isDescribed(kLearnerState);
   isDescribed(kLearning);
   isDescribed(kShock);
+  isDescribed(kGrip);
   isDescribed(kHealth);
   isDescribed(kArm);
   isDescribed(kOperator);

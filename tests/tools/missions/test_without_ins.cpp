@@ -24,7 +24,7 @@ RobotConfig filledIn() {
 struct Drive {
   Drive(const RobotConfig& robot, uint64_t seed)
       : world(makeMissionWorld(seed, {0.65, 0.65, 0.34})),
-        system(robot, world.description, world.T_map_start, seed, "off", {}),
+        system(robot, world.description, world.T_map_start, seed, "multi_model", {}),
         watch(system, world),
         person(system.bus().outside(), world.T_map_goal) {
     system.bus().outside().subscribe<ins_t>(kIns, [this](const ins_t& message) {

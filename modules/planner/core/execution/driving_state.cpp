@@ -154,8 +154,45 @@ bool leadsToRest(const PlannedExecution& slot, const PatternTable& table) {
 }
 
 bool ActiveSet::offer(const PatternSet& set, const ExecutionTracker& tracker) {
-  waiting_ = std::make_shared<const PatternTable>(set, sweep_, sigma_, top_speed_);
+  waiting_ = std::make_shared<const PatternTable>(set, sweep_, sigma_, topSpeedOf(set));
   return retry(tracker);
+}
+
+double ActiveSet::topSpeedOf(const PatternSet& set) const {
+  constexpr double kDrives = 0.05;   // [m/s] slower is no driving
+  constexpr double kRoom = 1.2;      // [1] the learner may make a pattern faster than its class
+  std::optional<double> slowest[2];  // forwards and backwards
+  for (const MotionPattern& pattern : set.patterns()) {
+    const MotionClass& to = set.classNamed(pattern.exit_class);
+    const double speed = std::hypot(to.twist.v_x, to.twist.v_y);
+    if (speed < kDrives || !set.classNamed(pattern.entry_class).standing()) continue;
+    std::optional<double>& least = slowest[to.twist.v_x < 0.0 ? 1 : 0];
+    least = std::min(speed, least.value_or(speed));
+  }
+  const double needed = kRoom * std::max(slowest[0].value_or(0.0), slowest[1].value_or(0.0));
+  return std::min(top_speed_, std::max(limit_, needed));
+}
+
+bool ActiveSet::limitSpeed(double speed) {
+  constexpr double kSame = 0.1;  // [1] of itself: less is not worth another table
+  if (std::abs(speed - limit_) <= kSame * limit_) return false;
+  const double before = std::exchange(limit_, speed);
+  bool changed = false;
+  for (auto* table : {&table_, &waiting_}) {
+    if (!*table) continue;
+    const PatternSet& set = (*table)->set();
+    const double top = topSpeedOf(set);
+    limit_ = before;
+    const bool same = topSpeedOf(set) == top;
+    limit_ = speed;
+    if (same) continue;
+    auto limited = std::make_shared<const PatternTable>(set, sweep_, sigma_, top);
+    // One that nobody can drive with would stop the vehicle.
+    if (!limited->defect().empty()) continue;
+    *table = std::move(limited);
+    changed = true;
+  }
+  return changed;
 }
 
 bool ActiveSet::retry(const ExecutionTracker& tracker) {
@@ -184,7 +221,11 @@ const TablePattern* DrivingState::runningPattern() const {
 SearchResult DrivingState::search(int64_t now, const PlanStep& start, int expansions) {
   const bool may_keep_next = runningPattern() != nullptr;
   SearchResult result = planner.plan(
-      {set.table(), map, groundCost(), start, plan.steps, may_keep_next}, expansions, counters);
+      {set.table(), map, groundCost(), start, plan.steps, may_keep_next, grip.deceleration},
+      expansions, counters);
+  if (result.end == SearchEnd::kNothing && grip.gave_way)
+    result.reason +=
+        ", on ground that stops it with only " + withTenths(grip.deceleration) + " m/s2";
   plan.made = now;
   status.changed = true;
   plan.expansions = result.expansions;

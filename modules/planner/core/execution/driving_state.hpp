@@ -164,6 +164,15 @@ struct PlannerConfig {
   std::string effective;            ///< the whole as YAML, for CONFIG
 };
 
+/// What the ground gives a vehicle that stops.
+struct GripKnowledge {
+  double deceleration = kNoLimit;  ///< [m/s2]
+  bool gave_way = false;           ///< it gave less than was asked of it
+
+  /// [s] at its speed that a vehicle slides on, where the ground gave way.
+  double slidingTime(double speed) const { return gave_way ? speed / (2.0 * deceleration) : 0.0; }
+};
+
 /// The pattern set in use, and a newer one that waits until it fits.
 class ActiveSet {
  public:
@@ -174,6 +183,9 @@ class ActiveSet {
   bool offer(const PatternSet& set, const ExecutionTracker& tracker);
   /// Tries the waiting set again; true if it is in use from now on.
   bool retry(const ExecutionTracker& tracker);
+  /// From now on only patterns up to that speed [m/s] are begun, but always those of the slowest
+  /// classes that drive forwards and backwards. True if another table is in use or waits.
+  bool limitSpeed(double speed);
   /// Why the newest set waits; empty if none does.
   const std::string& refusal() const { return refusal_; }
   /// Null before the first set.
@@ -182,7 +194,10 @@ class ActiveSet {
  private:
   SweepResolution sweep_;
   DefaultSigma sigma_;
-  double top_speed_;  ///< [m/s] of what is used of a set
+  double topSpeedOf(const PatternSet& set) const;
+
+  double top_speed_;         ///< [m/s] of what is used of a set
+  double limit_ = kNoLimit;  ///< [m/s] as limitSpeed() says
   std::shared_ptr<const PatternTable> table_;
   std::shared_ptr<const PatternTable> waiting_;
   std::string refusal_;
@@ -281,6 +296,7 @@ struct DrivingState {
   ShockKnowledge shock;              ///< newest
   std::optional<GroundCost> ground;  ///< of that and of ground_table; made anew when either changes
   std::shared_ptr<const PatternTable> ground_table;
+  GripKnowledge grip;
   bool steep = false;  ///< it may slide where it stands: no time to lose
 };
 

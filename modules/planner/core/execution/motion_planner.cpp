@@ -257,6 +257,7 @@ SearchResult MotionPlanner::plan(const PlanRequest& request, int expansions, Cou
   problem.distance_to_goal = &request.map.distanceToGoal();
   problem.ground = request.ground;
   problem.goal = request.map.target();
+  problem.deceleration = request.deceleration;
   for (const PlanStep& step : request.last_steps) problem.committed.push_back(step.pattern_id);
   if (searched_table_ != request.table)
     counters["cycles driven until a plan with the newest set"] = cycles_with_old_set_;
@@ -269,6 +270,9 @@ SearchResult MotionPlanner::plan(const PlanRequest& request, int expansions, Cou
     return late || count >= expansions;
   };
   SearchResult result = search_.run(problem, enough);
+  before = result.expansions;
+  if (!late && result.end == SearchEnd::kNothing)
+    result = withLittleRoom(problem, std::move(result), enough, counters);
   before = result.expansions;
   if (!late && result.end != SearchEnd::kNothing)
     result = keepSide(problem, std::move(result), enough, counters);
@@ -286,6 +290,22 @@ SearchResult MotionPlanner::alongBranch(const SearchProblem& problem, const Stop
   fresh.expansions += along.expansions;
   along.expansions = fresh.expansions;
   return along;
+}
+
+/// Where there is no plan with all the room that is asked for, one with the least.
+SearchResult MotionPlanner::withLittleRoom(SearchProblem& problem, SearchResult fresh,
+                                           const StopPredicate& stop, Counters& counters) {
+  if (problem.collision_checker->margins().narrow <= 0.0) return fresh;
+  problem.little_room = true;
+  SearchResult narrow = search_.run(problem, stop);
+  narrow.expansions += fresh.expansions;
+  if (narrow.end == SearchEnd::kNothing) {
+    fresh.expansions = narrow.expansions;
+    problem.little_room = false;
+    return fresh;
+  }
+  ++counters["plans with little room"];
+  return narrow;
 }
 
 /// The fresh plan, or the best along the branch if that turns to the other side and is as good.

@@ -172,6 +172,7 @@ struct PlanRequest {
   const PlanStep& start;                    ///< the end of the running pattern, or where it stands
   const std::vector<PlanStep>& last_steps;  ///< of the last plan, from there on
   bool may_keep_next;                       ///< a pattern runs: its queued successor may be kept
+  double deceleration = kNoLimit;           ///< [m/s2] that the ground gives
 };
 
 /// Searches for plans, and keeps to the side that the last plan turned to.
@@ -197,6 +198,8 @@ class MotionPlanner {
  private:
   SearchResult alongBranch(const SearchProblem& problem, const StopPredicate& stop,
                            SearchResult& fresh);
+  SearchResult withLittleRoom(SearchProblem& problem, SearchResult fresh, const StopPredicate& stop,
+                              Counters& counters);
   SearchResult keepSide(SearchProblem& problem, SearchResult fresh, const StopPredicate& stop,
                         Counters& counters);
   SearchResult keepNext(SearchProblem& problem, SearchResult fresh, const StopPredicate& stop,

@@ -72,14 +72,17 @@ std::vector<ExpectedPose> MovingControl::posesAfter(const Prediction& running) c
   const TablePattern* next = state_.tracker.next().empty()
                                  ? nullptr
                                  : state_.table().find(state_.tracker.next().pattern_id);
-  if (next != nullptr) {
+  // Where the ground gave way a pattern that stops is none: the vehicle slides on.
+  const bool slides =
+      state_.grip.gave_way && next != nullptr && next->exit == state_.table().restClass();
+  if (next != nullptr && !slides) {
     for (const SweptPose& at : next->swept_poses)
       poses.push_back({running.T_map_end * at.pose, running.time_left + at.time});
     return poses;
   }
   // Nothing follows: the series ends, and the vehicle coasts.
   const Twist2& twist = state_.table().motionClass(state_.runningPattern()->exit).twist;
-  return coasting(running.T_map_end, twist, running.time_left, state_.config.policy.coast_time);
+  return coasting(running.T_map_end, twist, running.time_left, coastTime(twist));
 }
 
 bool MovingControl::nextCollides(const Prediction& running) const {
@@ -168,13 +171,21 @@ bool MovingControl::stoppingIsBetter(const PlannerInputs& s,
       level = std::min(level, around.freeLevel(at.T_map_body, level));
     return level;
   };
-  return worst(coasting(s.pose->T_map_body, *s.pose->twist, 0.0,
-                        state_.config.policy.coast_time)) >= worst(poses);
+  return worst(coasting(s.pose->T_map_body, *s.pose->twist, 0.0, coastTime(*s.pose->twist))) >=
+         worst(poses);
+}
+
+/// [s] that a vehicle goes on at its twist after a stop.
+double MovingControl::coastTime(const Twist2& twist) const {
+  return std::max(state_.config.policy.coast_time,
+                  state_.grip.slidingTime(std::hypot(twist.v_x, twist.v_y)));
 }
 
 void MovingControl::keepClear(const PlannerInputs& s, const Prediction& running) {
   const double age = static_cast<double>(s.now - s.pose->utime) * kMicro;
-  const double lead = static_cast<double>(state_.config.policy.stop_lead) * kMicro;
+  constexpr double kDelay = 0.2;  // [s] a PROGRAM, its way to the motors, and the next measurement
+  double lead = static_cast<double>(state_.config.policy.stop_lead) * kMicro;
+  if (s.pose->twist) lead = std::max(lead, coastTime(*s.pose->twist) + kDelay);
   std::vector<ExpectedPose> poses = running.ahead;
   const std::vector<ExpectedPose> after = posesAfter(running);
   poses.insert(poses.end(), after.begin(), after.end());

@@ -45,6 +45,9 @@ class Supervisor {
   PlanningMap& map() { return state_.map; }
   /// [s] at its speed that the vehicle goes on after a zero command, learned from its stops.
   void setStoppingTime(double seconds);
+  /// What the ground gives, as the learner knows it by now.
+  void setGrip(const GripKnowledge& grip);
+  const GripKnowledge& grip() const { return state_.grip; }
   /// How hard ground shakes, as the learner knows it by now.
   void setShock(const ShockKnowledge& shock) {
     state_.shock = shock;

@@ -32,7 +32,8 @@ CollisionChecker::CollisionChecker(Grid grid, const FootprintSize& size, const M
   fenced_.stamp(grid_);
   field_ = ClearanceField(grid_, unknown_blocks, most + kFarthestLook);
   const double check = std::min(margins.check, margins.plan);
-  level_margins_ = {0.0, check / 2.0, check, (check + margins.plan) / 2.0};
+  const double narrow = margins.narrow > 0.0 ? margins.narrow : (check + margins.plan) / 2.0;
+  level_margins_ = {0.0, check / 2.0, check, narrow};
   for (int i = kPlan; i < kLevels; ++i) {
     const double share = static_cast<double>(i - kPlan) / (kLevels - 1 - kPlan);
     level_margins_.push_back(margins.plan + share * std::max(0.0, margins.largest - margins.plan));
@@ -61,6 +62,13 @@ int CollisionChecker::level(const Uncertainty& uncertainty) const {
   while (level + 1 < kLevels && level_variances_[static_cast<size_t>(level + 1)] <= variance)
     ++level;
   return level;
+}
+
+int CollisionChecker::leastLevel(const Uncertainty& uncertainty) const {
+  const double sigma = std::sqrt(uncertainty.ofPoint(static_cast<float>(arm_)));
+  int level = kNarrow;
+  while (level + 1 < kLevels && marginOf(level) < margins_.growth * sigma) ++level;
+  return std::min(level, this->level(uncertainty));
 }
 
 bool CollisionChecker::isFree(const TurnedPose& T_map_body, int level) const {

@@ -15,8 +15,11 @@ namespace tread::planner {
 
 /// How much room is kept around the footprint [m].
 struct Margins {
-  double check = 0.03;    ///< when what is already under way is checked again
-  double plan = 0.05;     ///< when the next pattern is chosen
+  double check = 0.03;  ///< when what is already under way is checked again
+  double plan = 0.05;   ///< when the next pattern is chosen
+  /// When nothing is free with more, and growth times the standard deviation is no more; 0 = that
+  /// is not tried. Not less than check, not more than plan.
+  double narrow = 0.0;
   double growth = 0.5;    ///< [1] of the standard deviation of where the pattern ends
   double largest = 0.09;  ///< never more than this, so that narrow gaps stay open
   double regain =
@@ -58,9 +61,11 @@ class CollisionChecker {
   double nearness(double x, double y, double distance) const {
     return std::max(0.0, 1.0 - field_.quick(x, y) / distance);
   }
-  /// Levels of margin, rising: none, that for checking, that for planning, and more between them.
+  /// Levels of margin, rising: none, that for checking, that for narrow places, that for planning,
+  /// and more between them.
   static constexpr int kBare = 0;
   static constexpr int kCheck = 2;
+  static constexpr int kNarrow = 3;
   static constexpr int kPlan = 4;
   static constexpr int kLevels = 8;
   /// [m] of the smallest disc around the body's origin that contains the bare footprint.
@@ -69,6 +74,9 @@ class CollisionChecker {
   /// Level for a pose of this uncertainty; kPlan or above.
   /** What counts is the footprint's corner, which a turn moves, too. */
   int level(const Uncertainty& uncertainty) const;
+  /// The least level for a pose of this uncertainty where there is no plan with more room: kNarrow,
+  /// or what growth times the standard deviation asks for, but never more than level().
+  int leastLevel(const Uncertainty& uncertainty) const;
   /// Whether the footprint with the margin of a level is free at a pose.
   bool isFree(const Pose2& T_map_body, int level) const {
     return isFree(turned(T_map_body), level);

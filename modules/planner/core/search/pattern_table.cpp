@@ -30,6 +30,24 @@ Uncertainty uncertaintyOf(const DefaultSigma& sigma) {
   return result;
 }
 
+/// Velocity at the end of a trajectory, in the axes of its end: at least that of the class in which
+/// it ends, where the vehicle still becomes faster.
+Eigen::Vector2d endVelocity(const std::vector<Pose2>& poses, double period,
+                            const MotionClass& exit) {
+  constexpr double kWindow = 0.15;  // [s]
+  const double wanted = exit.standing() ? 1.0 : std::max(1.0, std::round(kWindow / period));
+  const size_t steps = std::min(poses.size(), static_cast<size_t>(wanted));
+  const Pose2 before = steps < poses.size() ? poses[poses.size() - 1 - steps] : Pose2{};
+  const Pose2& end = poses.back();
+  // As the body saw it half-way: turned back by the middle heading.
+  const Pose2 middle{0.0, 0.0, 0.5 * (before.yaw + end.yaw)};
+  const Eigen::Vector2d way = end.position() - before.position();
+  const Eigen::Vector2d v =
+      between(middle, {way.x(), way.y(), 0.0}).position() / (period * static_cast<double>(steps));
+  const Eigen::Vector2d steady(exit.twist.v_x, exit.twist.v_y);
+  return v.norm() < steady.norm() ? steady : v;
+}
+
 /// What all patterns have: their path, and what is checked along it.
 TablePattern swept(const std::vector<Pose2>& poses, double period, const SweepResolution& step) {
   TablePattern entry;
@@ -89,11 +107,15 @@ PatternTable::PatternTable(const std::vector<Primitive>& primitives, const Sweep
 }
 
 bool PatternTable::isTooFast(const TablePattern& pattern, double top_speed) const {
-  if (pattern.length / pattern.duration > top_speed) return true;
-  if (!set_) return false;
-  const auto speed = [](const Twist2& v_body) { return std::hypot(v_body.v_x, v_body.v_y); };
-  return speed(motionClass(pattern.entry).twist) > top_speed ||
-         speed(motionClass(pattern.exit).twist) > top_speed;
+  const bool fast = pattern.length / pattern.duration > top_speed;
+  if (!set_) return fast;
+  const auto speed = [this](int motion_class) {
+    const Twist2& v_body = motionClass(motion_class).twist;
+    return std::hypot(v_body.v_x, v_body.v_y);
+  };
+  if (speed(pattern.exit) > top_speed) return true;
+  // One that slows the vehicle down is never too fast where the vehicle is too fast already.
+  return speed(pattern.entry) <= top_speed && fast;
 }
 
 void PatternTable::index(size_t classes, double top_speed) {
@@ -104,7 +126,8 @@ void PatternTable::index(size_t classes, double top_speed) {
     if (entry.exit == rest_class_) stops_[static_cast<size_t>(entry.entry)].push_back(&entry);
     if (isTooFast(entry, top_speed)) continue;
     from_[static_cast<size_t>(entry.entry)].push_back(&entry);
-    best_speed_ = std::max(best_speed_, entry.length / entry.duration);
+    const double speed = entry.length / entry.duration;
+    if (speed <= top_speed) best_speed_ = std::max(best_speed_, speed);
     all.push_back(&entry);
   }
   least_costs_ = leastCostsOf(all);
@@ -119,6 +142,7 @@ TablePattern PatternTable::prepare(const MotionPattern& pattern, const SweepReso
   entry.exit = classIndex(pattern.exit_class);
   entry.duration = set_->periodSeconds() * static_cast<double>(pattern.commands.size());
   entry.cost = entry.duration;
+  entry.v_exit = endVelocity(pattern.trajectory, set_->periodSeconds(), motionClass(entry.exit));
   entry.uncertainty = uncertaintyOf(pattern.end_covariance, uncertaintyOf(sigma));
   return entry;
 }

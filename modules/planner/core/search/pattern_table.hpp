@@ -163,6 +163,7 @@ struct TablePattern {
   Eigen::Vector2d centre{0.0, 0.0};  ///< of a disc that holds all positions, relative to the start
   double radius = 0.0;               ///< [m] of that disc
   Uncertainty uncertainty;           ///< of its end, in the axes of its start
+  Eigen::Vector2d v_exit{0.0, 0.0};  ///< [m/s] at its end, in the axes of its end
 
   int id() const { return number; }
   const SweptPose& end() const { return swept_poses.back(); }
@@ -189,7 +190,7 @@ std::array<LeastCost, 2> leastCostsOf(const std::vector<const TablePattern*>& pa
 class PatternTable {
  public:
   /// `top_speed` [m/s]: faster patterns, and those that enter or leave a faster class, are not
-  /// begun; those that stop the vehicle remain.
+  /// begun; those that slow the vehicle down or stop it remain.
   PatternTable(PatternSet set, const SweepResolution& step, const DefaultSigma& sigma,
                double top_speed = std::numeric_limits<double>::infinity());
   /// Of primitives; the only class is rest.
@@ -217,7 +218,7 @@ class PatternTable {
     return set_->content().classes[static_cast<size_t>(index)];
   }
   int classIndex(const std::string& name) const;
-  /// Greatest path length over duration of a pattern [m/s]: nothing in the set is faster.
+  /// Greatest path length over duration of a pattern within the top speed [m/s].
   double bestSpeed() const { return best_speed_; }
   /// leastCostsOf() all patterns.
   const std::array<LeastCost, 2>& leastCosts() const { return least_costs_; }

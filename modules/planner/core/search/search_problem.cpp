@@ -10,6 +10,8 @@ namespace {
 
 /// Nearer to the goal than this its heading counts, farther off that of the way [m].
 constexpr double kNearGoal = 1.0;
+/// Steps in which sliding to a stop is checked, and ways too short to be checked [m].
+constexpr double kSlideStep = 0.1;
 /// Where the guide knows no way it may be wrong, but not often [1].
 constexpr float kUnlikely = 100.0F;
 
@@ -104,14 +106,17 @@ CostModel::Heuristic CostModel::heuristic(const SearchNode& node, bool on_blocke
 int NodeChecker::levelOf(const SearchNode& parent, const TablePattern& pattern) const {
   const CollisionChecker& around = *problem_->collision_checker;
   if (onBranch(parent)) return CollisionChecker::kCheck;
-  if (parent.depth > 0) return around.level(pattern.uncertainty);
+  const auto level = [&](const Uncertainty& uncertainty) {
+    return problem_->little_room ? around.leastLevel(uncertainty) : around.level(uncertainty);
+  };
+  if (parent.depth > 0) return level(pattern.uncertainty);
   const Eigen::Vector2d step = pattern.end().pose.position();
   const auto x = static_cast<float>(step.x());
   const auto y = static_cast<float>(step.y());
   const float c = parent.cos_yaw;
   const float s = parent.sin_yaw;
-  return around.level(compose(problem_->start_uncertainty, pattern.uncertainty, c * x - s * y,
-                              s * x + c * y, c, s));
+  return level(compose(problem_->start_uncertainty, pattern.uncertainty, c * x - s * y,
+                       s * x + c * y, c, s));
 }
 
 bool NodeChecker::admit(const SearchNode& parent, SearchNode& node) const {
@@ -119,7 +124,7 @@ bool NodeChecker::admit(const SearchNode& parent, SearchNode& node) const {
     node.level = 0;
     return node.cost < kNever;
   }
-  return freeFromParent(parent, node) && canStop(node);
+  return freeFromParent(parent, node) && canStop(node) && slidesFreely(node);
 }
 
 bool NodeChecker::freeFromParent(const SearchNode& parent, SearchNode& node) const {
@@ -152,6 +157,26 @@ bool NodeChecker::canStop(const SearchNode& node) const {
     return node.level < 0 ? around.escape(node.plainPose(), node.overlap, *stop).has_value()
                           : around.sweepFree(node.pose(), *stop, node.level);
   });
+}
+
+bool NodeChecker::slidesFreely(const SearchNode& node) const {
+  if (!(problem_->deceleration < kNoLimit) || node.level < 0) return true;
+  const double speed = node.by->v_exit.norm();
+  const double way = speed * speed / (2.0 * problem_->deceleration);
+  if (way < kSlideStep) return true;
+  const CollisionChecker& around = *problem_->collision_checker;
+  const int level = std::min<int>(node.level, CollisionChecker::kCheck);
+  const Eigen::Vector2d along = node.by->v_exit / speed;
+  TurnedPose at = node.pose();
+  const double dx = at.cos_yaw * along.x() - at.sin_yaw * along.y();
+  const double dy = at.sin_yaw * along.x() + at.cos_yaw * along.y();
+  for (double done = 0.0; done < way; done += kSlideStep) {
+    const double s = std::min(way, done + kSlideStep);
+    at.x = node.x + s * dx;
+    at.y = node.y + s * dy;
+    if (!around.isFree(at, level)) return false;
+  }
+  return true;
 }
 
 }  // namespace tread::planner

@@ -69,6 +69,10 @@ struct SearchProblem {
   const GroundCost* ground = nullptr;  ///< nullptr = all ground costs the same
   const EdgeRules* rules = nullptr;    ///< if given, in the place of the collision checker
   Goal goal;
+  /// [m/s2] that a stop may count on: after each pattern the vehicle must be able to slide to a
+  /// stop, unless that takes less than 10 cm or it leaves blocked ground.
+  double deceleration = kNoLimit;
+  bool little_room = false;    ///< with CollisionChecker::leastLevel()
   double cell = 0.0;           ///< [m] in the place of SearchConfig::cell; 0 = as configured
   std::vector<int> committed;  ///< ids of the patterns that the plan before wanted from here on
   /// Ids of the patterns that the plan has to begin with; the margin for checking is enough for
@@ -224,6 +228,9 @@ class NodeChecker {
  private:
   bool freeFromParent(const SearchNode& parent, SearchNode& node) const;
   bool canStop(const SearchNode& node) const;
+  /// Whether it may slide on, as it moves at the end of its pattern, until the ground has stopped
+  /// it.
+  bool slidesFreely(const SearchNode& node) const;
   /// Level of margin for a pattern: that of its own uncertainty and, where it is the next one, of
   /// its start's.
   /** What the patterns before a later one will be off by is known when it becomes the next one; it
