@@ -4,6 +4,8 @@
 // after a large change, as sure as it says.
 #include <catch2/catch.hpp>
 
+#include <map>
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
@@ -216,28 +218,54 @@ TEST_CASE("after a surprise the region is wide at once", "[statistics]") {
   }
 }
 
-TEST_CASE("new ground that may lie ahead does not stretch a region along the way") {
-  std::mt19937_64 random(5);
-  Pupil pupil = shippedRule();
-  driveAny(pupil, kMeadow, kUsual, 60, random);
-  for (size_t p = 0; p < pupil.patterns(); ++p) {
-    if (std::abs(pupil.shipped(p).back().yaw) > 0.01) continue;
-    const PoseCovariance c = *pupil.rule().endCovariance(p);
-    Eigen::Matrix2d stated, scatter = Eigen::Matrix2d::Zero();
-    stated << c[0], c[1], c[1], c[3];
-    constexpr int kEnds = 400;
-    const Pose2 mean = under(kMeadow, pupil.shipped(p)).back();
-    for (int i = 0; i < kEnds; ++i) {
-      const Pose2 end = under(drawn(kMeadow, kUsual, random), pupil.shipped(p)).back();
-      const Eigen::Vector2d apart = end.position() - mean.position();
-      scatter += apart * apart.transpose() / kEnds;
+TEST_CASE("where a vehicle drives as before but slides in turns, some turns teach the others") {
+  const GroundEffect slides{1.0, 1.2, -0.2, 0.0};
+  double after = 0.0, before = 0.0;
+  for (uint64_t seed = 1; seed <= 20; ++seed) {
+    std::mt19937_64 random(seed);
+    Pupil pupil = shippedRule();
+    for (const size_t p : {kTurnLeft, kAhead, kTurnRight, kTurnLeft})
+      pupil.learn(p, under(drawn(slides, kCalm, random), pupil.shipped(p)));
+    for (const size_t p : {kHardLeft, kHardRight}) {
+      const Pose2 end = under(slides, pupil.shipped(p)).back();
+      after += distance(pupil.end(p), end);
+      before += distance(pupil.shipped(p).back(), end);
     }
-    // The largest deviation in any direction over that of executions there.
-    const double over = std::sqrt((scatter.inverse() * stated).eigenvalues().real().maxCoeff());
-    CAPTURE(p, over);
-    // Measured .91 to 1.12; with new ground in its shape 1.21 to 1.36.
-    REQUIRE(over > 0.85);
-    REQUIRE(over < 1.18);
+  }
+  CAPTURE(after / before);
+  // Measured .59; 1.07 where what turns do goes with the gain.
+  REQUIRE(after < 0.7 * before);
+}
+
+TEST_CASE("new ground that may lie ahead does not stretch a region along the way") {
+  // What one drive tells of the scatter of one pattern is off by a tenth.
+  constexpr int kDrives = 8;
+  std::map<size_t, double> over;
+  for (int drive = 1; drive <= kDrives; ++drive) {
+    std::mt19937_64 random(static_cast<uint64_t>(drive));
+    Pupil pupil = shippedRule();
+    driveAny(pupil, kMeadow, kUsual, 60, random);
+    for (size_t p = 0; p < pupil.patterns(); ++p) {
+      if (std::abs(pupil.shipped(p).back().yaw) > 0.01) continue;
+      const PoseCovariance c = *pupil.rule().endCovariance(p);
+      Eigen::Matrix2d stated, scatter = Eigen::Matrix2d::Zero();
+      stated << c[0], c[1], c[1], c[3];
+      constexpr int kEnds = 400;
+      const Pose2 mean = under(kMeadow, pupil.shipped(p)).back();
+      for (int i = 0; i < kEnds; ++i) {
+        const Pose2 end = under(drawn(kMeadow, kUsual, random), pupil.shipped(p)).back();
+        const Eigen::Vector2d apart = end.position() - mean.position();
+        scatter += apart * apart.transpose() / kEnds;
+      }
+      // The largest deviation in any direction over that of executions there.
+      over[p] += std::sqrt((scatter.inverse() * stated).eigenvalues().real().maxCoeff()) / kDrives;
+    }
+  }
+  REQUIRE_FALSE(over.empty());
+  for (const auto& [p, mean] : over) {
+    CAPTURE(p, mean);
+    REQUIRE(mean > 0.85);
+    REQUIRE(mean < 1.18);
   }
 }
 

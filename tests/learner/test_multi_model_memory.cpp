@@ -89,7 +89,7 @@ struct Hypothesis {
   explicit Hypothesis(size_t at, const Surface& surface)
       : weight(at),
         velocity(at + 3 + TwistCorrection::kCommon + TwistCorrection::kOwn * 7),
-        yaw(velocity + 6 * surface.velocity().scales().size()),
+        yaw(velocity + 7 * surface.velocity().scales().size()),
         factors(yaw + 7 * surface.yaw().scales().size()) {}
 
   size_t weight, velocity, yaw, factors;
@@ -198,7 +198,7 @@ TEST_CASE("a memory with a number that cannot be is refused whole") {
     refused(each.since, {-1.0, 0.5, 58.0, 1e300});
     refused(each.centre, {1e300, -1e300});
     refused(each.velocity, {-0.1, 0.0, 1e300});      // a variance
-    refused(each.velocity + 4, {-1.0, 0.0, 1e300});  // a factor on the noise
+    refused(each.velocity + 5, {-1.0, 0.0, 1e300});  // a factor on the noise
     refused(each.yaw + 6, {-0.1, 0.0, 2.0});         // a weight
     refused(each.factors, {0.0, -1.0, 51.0, 1e300});
     refused(each.noise, {0.0, -1.0, 51.0, 1e300});

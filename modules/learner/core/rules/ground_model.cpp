@@ -20,7 +20,7 @@ constexpr double kShearSpread = 0.3;  // times isotropy: along one axis it is ga
 constexpr double kTurnLossSpread = 0.7;
 constexpr double kSideslipSpread = 0.7;
 constexpr double kShiftSpread = 0.5;
-constexpr double kYawBySpeedSpread = 0.3;
+constexpr double kYawBySpeedSpread = 0.6;
 /// Of yaw bias, how much patterns differ in it [1].
 constexpr double kBiasApart = 0.5;
 /// A turn on the spot moves half as much as a straight drive of the same speed of the tracks.
@@ -427,10 +427,14 @@ double entry(const Eigen::MatrixXd& matrix, const PatternPart& a, const PatternP
 
 VelocityBank::Blocks GroundModel::velocity(const PatternPart& a, const PatternPart& b) const {
   constexpr int kLag = TwistCorrection::kLag;
+  constexpr int kTurns = TwistCorrection::kTurnLoss;
   const Eigen::Vector2d alike(entry(alike_[TwistCorrection::kAlong], a, b),
                               entry(alike_[TwistCorrection::kAcross], a, b));
-  return {a.velocity.leftCols<kLag>() * spread_.head<kLag>().asDiagonal() *
-              b.velocity.leftCols<kLag>().transpose(),
+  return {a.velocity.leftCols<kTurns>() * spread_.head<kTurns>().asDiagonal() *
+              b.velocity.leftCols<kTurns>().transpose(),
+          a.velocity.middleCols<kLag - kTurns>(kTurns) *
+              spread_.segment<kLag - kTurns>(kTurns).asDiagonal() *
+              b.velocity.middleCols<kLag - kTurns>(kTurns).transpose(),
           a.own * alike.asDiagonal() * b.own.transpose(),
           spread_[kLag] * a.velocity.col(kLag) * b.velocity.col(kLag).transpose(),
           squared(kEntrySpread) * a.entry.head<2>() * b.entry.head<2>().transpose()};

@@ -13,12 +13,15 @@ struct Width {
 using Widths = std::vector<Width>;
 
 const Widths kGain{{0.03, 0.4}, {0.1, 0.3}, {0.3, 0.2}, {0.6, 0.1}};
+/// What turns do to the velocity, beside what goes with the gain: a vehicle that drives straight as
+/// before may slide in turns.
+const Widths kTurns{{0.0, 0.4}, {0.1, 0.4}, {0.3, 0.2}};
 const Widths kYawGain{{0.05, 0.3}, {0.15, 0.4}, {0.35, 0.2}, {0.8, 0.1}};
 const Widths kYawBias{{0.003, 0.8}, {0.03, 0.15}, {0.1, 0.05}};  // [1] of both sides together
 const Widths kResidual{{0.01, 0.5}, {0.04, 0.3}, {0.1, 0.15}, {0.25, 0.05}};
 /// Velocities of executions may scatter more than expected: else one of them told of any ground.
 /// Turn rates are measured well enough.
-const Widths kVelocityNoise{{1.0, 0.8}, {3.2, 0.2}};
+const Widths kVelocityNoise{{1.0, 0.88}, {3.2, 0.12}};
 /// Where the gain changes patterns change otherwise by such a share of it [1].
 constexpr double kResidualOfGain = 0.12;
 
@@ -27,6 +30,7 @@ constexpr double kResidualOfGain = 0.12;
 constexpr double kShippedLag = 0.1;
 
 const Widths kShippedGain{{0.02, 1.0}};
+const Widths kShippedTurns{{0.0, 1.0}};
 const Widths kShippedBias{{0.003, 1.0}};
 const Widths kShippedResidual{{0.01, 0.7}, {0.05, 0.3}};
 
@@ -34,15 +38,18 @@ double residual(const Width& gain, const Width& own) {
   return squared(kResidualOfGain * gain.deviation) + squared(own.deviation);
 }
 
-VelocityBank::Scales velocityScales(const Widths& gains, const Widths& residuals, double lag,
-                                    double share) {
+VelocityBank::Scales velocityScales(const Widths& gains, const Widths& turns,
+                                    const Widths& residuals, double lag, double share) {
   VelocityBank::Scales scales;
   for (const Width& gain : gains)
-    for (const Width& own : residuals)
-      for (const Width& noise : kVelocityNoise)
-        scales.push_back({{share * squared(gain.deviation), share * residual(gain, own), lag, lag},
-                          squared(noise.deviation),
-                          gain.weight * own.weight * noise.weight});
+    for (const Width& turn : turns)
+      for (const Width& own : residuals)
+        for (const Width& noise : kVelocityNoise)
+          scales.push_back({{share * squared(gain.deviation),
+                             share * (squared(gain.deviation) + squared(turn.deviation)),
+                             share * residual(gain, own), lag, lag},
+                            squared(noise.deviation),
+                            gain.weight * turn.weight * own.weight * noise.weight});
   return scales;
 }
 
@@ -62,7 +69,7 @@ YawBank::Scales yawScales(const Widths& gains, const Widths& biases, const Width
 }  // namespace
 
 VelocityBank::Scales velocityScalesOfNewGround(double share) {
-  return velocityScales(kGain, kResidual, 1.0, share);
+  return velocityScales(kGain, kTurns, kResidual, 1.0, share);
 }
 
 YawBank::Scales yawScalesOfNewGround(double lever, double share) {
@@ -70,7 +77,7 @@ YawBank::Scales yawScalesOfNewGround(double lever, double share) {
 }
 
 VelocityBank::Scales velocityScalesAsShipped() {
-  return velocityScales(kShippedGain, kShippedResidual, kShippedLag, 1.0);
+  return velocityScales(kShippedGain, kShippedTurns, kShippedResidual, kShippedLag, 1.0);
 }
 
 YawBank::Scales yawScalesAsShipped(double lever) {

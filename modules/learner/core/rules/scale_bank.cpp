@@ -187,7 +187,7 @@ Eigen::VectorXd ScaleBank<kAxes, kKinds>::doubt(const Eigen::VectorXd& noise, do
   return doubt;
 }
 
-template class ScaleBank<2, 4>;
+template class ScaleBank<2, 5>;
 template class ScaleBank<1, 5>;
 
 }  // namespace tread::learner

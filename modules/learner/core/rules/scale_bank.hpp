@@ -84,8 +84,8 @@ class ScaleBank {
   std::array<Eigen::VectorXd, kKinds> mean_alpha_;
 };
 
-/// Gain, residuals, lag and entry of the velocity.
-using VelocityBank = ScaleBank<2, 4>;
+/// Gain, what turns do, residuals, lag and entry of the velocity.
+using VelocityBank = ScaleBank<2, 5>;
 /// Gain, bias, residuals, lag and entry of the turn rate.
 using YawBank = ScaleBank<1, 5>;
 

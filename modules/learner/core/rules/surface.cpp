@@ -251,9 +251,10 @@ void Surface::correct() {
   correction_ = expectation_.centre;
   const auto& spread = model_->spread();
   const Eigen::VectorXd& gain = posterior_->velocity.meanAlpha(0);
-  const Eigen::VectorXd& own = posterior_->velocity.meanAlpha(1);
-  const Eigen::VectorXd& lag = posterior_->velocity.meanAlpha(2);
-  const Eigen::VectorXd& entry = posterior_->velocity.meanAlpha(3);
+  const Eigen::VectorXd& turns = posterior_->velocity.meanAlpha(1);
+  const Eigen::VectorXd& own = posterior_->velocity.meanAlpha(2);
+  const Eigen::VectorXd& lag = posterior_->velocity.meanAlpha(3);
+  const Eigen::VectorXd& entry = posterior_->velocity.meanAlpha(4);
   const Eigen::VectorXd& yaw = posterior_->yaw.meanAlpha(0);
   const Eigen::VectorXd& bias = posterior_->yaw.meanAlpha(1);
   const Eigen::VectorXd& yaw_own = posterior_->yaw.meanAlpha(2);
@@ -262,13 +263,16 @@ void Surface::correct() {
   Eigen::Matrix<double, TwistCorrection::kCommon, 1> common;
   common.setZero();
   constexpr int kLag = TwistCorrection::kLag;
+  constexpr int kTurns = TwistCorrection::kTurnLoss;
   double lasts = 0.0, turn_lasts = 0.0;
   const double bias_apart = model_->biasApart();
   for (size_t i = 0; i < measured_.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const PatternPart& part = measured_[i].part;
     const auto column = static_cast<Eigen::Index>(part.pattern);
-    common.head<kLag>() += part.velocity.leftCols<kLag>().transpose() * gain.segment<2>(2 * at);
+    common.head<kTurns>() += part.velocity.leftCols<kTurns>().transpose() * gain.segment<2>(2 * at);
+    common.segment<kLag - kTurns>(kTurns) +=
+        part.velocity.middleCols<kLag - kTurns>(kTurns).transpose() * turns.segment<2>(2 * at);
     common[kLag] += part.velocity.col(kLag).dot(lag.segment<2>(2 * at));
     lasts += part.entry.head<2>().dot(entry.segment<2>(2 * at));
     turn_lasts += part.entry[2] * yaw_entry[at];
@@ -461,7 +465,7 @@ bool Surface::restore(const GroundConfig& config, const std::vector<double>& mem
   SurfacePrior& e = expectation_;
   const size_t numbers =
       static_cast<size_t>(e.centre.common.size() + e.centre.own.size() + e.scatter.size() + 5) +
-      6 * e.velocity.size() + 7 * e.yaw.size();
+      7 * e.velocity.size() + 7 * e.yaw.size();
   if (memory.size() < at + numbers) return false;
   const auto take = [&](auto& matrix) {
     for (double& number : matrix.reshaped()) number = memory[at++];
