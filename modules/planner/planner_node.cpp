@@ -240,7 +240,7 @@ void PlannerNode::subscribe() {
       return;
     const bool possible = message.deceleration >= 0.05 && message.deceleration <= 20.0;
     if (!possible) return health_.addToCounter("GRIP refused: no such deceleration");
-    supervisor_.setGrip({message.deceleration, message.gave_way != 0});
+    supervisor_.setGrip({message.deceleration, message.gave_way != 0, message.grip_signs});
   });
   bus_.overhear<health_t>(kHealth, [this](const health_t& message) { take(message); });
   bus_.subscribe<goal_t>(kGoal, [this](const goal_t& message) { take(message); });

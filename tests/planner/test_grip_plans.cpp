@@ -97,6 +97,30 @@ TEST_CASE("Where the ground gave way only slow patterns begin, and those that sl
   CHECK(begins("cruise") == from_cruise);
 }
 
+TEST_CASE("What few executions say of the ground is believed with less speed") {
+  const GripKnowledge few{1.7, false, GripKnowledge::kSure - 1};
+  const GripKnowledge many{1.7, false, GripKnowledge::kSure};
+  const GripKnowledge slides{1.7, true, GripKnowledge::kSure};
+  CHECK(few.stopWithin() < many.stopWithin());
+  CHECK(slides.stopWithin() < few.stopWithin());
+  // A set with classes of .49 and 1.08 m/s: only the slow one begins on what few have said.
+  const PatternSet set = twoSpeeds();
+  const auto fastest = [&](int signs) {
+    Rig rig;
+    REQUIRE(rig.supervisor().takeSet(set));
+    rig.supervisor().setGrip({1.0, false, signs});
+    double speed = 0.0;
+    for (int i = 0; i < 40; ++i) {
+      rig.run(0.1);
+      if (!rig.supervisor().program().running().empty())
+        speed = std::max(speed, speedOf(set, rig.running().exit_class));
+    }
+    return speed;
+  };
+  CHECK(fastest(GripKnowledge::kSure - 1) < 0.7);
+  CHECK(fastest(GripKnowledge::kSure) > 1.0);
+}
+
 TEST_CASE("Where the ground gave way a wall ahead stops the vehicle from farther away") {
   // How far away a wall that appears still makes it drop what it drives [m].
   const auto farthest = [](const GripKnowledge& grip) {

@@ -50,10 +50,8 @@ void Supervisor::setStoppingTime(double seconds) {
 }
 
 void Supervisor::setGrip(const GripKnowledge& grip) {
-  // In so many seconds the ground must be able to stop it; where it gives way it does not steer.
-  constexpr double kStop = 1.2, kSlidingStop = 0.8;
   state_.grip = grip;
-  if (!state_.set.limitSpeed((grip.gave_way ? kSlidingStop : kStop) * grip.deceleration)) return;
+  if (!state_.set.limitSpeed(grip.stopWithin() * grip.deceleration)) return;
   state_.planner.setReplaced();
   state_.plan.expire();
 }
