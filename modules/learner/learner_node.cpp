@@ -188,8 +188,9 @@ void LearnerNode::start(int64_t boot_time) {
   versions_.emplace(config_.shipped.version(), config_.shipped);
   if (found.state) {
     executions_.remember(found.state->handled);
-    learner_.restore(std::move(found.state->set), std::move(found.state->residuals),
-                     found.state->memory);
+    if (!learner_.restore(std::move(found.state->set), std::move(found.state->residuals),
+                          found.state->memory))
+      health_.addToCounter("state not this rule's: learning begins anew");
     keepVersion();
   }
   if (found.first_version > learner_.set().version())

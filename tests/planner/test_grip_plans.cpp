@@ -117,7 +117,10 @@ TEST_CASE("What few executions say of the ground is believed with less speed") {
     }
     return speed;
   };
+  CHECK(fastest(1) < 0.7);
   CHECK(fastest(GripKnowledge::kSure - 1) < 0.7);
+  // Who has felt nothing must begin with something.
+  CHECK(fastest(0) > 1.0);
   CHECK(fastest(GripKnowledge::kSure) > 1.0);
 }
 

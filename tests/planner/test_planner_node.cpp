@@ -703,4 +703,7 @@ TEST_CASE("GRIP that no ground can have is refused, and one that nobody felt lif
   REQUIRE(node != nullptr);
   CHECK(node->supervisor().grip().gave_way);
   CHECK(node->supervisor().grip().deceleration == 0.4);
+  say(2.0, false, 5);
+  CHECK(node->supervisor().grip().deceleration == 2.0);
+  CHECK(node->supervisor().grip().signs == 5);
 }

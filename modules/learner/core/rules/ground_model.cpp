@@ -14,7 +14,8 @@
 namespace tread::learner {
 namespace {
 
-// How corrections are distributed on a ground of scale 1, relative to gain and yaw gain [1].
+// How corrections are distributed on a ground of scale 1, relative to gain, to turns and to yaw
+// gain [1].
 constexpr double kCrabSpread = 0.2;
 constexpr double kShearSpread = 0.3;  // times isotropy: along one axis it is gain and crab
 constexpr double kTurnLossSpread = 0.7;

@@ -172,7 +172,7 @@ class GroundModel {
 
   /// Share of the variance of yaw bias by which patterns differ in it [1].
   double biasApart() const;
-  /// Variances of the common corrections on a ground of scale 1 (velocity and yaw gains, lags), and
+  /// Variances of the common corrections on a ground of scale 1 (gain, turns, yaw gain, lags), and
   /// of yaw bias 1 rad/m.
   const Eigen::Matrix<double, TwistCorrection::kCommon, 1>& spread() const { return spread_; }
   /// Standard deviation of how long what a pattern was entered with lasts [s].

@@ -14,7 +14,7 @@ namespace {
 /// What weighs less adds nothing to a region [1].
 constexpr double kLeastWeight = 1e-4;
 /// Scales of a ground that weigh less add nothing to its region either [1].
-constexpr double kLeastInRegion = 0.01;
+constexpr double kLeastInRegion = 0.003;
 /// Most probable change ahead that a region counts [1]: what is rarer than one in ten lies outside
 /// of 90 % anyway.
 constexpr double kRegionHazard = 0.03;

@@ -14,7 +14,7 @@ namespace {
 constexpr double kLargestTwist = 100.0;
 /// What weighs less adds nothing: to a density, to the noise [1].
 constexpr double kLeastInDensity = 1e-6;
-constexpr double kLeastInNoise = 0.03;
+constexpr double kLeastInNoise = 0.01;
 /// [s] what every vehicle needs to settle.
 constexpr double kSettles = 0.05;
 /// Executions that the class's own steady twist counts for in what is usual before its patterns

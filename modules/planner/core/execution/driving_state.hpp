@@ -168,12 +168,12 @@ struct PlannerConfig {
 struct GripKnowledge {
   double deceleration = kNoLimit;  ///< [m/s2]
   bool gave_way = false;           ///< it gave less than was asked of it
-  int signs = kSure;               ///< executions that say so
+  int signs = kSure;               ///< executions that told of it since the learner began
 
-  static constexpr int kSure = 6;  ///< fewer signs are few
+  static constexpr int kSure = 6;  ///< fewer are few
   /// [s] in which it must be able to stop the vehicle. Where it gives way the vehicle does not
   /// steer; what few signs say may be more than it gives.
-  double stopWithin() const { return gave_way ? 0.8 : signs < kSure ? 1.0 : 1.2; }
+  double stopWithin() const { return gave_way ? 0.8 : signs > 0 && signs < kSure ? 1.0 : 1.2; }
   /// [s] at its speed that a vehicle slides on, where the ground gave way.
   double slidingTime(double speed) const { return gave_way ? speed / (2.0 * deceleration) : 0.0; }
 };
