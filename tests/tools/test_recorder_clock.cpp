@@ -115,6 +115,15 @@ std::string without(const std::string& told, const std::string& text, int& lines
   return rest;
 }
 
+/// What waited how long is not known of events that have lost their time.
+std::string withoutLatencies(const std::string& text) {
+  std::istringstream in(text);
+  std::string rest;
+  for (std::string line; std::getline(in, line);)
+    if (line.find("  p50 ") == std::string::npos) rest += line + "\n";
+  return rest;
+}
+
 void requireSameUnderWrongClocks(const std::string& tool) {
   const Recording recording;
   const size_t at = tool.find("LOG");
@@ -131,7 +140,11 @@ void requireSameUnderWrongClocks(const std::string& tool) {
     recording.spoil(clock);
     CAPTURE(clock.name);
     int lines = 0;
-    CHECK(without(clock.told, recording.of(placed()), lines) == healthy);
+    const std::string said = without(clock.told, recording.of(placed()), lines);
+    if (std::string(clock.told).rfind("events with a time that cannot be", 0) == 0)
+      CHECK(withoutLatencies(said) == withoutLatencies(healthy));
+    else
+      CHECK(said == healthy);
     CHECK(lines == 1);
   }
 }

@@ -20,11 +20,11 @@ namespace {
 
 constexpr size_t kMostWaiting = 1000;
 
-double milliseconds(int64_t from, int64_t to) {
-  return static_cast<double>(to - from) * 1e-3;
-}
-
 }  // namespace
+
+void Latencies::note(Durations& durations, int64_t from, int64_t to) {
+  if (from != kLost && to != kLost) durations.add(static_cast<double>(to - from) * 1e-3);
+}
 
 double Durations::quantile(double share) const {
   if (values_.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -34,7 +34,8 @@ double Durations::quantile(double share) const {
   return sorted[static_cast<size_t>(std::max(0.0, rank))];
 }
 
-void Latencies::add(const LogEvent& event) {
+void Latencies::add(const LogEvent& event, bool lost) {
+  const int64_t received = lost ? kLost : event.utime;
   ins_t ins;
   scan_t scan;
   map_tile_t tile;
@@ -42,24 +43,24 @@ void Latencies::add(const LogEvent& event) {
   learning_t learning;
   pattern_set_part_t part;
   if (decode(event, kIns, ins)) {
-    ins_.push_back({ins.utime, event.utime});
+    ins_.push_back({ins.utime, received});
     if (ins_.size() > kMostWaiting) ins_.pop_front();
   } else if (decode(event, kScan, scan)) {
-    scans_.push_back({scan.utime, event.utime});
+    scans_.push_back({scan.utime, received});
     if (scans_.size() > kMostWaiting) scans_.pop_front();
   } else if (decode(event, kMap, tile)) {
     for (; !scans_.empty() && scans_.front().utime <= tile.utime; scans_.pop_front())
-      scan_to_tile_.add(milliseconds(scans_.front().received, event.utime));
+      note(scan_to_tile_, scans_.front().received, received);
   } else if (decode(event, kPlan, plan)) {
     const auto found = unplanned_.find(plan.set_version);
     if (found == unplanned_.end()) return;
-    set_to_plan_.add(milliseconds(found->second, event.utime));
+    note(set_to_plan_, found->second, received);
     // Versions that another has overtaken were never planned with.
     unplanned_.erase(unplanned_.begin(), std::next(found));
   } else if (decode(event, kLearning, learning)) {
     hear(learning);
   } else if (decode(event, kPatternSet, part)) {
-    hear(part, event.utime);
+    hear(part, received);
   }
 }
 
@@ -70,7 +71,7 @@ void Latencies::hear(const learning_t& message) {
   if (passed == ins_.end()) return;
   const auto published = first_part_.find(message.result_version);
   if (published != first_part_.end())
-    ins_to_set_.add(milliseconds(passed->received, published->second));
+    note(ins_to_set_, passed->received, published->second);
   else
     awaited_sets_[message.result_version] = passed->received;
 }
@@ -80,7 +81,7 @@ void Latencies::hear(const pattern_set_part_t& message, int64_t received) {
   if (first_part_.emplace(version, received).second) {
     const auto awaited = awaited_sets_.find(version);
     if (awaited != awaited_sets_.end()) {
-      ins_to_set_.add(milliseconds(awaited->second, received));
+      note(ins_to_set_, awaited->second, received);
       awaited_sets_.erase(awaited);
     }
   }
@@ -106,7 +107,7 @@ class Reader {
   void take(const DriveEvent& event) {
     event_ = &event;
     ++drive_.events;
-    drive_.latencies.add(event);
+    drive_.latencies.add(event, event.wrong_time);
     drive_.chronicle.take(event);
     drive_.hand.take(event);
     dispatch(

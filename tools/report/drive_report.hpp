@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -128,7 +129,8 @@ class Durations {
  * first PLAN made with it. Scan to tile: from SCAN to the next MAP message that holds it. */
 class Latencies {
  public:
-  void add(const LogEvent& event);
+  /// `lost`: the log does not say when the event was received; what needs that is left out.
+  void add(const LogEvent& event, bool lost = false);
 
   const Durations& insToSet() const { return ins_to_set_; }
   const Durations& setToPlan() const { return set_to_plan_; }
@@ -137,8 +139,10 @@ class Latencies {
  private:
   struct Received {
     int64_t utime;     ///< [us] of the message
-    int64_t received;  ///< [us] by the logger
+    int64_t received;  ///< [us] by the logger, or kLost
   };
+  static constexpr int64_t kLost = std::numeric_limits<int64_t>::min();
+  static void note(Durations& durations, int64_t from, int64_t to);
   void hear(const learning_t& message);
   void hear(const pattern_set_part_t& message, int64_t received);
 

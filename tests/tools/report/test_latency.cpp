@@ -93,6 +93,16 @@ TEST_CASE("an execution that taught nothing has no latency") {
   CHECK(latencies.insToSet().count() == 0);
 }
 
+TEST_CASE("what was received at a time that the log has lost has no latency") {
+  for (const bool of_ins : {true, false}) {
+    Latencies latencies;
+    latencies.add(received(kIns, insAt(2.02, 0.0)), of_ins);
+    latencies.add(received(kLearning, learnedAt(2.0, 5)));
+    latencies.add(received(kPatternSet, partAt(2.05, 5, 0, 1)), !of_ins);
+    CHECK(latencies.insToSet().count() == 0);
+  }
+}
+
 TEST_CASE("set to plan runs from the last part to the first plan with it, the first set left out") {
   Latencies latencies;
   latencies.add(received(kPatternSet, partAt(1.0, 1, 0, 1)));
