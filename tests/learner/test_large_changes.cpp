@@ -238,7 +238,7 @@ TEST_CASE("where a vehicle drives as before but slides in turns, some turns teac
 }
 
 TEST_CASE("new ground that may lie ahead does not stretch a region along the way") {
-  // What one drive tells of the scatter of one pattern is off by a tenth.
+  // What one drive tells of the scatter of one pattern is off by up to a fifth.
   constexpr int kDrives = 8;
   std::map<size_t, double> over;
   for (int drive = 1; drive <= kDrives; ++drive) {

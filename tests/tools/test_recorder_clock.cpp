@@ -141,7 +141,7 @@ void requireSameUnderWrongClocks(const std::string& tool) {
     CAPTURE(clock.name);
     int lines = 0;
     const std::string said = without(clock.told, recording.of(placed()), lines);
-    if (std::string(clock.told).rfind("events with a time that cannot be", 0) == 0)
+    if (std::string(clock.name) == "many bits")
       CHECK(withoutLatencies(said) == withoutLatencies(healthy));
     else
       CHECK(said == healthy);

@@ -130,7 +130,7 @@ TEST_CASE("what a slope did is not learned with the gate, and spoils level groun
     REQUIRE(without[rule].count == 5 * static_cast<int>(kSeeds));
     // The default rule is spoiled little: measured 1.13.
     const bool little = kRules[rule] == "multi_model";
-    CHECK(without[rule].position > (little ? 1.05 : 1.2) * with[rule].position);
+    CHECK(without[rule].position > (little ? 1.1 : 1.2) * with[rule].position);
     if (little) CHECK(without[rule].position < 1.3 * with[rule].position);
     CHECK(without[rule].yaw > with[rule].yaw);
   }
