@@ -75,6 +75,8 @@ struct Context {
   double voltage = Tilt::kUnknown;  ///< [V] mean, of the battery
   /// v_body before the start.
   Twist2 entry{Tilt::kUnknown, Tilt::kUnknown, Tilt::kUnknown};
+  /// Periods after its start since which the ground is another one; negative: nothing was noticed.
+  int changed_after = -1;
 };
 
 /// M and what was measured beside it. Numbers that were not measured are NaN.

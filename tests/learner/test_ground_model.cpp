@@ -14,15 +14,16 @@ using namespace tread::learner::samples;
 
 namespace {
 
-/// Mean twist of the first samples under a correction.
+/// Mean twist of some samples under a correction.
 Eigen::Vector3d meanUnder(const GroundModel& model, size_t pattern,
-                          const TwistCorrection& correction, Eigen::Index samples) {
+                          const TwistCorrection& correction, Eigen::Index first,
+                          Eigen::Index samples) {
   const TwistProfile& profile = model.profile(pattern);
   std::vector<double> numbers(static_cast<size_t>(3 * profile.samples()));
   Trajectory all(numbers.data(), profile.samples(), 3);
   profile.integrate(model.scale(), correction, all);
-  const Eigen::Array<double, Eigen::Dynamic, 3> beginning = all.topRows(samples);
-  return meanTwist(ConstTrajectory(beginning.data(), samples, 3), samples, 0.05);
+  const ConstTrajectory measured(numbers.data(), profile.samples(), 3);
+  return meanTwist(measured, first, samples, 0.05);
 }
 
 /// One correction of all, the common ones first.
@@ -58,10 +59,13 @@ TEST_CASE("the mean twist of any part of a pattern is corrected exactly, also fa
   const PatternSet set = windingSet();
   const GroundModel model(GroundConfig{}, set);
   for (size_t p = 0; p < model.patterns(); ++p)
-    for (Eigen::Index samples = 1; samples <= model.profile(p).samples(); samples += 6) {
-      const PatternPart part = model.part(p, samples);
+    for (Eigen::Index end = 1; end <= model.profile(p).samples(); end += 6) {
+      const Eigen::Index first = (end % 4) * end / 5;
+      const Eigen::Index samples = end - first;
+      const PatternPart part = model.part(p, first, samples);
+      REQUIRE(part.first == first);
       REQUIRE(part.samples == samples);
-      REQUIRE((part.mean - meanUnder(model, p, {}, samples)).norm() < 1e-12);
+      REQUIRE((part.mean - meanUnder(model, p, {}, first, samples)).norm() < 1e-12);
       for (int i = 0; i < TwistCorrection::kCommon + TwistCorrection::kOwn; ++i) {
         // What turns lose by lag is spread over the whole pattern.
         if (i == TwistCorrection::kYawLag && samples < model.profile(p).samples()) continue;
@@ -72,7 +76,7 @@ TEST_CASE("the mean twist of any part of a pattern is corrected exactly, also fa
         all.common = step.common;
         all.own.col(static_cast<Eigen::Index>(p)) = step.own;
         const Eigen::Vector3d expected = part.mean + part.toBody() * all.added(part);
-        REQUIRE((meanUnder(model, p, step, samples) - expected).norm() < 1e-12);
+        REQUIRE((meanUnder(model, p, step, first, samples) - expected).norm() < 1e-12);
       }
     }
 }
@@ -109,7 +113,7 @@ TEST_CASE("the noise of a part grows with its shortness, the whole is its longes
     REQUIRE(whole.samples == model.profile(p).samples());
     double metres = 0.0;
     for (Eigen::Index samples = 1; samples <= whole.samples; ++samples) {
-      const PatternPart part = model.part(p, samples);
+      const PatternPart part = model.part(p, 0, samples);
       REQUIRE(part.metres >= metres);
       metres = part.metres;
       REQUIRE(part.noise.minCoeff() > 0.0);
@@ -119,7 +123,7 @@ TEST_CASE("the noise of a part grows with its shortness, the whole is its longes
       if (samples == 1) REQUIRE(part.noise[0] > 10.0 * whole.noise[0]);
     }
     REQUIRE(metres == Approx(whole.metres));
-    REQUIRE(model.part(p, whole.samples).noise == whole.noise);
+    REQUIRE(model.part(p, 0, whole.samples).noise == whole.noise);
   }
 }
 

@@ -77,12 +77,13 @@ enum Place : size_t {
   kGroundAt,
   kCalmAt,
   kSearchingAt,
+  kNoticedAt,
   kScatterAt,
   kEffectsAt = kScatterAt + 5 * 7,
   kSurfacesAt = kEffectsAt + 5 * 6 + 4,
   kFirstAt,  ///< the hypothesis of the shipped set's ground
 };
-constexpr size_t kEachPart = 19;
+constexpr size_t kEachPart = 20;
 
 /// The same within a hypothesis, whose banks have so many scales.
 struct Hypothesis {
@@ -95,7 +96,8 @@ struct Hypothesis {
   size_t weight, velocity, yaw, factors;
   size_t last_met = weight + 1, since = weight + 2, centre = weight + 3;
   size_t noise = factors + 3 * 7, executions = noise + 3, parts = executions + 1;
-  size_t part = parts + 1;  ///< pattern, samples, count, sums and squares; the same of entries
+  size_t part =
+      parts + 1;  ///< pattern, first, samples, count, sums and squares; the same of entries
 
   /// Where the next hypothesis, or the number of fresh ones, begins.
   size_t end(const std::vector<double>& memory) const {
@@ -172,6 +174,7 @@ TEST_CASE("a memory with a number that cannot be is refused whole") {
   refused(kGroundAt, {-1.0, 0.5, 58.0, 1e300});
   refused(kCalmAt, {-2.0, 2.0, 1e300});
   refused(kSearchingAt, {-2.0, 2.0, 1e300});
+  refused(kNoticedAt, {-1.0, 0.5, 2.0, 1e300});
   refused(kScatterAt, {-1.0, 1e300});
   refused(kScatterAt + 1, {-1.0, 1e300});
   refused(kEffectsAt, {-1e4, 1e300});            // an effect
@@ -206,14 +209,15 @@ TEST_CASE("a memory with a number that cannot be is refused whole") {
     refused(each.parts, {-1.0, 0.5, memory[each.parts] + 1.0, 1e9, 1e300});
     if (memory[each.parts] < 1.0) continue;
     refused(each.part, {-1.0, 0.5, 7.0, 1e300});
-    refused(each.part + 1, {-1.0, 0.0, 0.5, 21.0, 1e300});
-    refused(each.part + 2, {-1.0, 0.0, memory[each.part + 2] + 0.5, 1e300});
-    refused(each.part + 3, {1e300, -1e300});
-    refused(each.part + 6, {-1e-3});
-    refused(each.part + 9, {-1.0, 0.5, 2.0, 1e300});
-    refused(each.part + 10, {1e300, -1e300});
-    refused(each.part + 13, {-1e-3});
-    refused(each.part + 16, {1e300, -1e300});
+    refused(each.part + 1, {-1.0, 0.5, 20.0, 1e300});
+    refused(each.part + 2, {-1.0, 0.0, 0.5, 21.0, 1e300});
+    refused(each.part + 3, {-1.0, 0.0, memory[each.part + 3] + 0.5, 1e300});
+    refused(each.part + 4, {1e300, -1e300});
+    refused(each.part + 7, {-1e-3});
+    refused(each.part + 10, {-1.0, 0.5, 2.0, 1e300});
+    refused(each.part + 11, {1e300, -1e300});
+    refused(each.part + 14, {-1e-3});
+    refused(each.part + 17, {1e300, -1e300});
   }
 }
 

@@ -14,9 +14,12 @@
 #include "common/config/outputs.hpp"
 #include "common/config/scalars.hpp"
 #include "common/store/output_file.hpp"
+#include "common/store/store.hpp"
 #include "tools/experiment/adaptation/adaptation.hpp"
 #include "tools/experiment/adaptation/rivals.hpp"
+#include "tools/experiment/crossings/crossings.hpp"
 #include "tools/experiment/tables.hpp"
+#include "tools/import/csv_drive.hpp"
 
 namespace {
 
@@ -133,6 +136,88 @@ void define(CLI::App& command, AdaptationArguments& arguments) {
                           "folder for adaptation.html, picture and CSV files");
 }
 
+/// The command crossings.
+struct CrossingArguments {
+  tread::experiment::CrossingSettings settings;
+  std::vector<std::string> files;
+  std::string mapping;
+  std::vector<std::string> overrides;
+  std::string out;
+};
+
+void define(CLI::App& command, CrossingArguments& arguments) {
+  tread::experiment::CrossingSettings& settings = arguments.settings;
+  command.add_option("csv", arguments.files, "drives in CSV, in which columns name the ground")
+      ->required();
+  command.add_option("--mapping", arguments.mapping, "what their columns mean (config/imports)")
+      ->required();
+  command
+      .add_option("--rules", settings.rules,
+                  "rules of the learner, or rivals (" +
+                      tread::joinWords(tread::adaptation::rivalNames()) + ")")
+      ->delimiter(',')
+      ->capture_default_str();
+  command.add_option("--cut", settings.cut.length, "pieces of so many seconds under one command")
+      ->check(CLI::Range(0.2, 50.0))
+      ->capture_default_str();
+  command
+      .add_option("--offset", settings.cut.settle,
+                  "first piece this long after a command began [s]")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str();
+  command.add_option("--known", settings.known, "pieces that the set of a run comes from")
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str();
+  command
+      .add_option("--border", settings.border,
+                  "how far a border may lie from where the columns say [m]")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  command.add_option("--window", settings.test.window, "of the running test [s]")
+      ->check(CLI::Range(0.1, 10.0))
+      ->capture_default_str();
+  command
+      .add_option("--chance", settings.test.chance,
+                  "that a window of unchanged motion is as far off [1]")
+      ->check(CLI::Range(1e-9, 0.5))
+      ->capture_default_str();
+  command.add_option("--memory", settings.config.memory, "w: weight of the old prediction")
+      ->check(CLI::Range(0.0, 0.999))
+      ->capture_default_str();
+  command
+      .add_option("--set", arguments.overrides,
+                  "SECTION.KEY=VALUE in the place of what learner.yaml would say: ground.fresh=0.3")
+      ->expected(1)
+      ->take_all()
+      ->allow_extra_args(false);
+  Outputs(command).folder("--out", arguments.out, "folder for crossings.csv");
+}
+
+void run(CrossingArguments arguments) {
+  namespace experiment = tread::experiment;
+  experiment::CrossingSettings& settings = arguments.settings;
+  tread::ConfigReader reader = tread::ConfigReader::fromText("{}", "learner", arguments.overrides);
+  tread::learner::readRules(reader, settings.config);
+  reader.finish();
+  std::vector<experiment::CrossingDrives> drives;
+  for (const std::string& file : arguments.files) {
+    tread::ConfigReader mapping = tread::ConfigReader::fromFile(arguments.mapping);
+    tread::import::ForeignDrive read =
+        tread::import::readMappedCsv(file, tread::import::readCsvMapping(mapping));
+    drives.push_back(crossingRuns(std::move(read.drive), settings));
+    for (const std::string& note : drives.back().notes)
+      std::cerr << std::filesystem::path(file).filename().string() << ": " << note << '\n';
+  }
+  const auto errors = driveCrossings(drives, settings);
+  if (!arguments.out.empty()) {
+    OutputFolder folder(arguments.out);
+    tread::writeText((std::filesystem::path(folder.path()) / "crossings.csv").string(),
+                     csvOf(errors));
+    folder.commit();
+  }
+  std::cout << textOf(drives) << textOf(errors) << std::flush;
+}
+
 void run(const AdaptationArguments& arguments) {
   tread::adaptation::Report report;
   report.settings = arguments.settings;
@@ -192,10 +277,16 @@ int main(int argc, char** argv) {
       "adaptation",
       "open-loop errors after 0 to 30 executions on ground, in a session, with a vehicle not met");
   define(*adaptation, of_adaptation);
+  CrossingArguments of_crossings;
+  CLI::App* crossings = app.add_subcommand(
+      "crossings", "errors, and how soon it is noticed, where the ground changes inside a run");
+  define(*crossings, of_crossings);
   if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   return tread::runProgram("tread-experiment", [&] {
     if (*adaptation)
       run(of_adaptation);
+    else if (*crossings)
+      run(of_crossings);
     else
       run(arguments);
     return 0;

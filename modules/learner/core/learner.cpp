@@ -23,8 +23,6 @@ constexpr double kLeastWeight = 0.10;
 constexpr int64_t kNoPause = 100'000;
 /// [s] before an execution the planner has chosen it, by what was known then.
 constexpr double kChosenBefore = 0.3;
-/// Numbers about coasting behind those of the rule in the memory.
-constexpr size_t kOfCoasting = Coasting::kNumbers + 3;
 
 /// The guards of a note in words.
 std::string guardsOf(const RuleNote& note) {
@@ -88,6 +86,7 @@ bool Learner::restore(PatternSet set, ResidualTable residuals, const std::vector
   residuals_ = std::move(residuals);
   coasting_ = Coasting(largestSpeed(shipped_));
   ended_ = {};
+  watch_.clear();
   if (restoreMemory(memory)) {
     settled_->assign(*rule_);
     return true;
@@ -97,34 +96,48 @@ bool Learner::restore(PatternSet set, ResidualTable residuals, const std::vector
   return false;
 }
 
+/// The rule's, then what it has of the motion so far: the watch's and their number, of coasting.
 std::vector<double> Learner::memory() const {
   std::vector<double> memory = settled_->memory();
   if (!rule_->learnsParts()) return memory;
-  const auto of_coasting = coasting_.memory();
-  memory.insert(memory.end(), of_coasting.begin(), of_coasting.end());
-  memory.insert(memory.end(),
-                {static_cast<double>(ended_.utime), ended_.beside[0], ended_.beside[1]});
+  const auto put = [&memory](const auto& numbers) {
+    memory.insert(memory.end(), numbers.begin(), numbers.end());
+  };
+  const std::vector<double> of_watch = watch_.memory();
+  put(of_watch);
+  put(std::vector<double>{static_cast<double>(of_watch.size()),
+                          static_cast<double>(watched_until_)});
+  put(coasting_.memory());
+  put(std::vector<double>{static_cast<double>(ended_.utime), ended_.beside[0], ended_.beside[1]});
   return memory;
 }
 
-/// States of before 28 November 2026 have nothing about coasting.
-bool Learner::restoreMemory(const std::vector<double>& memory) {
+bool Learner::restoreMemory(std::vector<double> memory) {
   const TrajectoryTable table(set_.patterns());
-  if (rule_->learnsParts() && memory.size() >= kOfCoasting) {
-    const auto of_coasting = memory.end() - static_cast<std::ptrdiff_t>(kOfCoasting);
-    const auto of_end = of_coasting + static_cast<std::ptrdiff_t>(Coasting::kNumbers);
-    // A whole number of microseconds that a double holds exactly.
-    constexpr double kLatest = 9e15;
-    const bool numbers = std::all_of(of_coasting, memory.end(),
-                                     [](double number) { return std::isfinite(number); }) &&
-                         of_coasting[1] >= 0.0 && of_end[0] >= 0.0 && of_end[0] < kLatest;
-    if (numbers && rule_->restore(table, {memory.begin(), of_coasting})) {
-      coasting_.restore({of_coasting[0], of_coasting[1]});
-      ended_ = {static_cast<int64_t>(of_end[0]), {of_end[1], of_end[2]}};
-      return true;
-    }
-  }
-  return rule_->restore(table, memory);
+  if (!rule_->learnsParts()) return rule_->restore(table, memory);
+  constexpr size_t kAtEnd = Coasting::kNumbers + 5;
+  if (memory.size() < kAtEnd ||
+      !std::all_of(memory.end() - kAtEnd, memory.end(), [](double n) { return std::isfinite(n); }))
+    return false;
+  const auto of_watch = memory.end() - kAtEnd;
+  const auto of_coasting = of_watch + 2;
+  const auto of_end = of_coasting + Coasting::kNumbers;
+  // A whole number of microseconds that a double holds exactly.
+  constexpr double kLatest = 9e15;
+  const auto isTime = [](double number) { return number >= 0.0 && number < kLatest; };
+  const auto left = static_cast<double>(memory.size() - kAtEnd);
+  if (!isTime(of_watch[1]) || !isTime(of_end[0]) || of_coasting[1] < 0.0 ||
+      !(of_watch[0] >= 0.0 && of_watch[0] <= left))
+    return false;
+  const auto watch_begins = of_watch - static_cast<std::ptrdiff_t>(of_watch[0]);
+  ChangeWatch watch = watch_;
+  if (!watch.restore({watch_begins, of_watch})) return false;
+  if (!rule_->restore(table, {memory.begin(), watch_begins})) return false;
+  watch_ = std::move(watch);
+  watched_until_ = static_cast<int64_t>(of_watch[1]);
+  coasting_.restore({of_coasting[0], of_coasting[1]});
+  ended_ = {static_cast<int64_t>(of_end[0]), {of_end[1], of_end[2]}};
+  return true;
 }
 
 void Learner::renumber(int64_t version, int64_t parent) {
@@ -159,20 +172,33 @@ PatternSetContent Learner::predicted(const std::optional<Coming>& coming) const 
   return content;
 }
 
-/// The rule as it was, and this execution.
-RuleNote Learner::update(size_t executed, const Measurement& measurement) {
-  rule_->assign(*settled_);
+/// What was measured of an execution, as the rule learns from it: the rest moves on as predicted.
+Eigen::ArrayX3d Learner::measuredRows(const Measurement& measurement) {
   fill(measurement.trajectory, measured_);
   const auto samples = static_cast<Eigen::Index>(measurement.trajectory.size());
   const ConstTrajectory whole(measured_.data(), samples, 3);
-  RuleNote note;
-  rule_->setContext(measurement.context);
-  if (!rule_->learnsParts() || measurement.complete()) {
-    rule_->learn(executed, whole, note);
-    return note;
+  if (!rule_->learnsParts()) return whole;
+  return whole.topRows(static_cast<Eigen::Index>(measurement.covered));
+}
+
+/// The rule as it was, and this execution, of which the last sample was measured at `utime`.
+RuleNote Learner::update(size_t executed, const Measurement& measurement, int64_t utime) {
+  const Eigen::ArrayX3d rows = measuredRows(measurement);
+  const ConstTrajectory measured(rows.data(), rows.rows(), 3);
+  Context context = measurement.context;
+  changed_after_.reset();
+  if (rule_->learnsParts()) {
+    const double period = set_.periodSeconds();
+    const int64_t begun = utime - std::llround(1e6 * period * static_cast<double>(rows.rows()));
+    if (std::abs(begun - watched_until_) >= kNoPause) watch_.clear();
+    settled_->setContext(context);
+    if (const auto change = watch_.notice(*settled_, executed, measured, period))
+      changed_after_ = context.changed_after = change->after;
   }
-  const Eigen::ArrayX3d beginning = whole.topRows(static_cast<Eigen::Index>(measurement.covered));
-  rule_->learn(executed, ConstTrajectory(beginning.data(), beginning.rows(), 3), note);
+  rule_->assign(*settled_);
+  rule_->setContext(context);
+  RuleNote note;
+  rule_->learn(executed, measured, note);
   return note;
 }
 
@@ -183,6 +209,16 @@ bool Learner::adopt(PatternSetContent content, int64_t version, int64_t utime, s
   auto next = PatternSet::make(std::move(content), why);
   if (next) set_ = *next;
   return next.has_value();
+}
+
+/// The next execution is compared with this one's end, unless that is on another ground already.
+void Learner::watchEnd(size_t executed, const Measurement& measurement, int64_t utime) {
+  watch_.clear();
+  watched_until_ = utime;
+  if (changed_after_ || !rule_->learnsParts() || !measurement.complete()) return;
+  const Eigen::ArrayX3d rows = measuredRows(measurement);
+  watch_.follow(*settled_, executed, ConstTrajectory(rows.data(), rows.rows(), 3),
+                set_.periodSeconds());
 }
 
 /// From how far it ended beside what was predicted before it, and with what it began.
@@ -226,7 +262,7 @@ bool Learner::follow(int pattern_id, const Measurement& beginning, int64_t part,
   const int64_t version = settled_version_ + part;
   if (part >= kVersions || version <= set_.version()) return false;
   const auto coming = comingAfter(*pattern, beginning);
-  update(index_.at(pattern_id), beginning);
+  update(index_.at(pattern_id), beginning, utime);
   std::string why;
   const bool adopted = adopt(predicted(coming), version, utime, why);
   if (adopted)
@@ -253,7 +289,8 @@ Correction Learner::learn(int pattern_id, const Measurement& measurement,
   if (!rule_->learns() || pattern == nullptr || !measurement.fair()) return correction;
   if (measurement.trajectory.size() != pattern->trajectory.size()) return correction;
   const size_t executed = index_.at(pattern_id);
-  correction.note = update(executed, measurement);
+  correction.note = update(executed, measurement, utime);
+  correction.changed_after = changed_after_;
   correction.guards = guardsOf(correction.note);
 
   EndResiduals residuals = residuals_[pattern_id];
@@ -268,6 +305,7 @@ Correction Learner::learn(int pattern_id, const Measurement& measurement,
     append(correction.guards, "not learned, the set would be wrong: " + why);
     return correction;
   }
+  watchEnd(executed, measurement, utime);
   learnCoasting(executed, measurement, utime);
   settled_->assign(*rule_);
   settled_version_ = set_.version();
@@ -275,6 +313,7 @@ Correction Learner::learn(int pattern_id, const Measurement& measurement,
   residuals_[pattern_id] = residuals;
   correction.changed = true;
   correction.reason = rule_->reason(correction.note);
+  if (changed_after_) append(correction.reason, "another ground while it ran");
   return correction;
 }
 

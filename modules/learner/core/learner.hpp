@@ -11,6 +11,7 @@
 #include "common/execution/execution_tracker.hpp"
 #include "common/execution/measurement.hpp"
 #include "common/pattern/pattern.hpp"
+#include "modules/learner/core/change_watch.hpp"
 #include "modules/learner/core/coasting.hpp"
 #include "modules/learner/core/rules/learning_rule.hpp"
 
@@ -22,6 +23,9 @@ struct Correction {
   RuleNote note;
   std::string guards;  ///< which guards held it back, in words; empty = none
   std::string reason;  ///< what the rule took it for, in words; empty if nothing changed
+  /// The ground changed while it ran, so many samples after its start; what came before taught
+  /// nothing.
+  std::optional<int> changed_after;
 };
 
 /// Running mean of squared prediction errors of one pattern's end pose: about zero, because a bias
@@ -107,11 +111,13 @@ class Learner {
   PatternSetContent predicted(const std::optional<Coming>& coming = std::nullopt) const;
   std::optional<Coming> comingAfter(const MotionPattern& running,
                                     const Measurement& beginning) const;
-  bool restoreMemory(const std::vector<double>& memory);
+  bool restoreMemory(std::vector<double> memory);
+  void watchEnd(size_t executed, const Measurement& measurement, int64_t utime);
   void learnCoasting(size_t executed, const Measurement& measurement, int64_t utime);
   /// What the rule predicts of a pattern.
   std::vector<Pose2> predictionOf(const LearningRule& rule, size_t pattern, size_t samples) const;
-  RuleNote update(size_t executed, const Measurement& measurement);
+  RuleNote update(size_t executed, const Measurement& measurement, int64_t utime);
+  Eigen::ArrayX3d measuredRows(const Measurement& measurement);
   /// The predictions as a version; one clear line in `why` if they are no set.
   bool adopt(PatternSetContent content, int64_t version, int64_t utime, std::string& why);
   int64_t nextVersion() const { return settled_version_ + (rule_->learnsParts() ? kVersions : 1); }
@@ -124,6 +130,9 @@ class Learner {
   bool following_ = false;                 ///< the set holds what still runs
   std::unique_ptr<LearningRule> settled_;  ///< without what is learned from a running execution
   ResidualTable residuals_;
+  ChangeWatch watch_;
+  int64_t watched_until_ = 0;         ///< [us] end of the execution that the watch has followed
+  std::optional<int> changed_after_;  ///< in the execution that was learned from last
   Coasting coasting_;
   Ended ended_;
   std::vector<double> measured_;

@@ -94,7 +94,7 @@ void cutPieces(Session& session) {
         continue;
       learner::fill(piece.measured, numbers);
       piece.mean_twist =
-          learner::meanTwist({numbers.data(), kPieceSamples, 3}, kPieceSamples, kPeriod);
+          learner::meanTwist({numbers.data(), kPieceSamples, 3}, 0, kPieceSamples, kPeriod);
       session.pieces.push_back(std::move(piece));
     }
   }

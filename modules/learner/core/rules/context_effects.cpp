@@ -34,17 +34,18 @@ ContextEffects::ContextEffects(const GroundConfig& config) : evidence_(config.co
   variance_.col(kVoltage).setConstant(config.voltage_effect * config.voltage_effect);
 }
 
+void ContextEffects::meet(double voltage) {
+  if (!(voltage > 0.0 && std::isfinite(voltage))) return;
+  if (first_voltage_ == 0.0) first_voltage_ = voltage;
+  sag_ = std::clamp(voltage / first_voltage_ - 1.0, -kMostEffect, kMostEffect);
+}
+
 ContextEffects::Inputs ContextEffects::inputs(const PatternPart& part, double seconds,
-                                              const Context& context) {
+                                              const Tilt& tilt) const {
   Inputs f = Inputs::Zero();
-  if (std::isfinite(context.tilt.ahead) && std::isfinite(context.tilt.left)) {
+  if (std::isfinite(tilt.ahead) && std::isfinite(tilt.left)) {
     const double speed = part.metres / seconds;
-    f.col(kSlope) << speed * context.tilt.ahead, speed * context.tilt.left,
-        speed * context.tilt.left;
-  }
-  if (context.voltage > 0.0 && std::isfinite(context.voltage)) {
-    if (first_voltage_ == 0.0) first_voltage_ = context.voltage;
-    sag_ = std::clamp(context.voltage / first_voltage_ - 1.0, -kMostEffect, kMostEffect);
+    f.col(kSlope) << speed * tilt.ahead, speed * tilt.left, speed * tilt.left;
   }
   f(0, kVoltage) = part.mean[0] * sag_;
   f(2, kVoltage) = part.mean[2] * sag_;

@@ -28,8 +28,10 @@ class ContextEffects {
 
   explicit ContextEffects(const GroundConfig& config);
 
-  /// f; 0 where the context is not known. The first voltage becomes V_0.
-  Inputs inputs(const PatternPart& part, double seconds, const Context& context);
+  /// The battery has this voltage [V] now, if it is known. The first one becomes V_0.
+  void meet(double voltage);
+  /// f at the voltage met last; 0 where the tilt is not known.
+  Inputs inputs(const PatternPart& part, double seconds, const Tilt& tilt) const;
   /// What the effects that count add to each velocity.
   Eigen::Vector3d effect(const Inputs& f) const;
   /// What they add to forward and yaw gain at the voltage met last [1].
@@ -63,7 +65,7 @@ class ContextEffects {
   double executions_ = 0.0;         ///< that the mean is of
   int64_t ground_ = -1;
   double first_voltage_ = 0.0;  ///< V_0 [V]; 0 before one was measured
-  double sag_ = 0.0;            ///< V / V_0 - 1 of the execution learned from last
+  double sag_ = 0.0;            ///< V / V_0 - 1 at the voltage met last
 };
 
 }  // namespace tread::learner

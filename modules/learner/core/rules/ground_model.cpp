@@ -156,15 +156,17 @@ TwistProfile::TwistProfile(const MotionPattern& shipped, double period) : period
   }
 }
 
-PatternPart TwistProfile::part(const BodyScale& scale, Eigen::Index samples) const {
+PatternPart TwistProfile::part(const BodyScale& scale, Eigen::Index first,
+                               Eigen::Index samples) const {
   PatternPart part;
+  part.first = first;
   part.samples = samples;
   part.mean.setZero();
   part.velocity.setZero();
   part.own.setZero();
   part.yaw.setZero();
   const double share = 1.0 / static_cast<double>(samples);
-  for (size_t t = 0; t < static_cast<size_t>(samples); ++t) {
+  for (auto t = static_cast<size_t>(first); t < static_cast<size_t>(first + samples); ++t) {
     const Eigen::Vector2d before = twists_[t > 0 ? t - 1 : 0].head<2>();
     const Response response(scale, twists_[t], (twists_[t].head<2>() - before) / period_);
     part.mean += share * twists_[t];
@@ -175,7 +177,8 @@ PatternPart TwistProfile::part(const BodyScale& scale, Eigen::Index samples) con
     part.bias_own += share * response.bias_own;
     part.turning += share * std::abs(twists_[t][2]);
   }
-  part.yaw[TwistCorrection::kYawLag - TwistCorrection::kVelocity] = lossByLag(scale, samples);
+  part.yaw[TwistCorrection::kYawLag - TwistCorrection::kVelocity] =
+      lossByLag(scale, first, samples);
   part.speed = part.bias_own;
   part.metres = part.speed * period_ * static_cast<double>(samples);
   const double length = part.mean.head<2>().norm();
@@ -190,12 +193,13 @@ PatternPart TwistProfile::part(const BodyScale& scale, Eigen::Index samples) con
 /// What a turn rate of the first samples loses on average, for each second that turns come later:
 /// what becomes of it from their beginning to their end, over the time; less what looks like a
 /// gain.
-double TwistProfile::lossByLag(const BodyScale& scale, Eigen::Index samples) const {
+double TwistProfile::lossByLag(const BodyScale& scale, Eigen::Index first,
+                               Eigen::Index samples) const {
   const auto edge = static_cast<Eigen::Index>(std::lround(kEndOfTurn / period_));
   const Eigen::Index n = std::clamp<Eigen::Index>(edge, 1, std::max<Eigen::Index>(1, samples / 3));
   double change = 0.0, mean = 0.0;
   for (Eigen::Index t = 0; t < samples; ++t) {
-    const double w = twists_[static_cast<size_t>(t)][2];
+    const double w = twists_[static_cast<size_t>(first + t)][2];
     mean += w / static_cast<double>(samples);
     if (t < n) change -= w / static_cast<double>(n);
     if (t >= samples - n) change += w / static_cast<double>(n);
@@ -232,8 +236,8 @@ Pose2 TwistProfile::walk(const BodyScale& scale, const TwistCorrection& x, Put&&
                             scale.axis[1] * r_along + scale.axis[0] * r_across);
   const double turn = scale.speed / scale.turn;
   const double late = within(c[TwistCorrection::kLag], kLargestLag) / period_;
-  const double lost = within(c[TwistCorrection::kYawLag], kLargestLag) *
-                      lossByLag(scale, static_cast<Eigen::Index>(twists_.size()));
+  const double lost =
+      within(c[TwistCorrection::kYawLag], kLargestLag) * lossByLag(scale, 0, samples());
   Pose2 at;
   double c_at = 1.0, s_at = 0.0;  // of at.yaw, turned along instead of computed anew
   for (size_t t = 0; t < twists_.size(); ++t) {
@@ -283,10 +287,13 @@ Pose2 TwistProfile::integrateEnd(const BodyScale& scale, const TwistCorrection& 
   return walk(scale, correction, [](size_t, const Pose2&) {});
 }
 
-Eigen::Vector3d meanTwist(const ConstTrajectory& trajectory, Eigen::Index samples, double period) {
+Eigen::Vector3d meanTwist(const ConstTrajectory& trajectory, Eigen::Index first,
+                          Eigen::Index samples, double period) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Pose2 last;
-  for (Eigen::Index t = 0; t < samples; ++t) {
+  if (first > 0)
+    last = {trajectory(first - 1, 0), trajectory(first - 1, 1), trajectory(first - 1, 2)};
+  for (Eigen::Index t = first; t < first + samples; ++t) {
     const Pose2 pose{trajectory(t, 0), trajectory(t, 1), trajectory(t, 2)};
     sum += sampleMotion(last, pose);
     last = pose;
@@ -309,7 +316,8 @@ GroundModel::GroundModel(const GroundConfig& config, const PatternSet& shipped)
     recorded_.push_back(recorded.value_or(Eigen::Matrix3d::Zero()));
   }
   measureScale(config.lever);
-  for (size_t p = 0; p < profiles_.size(); ++p) whole_.push_back(part(p, profiles_[p].samples()));
+  for (size_t p = 0; p < profiles_.size(); ++p)
+    whole_.push_back(part(p, 0, profiles_[p].samples()));
   fillAlike();
   const double shear = kShearSpread * scale_.isotropy;
   const double bias = 1.0;
@@ -324,7 +332,7 @@ void GroundModel::measureScale(double lever) {
   std::complex<double> sum;
   double length = 1e-12;
   for (const TwistProfile& profile : profiles_) {
-    const PatternPart all = profile.part({}, profile.samples());
+    const PatternPart all = profile.part({}, 0, profile.samples());
     scale_.speed = std::max(scale_.speed, all.speed);
     scale_.turn = std::max(scale_.turn, all.turning);
     const std::complex<double> mean(all.mean[0], all.mean[1]);
@@ -339,26 +347,27 @@ void GroundModel::measureScale(double lever) {
   }
   double as_gain = 0.0, turns = 1e-12;
   for (const TwistProfile& profile : profiles_) {
-    const PatternPart all = profile.part(scale_, profile.samples());
+    const PatternPart all = profile.part(scale_, 0, profile.samples());
     as_gain -= all.mean[2] * all.yaw[TwistCorrection::kYawLag - TwistCorrection::kVelocity];
     turns += squared(all.mean[2]);
   }
   scale_.lag_as_turn = as_gain / turns;
 }
 
-PatternPart GroundModel::part(size_t pattern, Eigen::Index samples) const {
+PatternPart GroundModel::part(size_t pattern, Eigen::Index first, Eigen::Index samples) const {
   const TwistProfile& profile = profiles_[pattern];
-  PatternPart part = profile.part(scale_, samples);
+  PatternPart part = profile.part(scale_, first, samples);
   part.pattern = pattern;
   part.entry_class = entry_classes_[pattern];
   const double seconds = period_ * static_cast<double>(samples);
-  part.settling = (1.0 - std::exp(-seconds / kGone)) / seconds;
+  const double before = period_ * static_cast<double>(first);
+  part.settling = std::exp(-before / kGone) * (1.0 - std::exp(-seconds / kGone)) / seconds;
   const double moved = squared(noise_.position / seconds) + squared(noise_.turning * part.turning);
   Eigen::Matrix3d to_path = Eigen::Matrix3d::Identity();
   to_path.topLeftCorner<2, 2>() = part.to_path;
   // A profile that comes later by dt loses dt of its change.
-  const Eigen::Vector3d change =
-      profile.twists()[static_cast<size_t>(samples - 1)] - profile.twists().front();
+  const Eigen::Vector3d change = profile.twists()[static_cast<size_t>(first + samples - 1)] -
+                                 profile.twists()[static_cast<size_t>(first)];
   Eigen::Vector3d late = noise_.lag / seconds * (to_path * change);
   late.head<2>() *= kLagNoise;
   const Eigen::Vector3d expected =

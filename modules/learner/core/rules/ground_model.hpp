@@ -76,10 +76,12 @@ struct TwistCorrection {
   Eigen::Vector3d added(const PatternPart& part) const;
 };
 
-/// The beginning of a pattern, or the whole of it, as what one measurement of it tells.
+/// A stretch of a pattern, as a rule its beginning or the whole of it, as what one measurement of
+/// it tells.
 /** Twists are in the frame of its path: along the shipped mean velocity, across it, yaw. */
 struct PatternPart {
   size_t pattern = 0;
+  Eigen::Index first = 0;  ///< sample with which it begins
   Eigen::Index samples = 0;
   Eigen::Vector3d mean;               ///< shipped mean twist, body frame [m/s, m/s, rad/s]
   Eigen::Matrix2d to_path;            ///< turns a body vector into the frame of the path
@@ -118,8 +120,8 @@ class TwistProfile {
                  Trajectory prediction) const;
   /// Its last pose alone.
   Pose2 integrateEnd(const BodyScale& scale, const TwistCorrection& correction) const;
-  /// Mean twist of the first samples, and its responses; no noise yet.
-  PatternPart part(const BodyScale& scale, Eigen::Index samples) const;
+  /// Mean twist of so many samples from `first` on, and its responses; no noise yet.
+  PatternPart part(const BodyScale& scale, Eigen::Index first, Eigen::Index samples) const;
   /// Change of the last pose per unit of a constant twist added to all samples [s, m s].
   const Eigen::Matrix3d& endLever() const { return end_lever_; }
   Eigen::Index samples() const { return static_cast<Eigen::Index>(twists_.size()); }
@@ -130,16 +132,17 @@ class TwistProfile {
   template <typename Put>
   Pose2 walk(const BodyScale& scale, const TwistCorrection& correction, Put&& put) const;
 
-  double lossByLag(const BodyScale& scale, Eigen::Index samples) const;
+  double lossByLag(const BodyScale& scale, Eigen::Index first, Eigen::Index samples) const;
 
   double period_;
   std::vector<Eigen::Vector3d> twists_;  ///< [m/s, m/s, rad/s]
   Eigen::Matrix3d end_lever_;
 };
 
-/// Mean body twist of the first samples of a trajectory that begins in (0, 0, 0); allocates
-/// nothing.
-Eigen::Vector3d meanTwist(const ConstTrajectory& trajectory, Eigen::Index samples, double period);
+/// Mean body twist of so many samples, from `first` on, of a trajectory that begins in (0, 0, 0);
+/// allocates nothing.
+Eigen::Vector3d meanTwist(const ConstTrajectory& trajectory, Eigen::Index first,
+                          Eigen::Index samples, double period);
 
 /// Patterns as body twists, how alike they are, and how exact one execution is. Immutable.
 class GroundModel {
@@ -150,7 +153,7 @@ class GroundModel {
   double period() const { return period_; }
   const BodyScale& scale() const { return scale_; }
   const TwistProfile& profile(size_t pattern) const { return profiles_[pattern]; }
-  PatternPart part(size_t pattern, Eigen::Index samples) const;
+  PatternPart part(size_t pattern, Eigen::Index first, Eigen::Index samples) const;
   const PatternPart& whole(size_t pattern) const { return whole_[pattern]; }
 
   size_t classes() const { return class_twists_.size(); }

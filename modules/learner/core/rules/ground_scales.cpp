@@ -12,7 +12,7 @@ struct Width {
 };
 using Widths = std::vector<Width>;
 
-const Widths kGain{{0.03, 0.4}, {0.1, 0.3}, {0.3, 0.2}, {0.6, 0.1}};
+const Widths kGain{{0.03, 0.4}, {0.1, 0.3}, {0.3, 0.2}, {0.6, 0.08}, {1.5, 0.02}};
 /// What turns do to the velocity, beside what goes with the gain: a vehicle that drives straight as
 /// before may slide in turns.
 const Widths kTurns{{0.0, 0.4}, {0.1, 0.4}, {0.3, 0.2}};

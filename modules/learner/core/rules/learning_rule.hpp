@@ -130,9 +130,17 @@ struct RuleNote {
   bool turned_back = false;                 ///< guard: net yaw of M against the prediction's
   std::array<bool, 3> held{};               ///< guard: axes of the executed pattern that are noise
   double change_probability = kUnknown;     ///< [1] that the ground changed
+  bool no_change = false;                   ///< a change noticed before proves to be none
   int surface = 0;                          ///< likeliest remembered surface, from 1; 0 = unknown
   double surface_probability = kUnknown;    ///< [1] of that, or of "unknown"
   bool surface_stored = false;              ///< there is a new one to remember
+};
+
+/// A measured mean body twist less the expected one [m/s, m/s, rad/s], and the covariance of that
+/// while the ground stays what it is taken for.
+struct TwistDeparture {
+  Eigen::Vector3d mean;
+  Eigen::Matrix3d covariance;
 };
 
 /// A rule of learning: predictions of all patterns of a set, corrected by measurements.
@@ -160,6 +168,16 @@ class LearningRule {
   virtual Pose2 predictEnd(size_t pattern) const = 0;
   /// Of predictEnd(), of ground and execution together; nothing if the rule does not know it.
   virtual std::optional<PoseCovariance> endCovariance(size_t /*pattern*/) const {
+    return std::nullopt;
+  }
+
+  /// How far the mean twist of some samples of an execution, from `first` on, is from what is
+  /// expected on the ground that the rule believes in; nothing if it does not know. The context is
+  /// that of setContext().
+  virtual std::optional<TwistDeparture> departure(size_t /*pattern*/,
+                                                  const ConstTrajectory& /*measured*/,
+                                                  Eigen::Index /*first*/,
+                                                  Eigen::Index /*samples*/) const {
     return std::nullopt;
   }
 

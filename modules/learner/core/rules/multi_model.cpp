@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -32,6 +33,8 @@ constexpr double kScalePrior = 4.0;
 constexpr double kSurelyChanged = 0.5;
 /// Smaller sums of squared corrections are none.
 constexpr double kLeastAgreed = 1e-12;
+/// Where a change was noticed it is so probable [1].
+constexpr double kDecided = 0.9;
 /// The ground changes in the middle of a pattern, if it does: [1] of what changes.
 constexpr double kBehindChange = 0.5;
 
@@ -144,21 +147,25 @@ double MultiModel::hazard(double metres) const {
   return 1.0 - std::exp(-std::max(metres, kLeastMetres) * rate);
 }
 
-void MultiModel::countChange(double metres) {
+bool MultiModel::countChange(double metres) {
+  bool none = false;
   metres_ += metres;
   for (const auto* hypotheses : {&surfaces_, &fresh_})
     for (const Hypothesis& hypothesis : *hypotheses) {
-      if (hypothesis.weight < config_.sure || hypothesis.since == ground_) continue;
+      if (hypothesis.weight < config_.sure) continue;
+      none = std::exchange(noticed_, false) && hypothesis.since == ground_;
+      if (hypothesis.since == ground_) continue;
       ground_ = hypothesis.since;
       changes_ += 1.0;
     }
-  if (metres_ < kLongestWay) return;
-  changes_ *= kLongestWay / metres_;
-  metres_ = kLongestWay;
+  if (metres_ >= kLongestWay) {
+    changes_ *= kLongestWay / metres_;
+    metres_ = kLongestWay;
+  }
+  return none;
 }
 
-void MultiModel::expectChange(double metres) {
-  const double h = hazard(metres);
+void MultiModel::expectChange(double h) {
   const double known = h * (1.0 - config_.fresh) / static_cast<double>(surfaces_.size());
   changed_.clear();
   for (Hypothesis& hypothesis : surfaces_) {
@@ -341,6 +348,25 @@ TwistCorrection MultiModel::expected(const PatternPart& part) const {
   return correction;
 }
 
+std::optional<MultiModel::Stretch> MultiModel::stretch(size_t pattern,
+                                                       const ConstTrajectory& measured,
+                                                       Eigen::Index first,
+                                                       Eigen::Index samples) const {
+  const Eigen::Vector3d mean_twist = meanTwist(measured, first, samples, model_->period());
+  if (!mean_twist.allFinite()) return std::nullopt;
+  const PatternPart& whole = model_->whole(pattern);
+  const Eigen::Vector3d entry = model_->besideClass(pattern, context_.entry);
+  Stretch result;
+  result.sample.part =
+      first == 0 && samples == whole.samples ? whole : model_->part(pattern, first, samples);
+  result.sample.entry = entry.allFinite() ? plausible(entry) : entry;
+  result.inputs = effects_.inputs(result.sample.part,
+                                  model_->period() * static_cast<double>(samples), context_.tilt);
+  result.effect = effects_.effect(result.inputs);
+  result.sample.mean_twist = plausible(mean_twist - result.effect);
+  return result;
+}
+
 void MultiModel::learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) {
   const PatternPart& whole = model_->whole(executed);
   // Few lengths of beginnings, so that what is measured of them stays together.
@@ -348,15 +374,15 @@ void MultiModel::learn(size_t executed, const ConstTrajectory& measured, RuleNot
   const Eigen::Index samples = measured.rows() >= whole.samples ? whole.samples
                                : measured.rows() >= step        ? measured.rows() / step * step
                                                                 : measured.rows();
-  const Eigen::Vector3d mean_twist = meanTwist(measured, samples, model_->period());
-  if (!mean_twist.allFinite()) return;  // beyond all numbers
-  const Eigen::Vector3d entry = model_->besideClass(executed, context_.entry);
-  TwistSample sample{samples == whole.samples ? whole : model_->part(executed, samples), mean_twist,
-                     entry.allFinite() ? plausible(entry) : entry};
-  const ContextEffects::Inputs inputs =
-      effects_.inputs(sample.part, model_->period() * static_cast<double>(samples), context_);
-  const Eigen::Vector3d effect = effects_.effect(inputs);
-  sample.mean_twist = plausible(mean_twist - effect);
+  // What lies before a change tells nothing of the ground behind it.
+  const bool decided = context_.changed_after >= 0;
+  const Eigen::Index after = (context_.changed_after + step - 1) / step * step;
+  const Eigen::Index first = decided && after < samples ? after : 0;
+  effects_.meet(context_.voltage);
+  const auto of_samples = stretch(executed, measured, first, samples - first);
+  if (!of_samples) return;  // beyond all numbers
+  const auto& [sample, inputs, effect] = *of_samples;
+  const bool all = first == 0 && samples == whole.samples;
   const Surface& before = likeliest().surface;
   const TwistSample usual = before.asUsual(sample);
   const Moments expected = before.expected(usual.part);
@@ -365,18 +391,20 @@ void MultiModel::learn(size_t executed, const ConstTrajectory& measured, RuleNot
   Eigen::Matrix3d spread = expected.covariance;
   spread.diagonal() += before.executionNoise(sample.part);
   const Eigen::Vector3d variance = (turn * spread * turn.transpose()).diagonal();
-  if (samples == whole.samples) calibrate(sample);
+  if (all) calibrate(sample);
   ++clock_;
-  expectChange(sample.part.metres);
+  expectChange(decided ? kDecided : hazard(sample.part.metres));
   weigh(sample);
   // Only a hypothesis that was sure is another ground: what moves one execution may be the context.
   if (change_probability_ < kSurelyChanged) effects_.learn(inputs, beyond, variance, ground_);
   context_ = {};
-  countChange(sample.part.metres);
+  noticed_ = noticed_ || decided;
+  note.no_change = countChange(sample.part.metres);
   forgetWeakest();
   update(sample);
   const Eigen::Index last = samples - 1;
-  followScatter(sample, effect, {measured(last, 0), measured(last, 1), measured(last, 2)});
+  if (!decided)
+    followScatter(sample, effect, {measured(last, 0), measured(last, 1), measured(last, 2)});
   note.surface_stored = rememberSettled();
   expectNew();
   Surface& of_shipped = surfaces_.front().surface;

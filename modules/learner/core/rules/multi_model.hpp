@@ -60,6 +60,8 @@ class MultiModel : public LearningRule {
   void predict(size_t pattern, Trajectory prediction) const override;
   Pose2 predictEnd(size_t pattern) const override;
   std::optional<PoseCovariance> endCovariance(size_t pattern) const override;
+  std::optional<TwistDeparture> departure(size_t pattern, const ConstTrajectory& measured,
+                                          Eigen::Index first, Eigen::Index samples) const override;
   int remembered() const override { return static_cast<int>(surfaces_.size()); }
   void assign(const LearningRule& other) override;
   std::unique_ptr<LearningRule> clone() const override {
@@ -86,8 +88,18 @@ class MultiModel : public LearningRule {
   SurfacePrior expectNewGround() const;
   void expectNew();
   double hazard(double metres) const;
-  void countChange(double metres);
-  void expectChange(double metres);
+  /// Whether a change that was noticed proves to be none.
+  bool countChange(double metres);
+  /// `h`: how probable it is that the ground has changed.
+  void expectChange(double h);
+  /// A stretch of an execution, and what its slope and battery add to its twist.
+  struct Stretch {
+    TwistSample sample;  ///< without that
+    ContextEffects::Inputs inputs;
+    Eigen::Vector3d effect;
+  };
+  std::optional<Stretch> stretch(size_t pattern, const ConstTrajectory& measured,
+                                 Eigen::Index first, Eigen::Index samples) const;
   void weigh(const TwistSample& sample);
   void scaleWeights(double total);
   void normalizeWeights();
@@ -124,6 +136,7 @@ class MultiModel : public LearningRule {
   double changes_ = 0.0;  ///< of ground that were sure in the end
   double metres_ = 0.0;   ///< driven meanwhile
   int64_t ground_ = 0;    ///< `since` of the hypothesis that was sure last
+  bool noticed_ = false;  ///< a change, and no ground was sure since
   int64_t clock_ = 1;     ///< 0 is when the shipped set was made
   Calibration calm_, searching_;
   SetCorrection mean_;          ///< of the mixture, without the next change

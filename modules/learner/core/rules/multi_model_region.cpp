@@ -146,6 +146,20 @@ Moments MultiModel::region(const PatternPart& part) const {
   return all;
 }
 
+std::optional<TwistDeparture> MultiModel::departure(size_t pattern, const ConstTrajectory& measured,
+                                                    Eigen::Index first,
+                                                    Eigen::Index samples) const {
+  const auto of_samples = stretch(pattern, measured, first, samples);
+  if (!of_samples) return std::nullopt;
+  const Surface& ground = likeliest().surface;
+  const TwistSample usual = ground.asUsual(of_samples->sample);
+  Moments expected = ground.expected(usual.part);
+  expected.covariance.diagonal() += ground.usualNoise(usual.part);
+  const Eigen::Matrix3d turn = usual.part.toBody();
+  return TwistDeparture{turn * (usual.deviation() - expected.mean),
+                        turn * expected.covariance * turn.transpose()};
+}
+
 void MultiModel::calibrate(const TwistSample& sample) {
   const Moments expected = region(sample.part);
   const Eigen::Vector3d d = sample.deviation() - expected.mean;

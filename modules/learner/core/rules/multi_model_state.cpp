@@ -10,7 +10,8 @@ namespace tread::learner {
 
 std::vector<double> MultiModel::memory() const {
   std::vector<double> memory{static_cast<double>(clock_),  changes_,         metres_,
-                             static_cast<double>(ground_), calm_.log_factor, searching_.log_factor};
+                             static_cast<double>(ground_), calm_.log_factor, searching_.log_factor,
+                             noticed_ ? 1.0 : 0.0};
   memory.insert(memory.end(), scatter_.sums.data(), scatter_.sums.data() + scatter_.sums.size());
   effects_.save(memory);
   for (const auto* hypotheses : {&surfaces_, &fresh_}) {
@@ -49,7 +50,7 @@ bool MultiModel::restoreHypotheses(std::vector<Hypothesis>& hypotheses, const Su
 bool MultiModel::restore(const TrajectoryTable&, const std::vector<double>& memory) {
   for (const double number : memory)
     if (!std::isfinite(number)) return false;
-  size_t at = 6 + static_cast<size_t>(scatter_.sums.size());
+  size_t at = 7 + static_cast<size_t>(scatter_.sums.size());
   if (memory.size() < at || !isCount(memory[0], kMostExecutions)) return false;
   MultiModel rule = *this;
   rule.clock_ = static_cast<int64_t>(memory[0]);
@@ -65,7 +66,9 @@ bool MultiModel::restore(const TrajectoryTable&, const std::vector<double>& memo
     if (calibration->log_factor < Calibration::kNarrowest ||
         calibration->log_factor > Calibration::kWidest)
       return false;
-  std::copy_n(memory.begin() + 6, rule.scatter_.sums.size(), rule.scatter_.sums.data());
+  if (!isCount(memory[6], 1.0)) return false;
+  rule.noticed_ = memory[6] == 1.0;
+  std::copy_n(memory.begin() + 7, rule.scatter_.sums.size(), rule.scatter_.sums.data());
   if (rule.scatter_.sums.minCoeff() < 0.0 ||
       rule.scatter_.sums.maxCoeff() > kMostError * kMostExecutions)
     return false;

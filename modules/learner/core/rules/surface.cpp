@@ -12,6 +12,8 @@ namespace tread::learner {
 namespace {
 
 constexpr double kLargestTwist = 100.0;
+/// A part whose mean is not met says at most so many variances of noise [1].
+constexpr double kMostMisfit = 16.0;
 /// What weighs less adds nothing: to a density, to the noise [1].
 constexpr double kLeastInDensity = 1e-6;
 constexpr double kLeastInNoise = 0.01;
@@ -97,8 +99,8 @@ Surface::Surface(std::shared_ptr<const GroundModel> model, const GroundConfig& c
 
 Surface::Measured& Surface::measuredOf(const PatternPart& part, bool entered) {
   for (Measured& measured : measured_)
-    if (measured.part.pattern == part.pattern && measured.part.samples == part.samples &&
-        measured.entered == entered)
+    if (measured.part.pattern == part.pattern && measured.part.first == part.first &&
+        measured.part.samples == part.samples && measured.entered == entered)
       return measured;
   measured_.push_back({part, entered});
   return measured_.back();
@@ -318,6 +320,17 @@ void Surface::estimateNoise(const GroundConfig& config) {
     const Eigen::VectorXd velocity =
         posterior_->velocity.doubt(velocity_noise_.reshaped(), kLeastInNoise);
     const Eigen::VectorXd yaw = posterior_->yaw.doubt(yaw_noise_, kLeastInNoise);
+    // What executions of one part differ by is their noise, whatever ground does. Where their mean
+    // is not met by much more than that, ground is not met.
+    Eigen::Vector3d repeated = Eigen::Vector3d::Constant(a0);
+    Eigen::Vector3d apart = b;
+    for (const Measured& measured : measured_) {
+      const Eigen::Vector3d within = squaresWithin(measured);
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        repeated[axis] += 0.5 * std::max(0.0, measured.count - 1.0);
+        apart[axis] += 0.5 * within[axis] / R(measured.part, axis);
+      }
+    }
     for (size_t i = 0; i < measured_.size(); ++i) {
       const Measured& measured = measured_[i];
       const auto at = static_cast<Eigen::Index>(i);
@@ -326,9 +339,13 @@ void Surface::estimateNoise(const GroundConfig& config) {
       Eigen::Vector3d error = measured.squares - 2.0 * moved.cwiseProduct(measured.sum) +
                               measured.count * (moved.cwiseAbs2() + doubt);
       if (measured.entered) error += growthByEntries(measured, moved);
+      const Eigen::Vector3d within = squaresWithin(measured);
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         certainty_[axis] += 0.5 * measured.count;
-        b[axis] += 0.5 * std::max(0.0, error[axis]) / R(measured.part, axis);
+        double misfit = (error[axis] - within[axis]) / R(measured.part, axis);
+        if (measured.count >= 2.0)
+          misfit = std::min(misfit, kMostMisfit * apart[axis] / repeated[axis]);
+        b[axis] += 0.5 * std::max(0.0, within[axis] / R(measured.part, axis) + misfit);
       }
     }
   }
@@ -336,6 +353,14 @@ void Surface::estimateNoise(const GroundConfig& config) {
     noise_[axis] = std::clamp(b[axis] / certainty_[axis], kLeastNoise, kMostNoise);
     certainty_[axis] = std::min(certainty_[axis], 0.5 * config.most_freedom);
   }
+}
+
+/// Squares of the deviations of a part about their mean, less what its entries explain of them.
+Eigen::Vector3d Surface::squaresWithin(const Measured& measured) const {
+  const double n = measured.count;
+  Eigen::Vector3d squares = measured.squares - measured.sum.cwiseAbs2() / n;
+  if (measured.entered) squares += growthByEntries(measured, measured.sum / n);
+  return squares.cwiseMax(0.0);
 }
 
 double Surface::logDensity(const TwistSample& measured, const Eigen::Vector3d& returned) const {
@@ -377,11 +402,16 @@ Moments Surface::expected(const PatternPart& part, double least) const {
   return moments;
 }
 
-Eigen::Vector3d Surface::executionNoise(const PatternPart& part) const {
-  // The variance of Student's t over its scale^2: freedom / (freedom - 2).
+Eigen::Vector3d Surface::usualNoise(const PatternPart& part) const {
   Eigen::Vector3d noise;
-  for (Eigen::Index axis = 0; axis < 3; ++axis)
-    noise[axis] = noise_[axis] * R(part, axis) * certainty_[axis] / (certainty_[axis] - 1.0);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) noise[axis] = noise_[axis] * R(part, axis);
+  return noise;
+}
+
+Eigen::Vector3d Surface::executionNoise(const PatternPart& part) const {
+  Eigen::Vector3d noise = usualNoise(part);
+  // The variance of Student's t over its scale^2: freedom / (freedom - 2).
+  noise.array() *= certainty_.array() / (certainty_.array() - 1.0);
   noise.head<2>() *= posterior_->velocity.meanNoise();
   noise[2] *= posterior_->yaw.meanNoise();
   Eigen::Vector3d entry = squared(part.settling) * entries_[part.entry_class].variance;
@@ -417,6 +447,7 @@ void Surface::save(std::vector<double>& memory) const {
   memory.push_back(static_cast<double>(measured_.size()));
   for (const Measured& measured : measured_) {
     memory.insert(memory.end(), {static_cast<double>(measured.part.pattern),
+                                 static_cast<double>(measured.part.first),
                                  static_cast<double>(measured.part.samples), measured.count});
     put(measured.sum);
     put(measured.squares);
@@ -428,7 +459,7 @@ void Surface::save(std::vector<double>& memory) const {
 }
 
 bool Surface::restoreMeasured(const std::vector<double>& memory, size_t& at) {
-  constexpr size_t kEach = 19;
+  constexpr size_t kEach = 20;
   const double parts = memory[at++];
   if (!isCount(parts, static_cast<double>((memory.size() - at) / kEach))) return false;
   measured_.clear();
@@ -436,22 +467,24 @@ bool Surface::restoreMeasured(const std::vector<double>& memory, size_t& at) {
   for (size_t i = 0; i < static_cast<size_t>(parts); ++i, at += kEach) {
     if (!isCount(memory[at], static_cast<double>(model_->patterns()) - 1.0)) return false;
     const auto pattern = static_cast<size_t>(memory[at]);
-    const double samples = memory[at + 1];
-    if (samples < 1.0 || !isCount(samples, static_cast<double>(model_->profile(pattern).samples())))
+    const double first = memory[at + 1], samples = memory[at + 2];
+    const auto most_samples = static_cast<double>(model_->profile(pattern).samples());
+    if (samples < 1.0 || !isCount(samples, most_samples) || !isCount(first, most_samples - samples))
       return false;
-    Measured measured{model_->part(pattern, static_cast<Eigen::Index>(samples))};
-    measured.count = memory[at + 2];
-    measured.sum = Eigen::Map<const Eigen::Vector3d>(&memory[at + 3]);
-    measured.squares = Eigen::Map<const Eigen::Vector3d>(&memory[at + 6]);
-    measured.entered = memory[at + 9] == 1.0;
-    measured.entries = Eigen::Map<const Eigen::Vector3d>(&memory[at + 10]);
-    measured.entry_squares = Eigen::Map<const Eigen::Vector3d>(&memory[at + 13]);
-    measured.products = Eigen::Map<const Eigen::Vector3d>(&memory[at + 16]);
+    Measured measured{model_->part(pattern, static_cast<Eigen::Index>(first),
+                                   static_cast<Eigen::Index>(samples))};
+    measured.count = memory[at + 3];
+    measured.sum = Eigen::Map<const Eigen::Vector3d>(&memory[at + 4]);
+    measured.squares = Eigen::Map<const Eigen::Vector3d>(&memory[at + 7]);
+    measured.entered = memory[at + 10] == 1.0;
+    measured.entries = Eigen::Map<const Eigen::Vector3d>(&memory[at + 11]);
+    measured.entry_squares = Eigen::Map<const Eigen::Vector3d>(&memory[at + 14]);
+    measured.products = Eigen::Map<const Eigen::Vector3d>(&memory[at + 17]);
     const double most = kLargestTwist * 3.0;
     if (!(measured.count > 0.0 && measured.count <= kMostExecutions) ||
         measured.squares.minCoeff() < 0.0 ||
         measured.sum.cwiseAbs().maxCoeff() > most * measured.count ||
-        !isCount(memory[at + 9], 1.0) || measured.entry_squares.minCoeff() < 0.0 ||
+        !isCount(memory[at + 10], 1.0) || measured.entry_squares.minCoeff() < 0.0 ||
         measured.entries.cwiseAbs().maxCoeff() > most * measured.count ||
         measured.products.cwiseAbs().maxCoeff() > most * most * measured.count)
       return false;

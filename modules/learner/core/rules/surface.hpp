@@ -84,11 +84,11 @@ struct Moments {
  * What an execution is entered with lasts for a while: with d the twist before it less the usual
  * one on this surface before patterns of its class, it moves by
  *    (tau + x) d sigma,   sigma = (1 - exp(-T / 0.5 s)) / T
- * more, tau = 0.05 s what every vehicle needs to settle, x of velocity and of turn a part of the two
- * regressions: from what patterns differ by in their mean d. Within a pattern d is mostly the noise
- * of the INS, and a slope over that too flat. Predictions are for what is usual; how much entries
- * differ is in their regions. A next execution is expected from a mixture over the scales of
- * Student's t with 2 a degrees of freedom. */
+ * more, tau = 0.05 s what every vehicle needs to settle, x of velocity and of turn a part of the
+ * two regressions: from what patterns differ by in their mean d. Within a pattern d is mostly the
+ * noise of the INS, and a slope over that too flat. Predictions are for what is usual; how much
+ * entries differ is in their regions. A next execution is expected from a mixture over the scales
+ * of Student's t with 2 a degrees of freedom. */
 class Surface {
  public:
   Surface(std::shared_ptr<const GroundModel> model, const GroundConfig& config,
@@ -105,6 +105,8 @@ class Surface {
   /// Of the mean twist's correction, of which one execution scatters by executionNoise().
   /** Scales that weigh less than `least` do not count. */
   Moments expected(const PatternPart& part, double least = kLeastInMoments) const;
+  /// Variance of one execution's mean twist as most scatter, without tails.
+  Eigen::Vector3d usualNoise(const PatternPart& part) const;
   /// Variance of one execution's mean twist, along, across and of yaw, whatever it is entered with.
   Eigen::Vector3d executionNoise(const PatternPart& part) const;
   /// E[(z - m - h' x)^2] of an execution over the model's noise.
@@ -153,6 +155,7 @@ class Surface {
   void regress();
   void correct();
   Eigen::Vector3d growthByEntries(const Measured& measured, const Eigen::Vector3d& moved) const;
+  Eigen::Vector3d squaresWithin(const Measured& measured) const;
   void estimateNoise(const GroundConfig& config);
   VelocityBank::Cross velocityCross(const PatternPart& part) const;
   YawBank::Cross yawCross(const PatternPart& part) const;
