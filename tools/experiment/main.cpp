@@ -190,7 +190,7 @@ void define(CLI::App& command, CrossingArguments& arguments) {
       ->expected(1)
       ->take_all()
       ->allow_extra_args(false);
-  Outputs(command).folder("--out", arguments.out, "folder for crossings.csv");
+  Outputs(command).folder("--out", arguments.out, "folder for crossings.csv and noticed.csv");
 }
 
 void run(CrossingArguments arguments) {
@@ -211,8 +211,9 @@ void run(CrossingArguments arguments) {
   const auto errors = driveCrossings(drives, settings);
   if (!arguments.out.empty()) {
     OutputFolder folder(arguments.out);
-    tread::writeText((std::filesystem::path(folder.path()) / "crossings.csv").string(),
-                     csvOf(errors));
+    const std::filesystem::path made = folder.path();
+    tread::writeText((made / "crossings.csv").string(), csvOf(errors));
+    tread::writeText((made / "noticed.csv").string(), noticedCsvOf(errors));
     folder.commit();
   }
   std::cout << textOf(drives) << textOf(errors) << std::flush;

@@ -104,8 +104,9 @@ std::vector<CrossingErrors> driveCrossings(const std::vector<CrossingDrives>& dr
 
 /// How many runs and changes there are.
 std::string textOf(const std::vector<CrossingDrives>& drives);
-/// Errors, regions and notices as a table for people, and as one for programs.
+/// Errors, regions and notices as a table for people; errors and notices for programs.
 std::string textOf(const std::vector<CrossingErrors>& errors);
 std::string csvOf(const std::vector<CrossingErrors>& errors);
+std::string noticedCsvOf(const std::vector<CrossingErrors>& errors);
 
 }  // namespace tread::experiment

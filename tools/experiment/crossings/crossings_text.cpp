@@ -73,7 +73,9 @@ std::string textOf(const std::vector<CrossingErrors>& errors) {
                              : "-";
   });
   text +=
-      "\nrunning twist      false alarms (runs)    noticed in .5 s   .8 s  1.6 s    of  median\n";
+      "\nnoticed while a piece runs: runs with a false alarm, and real changes within so many "
+      "seconds\n"
+      "                   false of runs, driven          .5 s     .8    1.6    of  median\n";
   for (const CrossingErrors& one : errors) {
     const Notices& notices = one.notices;
     if (notices.runs == 0) continue;
@@ -94,6 +96,18 @@ std::string csvOf(const std::vector<CrossingErrors>& errors) {
                         phase.pieces, phase.metres, phase.pieces > 0 ? phase.perMetre() : 0.0,
                         phase.regions, phase.inside);
     }
+  return text;
+}
+
+std::string noticedCsvOf(const std::vector<CrossingErrors>& errors) {
+  std::string text =
+      "rule,runs,false_runs,undisturbed_s,changes,within_0.5,within_0.8,within_1.6\n";
+  for (const CrossingErrors& one : errors) {
+    const Notices& notices = one.notices;
+    text += formatted("%s,%zu,%zu,%.1f,%zu,%zu,%zu,%zu\n", one.rule.c_str(), notices.runs,
+                      notices.false_runs, notices.undisturbed, notices.real, notices.within(0.5),
+                      notices.within(0.8), notices.delays.size());
+  }
   return text;
 }
 
