@@ -14,7 +14,7 @@
 //        one execution scatters in so short a time
 //    x = d' S^-1 d     chi^2 with three degrees of freedom on unchanged ground
 // The ground is decided to have changed where x exceeds its threshold in two windows one after the
-// other (one may be a jump of the INS). It has changed since the moment from which on the window is
+// other (one bad pose is none). It has changed since the moment from which on the window is
 // most unlike what was expected: the largest x of its last parts.
 namespace tread::learner {
 

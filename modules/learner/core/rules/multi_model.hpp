@@ -48,7 +48,10 @@ struct Calibration {
  * a pattern in which the ground changes by h. The region of 90 % is found of the mixture itself,
  * with a change at most so probable that a region of 90 % could hold it; its shape is that of the
  * nearest hypotheses that weigh 90 % together. It follows how often it held, apart while it knows
- * the ground and while it searches. */
+ * the ground and while it searches: then it begins a tenth wider, as new ground surprises.
+ *
+ * A change that was noticed while the pattern ran (Context::changed_after) has h = 0.9; only what
+ * was measured behind it counts. */
 class MultiModel : public LearningRule {
  public:
   MultiModel(const RuleConfig& config, const PatternSet& shipped);
@@ -138,7 +141,7 @@ class MultiModel : public LearningRule {
   int64_t ground_ = 0;    ///< `since` of the hypothesis that was sure last
   bool noticed_ = false;  ///< a change, and no ground was sure since
   int64_t clock_ = 1;     ///< 0 is when the shipped set was made
-  Calibration calm_, searching_;
+  Calibration calm_, searching_{0.1};
   SetCorrection mean_;          ///< of the mixture, without the next change
   SetCorrection changed_mean_;  ///< behind the next change
 };

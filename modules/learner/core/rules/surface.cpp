@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kLargestTwist = 100.0;
 /// A part whose mean is not met says at most so many variances of noise [1].
-constexpr double kMostMisfit = 16.0;
+constexpr double kMostMisfit = 25.0;
 /// What weighs less adds nothing: to a density, to the noise [1].
 constexpr double kLeastInDensity = 1e-6;
 constexpr double kLeastInNoise = 0.01;
