@@ -352,7 +352,7 @@ void countTermsToRest(const Observations& data, ModelDocument& model) {
       ++count;
     }
     if (squares <= 0.0) continue;
-    const double size = std::sqrt(squares / static_cast<double>(count));
+    const double size = kTermForm * std::sqrt(squares / static_cast<double>(count));
     const auto whole =
         std::find_if(model.rest->begin(), model.rest->end(), [channel](const RestTerm& term) {
           return term.condition == kAllConditions && term.channel == channelName(channel);

@@ -62,10 +62,15 @@ bool lessensEndError(const Fitter& fitter, const FitState& with, const FitState&
 void addUnnamedTerms(const SearchState& search, double adequacy_alpha, Adequacy& adequacy,
                      std::vector<UnnamedFinding>& found);
 
+/// Share of a term that counts to the rest: by so much its form may be off.
+/** Chosen on drives of foreign vehicles: with 1 a dead band that had become five times as large was
+ * nothing new beside a term. */
+inline constexpr double kTermForm = 0.25;
+
 /// Counts the terms of a model to its rest: the whole of each channel (kAllConditions) is what it
-/// leaves and what its terms say, root mean square over the rows.
-/** A term is only like what it stands for: what has no name varies from drive to drive by a share
- * of the whole of it, whether a term describes it or not. */
+/// leaves and the share kTermForm of what its terms say, root mean square over the rows.
+/** A term is only like what it stands for, and what is between the two is another one on each
+ * drive. */
 void countTermsToRest(const Observations& data, ModelDocument& model);
 
 /// What is left over the condition of a term that the model has: the means over cells of the
