@@ -89,6 +89,7 @@ VehicleKernel::VehicleKernel(const VehicleModel& model, const EntryState& entry,
   const ChangesInForce changes = changesAt(model_.effects, context_.session_time, 0.0);
   led_to_ = groundMotion(model_, noise_, changes, on_ground_);
   body_ = entry.body ? *entry.body : led_to_;
+  memory_ = entry.memory.value_or(TermMemory{body_.v, body_.omega, 0.0});
 }
 
 void VehicleKernel::setNoise(const ExecutionNoise& noise) {
@@ -144,10 +145,33 @@ void VehicleKernel::integrateStep(const TrackCommand& asked, double dt) {
   on_ground_ = model_.onGround(driven, steer(dt));
   const ChangesInForce changes = changesAt(effects, context_.session_time, dt);
   const PlaneMotion steady = groundMotion(model_, noise_, changes, on_ground_);
-  const Twist2 v_body =
-      bodyTwist(effects, tan_crab_, changes, context_, on_ground_, moveBody(changes, steady, dt));
+  const PlaneMotion motion = moveBody(changes, steady, dt);
+  Twist2 v_body;
+  if (model_.unnamed.empty()) {
+    v_body = bodyTwist(effects, tan_crab_, changes, context_, on_ground_, motion);
+  } else {
+    inputs_ = withCommand(remember(motion.v, motion.omega, dt, memory_));
+    v_body = withTerms(inputs_, changes, on_ground_, motion);
+  }
   T_start_body_ = T_start_body_ * integrate(v_body, dt);
   context_.session_time += dt;
+}
+
+TermInputs VehicleKernel::withCommand(TermInputs inputs) const {
+  const TrackCommand asked = model_.trackSpeeds(acting_);
+  inputs.forward = 0.5 * (asked.left + asked.right);
+  inputs.turning = 0.5 * (asked.right - asked.left);
+  return inputs;
+}
+
+Twist2 VehicleKernel::withTerms(const TermInputs& inputs, const ChangesInForce& changes,
+                                const TrackCommand& tracks, PlaneMotion motion) const {
+  const Twist2 more = unnamedTwist(model_, tracks, inputs);
+  motion.v += more.v_x;
+  motion.omega += more.omega;
+  Twist2 v_body = bodyTwist(model_.effects, tan_crab_, changes, context_, tracks, motion);
+  v_body.v_y += more.v_y;
+  return v_body;
 }
 
 double VehicleKernel::steer(double dt) {
@@ -185,7 +209,10 @@ Twist2 VehicleKernel::twist() const {
   PlaneMotion motion = groundMotion(model_, noise_, changes, tracks);
   if (effects.body_inertia > 0.0) motion.v = body_.v;
   if (effects.yaw_inertia > 0.0) motion.omega = body_.omega;
-  return bodyTwist(effects, tan_crab_, changes, context_, tracks, motion);
+  if (model_.unnamed.empty())
+    return bodyTwist(effects, tan_crab_, changes, context_, tracks, motion);
+  return withTerms(withCommand(inputsNow(motion.v, motion.omega, memory_)), changes, tracks,
+                   motion);
 }
 
 EntryState VehicleKernel::state() const {
@@ -197,6 +224,7 @@ EntryState VehicleKernel::state() const {
   state.heat = {left_.heat, right_.heat};
   state.ramps = {left_.ramp, right_.ramp};
   state.steering = steering_;
+  state.memory = memory_;
   return state;
 }
 

@@ -25,6 +25,8 @@ struct EntryState {
   /// [m/s] that the drives are asked for by their ramps, see slew_limit; else their speeds.
   std::optional<TrackCommand> ramps = std::nullopt;
   std::optional<double> steering = std::nullopt;  ///< [rad] of a car; else that of the command
+  /// Of unnamed terms; else as after a long time in the motion at the start, turns forgotten.
+  std::optional<TermMemory> memory = std::nullopt;
 };
 
 /// The state that a command leads to when it is held for long (motors cold).
@@ -68,6 +70,8 @@ class VehicleKernel {
   Twist2 twist() const;
   /// Speeds of the drive, before slack and slip [m/s].
   TrackCommand trackSpeeds() const { return {left_.speed, right_.speed}; }
+  /// What unnamed terms depended on in the last step; nothing is kept of a model without terms.
+  const TermInputs& termInputs() const { return inputs_; }
   /// State from which another kernel can begin (without waiting commands and slack).
   EntryState state() const;
   /// Changes the noise from now on, for noise that varies along a drive.
@@ -86,6 +90,11 @@ class VehicleKernel {
   double steer(double dt);
   /// Forward speed and yaw rate of a body that follows the tracks over dt; its mean meanwhile.
   PlaneMotion moveBody(const ChangesInForce& changes, const PlaneMotion& mean, double dt);
+  /// The same inputs with what the command asks for.
+  TermInputs withCommand(TermInputs inputs) const;
+  /// The body twist of a motion to which unnamed terms are added.
+  Twist2 withTerms(const TermInputs& inputs, const ChangesInForce& changes,
+                   const TrackCommand& tracks, PlaneMotion motion) const;
 
   VehicleModel model_;
   ExecutionNoise noise_;
@@ -97,6 +106,8 @@ class VehicleKernel {
   double steering_;         ///< [rad] of a car
   TrackCommand on_ground_;  ///< [m/s] mean speeds of the tracks in the last step of integration
   PlaneMotion body_;
+  TermMemory memory_;  ///< of unnamed terms
+  TermInputs inputs_;
   PlaneMotion led_to_;  ///< by the tracks at the end of the last step, for the body's inertia
   TrackCommand acting_;
   std::deque<Waiting> waiting_;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <stdexcept>
 
 namespace tread {
 namespace {
@@ -107,6 +108,15 @@ namespace {
 
 const std::string kRest = "rest.";
 
+/// The number that is all of a path behind its beginning.
+std::optional<size_t> numberAfter(const std::string& beginning, const std::string& path) {
+  size_t number = 0;
+  const char* const end = path.data() + path.size();
+  if (path.compare(0, beginning.size(), beginning) != 0) return std::nullopt;
+  const auto [last, error] = std::from_chars(path.data() + beginning.size(), end, number);
+  return error == std::errc{} && last == end ? std::optional(number) : std::nullopt;
+}
+
 }  // namespace
 
 std::string restPath(size_t term) {
@@ -114,11 +124,68 @@ std::string restPath(size_t term) {
 }
 
 std::optional<size_t> restTermOf(const std::string& path) {
-  size_t term = 0;
-  const char* const end = path.data() + path.size();
-  if (path.compare(0, kRest.size(), kRest) != 0) return std::nullopt;
-  const auto [last, error] = std::from_chars(path.data() + kRest.size(), end, term);
-  return error == std::errc{} && last == end ? std::optional(term) : std::nullopt;
+  return numberAfter(kRest, path);
+}
+
+namespace {
+
+UnnamedTerm* termOf(ModelDocument& document, const std::string& name) {
+  for (UnnamedTerm& term : document.vehicle.unnamed)
+    if (term.name == name) return &term;
+  return nullptr;
+}
+
+/// The value of an unnamed term that a path names.
+double* termValue(ModelDocument& document, const std::string& path) {
+  UnnamedTerm* term = termOf(document, path.substr(0, path.find('.')));
+  if (term == nullptr) return nullptr;
+  const auto value = numberAfter(term->name + ".", path);
+  return value && *value < term->values.size() ? &term->values[*value] : nullptr;
+}
+
+}  // namespace
+
+const UnnamedTerm* termOfPath(const ModelDocument& document, const std::string& path) {
+  ModelDocument& changeable = const_cast<ModelDocument&>(document);
+  return termValue(changeable, path) == nullptr
+             ? nullptr
+             : termOf(changeable, path.substr(0, path.find('.')));
+}
+
+std::string termPath(const UnnamedTerm& term, size_t value) {
+  return term.name + "." + std::to_string(value);
+}
+
+std::string problemWithTermName(const ModelDocument& document, const std::string& name) {
+  const bool plain =
+      !name.empty() && name.size() <= 40 && name[0] >= 'a' && name[0] <= 'z' &&
+      name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
+  if (!plain)
+    return "'" + name + "' is no name of a term; write a-z, 0-9 and _, a letter first, at most 40";
+  if (findEffect(name) != nullptr || name == "rest" || findParameter(document, name) != nullptr)
+    return "'" + name + "' names something else already; choose another name";
+  if (termOf(const_cast<ModelDocument&>(document), name) != nullptr)
+    return "the model has a term '" + name + "' already; choose another name";
+  return "";
+}
+
+void renameTerm(ModelDocument& document, const std::string& from, const std::string& to) {
+  UnnamedTerm* term = termOf(document, from);
+  if (term == nullptr) {
+    std::string known;
+    for (const UnnamedTerm& other : document.vehicle.unnamed)
+      known += (known.empty() ? "" : ", ") + other.name;
+    throw std::runtime_error("the model has no term '" + from + "'; " +
+                             (known.empty() ? "it has none" : "it has " + known));
+  }
+  const std::string problem = problemWithTermName(document, to);
+  if (!problem.empty()) throw std::runtime_error(problem);
+  const auto rename = [&](std::string& path) {
+    if (path.compare(0, from.size() + 1, from + ".") == 0) path = to + path.substr(from.size());
+  };
+  for (std::string& path : document.covariance.parameters) rename(path);
+  for (ParameterBounds& bounds : document.bounds) rename(bounds.parameter);
+  term->name = to;
 }
 
 double* findParameter(ModelDocument& document, const std::string& path) {
@@ -133,8 +200,9 @@ double* findParameter(ModelDocument& document, const std::string& path) {
   if (number != nominal.end()) return &(document.vehicle.*number->second);
   if (const auto term = restTermOf(path))
     return document.rest && *term < document.rest->size() ? &(*document.rest)[*term].size : nullptr;
-  const EffectParameter* parameter = findEffectParameter(path);
-  return parameter != nullptr ? &valueOf(document, *parameter) : nullptr;
+  if (const EffectParameter* parameter = findEffectParameter(path))
+    return &valueOf(document, *parameter);
+  return termValue(document, path);
 }
 
 const double* findParameter(const ModelDocument& document, const std::string& path) {

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "common/geometry/se2.hpp"
 #include "common/pattern/pattern.hpp"
 #include "common/vehicle/omni_wheels.hpp"
+#include "common/vehicle/unnamed_terms.hpp"
 
 // A vehicle on one ground: its numbers, the values of its effects, and what they do to a motion. A
 // new vehicle effect is a value and a line in this file, and its entry in the catalogue.
@@ -34,6 +36,7 @@ namespace tread {
  *       -> forward speed: turn_speed_loss, reverse_speed_gain, payload_change, quadratic_drag,
  *          rolling_resistance
  *       -> the body follows: yaw_inertia, body_inertia
+ *       -> unnamed terms, see VehicleModel::unnamed
  *       -> to the side: icr_offset and payload_change, crab, centrifugal_drift
  *       -> slope_pitch, slope_roll
  *     body twist -> pose */
@@ -138,6 +141,8 @@ struct VehicleModel {
   double sideways_gain = 1.0;  ///< [1] of a holonomic base: ground speed over that of the rims
   double step = 0.005;         ///< [s] longest step of integration
   EffectValues effects;
+  /// What no effect of the catalogue names; each depends on the motion without any of them.
+  std::vector<UnnamedTerm> unnamed;
   ExecutionSpread spread;
 
   bool isCar() const { return wheelbase > 0.0; }
@@ -224,6 +229,7 @@ constexpr double kGravity = 9.81;         // [m/s2]
 constexpr double kHour = 3600.0;          // [s]
 constexpr double kLeastDivisor = 0.1;     // [1], where a negative loss would divide by nothing
 constexpr double kSlopeFullSpeed = 0.05;  // [m/s], slower tracks hold on a slope
+constexpr double kTermFullSpeed = 0.05;   // [m/s], what stands stays where it is
 
 /// A value without its first `width`: 0 up to there, the rest beyond, sign kept.
 inline double deadZone(double value, double width) {
@@ -392,6 +398,16 @@ inline Twist2 bodyTwist(const EffectValues& effects, double tan_crab, const Chan
   v_body.v_x += effects.slope_pitch * pull * std::sin(context.pitch);  // nose-down is positive
   v_body.v_y -= effects.slope_roll * pull * std::sin(context.roll);
   return v_body;
+}
+
+/// What unnamed terms add to a motion; it fades out at standstill, as what stands stays.
+inline Twist2 unnamedTwist(const VehicleModel& model, const TrackCommand& track_speeds,
+                           const TermInputs& inputs) {
+  const double fastest = std::max({std::abs(track_speeds.left), std::abs(track_speeds.right),
+                                   std::abs(inputs.v), 0.5 * model.gauge * std::abs(inputs.omega)});
+  const double share = std::min(1.0, fastest / kTermFullSpeed);
+  const Twist2 all = twistOf(model.unnamed, inputs);
+  return {share * all.v_x, share * all.v_y, share * all.omega};
 }
 
 }  // namespace steps

@@ -96,14 +96,28 @@ inline bool isOn(const Effect& effect, const ModelDocument& document) {
 }
 
 /// The number of a document that a path names: lag, delay, forward_gain, yaw_gain, full_speed,
-/// gauge, effect.parameter (icr_offset.offset), or rest.0, rest.1 .. (the size of a term of the
-/// rest); nullptr for anything else.
+/// gauge, effect.parameter (icr_offset.offset), rest.0, rest.1 .. (the size of a term of the rest),
+/// or unnamed_1.0, unnamed_1.1 .. (the values of an unnamed term); nullptr for anything else.
 double* findParameter(ModelDocument& document, const std::string& path);
 const double* findParameter(const ModelDocument& document, const std::string& path);
 
 /// The path of a term of the rest, and the term that a path names; nothing for another path.
 std::string restPath(size_t term);
 std::optional<size_t> restTermOf(const std::string& path);
+
+/// The unnamed term of whose values a path names one; nullptr for another path.
+const UnnamedTerm* termOfPath(const ModelDocument& document, const std::string& path);
+
+/// The path of a value of an unnamed term.
+std::string termPath(const UnnamedTerm& term, size_t value);
+
+/// What is wrong with a name for an unnamed term of a model; empty if nothing is.
+std::string problemWithTermName(const ModelDocument& document, const std::string& name);
+
+/// Gives an unnamed term another name, in the covariance and the bounds, too.
+/** Throws std::runtime_error with one line where the model has no such term or may have no such
+ * name. */
+void renameTerm(ModelDocument& document, const std::string& from, const std::string& to);
 
 /// Its unit.
 std::string unitOf(const std::string& path);

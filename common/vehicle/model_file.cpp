@@ -21,6 +21,7 @@ constexpr Range kGain{0.05, 5.0};
 constexpr Range kSpread{0.0, 1.0};
 constexpr Range kAnything{-1e300, 1e300};
 constexpr double kNoLimit = 1e9;
+constexpr Range kCurve{-1000.0, 1000.0};  // of an unnamed term, in any unit
 
 /// Of a holonomic base, whose wheels stand where robot.yaml says.
 void readOmni(ConfigReader& reader, VehicleModel& model) {
@@ -133,6 +134,53 @@ void readRest(ConfigReader& reader, std::optional<std::vector<RestTerm>>& rest) 
   }
 }
 
+/// A condition of an unnamed term; refused where the kernel has none by that name.
+const TermCondition* readCondition(ConfigReader& entry, const std::string& key, bool required) {
+  std::string name;
+  std::vector<std::string> known;
+  for (const TermCondition& condition : termConditions()) known.emplace_back(condition.name);
+  if (!required && !entry.has(key)) return nullptr;
+  entry.choice(key, name, known, required);
+  return findTermCondition(name);
+}
+
+void readCurve(ConfigReader& entry, UnnamedTerm& term) {
+  entry.numbers("at", term.at, 0, kCurve, "", true);
+  entry.numbers("values", term.values, 0, kCurve, "", true);
+  if (term.at.size() < kLeastTermValues || term.at.size() > kMostTermValues)
+    throw entry.error("at", "2 to 6 values of the condition, ascending");
+  for (size_t i = 0; i + 1 < term.at.size(); ++i)
+    if (!(term.at[i] < term.at[i + 1])) throw entry.error("at", "must be ascending");
+  if (term.values.size() != term.at.size()) throw entry.error("values", "one for each value of at");
+}
+
+void readUnnamed(ConfigReader& reader, ModelDocument& document) {
+  if (reader.has("unnamed") && document.vehicle.isOmni())
+    throw reader.error("unnamed", "is of a vehicle with two tracks; a model with wheels has none");
+  for (ConfigReader& entry : reader.sections("unnamed")) {
+    UnnamedTerm term;
+    entry.text("name", term.name, true);
+    const std::string problem = problemWithTermName(document, term.name);
+    if (!problem.empty()) throw entry.error("name", problem);
+    std::string channel;
+    entry.choice("channel", channel, {"yaw rate", "v", "v_y"}, true);
+    for (const TermChannel one :
+         {TermChannel::kYawRate, TermChannel::kSpeed, TermChannel::kSideways})
+      if (channel == termChannelName(one)) term.channel = one;
+    term.condition = readCondition(entry, "condition", true);
+    term.times = readCondition(entry, "times", false);
+    if (term.times != nullptr) {
+      std::vector<double> range;
+      entry.numbers("times_range", range, 2, kCurve, "", true);
+      if (!(range[0] < range[1])) throw entry.error("times_range", "must be ascending");
+      term.times_low = range[0];
+      term.times_high = range[1];
+    }
+    readCurve(entry, term);
+    document.vehicle.unnamed.push_back(term);
+  }
+}
+
 /// Whoever decides by hand may mistype; a decision about nothing would be kept for ever.
 void requireEffect(const ConfigReader& reader, const std::string& name) {
   try {
@@ -193,6 +241,7 @@ ModelDocument readDocument(ConfigReader reader) {
   spread.number("forward", model.spread.forward, kSpread, "");
   spread.number("yaw", model.spread.yaw, kSpread, "");
   spread.number("crab", model.spread.crab, kSpread, "rad");
+  readUnnamed(reader, document);
   readRest(reader, document.rest);
   readBounds(reader.section("bounds"), document);
   readCovariance(reader.section("covariance"), document, document.covariance);
@@ -297,6 +346,23 @@ std::string list(const std::vector<double>& values) {
   return "[" + joinWords(words) + "]";
 }
 
+void writeUnnamed(std::ostringstream& out, const std::vector<UnnamedTerm>& terms) {
+  if (!terms.empty()) out << "unnamed:  # what drives show and no effect of the catalogue names\n";
+  for (const UnnamedTerm& term : terms) {
+    out << "  - name: " << term.name << "\n    channel: " << termChannelName(term.channel)
+        << "\n    condition: " << formatText(term.condition->name) << "  # " << term.condition->unit
+        << '\n';
+    if (term.times != nullptr)
+      out << "    times: " << formatText(term.times->name) << "  # " << term.times->unit
+          << "\n    times_range: " << list({term.times_low, term.times_high})
+          << "  # as driven, constant beyond\n";
+    out << "    at: " << list(term.at) << "  # of the condition, as driven, constant beyond\n"
+        << "    values: " << list(term.values) << "  # " << termChannelUnit(term.channel)
+        << (term.times != nullptr ? std::string(" per ") + term.times->unit : "")
+        << ", straight between\n";
+  }
+}
+
 void writeEstimate(std::ostringstream& out, const ModelDocument& document) {
   if (!document.bounds.empty()) out << "bounds:  # narrower than what is plausible\n";
   for (const ParameterBounds& bounds : document.bounds)
@@ -388,6 +454,7 @@ std::string formatModelDocument(const ModelDocument& document) {
   writeNominal(out, document.vehicle);
   writeEffects(out, document, EffectKind::kVehicle, "effects");
   writeEffects(out, document, EffectKind::kMeasurement, "measurement");
+  writeUnnamed(out, document.vehicle.unnamed);
   writeSpread(out, document.vehicle.spread);
   writeEstimate(out, document);
   writeProvenance(out, document.provenance);

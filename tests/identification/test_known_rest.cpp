@@ -7,6 +7,7 @@
 
 #include "core_rig.hpp"
 #include "modules/identification/core/rest.hpp"
+#include "nameless_drive.hpp"
 
 // Old and new: a model carries what it did not explain when it was made.
 
@@ -14,41 +15,18 @@ using namespace tread;
 using namespace tread::gap;
 using samples::kSilent;
 using samples::Rig;
+using samples::turningDrive;
 using samples::Values;
 using samples::vehicleWith;
 
 namespace {
-
-/// A drive whose vehicle also turns to the left by so much of the square of its yaw rate [s], and
-/// slides to the left by so much of it [m s]: the catalogue has no such effects.
-Drive turningDrive(const Values& hidden, double share, uint64_t seed, double slide = 0.0) {
-  Drive drive = syntheticDrive(vehicleWith(hidden), 400.0, seed);
-  for (Segment& segment : drive.segments) {
-    std::vector<InsSample> said = segment.ins;
-    double turned = 0.0;
-    for (size_t i = 1; i < said.size(); ++i) {
-      Pose2 moved = between(segment.ins[i - 1].T_map_body, segment.ins[i].T_map_body);
-      const double dt = said[i].time - said[i - 1].time;
-      const double square = std::pow(segment.ins[i].omega, 2);
-      const double more = share * square;
-      moved.y += slide * square * dt;
-      turned += more * dt;
-      said[i].omega += more;
-      Pose2 from = said[i - 1].T_map_body;
-      from.yaw = segment.ins[i - 1].T_map_body.yaw + turned;
-      said[i].T_map_body = from * moved;
-      said[i].T_map_body.yaw = segment.ins[i].T_map_body.yaw + turned;
-    }
-    segment.ins = said;
-  }
-  return drive;
-}
 
 Finding findOn(const ModelDocument& model, const Drive& drive, bool calibrate = false) {
   GapTask task;
   task.model = model;
   task.train = {drive};
   task.calibrate = calibrate;
+  task.named_only = true;  // what has a shape would be a term, and no rest
   return findGap(task, kSilent);
 }
 

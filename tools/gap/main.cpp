@@ -34,6 +34,7 @@ struct FindOptions {
   int threads = 1;
   bool calibrate = false;
   bool keep_small = false;
+  bool named_only = false;
   double limit = 0.0;  ///< [s]; 0 = none
   std::vector<std::string> accepted;
   std::vector<std::string> rejected;
@@ -115,6 +116,7 @@ GapTask taskOf(const FindOptions& options, std::vector<InputFile>& inputs) {
   task.parallel = onThreads(options.threads);
   task.calibrate = options.calibrate;
   task.keep_small = options.keep_small;
+  task.named_only = options.named_only;
   if (options.limit > 0.0)
     task.is_over = [end = std::chrono::steady_clock::now() +
                           std::chrono::duration<double>(options.limit)] {
@@ -218,6 +220,9 @@ void addFind(CLI::App& app, int& status) {
   command->add_flag("--keep-small", options->keep_small,
                     "effects that are real stay in the model, even if they change the end error "
                     "by less than 1 %: for a model that others are to be compared with");
+  command->add_flag("--named-only", options->named_only,
+                    "add no term without a name: what no effect explains is told and stays the "
+                    "model's rest");
   command
       ->add_option("--limit", options->limit,
                    "time for the search [s]; then find ends with the best so far, as PARTIAL")
@@ -251,6 +256,34 @@ void addRepeat(CLI::App& app, int& status) {
                     "fit lag, delay and gains of the nominal model, too");
   addSeedAndThreads(*command, *options);
   command->callback([options, &status] { status = repeat(*options); });
+}
+
+struct NameOptions {
+  std::string model;
+  std::string from;
+  std::string to;
+};
+
+void name(const NameOptions& options) {
+  ModelDocument model = readModelDocument(options.model);
+  renameTerm(model, options.from, options.to);
+  const std::string text = formatModelDocument(model);
+  parseModelDocument(text, options.model);  // a file that nobody can read is none
+  writeText(options.model, text);
+  say(options.from + " is " + options.to + " in " + options.model + " now");
+}
+
+void addName(CLI::App& app) {
+  const auto options = std::make_shared<NameOptions>();
+  CLI::App* command =
+      app.add_subcommand("name", "give a term of a model that find has added a name of your own");
+  command->footer(
+      "The model file is written anew with the name, as find writes it: comments of your own in\n"
+      "it are lost.");
+  command->add_option("MODEL", options->model, "model file (YAML); it is changed")->required();
+  command->add_option("TERM", options->from, "its name now, as unnamed_1")->required();
+  command->add_option("NAME", options->to, "its name from now on: a-z, 0-9 and _")->required();
+  command->callback([options] { name(*options); });
 }
 
 void addExplain(CLI::App& app) {
@@ -299,6 +332,7 @@ int main(int argc, char** argv) {
     tread::gap::addPlan(app, status);
     tread::gap::addCompare(app, status);
     tread::gap::addRepeat(app, status);
+    tread::gap::addName(app);
     return tread::parseCommandLine(app, argc, argv).value_or(status);
   });
 }

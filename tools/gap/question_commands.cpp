@@ -298,7 +298,7 @@ void addWhatIf(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "what-if", "simulate with an effect removed, added or of another size, and show it");
   command->add_option("--model", options->model, "model file (YAML)")->required();
-  command->add_option("--remove", options->change.remove, "turn this effect off");
+  command->add_option("--remove", options->change.remove, "turn this effect or unnamed term off");
   command->add_option("--add", options->change.add,
                       "turn this effect on, at its typical size; of one that is on, --set another");
   command->add_option(

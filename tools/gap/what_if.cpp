@@ -200,9 +200,24 @@ void turnOn(ModelDocument& model, const Effect& effect) {
     if (parameter.role == ParameterRole::kShape) valueOf(model, parameter) = parameter.typical;
 }
 
+namespace {
+
+/// Takes an unnamed term out of a model; false if it has none by that name.
+bool removeTerm(ModelDocument& model, const std::string& name) {
+  std::vector<UnnamedTerm>& terms = model.vehicle.unnamed;
+  const auto term = std::find_if(terms.begin(), terms.end(),
+                                 [&name](const UnnamedTerm& one) { return one.name == name; });
+  if (term == terms.end()) return false;
+  terms.erase(term);
+  return true;
+}
+
+}  // namespace
+
 ModelDocument changed(const ModelDocument& model, const ModelChange& change) {
   ModelDocument other = model;
   for (const std::string& name : change.remove) {
+    if (removeTerm(other, name)) continue;
     const Effect& effect = effectOrNear(name);
     if (!isOn(effect, model))
       throw std::runtime_error("--remove " + name + ": it is off in this model");

@@ -217,7 +217,10 @@ EffectDirections effectDirections(const Fitter& fitter, const FitState& state) {
   all.columns.rightCols(static_cast<Eigen::Index>(state.free.size())) = state.jacobian;
   for (const Candidate& candidate : candidates) all.effects.push_back(candidate.effect);
   for (const FreeParameter& parameter : state.free)
-    all.effects.push_back(restTermOf(parameter.path) ? "" : effectOfPath(parameter.path));
+    all.effects.push_back(restTermOf(parameter.path) ||
+                                  termOfPath(state.model, parameter.path) != nullptr
+                              ? ""
+                              : effectOfPath(parameter.path));
   return all;
 }
 

@@ -14,6 +14,7 @@
 #include "modules/identification/core/end_errors.hpp"
 #include "modules/identification/core/log_validation.hpp"
 #include "modules/identification/core/rest.hpp"
+#include "modules/identification/core/unnamed.hpp"
 #include "modules/identification/core/witness.hpp"
 
 namespace tread::gap {
@@ -27,6 +28,7 @@ constexpr double kInvisible = 2.0;    // times its typical size: not excited
 /// the catalogue's equations, and no drive shows by how much their sizes are off for that: 1 to 5 %
 /// in the blind study, of effects that are only like them.
 constexpr double kForm = 0.05;
+constexpr double kTermChanged = 1.0;     // of the largest value of an unnamed term
 constexpr double kLeastTogether = 1e-3;  // of a variance, in any combination of terms
 
 /// `half` of the 95 % interval.
@@ -58,6 +60,23 @@ bool hasMoved(const ParameterEstimate& estimate, double most_by_chance, bool cal
   return std::abs(estimate.value - estimate.before) > most_by_chance;
 }
 
+/// Whether a free parameter is of the rest or of an unnamed term: none that a person knows by name,
+/// and none that is said to have moved.
+bool isNameless(const FitState& state, size_t index) {
+  const std::string& path = state.free[index].path;
+  return restTermOf(path) || termOfPath(state.model, path) != nullptr;
+}
+
+/// Whether a value of an unnamed term that the model has is another one now, beyond chance and by
+/// kTermChanged of the term's largest value.
+/** Such a term is only like what it stands for: on another drive its values are others by more than
+ * blocks of one drive tell. */
+bool hasTermMoved(const UnnamedTerm& term, const ParameterEstimate& estimate,
+                  double most_by_chance) {
+  const double change = std::abs(estimate.value - estimate.before);
+  return change > most_by_chance && change > kTermChanged * largestValue(term);
+}
+
 /// Terms that move further than chance together though each alone may: a delay and a lag may both
 /// be vague where their sum is well known. Of each such combination the term that makes most of it.
 /** Where a rest is known, which makes each vaguer. */
@@ -66,7 +85,7 @@ std::vector<char> movedTogether(const FitState& state, const Eigen::MatrixXd& mo
   std::vector<Eigen::Index> held;
   for (size_t i = 0; i < state.free.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    if (std::isfinite(state.free[i].deviation) && !restTermOf(state.free[i].path) &&
+    if (std::isfinite(state.free[i].deviation) && !isNameless(state, i) &&
         std::isfinite(moves(at, at)) && moves(at, at) > 0.0)
       held.push_back(at);
   }
@@ -211,6 +230,7 @@ void dropIrrelevantMoves(Finding& finding, double least_gain) {
                        falls(gap.before.yaw, gap.after.yaw, gap.apart.yaw);
   for (ParameterEstimate& estimate : finding.identified.calibrated)
     estimate.moved = estimate.moved && (matters || hasInstrumentChanged(estimate));
+  if (!matters) finding.identified.moved_terms.clear();
 }
 
 bool anyMoved(const Finding& finding) {
@@ -263,19 +283,26 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
   const Eigen::MatrixXd covariance = parameterCovariance(fitter, state);
   const double freedom = data.measuredBlocks() - 1;
   const double quantile = studentQuantile(freedom);
-  const auto given = std::count_if(
-      state.free.begin(), state.free.end(), [&result](const FreeParameter& parameter) {
-        return !contains(result.effects, effectOf(parameter.path)) && !restTermOf(parameter.path);
-      });
+  size_t given = 0;
+  for (size_t i = 0; i < state.free.size(); ++i)
+    given += !contains(result.effects, effectOf(state.free[i].path)) &&
+             (!isNameless(state, i) || termOfPath(before, state.free[i].path) != nullptr);
   const double most = studentQuantile(
-      freedom, normalQuantileOf(kMoved / static_cast<double>(std::max<std::ptrdiff_t>(1, given))));
+      freedom, normalQuantileOf(kMoved / static_cast<double>(std::max<size_t>(1, given))));
   const Eigen::MatrixXd moves = moveCovariance(fitter, state);
   const std::vector<char> moved_together = movedTogether(state, moves, most);
   IdentifiedModel identified;
   std::map<std::string, std::vector<ParameterEstimate>> of_effect;
   for (size_t i = 0; i < state.free.size(); ++i) {
-    if (restTermOf(state.free[i].path)) continue;  // adequacy tells of it
     const auto at = static_cast<Eigen::Index>(i);
+    if (isNameless(state, i)) {  // adequacy tells of a rest, and a term of itself
+      const UnnamedTerm* const had = termOfPath(before, state.free[i].path);
+      if (had != nullptr && !settings.calibrate && !contains(identified.moved_terms, had->name) &&
+          hasTermMoved(*had, estimateOf(state.free[i].path, before, state.model, 0.0),
+                       most * std::sqrt(moves(at, at))))
+        identified.moved_terms.push_back(had->name);
+      continue;
+    }
     const double error = std::sqrt(covariance(at, at));
     const std::string effect = effectOf(state.free[i].path);
     const bool found = contains(result.effects, effect);
@@ -332,12 +359,15 @@ std::string tooLittleDriving(const Observations& data) {
 }
 
 void judge(Finding& finding, double adequacy_alpha, double least_gain) {
-  const bool adequate = finding.adequacy.p_value > adequacy_alpha;
   std::vector<FoundEffect> shown;
   std::copy_if(finding.identified.effects.begin(), finding.identified.effects.end(),
                std::back_inserter(shown), isShown);
+  if (shown.empty()) dropIrrelevantMoves(finding, least_gain);
+  // What only an unnamed term explains has no name: it counts as unexplained.
+  const bool adequate = finding.adequacy.p_value > adequacy_alpha &&
+                        finding.identified.unnamed.empty() &&
+                        finding.identified.moved_terms.empty();
   if (shown.empty()) {
-    dropIrrelevantMoves(finding, least_gain);
     finding.verdict = verdictWithoutEffects(finding, adequate);
   } else {
     finding.verdict = verdictOf(finding, shown, adequate);
@@ -414,13 +444,16 @@ UnseenErrors errorsOnTest(const GapTask& task, const Observations& test,
 
 /// Alternate blocks: what one half found predicts the other.
 UnseenErrors errorsOnHalves(const ModelDocument& before, const Fitter& fitter,
-                            const FoundTerms& result, SearchSettings settings,
-                            SearchMemory& memory) {
+                            const FoundTerms& result, const std::vector<UnnamedFinding>& unnamed,
+                            SearchSettings settings, SearchMemory& memory) {
   const Observations& data = fitter.data();
   UnseenErrors unseen;
   bool& nested = unseen.gap.structure_nested;
   nested = data.measuredBlocks() >= 2 * kLeastHalf && !result.record.cut_short;
   unseen.gap.before = summaryOf(endErrors(data, before));
+  std::vector<std::vector<TermChannel>> channels;
+  for (const UnnamedFinding& term : unnamed)
+    channels.push_back({termOfPath(result.state.model, term.name + ".0")->channel});
   std::vector<ExecutionError> outside;  // of either half
   settings.all_sized = false;           // half of the driving may not show all
   const Progress silent = [](const std::string&) {};
@@ -428,6 +461,9 @@ UnseenErrors errorsOnHalves(const ModelDocument& before, const Fitter& fitter,
     const Fitter on_half = fitter.onRows(halfMask(data, half));
     std::optional<FoundTerms> alone;
     if (nested) alone = search(on_half, before, settings, memory, silent);
+    // Half of the driving chooses its own terms, as many as all of it did.
+    for (size_t i = 0; alone && i < channels.size(); ++i)
+      addTerm(on_half, alone->state, channels[i], kTermSureOfHalf);
     // What has no time left chooses no effects: they are those of all.
     nested = alone && !alone->record.cut_short;
     const ModelDocument model = nested ? alone->state.model : refitted(on_half, result).model;
@@ -456,6 +492,20 @@ void widenByHalves(const std::vector<Unseen>& halves, IdentifiedModel& identifie
       estimate.low = estimate.value - std::hypot(estimate.value - estimate.low, apart);
       estimate.high = estimate.value + std::hypot(estimate.high - estimate.value, apart);
     }
+}
+
+/// Adds what a report shows of unnamed terms: how sure their values are, and what they were made
+/// from.
+void describe(const Fitter& fitter, const std::vector<UnnamedFinding>& unnamed,
+              IdentifiedModel& identified) {
+  identified.unnamed = unnamed;
+  for (UnnamedFinding& found : identified.unnamed) {
+    const UnnamedTerm& term = *termOfPath(identified.model, found.name + ".0");
+    for (size_t i = 0; i < term.values.size(); ++i)
+      found.deviations.push_back(
+          term.values[i] == 0.0 ? 0.0 : knownDeviation(identified.model, termPath(term, i)));
+    found.data = termCells(fitter, identified.model, term);
+  }
 }
 
 /// Noise of what a model leaves, channel by channel.
@@ -495,18 +545,26 @@ Finding findGap(const GapTask& task, const Progress& say) {
   finding.search = result.record;
   say("6 adequacy");
   finding.adequacy = testAdequacy(fitter, tested, kAdequacyAlpha, task.seed);
+  std::vector<UnnamedFinding> unnamed;
+  // What a person has rejected would come back without its name.
+  if (!task.named_only && settings.rejected.empty())
+    addUnnamedTerms({fitter, settings, say, result}, kAdequacyAlpha, finding.adequacy, unnamed);
   // A rest in which nothing is new stays what it was.
-  if (!before.rest || finding.adequacy.p_value <= kAdequacyAlpha)
+  if (!before.rest || !unnamed.empty() || finding.adequacy.p_value <= kAdequacyAlpha) {
     result.state.model.rest = restOf(fitter, result.state, task.seed);
-  else
+    countTermsToRest(data, result.state.model);
+  } else {
     result.state.model.rest = before.rest;
+  }
   finding.identified = identifiedModel(fitter, before, settings, result);
+  describe(fitter, unnamed, finding.identified);
   say("7 error on driving that was not used");
   std::optional<Observations> test;
   if (!task.test.empty()) test.emplace(task.test, ObservationSettings{});
   const ModelDocument& after = finding.identified.model;
-  const UnseenErrors unseen = test ? errorsOnTest(task, *test, after)
-                                   : errorsOnHalves(before, fitter, result, settings, memory);
+  const UnseenErrors unseen =
+      test ? errorsOnTest(task, *test, after)
+           : errorsOnHalves(before, fitter, result, unnamed, settings, memory);
   if (!test) widenByHalves(unseen.parts, finding.identified);
   finding.gap = unseen.gap;
   finding.gap->apart = apart(test ? *test : data, task.model, after);

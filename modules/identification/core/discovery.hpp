@@ -74,6 +74,9 @@ struct GapTask {
   bool calibrate = false;
   /// What is real stays in, however little it changes the end error.
   bool keep_small = false;
+  /// What no effect explains is told, and becomes no term of the new model; nor does it where a
+  /// person has rejected an effect, which would come back without its name.
+  bool named_only = false;
   /// Accepted effects are in the model from the start and stay; rejected ones are never considered.
   std::vector<Decision> decisions;
   uint64_t seed = 1;

@@ -178,6 +178,17 @@ struct AtlasCell {
   bool marked = false;  ///< the interval excludes 0 after correction for the number of cells
 };
 
+/// An unnamed term that was added to the model, which has its numbers by this name.
+struct UnnamedFinding {
+  std::string name;
+  double gain = 0.0;  ///< [nats] on blocks that were not fitted
+  double gain_error = 0.0;
+  std::vector<double> deviations{};  ///< of its values, in their unit
+  /// What the term was made from: residuals with the term in them over its factor, by its
+  /// condition; for a picture.
+  std::vector<AtlasCell> data{};
+};
+
 /// Residual of one channel over one variable.
 struct AtlasCurve {
   std::string channel;   ///< along, lateral, yaw rate
@@ -274,7 +285,10 @@ struct IdentifiedModel {
   ModelDocument model;
   std::vector<FoundEffect> effects;
   std::vector<ParameterEstimate> calibrated;  ///< of terms that were already on
-  std::vector<std::string> not_excited;       ///< effects that this drive could not have shown
+  std::vector<UnnamedFinding> unnamed{};      ///< terms without a name that were added
+  /// Terms without a name that the model had, whose values are other ones now, beyond chance.
+  std::vector<std::string> moved_terms{};
+  std::vector<std::string> not_excited;  ///< effects that this drive could not have shown
 };
 
 /// Everything that `tread-gap find` says: what each stage returned, and the verdict.

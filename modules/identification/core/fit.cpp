@@ -145,7 +145,10 @@ FreeParameter freeParameter(const ModelDocument& model, const std::string& path)
   free.path = path;
   free.expected = valueOf(model, path);
   const EffectParameter* known = findEffectParameter(path);
-  if (known == nullptr) {
+  if (termOfPath(model, path) != nullptr) {
+    // An unnamed term has no range that is plausible: its values are what the data say.
+    free = {path, -kAnyTermValue, kAnyTermValue, kTermStep, free.expected};
+  } else if (known == nullptr) {
     free = nominalNumber(path, free.expected);
   } else {
     free.step = known->role == ParameterRole::kShape && known->unit == "s"

@@ -30,7 +30,12 @@ inline std::string effectOf(const std::string& path) {
   return path.substr(0, path.find('.'));
 }
 
-/// A parameter of the catalogue or of the nominal model, free within its plausible bounds.
+/// Bound and step of a value of an unnamed term, in any unit.
+inline constexpr double kAnyTermValue = 10.0;
+inline constexpr double kTermStep = 0.01;
+
+/// A parameter of the catalogue, of the nominal model or of an unnamed term, free within its
+/// plausible bounds.
 /** Throws std::out_of_range for a path that names nothing. */
 FreeParameter freeParameter(const ModelDocument& model, const std::string& path);
 

@@ -155,6 +155,42 @@ std::vector<MotionSample> SegmentPlan::simulate(const VehicleModel& vehicle) con
   return motion;
 }
 
+std::vector<TermSample> SegmentPlan::termInputs(const VehicleModel& vehicle) const {
+  VehicleModel model = vehicle;
+  model.step = longest_;
+  VehicleKernel kernel(model, entryFor(model));
+  std::vector<TermSample> samples;
+  samples.reserve(pieces_.size());
+  double time = begin_;
+  for (const Piece& piece : pieces_) {
+    if (piece.command) kernel.give(*piece.command);
+    kernel.hold(piece.duration, piece.context);
+    samples.push_back({time, time + piece.duration, kernel.termInputs()});
+    time += piece.duration;
+  }
+  return samples;
+}
+
+namespace {
+
+/// Mean over a time of samples that follow each other.
+TermInputs meanInputs(const std::vector<TermSample>& samples, double from, double to) {
+  TermInputs mean;
+  double all = 0.0;
+  auto sample = std::upper_bound(samples.begin(), samples.end(), from,
+                                 [](double time, const TermSample& one) { return time < one.end; });
+  for (; sample != samples.end() && sample->begin < to; ++sample) {
+    const double share = std::min(to, sample->end) - std::max(from, sample->begin);
+    all += share;
+    for (double TermInputs::*input : kTermInputs) mean.*input += share * sample->inputs.*input;
+  }
+  if (all > 0.0)
+    for (double TermInputs::*input : kTermInputs) mean.*input /= all;
+  return mean;
+}
+
+}  // namespace
+
 const char* channelName(Channel channel) {
   static constexpr const char* kNames[kChannels] = {"yaw rate", "heading rate", "along", "lateral"};
   return kNames[static_cast<size_t>(channel)];
@@ -305,6 +341,18 @@ Motions Observations::simulate(const VehicleModel& vehicle,
   for (size_t i = 0; i < plans_.size(); ++i)
     if (segments[i]) motions[i] = plans_[i].simulate(vehicle);
   return motions;
+}
+
+std::vector<TermInputs> Observations::termInputs(const VehicleModel& vehicle) const {
+  std::vector<std::vector<TermSample>> of_segment;
+  of_segment.reserve(plans_.size());
+  for (const SegmentPlan& plan : plans_) of_segment.push_back(plan.termInputs(vehicle));
+  std::vector<TermInputs> inputs;
+  inputs.reserve(all_.size());
+  for (const Observation& row : all_)
+    inputs.push_back(
+        meanInputs(of_segment[segmentIndex(row.drive, row.segment)], row.begin, row.end));
+  return inputs;
 }
 
 Eigen::VectorXd Observations::predict(const Motions& motions, const MeasurementModel& ins) const {

@@ -14,6 +14,13 @@
 
 namespace tread::gap {
 
+/// What unnamed terms depend on for a while.
+struct TermSample {
+  double begin = 0.0;  ///< [s]
+  double end = 0.0;    ///< [s]
+  TermInputs inputs;   ///< means
+};
+
 /// The commands of a segment cut into short pieces, each with the drive context at its time.
 /** Made once a drive; simulating again with other parameters is then one pass over it. */
 class SegmentPlan {
@@ -27,6 +34,8 @@ class SegmentPlan {
   /// True poses of a model through the segment, relative to its beginning; one entry a piece.
   /// Yaw rates are left at 0: rows take theirs from the yaws.
   std::vector<MotionSample> simulate(const VehicleModel& vehicle) const;
+  /// What unnamed terms depend on in each piece, of a model that has some.
+  std::vector<TermSample> termInputs(const VehicleModel& vehicle) const;
 
  private:
   struct Piece {
@@ -109,6 +118,8 @@ class Observations {
   Eigen::VectorXd residuals(const Eigen::VectorXd& predicted) const {
     return measured_ - predicted;
   }
+  /// What unnamed terms depend on, means over each row (as many as rows); of a model that has some.
+  std::vector<TermInputs> termInputs(const VehicleModel& vehicle) const;
   /// Which blocks have rows whose mask is not 0.
   std::vector<char> blocksOf(const std::vector<char>& mask) const;
   /// Which segments, among all, have rows whose mask is not 0.

@@ -7,6 +7,7 @@
 
 #include "modules/identification/core/log_validation.hpp"
 #include "modules/identification/core/rest.hpp"
+#include "modules/identification/core/unnamed.hpp"
 
 namespace tread::gap {
 namespace {
@@ -82,7 +83,9 @@ class EffectSelection {
   void calibrate(const ModelDocument& model) {
     std::vector<FreeParameter> given = givenParameters(model, settings_.calibrate);
     const std::vector<FreeParameter> rest = restParameters(fitter_, model);
+    const std::vector<FreeParameter> terms = termParameters(model, settings_.calibrate);
     given.insert(given.end(), rest.begin(), rest.end());
+    given.insert(given.end(), terms.begin(), terms.end());
     state() = fitter_.start(model, given);
     settle(state());
     result_.calibrated = state();

@@ -129,6 +129,11 @@ bool chooseLags(const SearchState& search);
 /// Rows of every other block: those of `half` (0 or 1) count.
 std::vector<char> halfMask(const Observations& data, int half);
 
+/// What a state misses on the other half of the driving when it is fitted to one, summed block by
+/// block: position [m] and yaw [rad] at the ends of executions, yaw rate, nats (blocks x 4).
+Eigen::MatrixXd missedOnOtherHalves(const Fitter& fitter, const FitState& state,
+                                    const Eigen::VectorXd& scales);
+
 /// Takes the effects that were not accepted out of a result unless the end error falls with them,
 /// by more than its standard error over blocks, on halves of the driving that the sizes of the
 /// effects were not fitted to.

@@ -199,15 +199,9 @@ FitState withoutFound(const SearchState& search) {
 bool isConfirmed(const SearchState& search, const FitState& lacking) {
   const Observations& data = search.data();
   const FoundTerms& result = search.result;
-  Eigen::MatrixXd with = Eigen::MatrixXd::Zero(data.blocks(), 4);
-  Eigen::MatrixXd without = with;
-  for (int half : {0, 1}) {
-    const Fitter on_half = search.fitter.onRows(halfMask(data, half));
-    FitState lacks = lacking;
-    on_half.fit(lacks);
-    addMissed(search.fitter, refitted(on_half, result), result.state.scales, 1 - half, with);
-    addMissed(search.fitter, lacks, result.state.scales, 1 - half, without);
-  }
+  const Eigen::MatrixXd with =
+      missedOnOtherHalves(search.fitter, result.state, result.state.scales);
+  const Eigen::MatrixXd without = missedOnOtherHalves(search.fitter, lacking, result.state.scales);
   const bool measurement =
       std::all_of(result.effects.begin(), result.effects.end(), [](const std::string& effect) {
         return effectNamed(effect).kind() == EffectKind::kMeasurement;
@@ -259,6 +253,19 @@ void replacePairs(const SearchState& search) {
     search.result.evidence[single].replaced = {a, b};
     search.result.state = state;
   }
+}
+
+Eigen::MatrixXd missedOnOtherHalves(const Fitter& fitter, const FitState& state,
+                                    const Eigen::VectorXd& scales) {
+  const Observations& data = fitter.data();
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(data.blocks(), 4);
+  for (int half : {0, 1}) {
+    const Fitter on_half = fitter.onRows(halfMask(data, half));
+    FitState fitted = state;
+    on_half.fit(fitted);
+    addMissed(fitter, fitted, scales, 1 - half, sums);
+  }
+  return sums;
 }
 
 std::vector<char> halfMask(const Observations& data, int half) {

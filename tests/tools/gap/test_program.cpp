@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "common/store/store.hpp"
 #include "common/vehicle/effects.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "tests/tools/gap/arc_drive.hpp"
@@ -141,6 +142,37 @@ TEST_CASE("a log that is too short cannot tell: status 15, the reason, and no mo
       CHECK_FALSE(folder.text(std::string("a/") + file).empty());
       CHECK(folder.text(std::string("a/") + file) == folder.text(std::string("b/") + file));
     }
+  }
+}
+
+TEST_CASE("a term that find has added gets the name that a person gives it") {
+  const Folder folder;
+  ModelDocument model = readModelDocument(kModels + "warthog_asphalt.yaml");
+  UnnamedTerm term;
+  term.name = "unnamed_1";
+  term.condition = findTermCondition("change of |yaw rate|");
+  term.at = {-1.0, 0.0, 1.0};
+  term.values = {-0.1, 0.0, 0.02};
+  model.vehicle.unnamed = {term};
+  writeText(folder.path("model.yaml"), formatModelDocument(model));
+  const Run named = run("name " + folder.path("model.yaml") + " unnamed_1 steering_hysteresis");
+  INFO(named.printed);
+  CHECK(named.status == 0);
+  const ModelDocument now = readModelDocument(folder.path("model.yaml"));
+  REQUIRE(now.vehicle.unnamed.size() == 1);
+  CHECK(now.vehicle.unnamed[0].name == "steering_hysteresis");
+  CHECK(now.vehicle.unnamed[0].values == term.values);
+  const Run what_if = run("what-if --model " + folder.path("model.yaml") +
+                          " --remove steering_hysteresis --out " + folder.path("what_if.html"));
+  INFO(what_if.printed);
+  CHECK(what_if.status == 0);
+  const std::string before = folder.text("model.yaml");
+  for (const char* wrong : {"unnamed_1 other", "steering_hysteresis yaw_pull",
+                            "steering_hysteresis 'No Name'", "steering_hysteresis lag"}) {
+    const Run refused = run("name " + folder.path("model.yaml") + " " + wrong);
+    INFO(refused.printed);
+    CHECK(refused.status == 2);
+    CHECK((folder.text("model.yaml") == before));
   }
 }
 

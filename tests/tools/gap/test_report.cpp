@@ -264,6 +264,42 @@ TEST_CASE("a covariance that rounding made unequal in its halves can be read bac
   CHECK_NOTHROW(parseModelDocument(formatModelDocument(newModel(finding, samples::inputs())), "m"));
 }
 
+TEST_CASE("a term without a name is said, drawn with its band, in all files, and can be named") {
+  Finding finding = samples::finding(GapVerdict::kNotInCatalogue);
+  UnnamedTerm term;
+  term.name = "unnamed_1";
+  term.condition = findTermCondition("change of |yaw rate|");
+  term.times = findTermCondition("yaw rate");
+  term.times_low = -1.0;
+  term.times_high = 1.0;
+  term.at = {-2.0, 0.0, 2.0};
+  term.values = {-0.25, 0.0, 0.05};
+  finding.identified.model.vehicle.unnamed = {term};
+  UnnamedFinding found{"unnamed_1", 120.0, 20.0, {0.02, 0.0, 0.01}, {}};
+  AtlasCell cell;
+  cell.from = -2.0;
+  cell.to = -1.0;
+  cell.mean = -0.2;
+  cell.rows = 40;
+  found.data = {cell};
+  finding.identified.unnamed = {found};
+  const std::string text = markdownOf(reportPage(finding, samples::inputs()));
+  CHECK(has(text, "unnamed_1: yaw rate beside the model, by change of |yaw rate|, times yaw rate"));
+  CHECK(has(text, "-0.250 to 0.0500 rad/s per rad/s"));
+  CHECK(has(text, "tread-gap name model.yaml unnamed_1 YOUR_NAME"));
+  const std::string page = htmlOf(reportPage(finding, samples::inputs()));
+  CHECK(unbalanced(page) == "");
+  CHECK(has(page, "unnamed_1: yaw rate by change of |yaw rate|, times yaw rate"));
+  CHECK(has(closingLines(finding)[1], "unnamed_1"));
+  const auto json = verdictJson(finding, samples::inputs());
+  REQUIRE(json["unnamed"].size() == 1);
+  CHECK(json["unnamed"][0]["condition"] == "change of |yaw rate|");
+  CHECK(json["unnamed"][0]["deviations"][0] == 0.02);
+  const ModelDocument model = newModel(finding, samples::inputs());
+  CHECK(parseModelDocument(formatModelDocument(model), "m").vehicle.unnamed[0].values ==
+        term.values);
+}
+
 TEST_CASE("working on the same log again counts the runs") {
   Finding finding = samples::finding(GapVerdict::kFound);
   finding.before = newModel(finding, samples::inputs());

@@ -99,6 +99,25 @@ Json errorsJson(const EndErrors& errors) {
   return {{"position_m", figureJson(errors.position)}, {"yaw_rad", figureJson(errors.yaw)}};
 }
 
+Json unnamedJson(const IdentifiedModel& identified) {
+  Json all = Json::array();
+  for (const UnnamedFinding& found : identified.unnamed) {
+    const UnnamedTerm& term = *termOfPath(identified.model, found.name + ".0");
+    Json deviations = Json::array();
+    for (const double deviation : found.deviations) deviations.push_back(number(deviation));
+    all.push_back({{"name", found.name},
+                   {"channel", termChannelName(term.channel)},
+                   {"condition", term.condition->name},
+                   {"times", term.times == nullptr ? Json(nullptr) : Json(term.times->name)},
+                   {"at", term.at},
+                   {"values", term.values},
+                   {"deviations", deviations},
+                   {"gain", number(found.gain)},
+                   {"gain_error", number(found.gain_error)}});
+  }
+  return all;
+}
+
 Json gapJson(const std::optional<Gap>& gap) {
   if (!gap)
     return {{"horizon_s", 2.0}, {"before", nullptr}, {"after", nullptr}, {"floor", nullptr}};
@@ -167,6 +186,8 @@ nlohmann::ordered_json verdictJson(const Finding& finding, const std::vector<Inp
           {"effects", effects},
           {"calibrated", calibratedJson(finding.identified.calibrated)},
           {"gap", gapJson(finding.gap)},
+          {"unnamed", unnamedJson(finding.identified)},
+          {"moved_terms", finding.identified.moved_terms},
           {"unexplained", unexplained},
           {"not_excited", finding.identified.not_excited},
           {"decisions", decisionsJson(finding.source.decisions)},

@@ -170,6 +170,9 @@ std::string opening(const Finding& finding) {
       return "The log differs from the model as the drive did that the model was made from, and in "
              "nothing else.";
     case GapVerdict::kNotInCatalogue:
+      if (!finding.identified.unnamed.empty())
+        return "There is a disagreement, and no effect of the catalogue explains it. What of it "
+               "has a shape is a term of the new model, without a name.";
       return "There is a disagreement, and no effect of the catalogue explains it. A term by "
              "another name would be a guess; the model stays as it was but for its calibration.";
     case GapVerdict::kCannotTell:

@@ -78,6 +78,36 @@ std::string atlasPicture(const AtlasCurve& curve) {
   return chart.svg();
 }
 
+std::string termPicture(const UnnamedTerm& term, const UnnamedFinding& found) {
+  std::vector<ChartPoint> low, curve, high;
+  ChartRange range = ChartRange::empty();
+  for (size_t i = 0; i < term.at.size(); ++i) {
+    const double deviation = i < found.deviations.size() ? found.deviations[i] : 0.0;
+    const double half = std::isfinite(deviation) ? 1.96 * deviation : 0.0;
+    low.push_back({term.at[i], term.values[i] - half});
+    curve.push_back({term.at[i], term.values[i]});
+    high.push_back({term.at[i], term.values[i] + half});
+    range.include(low.back());
+    range.include(high.back());
+  }
+  for (const AtlasCell& cell : found.data)
+    if (cell.rows > 0) range.include({middle(cell), cell.mean});
+  range.include({range.x_min, 0.0});
+  const std::string times = term.times == nullptr ? "" : std::string(", times ") + term.times->name;
+  Chart chart(
+      found.name + ": " + termChannelName(term.channel) + " by " + term.condition->name + times,
+      std::string(term.condition->name) + " [" + term.condition->unit + "]",
+      "beside the model [" + termCurveUnit(term) + "]", range.widened(1e-3));
+  chart.level(0.0);
+  chart.band(low, high, kAfterColour);
+  chart.line(curve, kAfterColour, 1.6, false);
+  for (const AtlasCell& cell : found.data)
+    if (cell.rows > 0) chart.dot({middle(cell), cell.mean}, kBeforeColour, true);
+  chart.legend("measured", kBeforeColour, true);
+  chart.legend("term", kAfterColour);
+  return chart.svg();
+}
+
 Pictures restPictures(const Finding& finding) {
   constexpr size_t kMost = 3;
   Pictures rest{{},

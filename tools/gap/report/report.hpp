@@ -50,6 +50,12 @@ std::string sentenceOf(const FoundEffect& effect);
 /// The same; of a term that acts on top of what the model had with their sum, too.
 std::string sentenceOf(const FoundEffect& effect, const ModelDocument& model);
 
+/// What an unnamed term adds to what, by which condition, and where it was driven.
+std::string sentenceOf(const UnnamedFinding& found, const ModelDocument& model);
+
+/// Unit of the values of a term.
+std::string termCurveUnit(const UnnamedTerm& term);
+
 /// What wheel speeds, motor currents and battery voltage say of an effect, each as a sentence with
 /// a space before it; empty where none says anything.
 std::string witnessSentences(const FoundEffect& effect);
@@ -151,6 +157,9 @@ using report::Chart, report::ChartPoint, report::ChartRange;
 /// A residual over a variable, before and after, with 95 % intervals; filled dots are marked cells.
 std::string atlasPicture(const AtlasCurve& curve);
 
+/// The curve of an unnamed term with its 95 % band, over what it was made from.
+std::string termPicture(const UnnamedTerm& term, const UnnamedFinding& found);
+
 /// The strongest of what is unexplained, drawn; none where all is explained.
 report::Pictures restPictures(const Finding& finding);
 
@@ -231,9 +240,10 @@ std::vector<Decision> decisionsOf(const DecisionWords& words, const ModelDocumen
 /// What verdict.json holds; numbers that are not finite are null.
 /** Keys: verdict, reason, cut_short, effects [{name, kind, parameters {name: {value, unit, low,
  * high}}, group, runner_up}], calibrated, gap {horizon_s, before, after, floor: {position_m,
- * yaw_rad: {median, rms}}}, unexplained [{channel, variable}], not_excited, seed, inputs {model,
- * train, test}. A limit that the model holds as its reciprocal stands there as inverse_limit and
- * under its natural name, too. */
+ * yaw_rad: {median, rms}}}, unnamed [{name, channel, condition, times, at, values, deviations,
+ * gain, gain_error}], moved_terms [name], unexplained [{channel, variable}], not_excited, seed,
+ * inputs {model, train, test}. A limit that the model holds as its reciprocal stands there as
+ * inverse_limit and under its natural name, too. */
 nlohmann::ordered_json verdictJson(const Finding& finding, const std::vector<InputFile>& inputs);
 
 /// The new model with where it comes from: tool, seed, logs, and how often it was worked on them.

@@ -133,6 +133,26 @@ std::vector<Block> effectsBlocks(const Finding& finding) {
   return blocks;
 }
 
+std::vector<Block> unnamedBlocks(const Finding& finding) {
+  std::vector<Block> blocks;
+  Pictures pictures{{},
+                    "Dots: what the model without the term leaves, means over cells. Line: the "
+                    "term, with its 95 % band. Beyond its ends it stays as it is there."};
+  Commands names;
+  for (const UnnamedFinding& found : finding.identified.unnamed) {
+    const UnnamedTerm& term = *termOfPath(finding.identified.model, found.name + ".0");
+    pictures.svg.push_back(termPicture(term, found));
+    names.lines.push_back("tread-gap name model.yaml " + found.name + " YOUR_NAME");
+  }
+  if (pictures.svg.empty()) return blocks;
+  blocks.push_back(
+      Paragraph{"No effect of the catalogue has this shape. The new model simulates it all the "
+                "same; who knows what it is may give it a name:"});
+  blocks.push_back(names);
+  blocks.push_back(pictures);
+  return blocks;
+}
+
 std::vector<Block> parametersBlocks(const Finding& finding) {
   std::vector<Block> blocks;
   Table table{
@@ -293,6 +313,7 @@ Page reportPage(const Finding& finding, const std::vector<InputFile>& inputs) {
   const bool told = finding.verdict != GapVerdict::kCannotTell;
   std::vector<Section> sections{
       {told ? "What was found" : "Effects where the fit ended", effectsBlocks(finding)}};
+  sections.push_back({"Terms without a name", unnamedBlocks(finding)});
   for (Section& section : evidenceSections(finding, inputs)) sections.push_back(std::move(section));
   for (Section& section : std::vector<Section>{
            {told ? "Parameters of the new model" : "Parameters where the fit ended",

@@ -179,6 +179,25 @@ std::string checkOf(const FoundEffect& effect) {
   return known.negative_check + said(-effect.parameters.front().value, "1") + ". " + known.check;
 }
 
+std::string termCurveUnit(const UnnamedTerm& term) {
+  const std::string unit = termChannelUnit(term.channel);
+  return term.times == nullptr || term.times->unit == std::string("1")
+             ? unit
+             : unit + " per " + term.times->unit;
+}
+
+std::string sentenceOf(const UnnamedFinding& found, const ModelDocument& model) {
+  const UnnamedTerm& term = *termOfPath(model, found.name + ".0");
+  const auto [least, most] = std::minmax_element(term.values.begin(), term.values.end());
+  return found.name + ": " + termChannelName(term.channel) + " beside the model, by " +
+         term.condition->name +
+         (term.times == nullptr ? "" : std::string(", times ") + term.times->name) + ": " +
+         saidInterval(*least, *most, termCurveUnit(term)) + " where " + term.condition->name +
+         " is " + saidInterval(term.at.front(), term.at.back(), term.condition->unit) + "; gain " +
+         threeDigits(found.gain) + " \u00b1 " + threeDigits(found.gain_error) +
+         " nats on blocks that were not fitted.";
+}
+
 std::vector<std::string> sentencesOf(const Finding& finding) {
   std::vector<std::string> sentences;
   for (const FoundEffect& effect : finding.identified.effects)
@@ -187,6 +206,10 @@ std::vector<std::string> sentencesOf(const Finding& finding) {
                         witnessSentences(effect));
   for (const ParameterEstimate& estimate : finding.identified.calibrated)
     if (estimate.moved) sentences.push_back(movedSentence(estimate));
+  for (const std::string& term : finding.identified.moved_terms)
+    sentences.push_back(term + ", a term that the model has, has changed.");
+  for (const UnnamedFinding& found : finding.identified.unnamed)
+    sentences.push_back(sentenceOf(found, finding.identified.model));
   return sentences;
 }
 

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/geometry/se2.hpp"
+
+// Terms that no effect of the catalogue names: a piecewise linear function of what the kernel knows
+// at each instant, as a drive has shown it.
+namespace tread {
+
+/// What the kernel knows at an instant, before any unnamed term acts.
+struct TermInputs {
+  double v = 0.0;             ///< [m/s] forward speed
+  double omega = 0.0;         ///< [rad/s] yaw rate
+  double v_change = 0.0;      ///< [m/s2] against the last kTermMemory seconds
+  double omega_change = 0.0;  ///< [rad/s2] the same of the yaw rate
+  double turned = 0.0;        ///< [1] where the last turns have led, -1..1
+  double forward = 0.0;       ///< [m/s] mean of the track speeds that the command asks for
+  double turning = 0.0;       ///< [m/s] half of their difference, right less left
+};
+
+/// All of them.
+inline constexpr double TermInputs::*kTermInputs[] = {
+    &TermInputs::v,      &TermInputs::omega,   &TermInputs::v_change, &TermInputs::omega_change,
+    &TermInputs::turned, &TermInputs::forward, &TermInputs::turning};
+
+/// What the kernel remembers for them; first-order low-passes of the motion.
+struct TermMemory {
+  double v = 0.0;       ///< [m/s]
+  double omega = 0.0;   ///< [rad/s]
+  double turned = 0.0;  ///< [1]
+};
+
+inline constexpr double kTermMemory = 0.4;   ///< [s] time constant of the memory of v and yaw rate
+inline constexpr double kTurnsMemory = 0.8;  ///< [rad] of turning that forgets earlier turns
+
+/// A quantity on which a term may depend. Names are those of the conditions that adequacy tests.
+struct TermCondition {
+  const char* name;
+  const char* unit;
+  double (*value)(const TermInputs&);
+};
+
+/// All of them.
+const std::vector<TermCondition>& termConditions();
+
+/// One by name; nullptr for an unknown name.
+const TermCondition* findTermCondition(const std::string& name);
+
+/// What a term is added to.
+enum class TermChannel { kYawRate, kSpeed, kSideways };
+
+/// "yaw rate", "v", "v_y".
+const char* termChannelName(TermChannel channel);
+/// rad/s or m/s.
+const char* termChannelUnit(TermChannel channel);
+
+/// A term: a curve over one condition, times a second one or times 1.
+/** The curve is linear between `at` and constant beyond; the factor is held within its range. Both
+ * ranges are what was driven, so that the term is bounded outside. */
+struct UnnamedTerm {
+  std::string name;
+  TermChannel channel = TermChannel::kYawRate;
+  const TermCondition* condition = nullptr;  ///< of termConditions(), never null in a model
+  const TermCondition* times = nullptr;      ///< of termConditions(); nullptr = the factor is 1
+  double times_low = 0.0;                    ///< range of the factor
+  double times_high = 0.0;
+  std::vector<double> at;      ///< ascending, in the unit of the condition
+  std::vector<double> values;  ///< [rad/s or m/s, over the unit of the factor] at these
+
+  /// The factor at an instant.
+  double factor(const TermInputs& inputs) const;
+  /// The value of the curve at a value of the condition.
+  double curve(double condition) const;
+  /// What is added to the channel [rad/s or m/s].
+  double value(const TermInputs& inputs) const {
+    return factor(inputs) * curve(condition->value(inputs));
+  }
+};
+
+inline constexpr size_t kLeastTermValues = 2;
+inline constexpr size_t kMostTermValues = 6;
+
+/// The two values of `at` between which a condition lies, and the share of the upper one.
+/** Beyond the first and the last one: these, with a share of 0 or 1. At least two in order. */
+std::pair<size_t, double> placeOnCurve(const std::vector<double>& at, double condition);
+
+/// What all terms add to a body twist.
+Twist2 twistOf(const std::vector<UnnamedTerm>& terms, const TermInputs& inputs);
+
+/// Inputs of the mean motion over dt [s]; the memory moves on by dt. Commands are left at 0.
+TermInputs remember(double v, double omega, double dt, TermMemory& memory);
+
+/// Inputs of a motion at this moment. Commands are left at 0.
+TermInputs inputsNow(double v, double omega, const TermMemory& memory);
+
+}  // namespace tread
