@@ -21,7 +21,9 @@ constexpr Range kGain{0.05, 5.0};
 constexpr Range kSpread{0.0, 1.0};
 constexpr Range kAnything{-1e300, 1e300};
 constexpr double kNoLimit = 1e9;
-constexpr Range kCurve{-1000.0, 1000.0};  // of an unnamed term, in any unit
+constexpr Range kCurve{-1000.0, 1000.0};  // where an unnamed term has values, in any unit
+constexpr Range kCurveValue{-kLargestTermValue, kLargestTermValue};
+constexpr size_t kMostUnnamedTerms = 16;
 
 /// Of a holonomic base, whose wheels stand where robot.yaml says.
 void readOmni(ConfigReader& reader, VehicleModel& model) {
@@ -146,7 +148,7 @@ const TermCondition* readCondition(ConfigReader& entry, const std::string& key, 
 
 void readCurve(ConfigReader& entry, UnnamedTerm& term) {
   entry.numbers("at", term.at, 0, kCurve, "", true);
-  entry.numbers("values", term.values, 0, kCurve, "", true);
+  entry.numbers("values", term.values, 0, kCurveValue, "", true);
   if (term.at.size() < kLeastTermValues || term.at.size() > kMostTermValues)
     throw entry.error("at", "2 to 6 values of the condition, ascending");
   for (size_t i = 0; i + 1 < term.at.size(); ++i)
@@ -158,6 +160,10 @@ void readUnnamed(ConfigReader& reader, ModelDocument& document) {
   if (reader.has("unnamed") && document.vehicle.isOmni())
     throw reader.error("unnamed", "is of a vehicle with two tracks; a model with wheels has none");
   for (ConfigReader& entry : reader.sections("unnamed")) {
+    if (document.vehicle.unnamed.size() >= kMostUnnamedTerms)
+      throw entry.error("name", "is the " + std::to_string(kMostUnnamedTerms + 1) +
+                                    "th unnamed term; a model has at most " +
+                                    std::to_string(kMostUnnamedTerms));
     UnnamedTerm term;
     entry.text("name", term.name, true);
     const std::string problem = problemWithTermName(document, term.name);

@@ -84,6 +84,8 @@ struct UnnamedTerm {
 
 inline constexpr size_t kLeastTermValues = 2;
 inline constexpr size_t kMostTermValues = 6;
+/// No value of a term is beyond this, in the unit of its channel.
+inline constexpr double kLargestTermValue = 10.0;
 
 /// The two values of `at` between which a condition lies, and the share of the upper one.
 /** Beyond the first and the last one: these, with a share of 0 or 1. At least two in order. */

@@ -420,7 +420,7 @@ void LearnerNode::handle(const execution_record_t& record) {
     const Axes& V = correction.note.scaling;
     fill(message.scaling, {V[0], V[1], V[2]});
     if (correction.changed_after) health_.addToCounter("changes noticed while a pattern ran");
-    if (correction.note.no_change) health_.addToCounter("of them none after all");
+    if (correction.note.no_change) health_.addToCounter("changes after which the ground was the one before");
     if (correction.changed) {
       start_problem_.clear();
       adoptVersion();

@@ -113,6 +113,10 @@ TEST_CASE("what a term of the model says is nothing new on the next drive") {
       findWithTest(model, turningDrive({}, 4.0 * kTurns, 23), turningDrive({}, 4.0 * kTurns, 24));
   CHECK(exitStatus(moved.verdict) != 0);
   CHECK(moved.identified.moved_terms == std::vector<std::string>{"unnamed_1"});
+  // What the term stood for is gone.
+  const Finding gone = findWithTest(model, turningDrive({}, 0.0, 23), turningDrive({}, 0.0, 24));
+  CHECK(exitStatus(gone.verdict) != 0);
+  CHECK(gone.identified.moved_terms == std::vector<std::string>{"unnamed_1"});
 }
 
 TEST_CASE("no term is added on blocks that show none, and the state stays as it was") {

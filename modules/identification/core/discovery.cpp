@@ -28,7 +28,7 @@ constexpr double kInvisible = 2.0;    // times its typical size: not excited
 /// the catalogue's equations, and no drive shows by how much their sizes are off for that: 1 to 5 %
 /// in the blind study, of effects that are only like them.
 constexpr double kForm = 0.05;
-constexpr double kTermChanged = 1.0;     // of the largest value of an unnamed term
+constexpr double kTermChanged = 0.7;     // of the largest value of an unnamed term
 constexpr double kLeastTogether = 1e-3;  // of a variance, in any combination of terms
 
 /// `half` of the 95 % interval.
@@ -377,7 +377,8 @@ void judge(Finding& finding, double adequacy_alpha, double least_gain) {
     finding.reason = finding.search.at_bound.front() + " runs to the end of its plausible range";
   }
   if (finding.search.cut_short) {
-    const bool any = !shown.empty() || anyMoved(finding);
+    const bool any = !shown.empty() || anyMoved(finding) || !finding.identified.unnamed.empty() ||
+                     !finding.identified.moved_terms.empty();
     finding.verdict = any ? GapVerdict::kPartial : GapVerdict::kCannotTell;
     if (!any)
       finding.reason = "the time limit ended the search before anything was found; give it more";
@@ -462,7 +463,7 @@ UnseenErrors errorsOnHalves(const ModelDocument& before, const Fitter& fitter,
     std::optional<FoundTerms> alone;
     if (nested) alone = search(on_half, before, settings, memory, silent);
     // Half of the driving chooses its own terms, as many as all of it did.
-    for (size_t i = 0; alone && i < channels.size(); ++i)
+    for (size_t i = 0; alone && !alone->record.cut_short && i < channels.size(); ++i)
       addTerm(on_half, alone->state, channels[i], kTermSureOfHalf);
     // What has no time left chooses no effects: they are those of all.
     nested = alone && !alone->record.cut_short;
@@ -496,15 +497,18 @@ void widenByHalves(const std::vector<Unseen>& halves, IdentifiedModel& identifie
 
 /// Adds what a report shows of unnamed terms: how sure their values are, and what they were made
 /// from.
-void describe(const Fitter& fitter, const std::vector<UnnamedFinding>& unnamed,
-              IdentifiedModel& identified) {
+void describe(const Fitter& fitter, const ModelDocument& before,
+              const std::vector<UnnamedFinding>& unnamed, IdentifiedModel& identified) {
   identified.unnamed = unnamed;
+  // The fitter knows the conditions of the rest before.
+  ModelDocument with_old_rest = identified.model;
+  with_old_rest.rest = before.rest;
   for (UnnamedFinding& found : identified.unnamed) {
     const UnnamedTerm& term = *termOfPath(identified.model, found.name + ".0");
     for (size_t i = 0; i < term.values.size(); ++i)
       found.deviations.push_back(
           term.values[i] == 0.0 ? 0.0 : knownDeviation(identified.model, termPath(term, i)));
-    found.data = termCells(fitter, identified.model, term);
+    found.data = termCells(fitter, with_old_rest, term);
   }
 }
 
@@ -546,9 +550,12 @@ Finding findGap(const GapTask& task, const Progress& say) {
   say("6 adequacy");
   finding.adequacy = testAdequacy(fitter, tested, kAdequacyAlpha, task.seed);
   std::vector<UnnamedFinding> unnamed;
-  // What a person has rejected would come back without its name.
-  if (!task.named_only && settings.rejected.empty())
+  // What a person has rejected, or what was seen and does not matter, would come back without its
+  // name.
+  const bool all_kept = result.state.free.size() == tested.free.size();
+  if (!task.named_only && settings.rejected.empty() && all_kept)
     addUnnamedTerms({fitter, settings, say, result}, kAdequacyAlpha, finding.adequacy, unnamed);
+  finding.search.cut_short = result.record.cut_short;
   // A rest in which nothing is new stays what it was.
   if (!before.rest || !unnamed.empty() || finding.adequacy.p_value <= kAdequacyAlpha) {
     result.state.model.rest = restOf(fitter, result.state, task.seed);
@@ -557,7 +564,7 @@ Finding findGap(const GapTask& task, const Progress& say) {
     result.state.model.rest = before.rest;
   }
   finding.identified = identifiedModel(fitter, before, settings, result);
-  describe(fitter, unnamed, finding.identified);
+  describe(fitter, before, unnamed, finding.identified);
   say("7 error on driving that was not used");
   std::optional<Observations> test;
   if (!task.test.empty()) test.emplace(task.test, ObservationSettings{});

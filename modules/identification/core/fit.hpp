@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "common/parallel/parallel_for.hpp"
+#include "common/vehicle/unnamed_terms.hpp"
 #include "modules/identification/core/observations.hpp"
 
 namespace tread::gap {
@@ -31,7 +32,7 @@ inline std::string effectOf(const std::string& path) {
 }
 
 /// Bound and step of a value of an unnamed term, in any unit.
-inline constexpr double kAnyTermValue = 10.0;
+inline constexpr double kAnyTermValue = kLargestTermValue;
 inline constexpr double kTermStep = 0.01;
 
 /// A parameter of the catalogue, of the nominal model or of an unnamed term, free within its

@@ -322,7 +322,7 @@ void addUnnamedTerms(const SearchState& search, double adequacy_alpha, Adequacy&
          !search.isCutShort()) {
     FitState with = result.state;
     const auto added = addTerm(search.fitter, with, termChannels(adequacy.unexplained), kTermSure);
-    if (!added) return;
+    if (!added || search.isCutShort()) return;
     if (!lessensEndError(search.fitter, with, result.state, search.settings.least_gain)) {
       search.say("  - " + added->name +
                  ": does not lessen the end error on driving it was not fitted to");

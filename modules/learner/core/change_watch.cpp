@@ -21,6 +21,11 @@ Eigen::Index samplesOfStep(double period) {
   return std::max<Eigen::Index>(1, std::llround(kStep / period));
 }
 
+Eigen::Index stepsOf(double window, double period) {
+  const double step = period * static_cast<double>(samplesOfStep(period));
+  return std::max<Eigen::Index>(1, std::llround(window / step));
+}
+
 }  // namespace
 
 double chiSquare3(double probability) {
@@ -65,7 +70,7 @@ std::optional<NoticedChange> ChangeWatch::notice(const LearningRule& rule, size_
                                                  const ConstTrajectory& measured,
                                                  double period) const {
   const Eigen::Index step = samplesOfStep(period);
-  const Eigen::Index steps = std::max<Eigen::Index>(1, std::llround(limits_.window / kStep));
+  const Eigen::Index steps = stepsOf(limits_.window, period);
   int far = 0;
   for (Eigen::Index end = step; end <= measured.rows(); end += step) {
     const auto x = unlikeness(rule, pattern, measured, end, steps * step, period);
@@ -89,7 +94,7 @@ void ChangeWatch::follow(const LearningRule& rule, size_t pattern, const ConstTr
                          double period) {
   std::vector<TwistDeparture> tail;
   const Eigen::Index step = samplesOfStep(period);
-  const auto most = static_cast<Eigen::Index>(std::llround(limits_.window / kStep)) - 1;
+  const Eigen::Index most = stepsOf(limits_.window, period) - 1;
   for (Eigen::Index last = 1; last <= most && last * step <= measured.rows(); ++last) {
     const auto departure =
         rule.departure(pattern, measured, measured.rows() - last * step, last * step);

@@ -31,8 +31,10 @@ struct NoticedChange {
 };
 
 /// Watches executions that follow each other.
-/** A window is looked at every tenth of a second of an execution. The same executions give the same
- * answers, however much of each is known when it is asked. */
+/** A window is looked at every tenth of a second of an execution, or every sample of longer
+ * periods. The same executions in the same context give the same answers, however much of each is
+ * known when it is asked. Patterns shorter than half a window are too short to be told from chance.
+ */
 class ChangeWatch {
  public:
   explicit ChangeWatch(const ChangeLimits& limits = {});

@@ -181,18 +181,17 @@ Eigen::ArrayX3d Learner::measuredRows(const Measurement& measurement) {
   return whole.topRows(static_cast<Eigen::Index>(measurement.covered));
 }
 
-/// The rule as it was, and this execution, of which the last sample was measured at `utime`.
-RuleNote Learner::update(size_t executed, const Measurement& measurement, int64_t utime) {
+/// The rule as it was, and this execution, which began at `begun`.
+RuleNote Learner::update(size_t executed, const Measurement& measurement, int64_t begun) {
   const Eigen::ArrayX3d rows = measuredRows(measurement);
   const ConstTrajectory measured(rows.data(), rows.rows(), 3);
   Context context = measurement.context;
   changed_after_.reset();
   if (rule_->learnsParts()) {
-    const double period = set_.periodSeconds();
-    const int64_t begun = utime - std::llround(1e6 * period * static_cast<double>(rows.rows()));
-    if (std::abs(begun - watched_until_) >= kNoPause) watch_.clear();
+    ChangeWatch watch = watch_;
+    if (std::abs(begun - watched_until_) >= kNoPause) watch.clear();
     settled_->setContext(context);
-    if (const auto change = watch_.notice(*settled_, executed, measured, period))
+    if (const auto change = watch.notice(*settled_, executed, measured, set_.periodSeconds()))
       changed_after_ = context.changed_after = change->after;
   }
   rule_->assign(*settled_);
@@ -224,7 +223,7 @@ void Learner::watchEnd(size_t executed, const Measurement& measurement, int64_t 
 /// From how far it ended beside what was predicted before it, and with what it began.
 void Learner::learnCoasting(size_t executed, const Measurement& measurement, int64_t utime) {
   const Ended before = std::exchange(ended_, Ended{});
-  if (!rule_->learnsParts() || !measurement.complete()) return;
+  if (!rule_->learnsParts() || !measurement.complete() || changed_after_) return;
   const double period = set_.periodSeconds();
   const MotionPattern& pattern = set_.patterns()[executed];
   const std::vector<Pose2> expected =
@@ -261,8 +260,10 @@ bool Learner::follow(int pattern_id, const Measurement& beginning, int64_t part,
     return false;
   const int64_t version = settled_version_ + part;
   if (part >= kVersions || version <= set_.version()) return false;
-  const auto coming = comingAfter(*pattern, beginning);
-  update(index_.at(pattern_id), beginning, utime);
+  update(index_.at(pattern_id), beginning,
+         utime - std::llround(1e6 * set_.periodSeconds() * static_cast<double>(beginning.covered)));
+  // Behind a change the velocity is the new ground's, which the rule has just learned.
+  const auto coming = changed_after_ ? std::nullopt : comingAfter(*pattern, beginning);
   std::string why;
   const bool adopted = adopt(predicted(coming), version, utime, why);
   if (adopted)
@@ -289,7 +290,8 @@ Correction Learner::learn(int pattern_id, const Measurement& measurement,
   if (!rule_->learns() || pattern == nullptr || !measurement.fair()) return correction;
   if (measurement.trajectory.size() != pattern->trajectory.size()) return correction;
   const size_t executed = index_.at(pattern_id);
-  correction.note = update(executed, measurement, utime);
+  const double seconds = set_.periodSeconds() * static_cast<double>(pattern->trajectory.size());
+  correction.note = update(executed, measurement, utime - std::llround(1e6 * seconds));
   correction.changed_after = changed_after_;
   correction.guards = guardsOf(correction.note);
 

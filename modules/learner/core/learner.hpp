@@ -116,7 +116,7 @@ class Learner {
   void learnCoasting(size_t executed, const Measurement& measurement, int64_t utime);
   /// What the rule predicts of a pattern.
   std::vector<Pose2> predictionOf(const LearningRule& rule, size_t pattern, size_t samples) const;
-  RuleNote update(size_t executed, const Measurement& measurement, int64_t utime);
+  RuleNote update(size_t executed, const Measurement& measurement, int64_t begun);
   Eigen::ArrayX3d measuredRows(const Measurement& measurement);
   /// The predictions as a version; one clear line in `why` if they are no set.
   bool adopt(PatternSetContent content, int64_t version, int64_t utime, std::string& why);

@@ -173,6 +173,9 @@ std::string opening(const Finding& finding) {
       if (!finding.identified.unnamed.empty())
         return "There is a disagreement, and no effect of the catalogue explains it. What of it "
                "has a shape is a term of the new model, without a name.";
+      if (!finding.identified.moved_terms.empty())
+        return "There is a disagreement, and no effect of the catalogue explains it: a term "
+               "without a name that the model has is another one now.";
       return "There is a disagreement, and no effect of the catalogue explains it. A term by "
              "another name would be a guess; the model stays as it was but for its calibration.";
     case GapVerdict::kCannotTell:

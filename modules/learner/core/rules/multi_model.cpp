@@ -348,7 +348,8 @@ TwistCorrection MultiModel::expected(const PatternPart& part) const {
   return correction;
 }
 
-std::optional<MultiModel::Stretch> MultiModel::stretch(size_t pattern,
+std::optional<MultiModel::Stretch> MultiModel::stretch(const ContextEffects& effects,
+                                                       size_t pattern,
                                                        const ConstTrajectory& measured,
                                                        Eigen::Index first,
                                                        Eigen::Index samples) const {
@@ -360,9 +361,9 @@ std::optional<MultiModel::Stretch> MultiModel::stretch(size_t pattern,
   result.sample.part =
       first == 0 && samples == whole.samples ? whole : model_->part(pattern, first, samples);
   result.sample.entry = entry.allFinite() ? plausible(entry) : entry;
-  result.inputs = effects_.inputs(result.sample.part,
-                                  model_->period() * static_cast<double>(samples), context_.tilt);
-  result.effect = effects_.effect(result.inputs);
+  result.inputs = effects.inputs(result.sample.part,
+                                 model_->period() * static_cast<double>(samples), context_.tilt);
+  result.effect = effects.effect(result.inputs);
   result.sample.mean_twist = plausible(mean_twist - result.effect);
   return result;
 }
@@ -375,14 +376,17 @@ void MultiModel::learn(size_t executed, const ConstTrajectory& measured, RuleNot
                                : measured.rows() >= step        ? measured.rows() / step * step
                                                                 : measured.rows();
   // What lies before a change tells nothing of the ground behind it.
-  const bool decided = context_.changed_after >= 0;
-  const Eigen::Index after = (context_.changed_after + step - 1) / step * step;
-  const Eigen::Index first = decided && after < samples ? after : 0;
+  const Eigen::Index rows = std::min(measured.rows(), whole.samples);
+  const bool decided = context_.changed_after >= 0 && context_.changed_after < rows;
+  const Eigen::Index quarter = (context_.changed_after + step - 1) / step * step;
+  const bool rounded = quarter < samples;
+  const Eigen::Index first = !decided ? 0 : rounded ? quarter : context_.changed_after;
+  const Eigen::Index end = decided && !rounded ? rows : samples;
   effects_.meet(context_.voltage);
-  const auto of_samples = stretch(executed, measured, first, samples - first);
+  const auto of_samples = stretch(executed, measured, first, end - first);
   if (!of_samples) return;  // beyond all numbers
   const auto& [sample, inputs, effect] = *of_samples;
-  const bool all = first == 0 && samples == whole.samples;
+  const bool all = first == 0 && end == whole.samples;
   const Surface& before = likeliest().surface;
   const TwistSample usual = before.asUsual(sample);
   const Moments expected = before.expected(usual.part);
@@ -391,7 +395,10 @@ void MultiModel::learn(size_t executed, const ConstTrajectory& measured, RuleNot
   Eigen::Matrix3d spread = expected.covariance;
   spread.diagonal() += before.executionNoise(sample.part);
   const Eigen::Vector3d variance = (turn * spread * turn.transpose()).diagonal();
-  if (all) calibrate(sample);
+  if (end == whole.samples) {
+    const auto of_all = all ? of_samples : stretch(executed, measured, 0, end);
+    if (of_all) calibrate(of_all->sample);
+  }
   ++clock_;
   expectChange(decided ? kDecided : hazard(sample.part.metres));
   weigh(sample);
@@ -399,10 +406,10 @@ void MultiModel::learn(size_t executed, const ConstTrajectory& measured, RuleNot
   if (change_probability_ < kSurelyChanged) effects_.learn(inputs, beyond, variance, ground_);
   context_ = {};
   noticed_ = noticed_ || decided;
-  note.no_change = countChange(sample.part.metres);
+  note.no_change = countChange(all ? whole.metres : model_->part(executed, 0, end).metres);
   forgetWeakest();
   update(sample);
-  const Eigen::Index last = samples - 1;
+  const Eigen::Index last = end - 1;
   if (!decided)
     followScatter(sample, effect, {measured(last, 0), measured(last, 1), measured(last, 2)});
   note.surface_stored = rememberSettled();

@@ -102,7 +102,12 @@ class MultiModel : public LearningRule {
     Eigen::Vector3d effect;
   };
   std::optional<Stretch> stretch(size_t pattern, const ConstTrajectory& measured,
-                                 Eigen::Index first, Eigen::Index samples) const;
+                                 Eigen::Index first, Eigen::Index samples) const {
+    return stretch(effects_, pattern, measured, first, samples);
+  }
+  std::optional<Stretch> stretch(const ContextEffects& effects, size_t pattern,
+                                 const ConstTrajectory& measured, Eigen::Index first,
+                                 Eigen::Index samples) const;
   void weigh(const TwistSample& sample);
   void scaleWeights(double total);
   void normalizeWeights();

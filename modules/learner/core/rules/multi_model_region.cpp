@@ -149,7 +149,9 @@ Moments MultiModel::region(const PatternPart& part) const {
 std::optional<TwistDeparture> MultiModel::departure(size_t pattern, const ConstTrajectory& measured,
                                                     Eigen::Index first,
                                                     Eigen::Index samples) const {
-  const auto of_samples = stretch(pattern, measured, first, samples);
+  ContextEffects effects = effects_;
+  effects.meet(context_.voltage);
+  const auto of_samples = stretch(effects, pattern, measured, first, samples);
   if (!of_samples) return std::nullopt;
   const Surface& ground = likeliest().surface;
   const TwistSample usual = ground.asUsual(of_samples->sample);

@@ -14,6 +14,8 @@ namespace {
 constexpr double kLargestTwist = 100.0;
 /// A part whose mean is not met says at most so many variances of noise [1].
 constexpr double kMostMisfit = 25.0;
+/// Executions, also faded ones, from which on a part says how it scatters.
+constexpr double kRepeated = 2.0;
 /// What weighs less adds nothing: to a density, to the noise [1].
 constexpr double kLeastInDensity = 1e-6;
 constexpr double kLeastInNoise = 0.01;
@@ -325,9 +327,10 @@ void Surface::estimateNoise(const GroundConfig& config) {
     Eigen::Vector3d repeated = Eigen::Vector3d::Constant(a0);
     Eigen::Vector3d apart = b;
     for (const Measured& measured : measured_) {
+      if (measured.count < kRepeated) continue;
       const Eigen::Vector3d within = squaresWithin(measured);
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        repeated[axis] += 0.5 * std::max(0.0, measured.count - 1.0);
+        repeated[axis] += 0.5 * (measured.count - 1.0);
         apart[axis] += 0.5 * within[axis] / R(measured.part, axis);
       }
     }
@@ -343,7 +346,7 @@ void Surface::estimateNoise(const GroundConfig& config) {
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         certainty_[axis] += 0.5 * measured.count;
         double misfit = (error[axis] - within[axis]) / R(measured.part, axis);
-        if (measured.count >= 2.0)
+        if (measured.count >= kRepeated)
           misfit = std::min(misfit, kMostMisfit * apart[axis] / repeated[axis]);
         b[axis] += 0.5 * std::max(0.0, within[axis] / R(measured.part, axis) + misfit);
       }
