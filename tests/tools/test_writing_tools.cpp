@@ -18,6 +18,7 @@
 #include "tests/common/recordings/synthetic_drives.hpp"
 #include "tests/helpers.hpp"
 #include "tests/tools/called_program.hpp"
+#include "tests/tools/experiment/crossing_runs.hpp"
 #include "tests/tools/experiment/drawn_driving.hpp"
 #include "tests/tools/experiment/small_world.hpp"
 #include "tests/tools/gap/arc_drive.hpp"
@@ -102,6 +103,9 @@ const std::vector<WritingCommand>& commands() {
        "small.yaml", "made", true},
       {"tread-experiment adaptation --recordings IN --rules off --starts 3 --out OUT", "driving",
        "made", true},
+      {"tread-experiment crossings --rules off --mapping " + samples::seamMapping() +
+           " IN --out OUT",
+       "runs.csv", "made", true},
       {"tread-compare-models --log IN --out OUT", "long.lcmlog", "made", true},
       {"tread-key new OUT", ""},
   };
@@ -118,6 +122,7 @@ class Inputs {
     gap::samples::writeDrive(path("longer.lcmlog"), 210.0, 0.49, "", 16);
     folder_.write("faults.yaml", "messages: []\n");
     folder_.write("small.yaml", experiment::testing::kSmallWorld);
+    samples::writeRuns(path("runs.csv"), 2, 0.5);
     folder_.write("track.nmea", nmeaTrack());
     folder_.write("drive.clf", carmenDrive());
     run(kShortMission + " --log " + path("drive.lcmlog"));

@@ -1,54 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // Changes of ground inside a run, as people ask for them.
-#include <cmath>
-#include <cstdio>
-#include <fstream>
-#include <random>
 #include <sstream>
 
 #include <catch2/catch.hpp>
 
 #include "tests/tools/called_program.hpp"
+#include "tests/tools/experiment/crossing_runs.hpp"
 
 namespace {
 
 using tread::samples::called;
 using tread::samples::CalledProgram;
 using tread::samples::OwnFolder;
-
-constexpr double kStep = 0.05;    // [s]
-constexpr double kLength = 16.0;  // [s] of a run
-
-std::string mapping() {
-  return std::string(TREAD_SOURCE_DIR) + "/config/imports/three_wheels_seam.yaml";
-}
-
-/// Runs of a robot whose speed falls to a share where it comes from one floor to the next.
-void writeRuns(const std::string& path, int runs, double share) {
-  std::mt19937_64 random(5);
-  std::normal_distribution<double> normal;
-  std::ofstream file(path);
-  file << "run,t_s,cmd_w1_rad_s,cmd_w2_rad_s,cmd_w3_rad_s,w1_rad_s,w2_rad_s,w3_rad_s,i1_A,i2_A,i3_"
-          "A,x_m,y_m,yaw_rad,pose_new,w1_on,w2_on,w3_on\n";
-  double t = 0.0;
-  for (int run = 0; run < runs; ++run, t += 5.0) {
-    const double direction = 0.5 * run;
-    const double changes = 8.2 + 0.07 * run;  // [s] after its start
-    double way = 0.0;
-    for (double at = 0.0; at < kLength; at += kStep, t += kStep) {
-      const bool behind = at >= changes;
-      const double speed = 0.1 * (behind ? share : 1.0) * (1.0 + 0.1 * normal(random));
-      const char* const floor = behind ? "felt" : "wood";
-      char line[256];
-      std::snprintf(line, sizeof line, "%d,%.3f,%.2f,%.2f,2.5,0,0,0,0,0,0,%.5f,%.5f,0,1,%s,%s,%s\n",
-                    run, t, -1.0 - 0.1 * run, -2.0 + 0.1 * run, way * std::cos(direction),
-                    way * std::sin(direction), floor, floor, floor);
-      file << line;
-      way += speed * kStep;
-    }
-  }
-}
+using tread::samples::seamMapping;
+using tread::samples::writeRuns;
 
 CalledProgram run(const std::string& arguments) {
   return called("tread-experiment crossings " + arguments);
@@ -73,7 +39,7 @@ TEST_CASE("a change inside a run is noticed, and the next pieces are predicted b
   const CalledProgram result =
       run("--rules off,single,multi_model --set "
           "ground.position_noise=0.001 --mapping " +
-          mapping() + " " + folder.path("drive.csv") + " --out " + folder.path("out"));
+          seamMapping() + " " + folder.path("drive.csv") + " --out " + folder.path("out"));
   INFO(result.printed);
   REQUIRE(result.status == 0);
   CHECK(result.says("12 runs, 12 changes of ground; after 12 of them the motion is another one"));
@@ -98,7 +64,7 @@ TEST_CASE("a change inside a run is noticed, and the next pieces are predicted b
 TEST_CASE("runs on one ground have no change, and hardly a false alarm") {
   const OwnFolder folder;
   writeRuns(folder.path("drive.csv"), 20, 1.0);
-  const CalledProgram result = run("--rules multi_model --mapping " + mapping() + " " +
+  const CalledProgram result = run("--rules multi_model --mapping " + seamMapping() + " " +
                                    folder.path("drive.csv") + " --out " + folder.path("out"));
   INFO(result.printed);
   REQUIRE(result.status == 0);
@@ -118,9 +84,9 @@ TEST_CASE("crossings refuses what it cannot do in one line") {
     CHECK(result.says("tread-experiment: "));
     CHECK(result.says(words));
   };
-  const std::string drive = " --mapping " + mapping() + " " + folder.path("drive.csv");
+  const std::string drive = " --mapping " + seamMapping() + " " + folder.path("drive.csv");
   refuses("--rules oracle" + drive, "there is no rule 'oracle'");
   refuses("--cut 10" + drive, "no run is left");
   refuses("--set ground.nothing=1" + drive, "nothing");
-  refuses("--mapping " + mapping() + " " + folder.path("none.csv"), "none.csv");
+  refuses("--mapping " + seamMapping() + " " + folder.path("none.csv"), "none.csv");
 }
