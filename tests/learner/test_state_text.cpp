@@ -90,7 +90,7 @@ TEST_CASE("a state of another shipped set is refused with that reason") {
 
 TEST_CASE("a state that another release wrote is refused with that reason, not as damaged") {
   std::string text = formatState(learnedState(), smallSet(), {});
-  text.replace(text.find("state 5"), 7, "state 4");
+  text.replace(text.find("state 4"), 7, "state 3");
   text.resize(text.rfind("end "));
   std::string why;
   const auto* bytes = reinterpret_cast<const uint8_t*>(text.data());

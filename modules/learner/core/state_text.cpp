@@ -81,7 +81,7 @@ class Words {
 };
 
 constexpr const char* kStateKind = "tread-learner-state ";
-constexpr const char* kStateHeader = "tread-learner-state 5";
+constexpr const char* kStateHeader = "tread-learner-state 4";
 /// No state of a thousand patterns has more executions in its list than this.
 constexpr int64_t kMaxHandled = 10'000;
 /// No rule remembers more numbers than this.
