@@ -200,13 +200,14 @@ void run(CrossingArguments arguments) {
   tread::learner::readRules(reader, settings.config);
   reader.finish();
   std::vector<experiment::CrossingDrives> drives;
+  std::string left_out;  // said once there is a result: what cannot be done is one line
   for (const std::string& file : arguments.files) {
     tread::ConfigReader mapping = tread::ConfigReader::fromFile(arguments.mapping);
     tread::import::ForeignDrive read =
         tread::import::readMappedCsv(file, tread::import::readCsvMapping(mapping));
     drives.push_back(crossingRuns(std::move(read.drive), settings));
     for (const std::string& note : drives.back().notes)
-      std::cerr << std::filesystem::path(file).filename().string() << ": " << note << '\n';
+      left_out += std::filesystem::path(file).filename().string() + ": " + note + "\n";
   }
   const auto errors = driveCrossings(drives, settings);
   if (!arguments.out.empty()) {
@@ -216,6 +217,7 @@ void run(CrossingArguments arguments) {
     tread::writeText((made / "noticed.csv").string(), noticedCsvOf(errors));
     folder.commit();
   }
+  std::cerr << left_out;
   std::cout << textOf(drives) << textOf(errors) << std::flush;
 }
 
