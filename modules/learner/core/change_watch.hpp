@@ -21,7 +21,7 @@ namespace tread::learner {
 /// When a motion is no longer the expected one.
 struct ChangeLimits {
   double window = 0.8;   ///< [s] T_w
-  double chance = 1e-4;  ///< [1] probability that a window on unchanged ground is as far off
+  double chance = 1e-5;  ///< [1] probability that a window on unchanged ground is as far off
 };
 
 /// A change of ground, in samples from the execution's start.
