@@ -219,7 +219,7 @@ struct InputFile {
 std::vector<Section> evidenceSections(const Finding& finding, const std::vector<InputFile>& inputs);
 
 /// Name and version of this tool, for provenance.
-const char* toolVersion();
+std::string toolVersion();
 
 /// The whole report.
 Page reportPage(const Finding& finding, const std::vector<InputFile>& inputs);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/config/version.hpp"
+
 namespace tread::gap {
 namespace {
 
@@ -292,8 +294,8 @@ std::vector<Block> logsBlocks(const Finding& finding) {
 
 }  // namespace
 
-const char* toolVersion() {
-  return "tread-gap " TREAD_GAP_VERSION;
+std::string toolVersion() {
+  return std::string("tread-gap ") + version();
 }
 
 Page reportPage(const Finding& finding, const std::vector<InputFile>& inputs) {
