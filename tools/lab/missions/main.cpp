@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/config/config_folder.hpp"
 #include "common/config/command_line.hpp"
 #include "common/config/outputs.hpp"
 #include "common/config/scalars.hpp"
@@ -37,7 +38,7 @@ struct Arguments {
   std::string simulator;  ///< configuration with the place to drive in; empty = drawn by the seed
   std::vector<double> goal;  ///< [m] in map, with simulator
   std::string truth;
-  std::string robot = TREAD_CONFIG_DIR "/robots/teodor";
+  std::string robot = shippedConfig() + "/robots/teodor";
   std::vector<std::string> overrides;
   bool compare_omniscient = false;
   std::string worlds;               ///< file of given worlds; empty = drawn by the seeds

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "common/config/config_folder.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "modules/simulator/simulator_files.hpp"
 #include "tools/robot/patterns/recipe.hpp"
@@ -13,7 +14,9 @@
 namespace tread::missions {
 namespace {
 
-const std::string kFolder = TREAD_CONFIG_DIR "/missions/worlds";
+std::string worldFolder() {
+  return shippedConfig() + "/missions/worlds";
+}
 
 /// A drive, a payload or a battery that fails while it drives.
 class ChangingVehicle final : public sim::Plant {
@@ -51,7 +54,7 @@ PatternSet shippedOf(ConfigReader patterns) {
 std::vector<std::string> worldKinds() {
   std::vector<std::string> names;
   std::error_code missing;  // where the folder was moved away, one kind is left
-  for (const auto& file : std::filesystem::directory_iterator(kFolder, missing))
+  for (const auto& file : std::filesystem::directory_iterator(worldFolder(), missing))
     names.push_back(file.path().stem().string());
   std::sort(names.begin(), names.end());
   names.insert(names.begin(), WorldKind().name);
@@ -62,7 +65,7 @@ WorldKind readWorldKind(const std::string& name, const sim::VehicleParameters& v
   WorldKind kind;
   if (name == kind.name) return kind;
   kind.name = name;
-  ConfigReader reader = ConfigReader::fromFile(kFolder + "/" + name + ".yaml");
+  ConfigReader reader = ConfigReader::fromFile(worldFolder() + "/" + name + ".yaml");
   reader.text("between", kind.between);
   for (ConfigReader& surface : reader.sections("surfaces"))
     kind.surfaces.push_back(sim::readSurface(surface));
@@ -86,7 +89,7 @@ std::vector<sim::SurfaceParameters> surfacesOfKinds() {
   std::vector<sim::SurfaceParameters> surfaces;
   for (const std::string& name : worldKinds()) {
     if (name == WorldKind().name) continue;
-    ConfigReader reader = ConfigReader::fromFile(kFolder + "/" + name + ".yaml");
+    ConfigReader reader = ConfigReader::fromFile(worldFolder() + "/" + name + ".yaml");
     for (ConfigReader& surface : reader.sections("surfaces"))
       surfaces.push_back(sim::readSurface(surface));
   }

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/config/config_folder.hpp"
 #include "common/config/command_line.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/config/outputs.hpp"
@@ -146,7 +147,7 @@ struct LearnerArguments : Arguments {
 void compareLearner(LearnerArguments& arguments) {
   const RobotLog log = readRobotLog({arguments.log});
   const auto config = [&] {
-    if (arguments.config.empty()) return report::learnerConfigOf(log, TREAD_CONFIG_DIR "/patterns");
+    if (arguments.config.empty()) return report::learnerConfigOf(log, shippedConfig() + "/patterns");
     ConfigReader reader = ConfigReader::fromFile(arguments.config);
     return learner::readLearnerConfig(reader);
   };
@@ -161,7 +162,7 @@ void compareLearnedPoses(const LearnerArguments& arguments) {
   const std::vector<LogEvent> events = readEvents({arguments.log}, problem);
   const auto config = [&] {
     if (arguments.config.empty())
-      return report::learnerConfigOf(readRobotLog({arguments.log}), TREAD_CONFIG_DIR "/patterns");
+      return report::learnerConfigOf(readRobotLog({arguments.log}), shippedConfig() + "/patterns");
     ConfigReader reader = ConfigReader::fromFile(arguments.config);
     return learner::readLearnerConfig(reader);
   };
@@ -263,7 +264,7 @@ void addCorpus(CLI::App& app, CorpusArguments& arguments) {
   command.callback([&arguments] {
     const auto corpus =
         replay::replayCorpus(replay::corpusOf(arguments.folder), arguments.overrides,
-                             TREAD_CONFIG_DIR "/patterns", arguments.threads);
+                             shippedConfig() + "/patterns", arguments.threads);
     say(replay::reportOf(corpus), arguments.output);
     arguments.different =
         !std::all_of(corpus.begin(), corpus.end(), [](const auto& entry) { return entry.equal; });

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/config/config_folder.hpp"
 #include "common/config/command_line.hpp"
 #include "common/config/outputs.hpp"
 #include "modules/simulator/simulator_files.hpp"
@@ -31,7 +32,7 @@ int run(const Arguments& arguments) {
   std::vector<learner::Rule> rules;
   for (const std::string& name : arguments.rules)
     if (name != "none") rules.push_back(name);
-  if (!rules.empty()) by_rule = errorsByRule(arguments.logs, TREAD_CONFIG_DIR "/patterns", rules);
+  if (!rules.empty()) by_rule = errorsByRule(arguments.logs, shippedConfig() + "/patterns", rules);
   std::cout << reportOf(drive, truth, by_rule);
   if (!arguments.picture.empty()) {
     drawDrive(arguments.picture, sceneOf(drive, truth, by_rule));
