@@ -96,3 +96,24 @@ TEST_CASE("an installed program finds the configuration that came with it") {
   fs::rename(prefix / "config", prefix / "gone");
   CHECK_FALSE(called(program.string() + " --help").says("dying_battery"));
 }
+
+TEST_CASE("other projects link the two cores of an installed Tread") {
+  const Staged lab("lab\n", "/opt/tread");
+  const auto run = [&](const std::string& words) {
+    const std::string command = "cd " + lab.at("").string() + " && " + words + " >said 2>&1";
+    const int status = std::system(command.c_str());
+    INFO(words << ": " << contentOf(lab.at("said")));
+    REQUIRE(status == 0);
+    return contentOf(lab.at("said"));
+  };
+  for (const char* name : {"learn.cpp", "identify.cpp"})
+    CHECK(linesOf(contentOf(lab.at("opt/tread/share/doc/tread-lab/examples") / name)).size() <= 40);
+  run("cmake -S opt/tread/share/doc/tread-lab/examples -B built -DCMAKE_BUILD_TYPE=Debug "
+      "-DCMAKE_PREFIX_PATH=$PWD/opt/tread");
+  run("cmake --build built");
+  const std::vector<std::string> learned = linesOf(run("built/learn"));
+  REQUIRE(learned.size() == 2);
+  CHECK(learned[0] == "shipped: left ends at 1.51 0.83 m, 1.00 rad");
+  CHECK(learned[1].rfind("learned: left ends at 1.3", 0) == 0);
+  CHECK(run("built/identify") == "motor_deadband 0.100\n");
+}
