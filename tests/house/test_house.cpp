@@ -340,6 +340,30 @@ TEST_CASE("the table of channels says what the table in code says") {
   }
 }
 
+TEST_CASE("packages.txt says for what each package is, in words that tools/setup knows") {
+  const fs::path root = TREAD_SOURCE_DIR;
+  const std::string setup = contentOf(root / "tools/setup");
+  std::smatch list;
+  REQUIRE(std::regex_search(setup, list, std::regex("\npurposes=\\(([a-z ]+)\\)")));
+  std::istringstream words(list[1].str());
+  std::map<std::string, int> packages;
+  for (std::string purpose; words >> purpose;) packages[purpose] = 0;
+  std::istringstream lines(contentOf(root / "tools/packages.txt"));
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream fields(line);
+    std::string package, purpose, why;
+    fields >> package >> purpose >> why;
+    CAPTURE(line);
+    CHECK_FALSE(why.empty());
+    REQUIRE(packages.count(purpose) == 1);
+    ++packages[purpose];
+  }
+  for (const auto& [purpose, count] : packages) CHECK(count > 0);
+  // A demo builds and drives; browser, JDK and checks are for others.
+  CHECK(contentOf(root / "tools/demo").find("\ntools/setup build run ") != std::string::npos);
+}
+
 TEST_CASE("README is short (at most 9 kB) and manuals stand in the folders") {
   CHECK(contentOf(fs::path(TREAD_SOURCE_DIR) / "README.md").size() <= 9000);
 }

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// In the place of rawlog_objects.cpp where MRPT was not there when this was built.
+#include "tools/robot/import/rawlog_objects.hpp"
+
+namespace tread::import {
+
+void readRawlogObjects(const std::string& /*path*/,
+                       const std::function<void(const RawlogRecord&)>& take) {
+  take(RawlogProblem{
+      "this program was built without MRPT, which reads rawlogs; type: tools/setup import, and "
+      "build it again"});
+}
+
+}  // namespace tread::import
