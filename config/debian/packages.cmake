@@ -103,7 +103,8 @@ set(CPACK_DEBIAN_ROBOT_PACKAGE_DEPENDS "supervisor, iproute2")
 set(CPACK_DEBIAN_ROBOT_PACKAGE_SUGGESTS "liblcm-bin, liblcm-java, libjchart2d-java, default-jre")
 # For who links its cores.
 set(CPACK_DEBIAN_LAB_PACKAGE_SUGGESTS "g++, cmake, libeigen3-dev, libmrpt-poses-dev")
-set(CPACK_DEBIAN_ROBOT_PACKAGE_CONTROL_EXTRA "${debian}/tread/conffiles;${CMAKE_CURRENT_SOURCE_DIR}/debian/postinst;${CMAKE_CURRENT_SOURCE_DIR}/debian/prerm")
+set(CPACK_DEBIAN_ROBOT_PACKAGE_CONTROL_EXTRA ${debian}/tread/conffiles ${CMAKE_CURRENT_SOURCE_DIR}/debian/postinst
+    ${CMAKE_CURRENT_SOURCE_DIR}/debian/prerm)
 set(CPACK_DEBIAN_LAB_PACKAGE_CONTROL_EXTRA "${debian}/tread-lab/conffiles")
 set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_CURRENT_SOURCE_DIR}/debian/when_packed.cmake)
 include(CPack)
