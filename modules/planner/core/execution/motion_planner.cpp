@@ -184,7 +184,11 @@ void PlanningMap::substituteGoal(const Eigen::Vector2d& p_vehicle,
 
 void PlanningMap::computeDistance(const Goal& goal, const Eigen::Vector2d& p_vehicle) {
   const FencedClearance fenced(*map_, field_fenced_ ? fenced_ : no_fences_);
-  distance_to_goal_.compute(fenced, goal, p_vehicle, detours_, config_.field);
+  // Where no search may go there is no way. The middle of a gap may lie half a cell beside the
+  // centre of one.
+  DistanceFieldConfig field = config_.field;
+  field.inflation += std::max(0.0, config_.margins.least() - map_->cellSize() / 2.0);
+  distance_to_goal_.compute(fenced, goal, p_vehicle, detours_, field);
 }
 
 void PlanningMap::addDetour(const Eigen::Vector2d& p_map) {
