@@ -75,6 +75,10 @@ void readAges(ConfigReader reader, bool logged, AgeLimits& ages) {
   reader.seconds("pattern_set", ages.pattern_set, {2.5, 30.0});
 }
 
+/// What is near and what is wide, in sizes of the robot: of 1.5 x .8 m it was measured.
+constexpr double kFrontier = 1.7;  // [1] lengths before the unknown where a plan may end
+constexpr double kWide = 1.7;      // [1] half widths of clearance from which on ground is open
+
 constexpr double kFarthest = 1e6;  // [m] a goal can be from the origin of map
 constexpr int kMaxTileCells = 512;
 
@@ -171,6 +175,8 @@ PlannerConfig readConfig(ConfigReader& reader, bool logged) {
   PlanningMapConfig& map = config.map;
   readRobotInto(reader, logged, config);
   map.field.inflation = map.footprint.half_width;
+  map.field.wide = kWide * map.footprint.half_width;
+  config.search.frontier = kFrontier * map.footprint.length();
   map.clearance.clearance_cap =
       std::max(map.clearance.clearance_cap, 1.5 * map.footprint.half_width);
   readMargins(reader.section("margins"), map.margins);

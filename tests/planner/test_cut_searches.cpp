@@ -15,7 +15,15 @@ namespace {
 
 /// A boulder dead ahead, and noise that makes either side the shorter one.
 struct Drive {
-  Drive() : rig(boulder()) {}
+  Drive() : rig(boulder(), thorough()) {}
+
+  /// Searches that take long enough to be cut.
+  static PlannerConfig thorough() {
+    PlannerConfig config = usualPlanner();
+    config.search.heuristic_weight = 1.2;
+    config.search.turn_weight = 0.4;
+    return config;
+  }
 
   static Playground boulder() {
     Playground ground;

@@ -95,3 +95,44 @@ TEST_CASE("Standing boxed in there is no next pattern to keep to, not even one o
   CHECK(!decision.report.reason.empty());
   CHECK(keptBy(rig) == 0);
 }
+
+namespace {
+
+/// Before a dead end: searches while driving are cut off before they find the way out.
+Rig inDeadEnd() {
+  Playground ground;
+  ground.addWall({2.2, -2.0}, {2.2, 2.0});
+  ground.addWall({-2.0, 2.0}, {2.2, 2.0});
+  ground.addWall({-2.0, -2.0}, {2.2, -2.0});
+  PlannerConfig config = usualPlanner();
+  config.policy.driving_expansions = 64;
+  config.policy.standing_expansions = 100'000;
+  return Rig(ground, config);
+}
+
+bool arrives(Rig& rig, double seconds) {
+  for (double t = 0.0; t < seconds; t += 0.5)
+    if (rig.run(0.5).report.status == PlanStatus::kArrived) return true;
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("A plan that leads out of a dead end is kept where the next search is cut off") {
+  Rig rig = inDeadEnd();
+  CHECK(arrives(rig, 60.0));
+  CHECK(rig.supervisor().counters().count("kept to its plan") == 1);
+}
+
+TEST_CASE("A plan is not kept where what runs already ends in the goal") {
+  Rig rig = inDeadEnd();
+  const auto plans_on_from_rest = [&] {
+    const ExecutionTracker& program = rig.supervisor().program();
+    return !program.running().empty() && !program.next().empty() &&
+           program.running().pattern().exit_class == "rest";
+  };
+  for (int i = 0; i < 600 && !plans_on_from_rest(); ++i) rig.run(0.05);
+  REQUIRE(plans_on_from_rest());
+  rig.inputs().goal = Goal{2, rig.pose(), 3.0, 4.0};
+  CHECK(arrives(rig, 10.0));
+}

@@ -48,6 +48,8 @@ TEST_CASE("A short vehicle's patterns are checked at poses as close as it is sho
   const PlannerConfig config = readPlannerConfig(reader);
   CHECK(config.sweep.distance < 0.05);
   CHECK(config.sweep.covered < 0.05);
+  CHECK(config.search.frontier < 0.2);
+  CHECK(config.map.field.wide < 0.1);
   const Margins& margins = config.map.margins;
   CHECK(config.sweep.outline.front == Approx(0.05 + std::max(margins.plan, margins.largest)));
 }

@@ -52,6 +52,16 @@ TEST_CASE("At the border of the known the plan ends in front of it, free and abl
   CHECK(result.expansions < 200);
 }
 
+TEST_CASE("In the goal a stop is found before all that is around it has been expanded") {
+  Playground ground;
+  const Grid grid = ground.paint(0.1, {-6.4, -6.4}, {12.8, 6.4});
+  const SearchBench bench(grid, samplePatterns(), {1, {6.0, 1.0, 0.0}, 1.0, 4.0});
+  PatternSearch search(SearchConfig{});
+  const SearchResult result = search.run(bench.problem({}), after(20'000));
+  REQUIRE(result.end == SearchEnd::kGoal);
+  CHECK(result.expansions < 60);
+}
+
 TEST_CASE("Boxed in, nothing is found and it says so") {
   Playground ground;
   ground.addWall({-0.9, -0.6}, {0.9, -0.6}, 0.1);

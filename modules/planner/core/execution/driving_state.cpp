@@ -220,9 +220,9 @@ const TablePattern* DrivingState::runningPattern() const {
 
 SearchResult DrivingState::search(int64_t now, const PlanStep& start, int expansions) {
   const bool may_keep_next = runningPattern() != nullptr;
-  SearchResult result = planner.plan(
-      {set.table(), map, groundCost(), start, plan.steps, may_keep_next, grip.deceleration},
-      expansions, counters);
+  SearchResult result = planner.plan({set.table(), map, groundCost(), start, plan.steps, plan.end,
+                                      may_keep_next, grip.deceleration},
+                                     expansions, counters);
   if (result.end == SearchEnd::kNothing && grip.gave_way)
     result.reason +=
         ", on ground that stops it with only " + withTenths(grip.deceleration) + " m/s2";

@@ -27,6 +27,11 @@ std::vector<int> idsOf(const std::vector<PlanStep>& plan) {
   return ids;
 }
 
+/// Whether a plan ends in the goal or far enough ahead; another one may end in a dead end.
+bool leadsOn(SearchEnd end) {
+  return end == SearchEnd::kGoal || end == SearchEnd::kHorizon;
+}
+
 bool isCutOff(const SearchResult& result) {
   return result.end == SearchEnd::kProgress;
 }
@@ -179,7 +184,11 @@ void PlanningMap::substituteGoal(const Eigen::Vector2d& p_vehicle,
 
 void PlanningMap::computeDistance(const Goal& goal, const Eigen::Vector2d& p_vehicle) {
   const FencedClearance fenced(*map_, field_fenced_ ? fenced_ : no_fences_);
-  distance_to_goal_.compute(fenced, goal, p_vehicle, detours_, config_.field);
+  // Where no search may go there is no way. The middle of a gap may lie half a cell beside the
+  // centre of one.
+  DistanceFieldConfig field = config_.field;
+  field.inflation += std::max(0.0, config_.margins.least() - map_->cellSize() / 2.0);
+  distance_to_goal_.compute(fenced, goal, p_vehicle, detours_, field);
 }
 
 void PlanningMap::addDetour(const Eigen::Vector2d& p_map) {
@@ -271,7 +280,10 @@ SearchResult MotionPlanner::plan(const PlanRequest& request, int expansions, Cou
   };
   SearchResult result = search_.run(problem, enough);
   before = result.expansions;
-  if (!late && result.end == SearchEnd::kNothing)
+  if (!late && leadsOn(request.last_end) && !problem.committed.empty())
+    result = keepPlan(problem, std::move(result), enough, counters);
+  before = result.expansions;
+  if (!late && !leadsOn(result.end))
     result = withLittleRoom(problem, std::move(result), enough, counters);
   before = result.expansions;
   if (!late && result.end != SearchEnd::kNothing)
@@ -292,19 +304,42 @@ SearchResult MotionPlanner::alongBranch(const SearchProblem& problem, const Stop
   return along;
 }
 
-/// Where there is no plan with all the room that is asked for, one with the least.
+/// The fresh plan, or the last one where that still leads on and does not cost more.
+/** A search takes the first plan that it finds: the next one may be as long, and begin otherwise. A
+ * vehicle that always follows the newest turns to and fro where the room is little. And a plan that
+ * backs out of a dead end is found at its end; a little way out the search is cut off before, and
+ * what it has seen by then leads back in. */
+SearchResult MotionPlanner::keepPlan(SearchProblem& problem, SearchResult fresh,
+                                     const StopPredicate& stop, Counters& counters) {
+  const bool found = leadsOn(fresh.end);
+  if (found && (fresh.steps.empty() || fresh.steps.front().pattern_id == problem.committed.front()))
+    return fresh;
+  problem.branch = problem.committed;
+  problem.branch_is_plan = true;
+  SearchResult along = alongBranch(problem, stop, fresh);
+  problem.branch.clear();
+  problem.branch_is_plan = false;
+  if (!leadsOn(along.end)) return fresh;
+  if (found && fresh.cost + fresh.expected < along.cost + along.expected) return fresh;
+  ++counters["kept to its plan"];
+  std::swap(search_, branch_search_);
+  return along;
+}
+
+/// Where no plan with all the room that is asked for leads on, one with the least.
 SearchResult MotionPlanner::withLittleRoom(SearchProblem& problem, SearchResult fresh,
                                            const StopPredicate& stop, Counters& counters) {
   if (problem.collision_checker->margins().narrow <= 0.0) return fresh;
   problem.little_room = true;
-  SearchResult narrow = search_.run(problem, stop);
-  narrow.expansions += fresh.expansions;
-  if (narrow.end == SearchEnd::kNothing) {
-    fresh.expansions = narrow.expansions;
+  SearchResult narrow = alongBranch(problem, stop, fresh);
+  const bool better =
+      fresh.end == SearchEnd::kNothing ? narrow.end != SearchEnd::kNothing : leadsOn(narrow.end);
+  if (!better) {
     problem.little_room = false;
     return fresh;
   }
   ++counters["plans with little room"];
+  std::swap(search_, branch_search_);
   return narrow;
 }
 

@@ -171,6 +171,7 @@ struct PlanRequest {
   const GroundCost* ground;                 ///< nullptr = all ground costs the same
   const PlanStep& start;                    ///< the end of the running pattern, or where it stands
   const std::vector<PlanStep>& last_steps;  ///< of the last plan, from there on
+  SearchEnd last_end;                       ///< of the search for it
   bool may_keep_next;                       ///< a pattern runs: its queued successor may be kept
   double deceleration = kNoLimit;           ///< [m/s2] that the ground gives
 };
@@ -198,6 +199,8 @@ class MotionPlanner {
  private:
   SearchResult alongBranch(const SearchProblem& problem, const StopPredicate& stop,
                            SearchResult& fresh);
+  SearchResult keepPlan(SearchProblem& problem, SearchResult fresh, const StopPredicate& stop,
+                        Counters& counters);
   SearchResult withLittleRoom(SearchProblem& problem, SearchResult fresh, const StopPredicate& stop,
                               Counters& counters);
   SearchResult keepSide(SearchProblem& problem, SearchResult fresh, const StopPredicate& stop,

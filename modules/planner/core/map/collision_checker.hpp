@@ -24,6 +24,9 @@ struct Margins {
   double largest = 0.09;  ///< never more than this, so that narrow gaps stay open
   double regain =
       0.08;  ///< [1] where the vehicle begins with less, it must keep so much more per metre
+
+  /// With which a pattern may be planned.
+  double least() const { return narrow > 0.0 ? narrow : plan; }
 };
 
 /// Blocked cells under the footprint, without margin.

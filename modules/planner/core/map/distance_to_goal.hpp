@@ -64,8 +64,9 @@ inline bool isWithin(const Goal& goal, const Pose2& T_map_body, double share = 1
 
 /// Weights and extent of DistanceToGoal.
 struct DistanceFieldConfig {
-  double inflation = 0.0;       ///< [m] clearance below which a cell is blocked: half the width
-  double wide = 0.7;            ///< [m] clearance from which on ground counts as open
+  double inflation =
+      0.0;            ///< [m] clearance below which a cell is blocked: half the width, at least
+  double wide = 0.7;  ///< [m] clearance from which on ground counts as open
   double tight_weight = 1.0;    ///< [1] extra length of a just passable cell; 0 = none
   double detour_weight = 8.0;   ///< [1] extra length where the vehicle did not get through
   double area_margin = 12.0;    ///< [m] around vehicle and goal; grows where that is not enough

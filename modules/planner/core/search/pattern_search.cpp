@@ -247,7 +247,8 @@ void PatternSearch::addChild(Node& node, uint64_t key) {
   else
     slot.node = static_cast<int>(nodes_.size());
   slot.cost = node.cost;
-  open_.push(node.cost + node.inflated, slot.node, node.cost);
+  const float estimate = node.cost + node.inflated + costs_.costToRest(node.motion_class);
+  open_.push(estimate, slot.node, node.cost);
   if (!waits) nodes_.push_back(node);
 }
 

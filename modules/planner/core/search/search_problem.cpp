@@ -23,6 +23,13 @@ float arcCosine(float x) {
   return x < 0.0F ? static_cast<float>(kPi) - value : value;
 }
 
+/// [m] in a straight line.
+float distanceTo(const Goal& goal, const SearchNode& node) {
+  const double dx = goal.T_map_goal.x - node.x;
+  const double dy = goal.T_map_goal.y - node.y;
+  return static_cast<float>(std::sqrt(dx * dx + dy * dy));
+}
+
 }  // namespace
 
 CostModel::CostModel(const SearchConfig& config, const SearchProblem& problem)
@@ -36,9 +43,25 @@ CostModel::CostModel(const SearchConfig& config, const SearchProblem& problem)
     radian_cost_[i] = static_cast<float>(patterns.leastCosts()[i].per_radian);
   }
   distance_share_ = static_cast<float>(config.distance_share);
+  aimed_ = static_cast<float>(config.goal_share * problem.goal.position_tolerance);
+  to_rest_ = costsToRest();
   if (problem.distance_to_goal == nullptr) return;
   slack_ = static_cast<float>(problem.distance_to_goal->cellSlack());
   admissible_share_ = static_cast<float>(DistanceToGoal::kAdmissibleShare);
+}
+
+std::vector<float> CostModel::costsToRest() const {
+  const PatternTable& patterns = *problem_->patterns;
+  std::vector<float> costs(static_cast<size_t>(patterns.classCount()), 0.0F);
+  for (int i = 0; i < patterns.classCount(); ++i) {
+    const auto& stops = patterns.stopsFrom(i);
+    if (i == patterns.restClass() || stops.empty()) continue;
+    const auto quickest = std::min_element(
+        stops.begin(), stops.end(),
+        [](const TablePattern* a, const TablePattern* b) { return a->cost < b->cost; });
+    costs[static_cast<size_t>(i)] = static_cast<float>((*quickest)->cost + config_.stop_penalty);
+  }
+  return costs;
 }
 
 float CostModel::edgeCost(const SearchNode& parent, const TablePattern& pattern,
@@ -79,15 +102,20 @@ CostModel::Heuristic CostModel::heuristic(const SearchNode& node, bool on_blocke
     if (!(at.length < kNever) && !on_blocked_ground) return {kNever, kNever};
   }
   if (problem_->distance_to_goal == nullptr || !(at.length < kNever)) {
-    const double dx = goal.T_map_goal.x - node.x;
-    const double dy = goal.T_map_goal.y - node.y;
-    const double distance = std::sqrt(dx * dx + dy * dy);
-    at.length = static_cast<float>(std::max(0.0, distance - goal.position_tolerance));
+    const auto tolerance = static_cast<float>(goal.position_tolerance);
+    at.length = std::max(0.0F, distanceTo(goal, node) - tolerance);
   }
   float off_goal = 0.0F;
   if (goal.yaw_tolerance < kPi)
     off_goal = std::max(0.0F, std::abs(wrapped(node.yaw - goal_yaw_)) - yaw_tolerance_);
-  const float way = std::max(0.0F, admissible_share_ * at.length - slack_);
+  float way = std::max(0.0F, admissible_share_ * at.length - slack_);
+  float expected_way = std::max(0.0F, distance_share_ * at.length - slack_);
+  if (at.length < kNearGoal) {
+    // The distance ends at the rim of the goal's tolerance; less than that is aimed for.
+    const float straight = distanceTo(goal, node) - aimed_;
+    way = std::max(way, straight);
+    expected_way = std::max(expected_way, straight);
+  }
   const float bound = std::max(metre_cost_[0] * way + radian_cost_[0] * off_goal,
                                metre_cost_[1] * way + radian_cost_[1] * off_goal);
   if (problem_->heading_heuristic != nullptr) {
@@ -98,16 +126,17 @@ CostModel::Heuristic CostModel::heuristic(const SearchNode& node, bool on_blocke
   float turn = off_goal;
   if (weights_.turn > 0.0F && at.length > kNearGoal)
     turn = arcCosine(at.along_x * node.cos_yaw + at.along_y * node.sin_yaw);
-  const float expected =
-      std::max(bound, metre_cost_[0] * std::max(0.0F, distance_share_ * at.length - slack_));
+  const float expected = std::max(bound, metre_cost_[0] * expected_way);
   return {bound, weights_.heuristic * expected + weights_.turn * radian_cost_[1] * turn};
 }
 
 int NodeChecker::levelOf(const SearchNode& parent, const TablePattern& pattern) const {
   const CollisionChecker& around = *problem_->collision_checker;
-  if (onBranch(parent)) return CollisionChecker::kCheck;
+  const bool on_branch = onBranch(parent);
+  if (on_branch && !problem_->branch_is_plan) return CollisionChecker::kCheck;
+  const bool little = problem_->little_room || (on_branch && around.margins().narrow > 0.0);
   const auto level = [&](const Uncertainty& uncertainty) {
-    return problem_->little_room ? around.leastLevel(uncertainty) : around.level(uncertainty);
+    return little ? around.leastLevel(uncertainty) : around.level(uncertainty);
   };
   if (parent.depth > 0) return level(pattern.uncertainty);
   const Eigen::Vector2d step = pattern.end().pose.position();

@@ -78,6 +78,8 @@ struct SearchProblem {
   /// Ids of the patterns that the plan has to begin with; the margin for checking is enough for
   /// them.
   std::vector<int> branch;
+  bool branch_is_plan =
+      false;  ///< they need as much as others; Margins::narrow where that is allowed
   /// Told whenever a plan, or a cheaper one, was found, with its cost.
   std::function<void(double cost, int expansions)> on_better;
 };
@@ -195,8 +197,16 @@ class CostModel {
   float switchPenalty(const SearchNode& parent, const TablePattern& pattern) const;
   /// `on_blocked_ground`: whoever leaves it may go straight to the goal.
   Heuristic heuristic(const SearchNode& node, bool on_blocked_ground) const;
+  /// Cost of coming to rest from a motion class [s], for the order of the open list; 0 in exact
+  /// searches.
+  /** In the goal no distance is left: without it every state around is expanded before a stop. */
+  float costToRest(int motion_class) const {
+    return weights_.exact() ? 0.0F : to_rest_[static_cast<size_t>(motion_class)];
+  }
 
  private:
+  std::vector<float> costsToRest() const;
+
   SearchConfig config_;
   const SearchProblem* problem_ = nullptr;
   SearchWeights weights_;
@@ -208,6 +218,8 @@ class CostModel {
   float admissible_share_ = 1.0F;        // of the distance to the goal
   float distance_share_ = 1.0F;          // of it that the inflated heuristic counts
   float slack_ = 0.0F;                   // [m] by which the distance may be too long
+  float aimed_ = 0.0F;                   // [m] around the goal where a plan must end
+  std::vector<float> to_rest_;           // [s] by motion class
 };
 
 /// Decides whether a node may be reached: its pattern is free, and the vehicle can stop after it.
