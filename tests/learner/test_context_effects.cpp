@@ -58,7 +58,8 @@ Context on(double ahead) {
 
 }  // namespace
 
-TEST_CASE("the effect of a sagging voltage is separated from the ground, and predicted") {
+TEST_CASE("the effect of a sagging voltage is separated from the ground, and predicted",
+          "[statistics]") {
   double with = 0.0;
   double without = 0.0;
   int found = 0;  // of the forward effect; measured in 11 of 20
@@ -110,7 +111,8 @@ TEST_CASE("the effect of a slope is subtracted, so that level ground is known be
   REQUIRE(with < 0.95 * without);
 }
 
-TEST_CASE("a context without effect counts in at most 5 % of cases and costs less than 1 %") {
+TEST_CASE("a context without effect counts in at most 5 % of cases and costs less than 1 %",
+          "[statistics]") {
   double with = 0.0;
   double without = 0.0;
   int counted = 0;

@@ -320,7 +320,7 @@ TEST_CASE("scans that are not newer, of a robot on its side or too far away are 
   REQUIRE(mapper.look(world, far) == OccupancyMap::Refusal::kTooFar);
 }
 
-TEST_CASE("the same scans give the same map") {
+TEST_CASE("the same scans give the same map", "[statistics]") {
   const auto cells = [] {
     SmallWorld world;
     world.ground = [](double x, double y) { return 0.1 * std::sin(0.4 * x + 0.2 * y); };
