@@ -50,8 +50,11 @@ std::optional<OmniWheels> OmniWheels::make(std::vector<OmniWheel> wheels, std::s
   const double radius = omni.radius();
   Eigen::MatrixXd scaled = jacobian;
   if (radius > 0.0) scaled.col(2) /= radius;
-  const Eigen::VectorXd spans = scaled.jacobiSvd().singularValues();
-  if (!(spans[2] >= kLeastSpan * spans[0])) {
+  // Squares of the singular values, in increasing order; a decomposition of `scaled` itself takes
+  // seconds to compile.
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spans;
+  spans.computeDirect(scaled.transpose() * scaled, Eigen::EigenvaluesOnly);
+  if (!(spans.eigenvalues()[0] >= kLeastSpan * kLeastSpan * spans.eigenvalues()[2])) {
     why =
         "cannot move it forwards, sideways and turn it independently: change where the wheels "
         "stand or roll";

@@ -130,7 +130,7 @@ TEST_CASE("terms that the model is sure of do not give way to what is new") {
   for (const ParameterEstimate& estimate : finding.identified.calibrated) CHECK(!estimate.moved);
 }
 
-TEST_CASE("95 % intervals hold the truth about as often as they say") {
+TEST_CASE("95 % intervals hold the truth about as often as they say", "[study]") {
   const Values hidden{{"motor_deadband.speed", 0.1},    {"yaw_breakaway.rate", 0.12},
                       {"track_asymmetry.share", 0.05},  {"lever_arm_y.offset", 0.1},
                       {"slope_pitch.compliance", 0.06}, {"turn_speed_loss.loss", 0.15}};

@@ -46,8 +46,8 @@ TEST_CASE("a model without a change has no moments, and one with two has both") 
         std::vector<std::string>{"terrain_change.time_2", "payload_change.time"});
 }
 
-TEST_CASE(
-    "noise that blocks have in common leaves nothing unexplained more often than alpha says") {
+TEST_CASE("noise that blocks have in common leaves nothing unexplained more often than alpha says",
+          "[study]") {
   const Rig rig({}, 300.0, 1);
   constexpr double kAlpha = 0.05;
   int false_alarms = 0;

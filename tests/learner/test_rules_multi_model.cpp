@@ -552,7 +552,7 @@ TEST_CASE("a surface that comes back is recognised faster than it was learned", 
   REQUIRE(again < 0.6 * at_first);
 }
 
-TEST_CASE("the first half of a pattern teaches nearly what the whole of it does") {
+TEST_CASE("the first half of a pattern teaches nearly what the whole of it does", "[statistics]") {
   const DrawnWorld world;
   double halves = 0.0;
   double wholes = 0.0;

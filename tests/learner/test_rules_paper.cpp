@@ -199,7 +199,7 @@ TEST_CASE("collective drifts: a pattern that is never executed grows several tim
   REQUIRE(least >= 1.0);
 }
 
-TEST_CASE("on unchanged ground no other rule drifts") {
+TEST_CASE("on unchanged ground no other rule drifts", "[statistics]") {
   // Measured over 21 recordings, median (least to largest): telescoping 1.00 (.75 to 1.21; the
   // jitter of the executed pattern's own box, which does not add up), multi_model 1.00 (.97
   // to 1.03).

@@ -74,7 +74,8 @@ TEST_CASE("the order in which the same was measured does not matter but for the 
   REQUIRE((forwards.noise() - backwards.noise()).cwiseAbs().maxCoeff() < 0.02);
 }
 
-TEST_CASE("a surface learns its own noise, calm or rough, each velocity for itself") {
+TEST_CASE("a surface learns its own noise, calm or rough, each velocity for itself",
+          "[statistics]") {
   const Fixture f = ofKnownNoise();
   for (const double factor : {0.25, 1.0, 4.0, 12.0}) {
     INFO("variance " << factor << " times the expected one");

@@ -158,7 +158,8 @@ TEST_CASE("a robot that pitches on a bump does not see the ground as a wall") {
   }
 }
 
-TEST_CASE("hits on rising ground ahead do not stay as obstacles when the robot comes closer") {
+TEST_CASE("hits on rising ground ahead do not stay as obstacles when the robot comes closer",
+          "[statistics]") {
   SmallWorld world;
   world.ground = [](double x, double) {
     // Level, then with a smooth bend up to a slope of 8 degrees.
@@ -222,7 +223,8 @@ TEST_CASE("a slope down that the robot can drive is free once its ground is seen
   }
 }
 
-TEST_CASE("an obstacle stays one while the robot drives past on rolling ground and away") {
+TEST_CASE("an obstacle stays one while the robot drives past on rolling ground and away",
+          "[statistics]") {
   SmallWorld world;
   world.ground = [](double x, double) { return 0.11 * std::sin(0.449 * x + 0.7); };
   const double base = world.ground(8.2, 2.2);
@@ -320,7 +322,7 @@ TEST_CASE("scans that are not newer, of a robot on its side or too far away are 
   REQUIRE(mapper.look(world, far) == OccupancyMap::Refusal::kTooFar);
 }
 
-TEST_CASE("the same scans give the same map") {
+TEST_CASE("the same scans give the same map", "[statistics]") {
   const auto cells = [] {
     SmallWorld world;
     world.ground = [](double x, double y) { return 0.1 * std::sin(0.4 * x + 0.2 * y); };

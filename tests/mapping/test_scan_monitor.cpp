@@ -113,7 +113,7 @@ TEST_CASE("all zero, and all far where something stood, are named within half a 
   }
 }
 
-TEST_CASE("an open field where nothing is seen is no lie, nor is a corridor") {
+TEST_CASE("an open field where nothing is seen is no lie, nor is a corridor", "[statistics]") {
   sim::WorldDescription field;
   field.bounds = {{-60.0, -60.0}, {60.0, 60.0}};
   field.obstacles.push_back(sim::discObstacle({5.0, 3.0}, 0.2, 1.5));
@@ -130,7 +130,7 @@ TEST_CASE("an open field where nothing is seen is no lie, nor is a corridor") {
   }
 }
 
-TEST_CASE("a steep hillside that shows only ground as the robot rolls is no lie") {
+TEST_CASE("a steep hillside that shows only ground as the robot rolls is no lie", "[statistics]") {
   // Slopes up to 0.52 rad to both sides: what was above the robot's own ground no longer is.
   sim::WorldDescription world;
   world.base_surface = "grass";

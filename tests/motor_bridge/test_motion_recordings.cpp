@@ -326,7 +326,7 @@ size_t eachHalf() {
 
 }  // namespace
 
-TEST_CASE("real drives: at most one false alarm an hour") {
+TEST_CASE("real drives: at most one false alarm an hour", "[statistics]") {
   if (absent()) return;
   const size_t half = eachHalf();
   const Count count = countVerdicts(half);

@@ -74,7 +74,8 @@ TEST_CASE("A gap of the vehicle's width and 0.4 m is driven through in a walled 
 }
 
 TEST_CASE(
-    "Missions in yards with narrow gaps and pockets arrive although the ground turns 15 % more") {
+    "Missions in yards with narrow gaps and pockets arrive although the ground turns 15 % more",
+    "[statistics]") {
   for (int i = 0; i < testing::effort(6); ++i) {
     const auto seed = static_cast<uint64_t>(1001 + i);
     DriveOptions options;
@@ -148,7 +149,7 @@ TEST_CASE("Sets are exchanged between cycles, what was handed over keeps its ver
   CHECK(versions.rbegin()->second > 10);
 }
 
-TEST_CASE("The same seed drives the same way to the last digit") {
+TEST_CASE("The same seed drives the same way to the last digit", "[statistics]") {
   DriveOptions options;
   options.seed = 9;
   const DriveOutcome first = driveMission(slalom(), samplePatterns(), options);

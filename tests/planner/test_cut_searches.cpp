@@ -57,7 +57,8 @@ Seen seenIn(const Decision& decision) {
 
 }  // namespace
 
-TEST_CASE("Searches that a clock cut come out the same when their count of expansions cuts them") {
+TEST_CASE("Searches that a clock cut come out the same when their count of expansions cuts them",
+          "[statistics]") {
   const int asked = GENERATE(1, 2, 3);
   Drive live;
   std::vector<Seen> log;

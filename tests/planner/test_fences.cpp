@@ -59,7 +59,7 @@ TEST_CASE("It drives around a polygon to keep out of, with room to stop before i
   CHECK(rig.run(0.05).report.status == PlanStatus::kArrived);
 }
 
-TEST_CASE("The worse its position is known, the more room it keeps") {
+TEST_CASE("The worse its position is known, the more room it keeps", "[statistics]") {
   Rig rig(Playground{}, fenced({pond()}));
   const double least =
       leastRoom(rig, {pond()}, 60.0, [](PlannerInputs& s) { knowPosition(s, 0.2); });

@@ -124,7 +124,8 @@ TEST_CASE("What few executions say of the ground is believed with less speed") {
   CHECK(fastest(GripKnowledge::kSure) > 1.0);
 }
 
-TEST_CASE("Where the ground gave way a wall ahead stops the vehicle from farther away") {
+TEST_CASE("Where the ground gave way a wall ahead stops the vehicle from farther away",
+          "[statistics]") {
   // How far away a wall that appears still makes it drop what it drives [m].
   const auto farthest = [](const GripKnowledge& grip) {
     double reach = 0.0;

@@ -100,7 +100,7 @@ Grid yard(uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("With an exact bound the plan is as cheap as brute force finds it") {
+TEST_CASE("With an exact bound the plan is as cheap as brute force finds it", "[statistics]") {
   Margins margins;
   margins.growth = 0.0;
   int reachable = 0;

@@ -236,7 +236,8 @@ TEST_CASE("For what was planned before the margin for checking is enough") {
   CHECK(along.steps[0].pattern_id == names.id("straight"));
 }
 
-TEST_CASE("Towards a boulder dead ahead noisy poses change the side once, not again and again") {
+TEST_CASE("Towards a boulder dead ahead noisy poses change the side once, not again and again",
+          "[statistics]") {
   int free_changes = 0;
   int committed_changes = 0;
   for (uint64_t seed = 1; seed <= 2; ++seed) {

@@ -81,7 +81,7 @@ TEST_CASE("a rigid vehicle bridges bumps that are shorter than itself") {
   CHECK(fine_squares < 0.3 * coarse_squares);
 }
 
-TEST_CASE("shock grows with the speed and with the height of the bumps") {
+TEST_CASE("shock grows with the speed and with the height of the bumps", "[statistics]") {
   const Shaking fast = driven(1.0).rough, slow = driven(0.5).rough, low = driven(1.0, 0.01).rough;
   const auto shock = [](const Shaking& s) { return s.rms(s.acceleration_sum); };
   const auto pitch = [](const Shaking& s) { return s.rms(s.pitch_rate_sum); };

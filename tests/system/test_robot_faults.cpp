@@ -18,11 +18,13 @@ constexpr int64_t kHold = 1'000'000;  // [us] for which the motors must stay at 
 constexpr double kWorstStall = 0.05;  // [s] of the machine in a measurement that counts
 constexpr int kTrials = 4;
 
-/// Starts the robot, where the test has not, and brings it to a steady drive over the field.
+/// Starts the robot, where the test has not, and brings it to a steady drive over the field, at
+/// whose end it turns around: one robot lives through several faults.
 void driveOff(RobotRun& run) {
   if (!run.running("planner")) run.startAll();
-  run.setGoal(30.0, 0.0);
-  REQUIRE(run.arm(20.0));
+  const bool back = run.ins().any() && run.ins().message().position[0] > 5.0;
+  run.setGoal(back ? -30.0 : 30.0, 0.0);
+  if (!run.armed()) REQUIRE(run.arm(20.0));
   const auto drives = [&] { return run.driving() && run.motor().message().command[0] > 0.3; };
   REQUIRE(run.untilDriving(20.0, drives));
   run.wait(1.0);
@@ -66,10 +68,10 @@ void needsArming(RobotRun& run) {
 using Reference = std::function<int64_t(RobotRun& run, int64_t killed)>;
 
 /// Kills or freezes a process of the driving robot: the motors must stand within a limit [s] after
-/// the reference, and stay until it is armed again. What was learned is not lost.
-void mustStop(const std::string& process, int how, double limit, const Reference& reference) {
+/// the reference, and stay until it is armed again. What was learned is not lost. It drives on.
+void mustStop(RobotRun& run, const std::string& process, int how, double limit,
+              const Reference& reference) {
   for (int trial = 1; trial <= kTrials; ++trial) {
-    RobotRun run(kField, "[-20, 0, 0]");
     driveOff(run);
     const int64_t set = run.lastSet();
     double stands = -1.0;
@@ -83,10 +85,10 @@ void mustStop(const std::string& process, int how, double limit, const Reference
       stall = watch.longest();
     }
     // Where the machine itself stood still, the time says nothing about the robot.
-    if (stall > kWorstStall && trial < kTrials) continue;
+    const bool counts = stall <= kWorstStall || trial == kTrials;
     INFO(process << " by signal " << how << ": " << stands << " s, machine's stall " << stall);
     CHECK(stands >= 0.0);
-    CHECK(stands <= limit);
+    if (counts) CHECK(stands <= limit);
     run.forgetSet();
     if (how == SIGKILL)
       run.start(process);
@@ -95,65 +97,89 @@ void mustStop(const std::string& process, int how, double limit, const Reference
     needsArming(run);
     REQUIRE(run.untilDriving(10.0, [&] { return run.lastSet() != 0; }));
     CHECK(run.lastSet() >= set);
-    return;
+    if (counts) return;
+  }
+}
+
+/// The simulator is killed, and with it all lines to the devices are closed; then it is back.
+void mustOutliveItsLines(RobotRun& run) {
+  driveOff(run);
+  run.signal("simulator", SIGKILL);
+  CHECK(run.until(5.0, [&] { return !run.driving(); }));
+  run.wait(2.0);
+  CHECK(run.motor().message().bridge_state != motor_t::STATE_DRIVING);
+  run.start("simulator");
+  run.wait(3.0);
+  for (const sim::TruthRow& row : run.truth()) REQUIRE(row.motorsAtZero());
+  REQUIRE(run.arm(30.0));
+  CHECK(run.untilDriving(30.0, [&] { return run.driving(); }));
+  INFO(run.plan().message().reason << "; " << run.motor().message().state_reason);
+  for (const std::string& name : RobotRun::names()) {
+    INFO(name << ": " << run.output(name));
+    CHECK(run.running(name));
+  }
+}
+
+/// tread-goal operates, and is killed or frozen; what thaws does not go on by itself.
+void mustStopWithoutOperator(RobotRun& run, int how) {
+  for (int trial = 1; trial <= kTrials; ++trial) {
+    driveOff(run);
+    run.leaveTo(run.ins().message().position[0] > 5.0 ? -30.0 : 30.0, 1.0);
+    run.wait(1.5);
+    const bool drove = run.driving();
+    const launch::StallWatch watch;
+    const int64_t killed = run.now();
+    run.signal("operator", how);
+    const double stands = standsAfter(run, killed, 5.0);
+    const bool counts = (drove && watch.longest() <= kWorstStall) || trial == kTrials;
+    INFO("by signal " << how << ": " << stands << " s, machine's stall " << watch.longest());
+    if (counts) {
+      CHECK(stands > 0.5);
+      CHECK(stands <= 1.25);
+      CHECK_THAT(run.motor().message().state_reason, Catch::Contains("the operator is lost: test"));
+    }
+    run.signal("operator", SIGCONT);
+    const int64_t from = run.now();
+    run.wait(3.0);
+    for (const sim::TruthRow& row : run.truth())
+      if (row.utime > from) REQUIRE(row.motorsAtZero());
+    run.takeBack();
+    REQUIRE(run.arm(20.0));
+    run.wait(2.0);
+    CHECK_FALSE(run.driving());
+    run.setGoal(30.0, 0.0);
+    CHECK(run.untilDriving(20.0, [&] { return run.driving(); }));
+    if (counts) return;
   }
 }
 
 }  // namespace
 
 TEST_CASE("a killed or frozen operator's program: the motors stand within its lease and 250 ms") {
+  RobotRun run(kField, "[-20, 0, 0]");
+  for (const int how : {SIGKILL, SIGSTOP}) mustStopWithoutOperator(run, how);
+}
+
+TEST_CASE(
+    "a killed or frozen planner, motor bridge, INS driver, and all lines closed: it stands "
+    "in time, needs arming, and drives on") {
+  RobotRun run(kField, "[-20, 0, 0]");
   for (const int how : {SIGKILL, SIGSTOP}) {
-    for (int trial = 1; trial <= kTrials; ++trial) {
-      RobotRun run(kField, "[-20, 0, 0]");
-      driveOff(run);
-      run.leaveTo(30.0, 1.0);
-      run.wait(1.5);
-      if (!run.driving() && trial < kTrials) continue;
-      const launch::StallWatch watch;
-      const int64_t killed = run.now();
-      run.signal("operator", how);
-      const double stands = standsAfter(run, killed, 5.0);
-      if (watch.longest() > kWorstStall && trial < kTrials) continue;
-      INFO("by signal " << how << ": " << stands << " s, machine's stall " << watch.longest());
-      CHECK(stands > 0.5);
-      CHECK(stands <= 1.25);
-      CHECK_THAT(run.motor().message().state_reason, Catch::Contains("the operator is lost: test"));
-      // What thaws does not go on by itself.
-      run.signal("operator", SIGCONT);
-      const int64_t from = run.now();
-      run.wait(3.0);
-      for (const sim::TruthRow& row : run.truth())
-        if (row.utime > from) REQUIRE(row.motorsAtZero());
-      run.takeBack();
-      REQUIRE(run.arm(20.0));
-      run.wait(2.0);
-      CHECK_FALSE(run.driving());
-      run.setGoal(30.0, 0.0);
-      CHECK(run.untilDriving(20.0, [&] { return run.driving(); }));
-      break;
-    }
+    // Within the planner's lease and 250 ms.
+    mustStop(run, "planner", how, 0.45,
+             [](RobotRun& robot, int64_t) { return robot.program().message().utime; });
+    // By the controller's own watchdog.
+    mustStop(run, "motor_bridge", how, 0.25, [](RobotRun&, int64_t killed) { return killed; });
   }
-}
-
-TEST_CASE("a killed or frozen planner: the motors stand within the lease and 250 ms") {
-  for (const int how : {SIGKILL, SIGSTOP})
-    mustStop("planner", how, 0.45,
-             [](RobotRun& run, int64_t) { return run.program().message().utime; });
-}
-
-TEST_CASE("a killed or frozen motor bridge: the controller's own watchdog stops the motors") {
-  for (const int how : {SIGKILL, SIGSTOP})
-    mustStop("motor_bridge", how, 0.25, [](RobotRun&, int64_t killed) { return killed; });
-}
-
-TEST_CASE("a killed INS driver: the motors stand at once, and arming is needed") {
-  mustStop("ins_driver", SIGKILL, 0.25,
-           [](RobotRun& run, int64_t) { return run.ins().message().utime; });
+  // At once.
+  mustStop(run, "ins_driver", SIGKILL, 0.25,
+           [](RobotRun& robot, int64_t) { return robot.ins().message().utime; });
+  mustOutliveItsLines(run);
 }
 
 TEST_CASE("a killed or frozen learner: the robot drives on for seconds, then stops and says why") {
+  RobotRun run(kField, "[-20, 0, 0]");
   for (const int how : {SIGKILL, SIGSTOP}) {
-    RobotRun run(kField, "[-20, 0, 0]");
     driveOff(run);
     const int64_t set = run.lastSet();
     std::string reason;
@@ -186,26 +212,9 @@ TEST_CASE("a killed or frozen learner: the robot drives on for seconds, then sto
   }
 }
 
-TEST_CASE("all lines to the devices closed and opened again: stop, come back, drive after arming") {
-  RobotRun run(kField, "[-20, 0, 0]");
-  driveOff(run);
-  run.signal("simulator", SIGKILL);
-  CHECK(run.until(5.0, [&] { return !run.driving(); }));
-  run.wait(2.0);
-  CHECK(run.motor().message().bridge_state != motor_t::STATE_DRIVING);
-  run.start("simulator");
-  run.wait(3.0);
-  for (const sim::TruthRow& row : run.truth()) REQUIRE(row.motorsAtZero());
-  REQUIRE(run.arm(30.0));
-  CHECK(run.untilDriving(30.0, [&] { return run.driving(); }));
-  INFO(run.plan().message().reason << "; " << run.motor().message().state_reason);
-  for (const std::string& name : RobotRun::names()) {
-    INFO(name << ": " << run.output(name));
-    CHECK(run.running(name));
-  }
-}
-
-TEST_CASE("the host's date jumps by an hour and back by two: it drives on and is stopped as ever") {
+TEST_CASE(
+    "the host's date jumps by an hour and back by two, then no descriptors are left: it drives on "
+    "and is stopped as ever") {
   RobotRun run(kField, "[-20, 0, 0]");
   const std::string file = run.folder() + "/clock";
   std::ofstream(file) << std::string(sizeof(int), '\0');
@@ -234,12 +243,6 @@ TEST_CASE("the host's date jumps by an hour and back by two: it drives on and is
   int64_t behind = 0;
   std::ifstream(file + ".log") >> ahead >> behind;
   CHECK(ahead - behind > 7000);
-  mustObeyEstop(run);
-}
-
-TEST_CASE("no descriptors left: the robot drives on, and is stopped as ever") {
-  RobotRun run(kField, "[-20, 0, 0]");
-  driveOff(run);
   for (const std::string& name : RobotRun::names()) {
     Process limit("/usr/bin/prlimit", {"--pid", std::to_string(run.pid(name)), "--nofile=3:3"});
     REQUIRE(limit.waitFor(5.0));

@@ -142,7 +142,7 @@ TEST_CASE("a powertrain is reached by the rung that has one, and not by the one 
   CHECK(errorsOf(row, Rung::kBlackBox).yaw.rms < 1.2 * least.yaw.rms);
 }
 
-TEST_CASE("a drift is reached by slip regression and discovery, which is never behind") {
+TEST_CASE("a drift is reached by slip regression and discovery, which is never behind", "[study]") {
   const ModelDocument truth =
       with(syntheticVehicle(), {{"centrifugal_drift.time", 0.25}, {"yaw_breakaway.rate", 0.1}});
   const ComparisonRow row = rowOf(truth, 440.0, 5);
@@ -200,7 +200,8 @@ TEST_CASE("a black box expresses what neither slip nor powertrain do") {
 
 TEST_CASE(
     "pooled logs name the same effect in all folds, and the bytes do not know the order of the "
-    "work") {
+    "work",
+    "[study]") {
   const ModelDocument truth = with(syntheticVehicle(), {{"yaw_pull.pull", 0.08}});
   ComparisonTask task;
   task.pool = true;

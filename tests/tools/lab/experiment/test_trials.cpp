@@ -107,7 +107,8 @@ TEST_CASE("the interval of a table covers the error that all recordings together
   CHECK(covered >= 0.97 * experiments);
 }
 
-TEST_CASE("cells of two seeds differ beyond their joint interval as seldom as it promises") {
+TEST_CASE("cells of two seeds differ beyond their joint interval as seldom as it promises",
+          "[study]") {
   // What an excitation run teaches decides on all repetitions after it: here a short one that may
   // leave out a pattern, so that repetitions of one run are alike.
   const std::vector<Ground> grounds = groundsOfText(kSmallWorld);

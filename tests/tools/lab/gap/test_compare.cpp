@@ -26,7 +26,7 @@ double falseAlarms(const ModelDocument& vehicle, double seconds, uint64_t drives
 
 }  // namespace
 
-TEST_CASE("of a hundred pairs of equal logs at most one is said to have changed") {
+TEST_CASE("of a hundred pairs of equal logs at most one is said to have changed", "[study]") {
   CHECK(falseAlarms(syntheticVehicle(), 400.0, 40) <= 0.01);
   CHECK(falseAlarms(syntheticVehicle(), 200.0, 24) <= 0.01);
   const ModelDocument with_effects =
