@@ -16,6 +16,7 @@
 
 #include "common/config/problem_words.hpp"
 #include "common/config/scalars.hpp"
+#include "common/config/version.hpp"
 #include "common/store/output_file.hpp"
 
 namespace tread {
@@ -122,6 +123,12 @@ void requireFiniteNumbers(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands({})) requireFiniteNumbers(*command);
 }
 
+/// "tread-gap 0.1.0 (commit 59f8ce72a1b2)".
+std::string versionLine(const std::string& name) {
+  const std::string from = commit();
+  return name + " " + version() + (from.empty() ? "" : " (commit " + from + ")");
+}
+
 }  // namespace
 
 std::string usageError(const CLI::App& app, const CLI::Error& error) {
@@ -135,6 +142,7 @@ std::string usageError(const CLI::App& app, const CLI::Error& error) {
 std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv) {
   requireFiniteNumbers(app);
   if (app.get_name().empty()) app.name(std::filesystem::path(argv[0]).filename());
+  app.set_version_flag("--version", versionLine(app.get_name()));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -19,7 +19,7 @@ inline constexpr int kNotWritten = 1;
 /** "tread-gap find: '--thread' is not known; did you mean --threads? See tread-gap find --help". */
 std::string usageError(const CLI::App& app, const CLI::Error& error);
 
-/// Parses a command line; the exit code if the program ends here: 0 after --help, kBadInput after a
+/// Parses a command line; the exit code if the program ends here: 0 after --help and --version, kBadInput after a
 /// usage error, with one line on stderr, as with all our programs (CLI11's own codes begin at 100).
 /** Options of real numbers take finite ones only. */
 std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv);

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "common/drive/drive_log.hpp"
+#include "common/drive/robot_log.hpp"
 #include "common/link/link.hpp"
 #include "common/log/unpacked_file.hpp"
 #include "common/mcap/mcap_reader.hpp"
@@ -12,24 +13,23 @@
 #include "common/recordings/drive_recordings.hpp"
 #include "common/recordings/imported_log.hpp"
 #include "common/recordings/recordings.hpp"
+#include "common/soundness/drive_log.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "tests/fuzz/reading.hpp"
 #include "tests/fuzz/targets.hpp"
-#include "tools/experiment/trials.hpp"
-#include "tools/gap/drive_log.hpp"
-#include "tools/import/csv_drive.hpp"
-#include "tools/patterns/recipe.hpp"
-#include "tools/plan/plan_files.hpp"
-#include "tools/replay/robot_log.hpp"
-#include "tools/replay/robot_replay.hpp"
-#include "tools/replay/sensor_replay.hpp"
-#include "tools/report/chronicle.hpp"
-#include "tools/report/hand_record.hpp"
+#include "tools/lab/experiment/trials.hpp"
+#include "tools/lab/plan/plan_files.hpp"
+#include "tools/lab/replay/robot_replay.hpp"
+#include "tools/lab/replay/sensor_replay.hpp"
 #include "tools/robot/drive/keyboard.hpp"
 #include "tools/robot/drive/pad.hpp"
+#include "tools/robot/import/csv_drive.hpp"
 #include "tools/robot/launch/checks.hpp"
 #include "tools/robot/launch/launch_file.hpp"
 #include "tools/robot/launch/liveness.hpp"
+#include "tools/robot/patterns/recipe.hpp"
+#include "tools/robot/report/chronicle.hpp"
+#include "tools/robot/report/hand_record.hpp"
 
 namespace tread::fuzz {
 namespace {
@@ -375,7 +375,7 @@ void driveLog(const uint8_t* bytes, size_t size) {
   chronicle.summary(0);
   chronicle.words();
   hand.words();
-  refusing([&] { replay::learnerLives(replay::toRobotLog("log", events), shippedSet()); });
+  refusing([&] { replay::learnerLives(toRobotLog("log", events), shippedSet()); });
   refusing([&] { gap::toDrive(toDriveLog("log", events)); });
 }
 

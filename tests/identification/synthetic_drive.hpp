@@ -5,9 +5,9 @@
 #include <cmath>
 #include <random>
 
+#include "common/soundness/core/drive.hpp"
 #include "common/vehicle/kernel.hpp"
 #include "common/vehicle/model_document.hpp"
-#include "modules/identification/core/drive.hpp"
 
 namespace tread::gap {
 

@@ -9,7 +9,7 @@
 
 #include "common/pattern/pattern_file.hpp"
 #include "modules/pattern_recorder/core/recording_drive.hpp"
-#include "tests/tools/patterns/few_patterns.hpp"
+#include "tests/tools/robot/patterns/few_patterns.hpp"
 
 using namespace tread;
 using namespace tread::pattern_recorder;

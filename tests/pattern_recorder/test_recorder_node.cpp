@@ -10,7 +10,7 @@
 
 #include "common/pattern/pattern_file.hpp"
 #include "modules/pattern_recorder/recorder_node.hpp"
-#include "tools/missions/robot_system.hpp"
+#include "tools/lab/missions/robot_system.hpp"
 
 using namespace tread;
 using namespace tread::pattern_recorder;

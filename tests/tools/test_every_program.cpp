@@ -49,6 +49,22 @@ TEST_CASE("every program and command says in --help what it is for, and how it i
   }
 }
 
+// The commit: of this checkout, or none in an archive that does not say it.
+TEST_CASE("every program says its version and the commit it was built from, all the same") {
+  const std::regex words(R"re(([a-z-]+) (\d+\.\d+\.\d+( \(commit [0-9a-f]{7,}(-dirty)?\))?)\n)re");
+  std::set<std::string> versions;
+  for (const std::string& program : programs()) {
+    const CalledProgram called_version = called(program + " --version </dev/null");
+    INFO(program << ": " << called_version.printed);
+    std::smatch parts;
+    CHECK(called_version.status == 0);
+    REQUIRE(std::regex_match(called_version.printed, parts, words));
+    CHECK(parts[1] == program);
+    versions.insert(parts[2]);
+  }
+  CHECK(versions.size() == 1);
+}
+
 TEST_CASE("every program refuses an unknown option with code 2 and one line of its own name") {
   for (const Command& command : allCommands())
     checkRefused(command.words + " --no-such-option", command.words, "--no-such-option");

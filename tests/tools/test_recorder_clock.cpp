@@ -10,7 +10,7 @@
 #include "common/drive/drive_log.hpp"
 #include "common/mcap/mcap_reader.hpp"
 #include "tests/tools/called_program.hpp"
-#include "tools/view/feed/feed.hpp"
+#include "tools/robot/view/feed/feed.hpp"
 
 using namespace tread;
 using tread::samples::called;

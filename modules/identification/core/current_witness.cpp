@@ -8,7 +8,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "modules/identification/core/log_validation.hpp"
+#include "common/soundness/core/log_validation.hpp"
 #include "modules/identification/core/motion_bins.hpp"
 #include "modules/identification/core/witness.hpp"
 #include "modules/identification/core/witness_blocks.hpp"

@@ -11,8 +11,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "common/soundness/core/log_validation.hpp"
 #include "modules/identification/core/end_errors.hpp"
-#include "modules/identification/core/log_validation.hpp"
 #include "modules/identification/core/rest.hpp"
 #include "modules/identification/core/unnamed.hpp"
 #include "modules/identification/core/witness.hpp"

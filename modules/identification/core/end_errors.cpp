@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "modules/identification/core/log_validation.hpp"
+#include "common/soundness/core/log_validation.hpp"
 
 namespace tread::gap {
 

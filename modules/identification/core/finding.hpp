@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "common/soundness/core/drive.hpp"
 #include "common/vehicle/model_document.hpp"
-#include "modules/identification/core/drive.hpp"
 
 namespace tread::gap {
 

@@ -8,9 +8,9 @@
 
 #include <Eigen/Core>
 
+#include "common/soundness/core/drive.hpp"
 #include "common/vehicle/kernel.hpp"
 #include "common/vehicle/model_document.hpp"
-#include "modules/identification/core/drive.hpp"
 
 namespace tread::gap {
 

@@ -8,8 +8,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "common/soundness/core/log_validation.hpp"
 #include "modules/identification/core/discovery.hpp"
-#include "modules/identification/core/log_validation.hpp"
 #include "modules/identification/core/rest.hpp"
 
 namespace tread::gap {

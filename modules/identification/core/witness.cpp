@@ -7,7 +7,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "modules/identification/core/log_validation.hpp"
+#include "common/soundness/core/log_validation.hpp"
 #include "modules/identification/core/search.hpp"
 #include "modules/identification/core/witness_blocks.hpp"
 

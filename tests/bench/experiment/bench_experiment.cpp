@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cstring>
 
-#include "tools/experiment/trials.hpp"
+#include "tools/lab/experiment/trials.hpp"
 
 namespace {
 

@@ -20,7 +20,7 @@
 #include "tests/bench/faults/lying_parts.hpp"
 #include "tests/bench/faults/person_at_stick.hpp"
 #include "tests/bench/faults/scan_faults.hpp"
-#include "tools/missions/mission.hpp"
+#include "tools/lab/missions/mission.hpp"
 
 namespace tread::faults {
 namespace {

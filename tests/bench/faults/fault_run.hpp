@@ -7,7 +7,7 @@
 
 #include "common/log/event_log.hpp"
 #include "tests/bench/faults/fault_schedule.hpp"
-#include "tools/missions/robot_system.hpp"
+#include "tools/lab/missions/robot_system.hpp"
 
 namespace tread::faults {
 

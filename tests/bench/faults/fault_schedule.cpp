@@ -6,7 +6,7 @@
 
 #include "common/config/scalars.hpp"
 #include "common/report/text.hpp"
-#include "tools/missions/robot_system.hpp"
+#include "tools/lab/missions/robot_system.hpp"
 
 namespace tread::faults {
 

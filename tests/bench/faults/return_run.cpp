@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "tools/missions/mission.hpp"
+#include "tools/lab/missions/mission.hpp"
 
 namespace tread::faults {
 namespace {

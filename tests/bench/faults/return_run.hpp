@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include "tools/missions/robot_system.hpp"
+#include "tools/lab/missions/robot_system.hpp"
 
 namespace tread::faults {
 

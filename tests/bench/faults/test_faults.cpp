@@ -14,7 +14,7 @@
 #include "tests/bench/faults/limit_rules.hpp"
 #include "tests/bench/faults/return_run.hpp"
 #include "tests/helpers.hpp"
-#include "tests/tools/missions/shipped_robot.hpp"
+#include "tests/tools/lab/missions/shipped_robot.hpp"
 
 using namespace tread;
 using namespace tread::faults;

@@ -11,7 +11,7 @@
 #include "common/bus/host_clock.hpp"
 #include "tests/system/robot_run.hpp"
 #include "tests/system/worlds.hpp"
-#include "tools/report/drive_report.hpp"
+#include "tools/robot/report/drive_report.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tests/bench/limits/limit_world.hpp"
-#include "tools/missions/robot_system.hpp"
+#include "tools/lab/missions/robot_system.hpp"
 
 namespace tread::limits {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/fence/fence.hpp"
-#include "tools/missions/mission.hpp"
+#include "tools/lab/missions/mission.hpp"
 
 namespace tread::limits {
 

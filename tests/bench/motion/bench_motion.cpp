@@ -14,7 +14,7 @@
 #include "modules/simulator/simulator_node.hpp"
 #include "tests/motor_bridge/endless_planner.hpp"
 #include "tests/motor_bridge/messages.hpp"
-#include "tools/missions/robot_system.hpp"
+#include "tools/lab/missions/robot_system.hpp"
 
 namespace {
 

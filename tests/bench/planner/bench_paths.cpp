@@ -8,8 +8,8 @@
 #include <filesystem>
 
 #include "tests/bench/planner/path_figures.hpp"
-#include "tools/plan/plan_report.hpp"
-#include "tools/plan/task_planner.hpp"
+#include "tools/lab/plan/plan_report.hpp"
+#include "tools/lab/plan/task_planner.hpp"
 
 namespace {
 

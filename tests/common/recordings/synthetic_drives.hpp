@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/recordings/drive_recordings.hpp"
-#include "tests/tools/import/drive_samples.hpp"
+#include "tests/tools/robot/import/drive_samples.hpp"
 
 // Drives on grounds that are known, as windows and as folders of files.
 namespace tread::samples {

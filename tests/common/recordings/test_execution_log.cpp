@@ -9,7 +9,7 @@
 #include "common/recordings/recordings.hpp"
 #include "tests/common/recordings/synthetic_drives.hpp"
 #include "tests/helpers.hpp"
-#include "tools/replay/learner_replay.hpp"
+#include "tools/lab/replay/learner_replay.hpp"
 
 using namespace tread;
 using namespace tread::recordings;

@@ -12,10 +12,10 @@
 
 #include "common/config/command_line.hpp"
 #include "common/config/outputs.hpp"
+#include "common/soundness/drive_log.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "tests/study/models/comparison_output.hpp"
-#include "tools/gap/drive_log.hpp"
-#include "tools/gap/report/report.hpp"
+#include "tools/lab/gap/report/report.hpp"
 
 namespace tread::gap {
 namespace {

@@ -7,8 +7,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "tests/tools/gap/arc_drive.hpp"
-#include "tests/tools/gap/gap_program.hpp"
+#include "tests/tools/lab/gap/arc_drive.hpp"
+#include "tests/tools/lab/gap/gap_program.hpp"
 
 namespace tread::gap {
 namespace {

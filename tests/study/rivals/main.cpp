@@ -12,8 +12,8 @@
 
 #include "common/config/command_line.hpp"
 #include "common/config/problem_words.hpp"
+#include "common/soundness/drive_log.hpp"
 #include "tests/study/rivals/rivals.hpp"
-#include "tools/gap/drive_log.hpp"
 
 namespace {
 

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "common/config/config_folder.hpp"
 #include "common/bus/shell.hpp"
 #include "common/config/command_line.hpp"
 #include "tools/robot/launch/host.hpp"
@@ -59,10 +60,8 @@ int preDriveHere(const std::string& folder, Site& site) {
 
 int run(SetupOptions options) {
   namespace fs = std::filesystem;
-  const std::string installed = launch::ownFolder() + "/../config/launch";
   std::string& launch = options.host.launch_folder;
-  if (launch.empty())
-    launch = fs::exists(installed) ? installed : std::string(TREAD_CONFIG_DIR) + "/launch";
+  if (launch.empty()) launch = shippedConfig() + "/launch";
   launch = fs::canonical(launch).string();
   if (options.host.run.empty()) options.host.run = launch::defaultRunFolder("setup");
   options.host.run = fs::absolute(options.host.run).lexically_normal().string();

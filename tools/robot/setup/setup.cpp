@@ -12,7 +12,7 @@
 #include "common/pattern/pattern_file.hpp"
 #include "common/report/text.hpp"
 #include "common/store/store.hpp"
-#include "tools/patterns/recipe.hpp"
+#include "tools/robot/patterns/recipe.hpp"
 #include "tools/robot/setup/discovery.hpp"
 
 namespace tread::setup {

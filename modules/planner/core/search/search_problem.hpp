@@ -43,7 +43,7 @@ struct SearchConfig {
   size_t most_nodes = 6'000'000;  ///< [1] of 88 bytes each; a search that needs more is cut off
 };
 
-/// Rules of another planner that replace footprint, margins and penalties (see tools/plan).
+/// Rules of another planner that replace footprint, margins and penalties (see tools/lab/plan).
 class EdgeRules {
  public:
   virtual ~EdgeRules() = default;

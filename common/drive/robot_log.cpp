@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "common/drive/robot_log.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+
+namespace tread {
+namespace {
+
+constexpr int64_t kTransportUs = 20;  ///< of a message on the virtual bus
+
+/// Number of an event on a channel of one publisher.
+std::optional<int64_t> numberOf(const LogEvent& event) {
+  std::optional<int64_t> seq;
+  dispatch(
+      event, [&](const auto& message) { seq = message.seq; }, kPatternSet, kLearning, kMap, kPlan,
+      kProgram, kIns, kMotor, kExecution);
+  return seq;
+}
+
+void noteSeq(const LogEvent& event, int64_t seq, std::map<std::string, int64_t>& last,
+             std::map<std::string, int64_t>& missing) {
+  if (seq < 0) return;  // a broken number
+  const auto [known, first] = last.try_emplace(event.channel, seq);
+  const int64_t gap = seq - known->second - 1;
+  // Who starts again counts from the beginning; a gap of thousands is a broken number.
+  if (!first && gap > 0 && gap < 100'000) missing[event.channel] += gap;
+  known->second = seq;
+}
+
+/// Leaves out what a robot with a key has not taken: unsealed messages that do not stop.
+void removeUnsealed(std::vector<TimedEvent>& events) {
+  bool robot_has_key = false;
+  const auto refused = [&](const TimedEvent& timed) {
+    const LogEvent& event = timed.event;
+    if (event.channel == kMotor.name) robot_has_key = event.sealed;
+    bool is_stop = false;
+    dispatch(
+        event, [&](const auto& message) { is_stop = stops(message); }, kEstop, kArm, kGoal, kFence);
+    return robot_has_key && !event.sealed && !is_stop;
+  };
+  events.erase(std::remove_if(events.begin(), events.end(), refused), events.end());
+}
+
+bool inVirtualTime(const std::vector<TimedEvent>& events) {
+  for (const TimedEvent& timed : events) {
+    health_t health;
+    if (decode(timed.event, kHealth, health)) return health.utc < 0;
+  }
+  return false;
+}
+
+/// What is known of the events as a whole.
+void describe(RobotLog& log) {
+  removeUnsealed(log.events);
+  log.virtual_time = inVirtualTime(log.events);
+  std::map<std::string, int64_t> last;
+  for (TimedEvent& timed : log.events) {
+    config_t config;
+    if (decode(timed.event, kConfig, config))
+      log.configs.emplace(config.config_process, config.config_text);
+    if (const auto number = numberOf(timed.event)) noteSeq(timed.event, *number, last, log.missing);
+    if (log.virtual_time) timed.heard += kTransportUs;
+  }
+}
+
+template <class Keep>
+RobotLog robotLogOf(const std::string& name, DriveReader events, const Keep& keep) {
+  RobotLog log;
+  log.name = name;
+  for (DriveEvent event; events.next(event);)
+    if (keep(event)) {
+      const int64_t heard = event.utime;
+      log.events.push_back({std::move(event), heard});
+    }
+  log.problem = events.problem();
+  describe(log);
+  return log;
+}
+
+}  // namespace
+
+RobotLog toRobotLog(const std::string& name, std::vector<LogEvent> events) {
+  return robotLogOf(name, DriveReader(std::move(events)), [](const LogEvent&) { return true; });
+}
+
+Intake intakeOf(const RobotLog& log, const std::string& process,
+                const std::vector<std::string>& channels) {
+  Intake intake;
+  std::map<int64_t, std::pair<health_t, int64_t>> first;  // by boot id, with the count until then
+  std::map<int64_t, std::pair<health_t, int64_t>> last;
+  int64_t count = 0;
+  for (const TimedEvent& timed : log.events) {
+    health_t health;
+    if (decode(timed.event, kHealth, health) && health.process == process) {
+      first.emplace(health.boot_id, std::make_pair(health, count));
+      last.insert_or_assign(health.boot_id, std::make_pair(health, count));
+    }
+    if (std::find(channels.begin(), channels.end(), timed.event.channel) != channels.end()) ++count;
+  }
+  for (const auto& [boot_id, end] : last) {
+    const auto& [health, count_then] = first.at(boot_id);
+    intake.heard += end.first.received - health.received;
+    intake.lost += end.first.lost - health.lost;
+    intake.in_log += end.second - count_then;
+  }
+  return intake;
+}
+
+std::string intakeLine(const RobotLog& log, const std::string& process,
+                       const std::vector<std::string>& channels) {
+  const Intake intake = intakeOf(log, process, channels);
+  return "by its HEALTH the " + process + " heard " + std::to_string(intake.heard) +
+         " messages and knows of " + std::to_string(intake.lost) + " lost; the log holds " +
+         std::to_string(intake.in_log) + " of the same time";
+}
+
+RobotLog readRobotLog(const std::vector<std::string>& paths,
+                      const std::vector<const char*>& without) {
+  const auto isOurs = [&](const LogEvent& event) {
+    const auto named = [&](const char* name) { return event.channel == name; };
+    return std::none_of(without.begin(), without.end(), named) &&
+           std::any_of(kChannels.begin(), kChannels.end(),
+                       [&](const ChannelSpec& spec) { return named(spec.name); });
+  };
+  if (paths.empty()) throw std::runtime_error("no log is named");
+  RobotLog log = robotLogOf(std::filesystem::path(paths.front()).filename().string(),
+                            DriveReader(paths), isOurs);
+  if (log.events.empty())
+    throw std::runtime_error(paths.front() + ": no event on any of our channels" +
+                             (log.problem.empty() ? "" : "; " + log.problem));
+  return log;
+}
+
+ConfigReader loggedConfig(const RobotLog& log, const std::string& process,
+                          const std::vector<std::string>& overrides) {
+  const std::string& text = log.configs.at(process);
+  const std::string name = log.name + ", CONFIG of the " + process;
+  for (const std::string& override : overrides) {
+    ConfigReader known = ConfigReader::fromText(text, name);
+    const std::string key = override.substr(0, override.find('='));
+    std::optional<ConfigReader> section;
+    size_t from = 0;
+    for (size_t dot = key.find('.'); dot != std::string::npos; dot = key.find('.', from)) {
+      ConfigReader& at = section ? *section : known;
+      const std::string part = key.substr(from, dot - from);
+      if (!at.has(part)) break;
+      ConfigReader inner = at.section(part);
+      section.emplace(std::move(inner));
+      from = dot + 1;
+    }
+    if (!(section ? *section : known).has(key.substr(from)))
+      throw std::runtime_error(name + ": knows no key " + key);
+  }
+  return ConfigReader::fromText(text, name, overrides);
+}
+
+}  // namespace tread

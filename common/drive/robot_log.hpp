@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/config/config_reader.hpp"
+#include "common/drive/drive_log.hpp"
+
+namespace tread {
+
+/// An event and the time at which a process of the robot received it.
+struct TimedEvent {
+  LogEvent event;
+  int64_t heard = 0;  ///< [us] of the robot's clock, as utime; never decreases
+};
+
+/// The log of a running robot: what lcm-logger or tread-missions --log wrote.
+struct RobotLog {
+  std::string name;  ///< file name without folder
+  std::vector<TimedEvent> events;
+  std::map<std::string, std::string> configs;  ///< by process: the first CONFIG
+  bool virtual_time = false;                   ///< HEALTH without UTC
+  std::string problem;  ///< one clear line of what is wrong with the log, see DriveReader
+  /// Messages that the log misses by seq, per channel.
+  std::map<std::string, int64_t> missing;
+};
+
+/// Messages that a process counted (HEALTH) and those in the log, between its first and its last
+/// HEALTH, summed over its starts.
+struct Intake {
+  int64_t heard = 0;  ///< messages that it received
+  int64_t lost = 0;   ///< gaps in seq
+  int64_t in_log = 0;
+};
+Intake intakeOf(const RobotLog& log, const std::string& process,
+                const std::vector<std::string>& channels);
+/// The counts in one line.
+std::string intakeLine(const RobotLog& log, const std::string& process,
+                       const std::vector<std::string>& channels);
+
+/// Reads a log (one file, or its parts in order) without some channels, by default those that no
+/// replayed process hears. Throws std::runtime_error with one clear line if it cannot be read or
+/// holds nothing of ours.
+RobotLog readRobotLog(const std::vector<std::string>& paths,
+                      const std::vector<const char*>& without = {kScan.name, kPlanTree.name});
+
+/// The same from events in memory, at the recorder's times; `name` stands for the log in reports.
+RobotLog toRobotLog(const std::string& name, std::vector<LogEvent> events);
+
+/// The CONFIG of a process with other values in it, KEY=VALUE with dots between sections; throws
+/// std::runtime_error with one clear line if it knows no such key: CONFIG holds them all.
+ConfigReader loggedConfig(const RobotLog& log, const std::string& process,
+                          const std::vector<std::string>& overrides);
+
+}  // namespace tread

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "common/messages/ins_messages.hpp"
+#include "common/messages/pattern_messages.hpp"
+#include "common/soundness/reading.hpp"
+
+namespace tread::gap {
+namespace {
+
+constexpr double kFrozen = 3.0;        // [s] of one pose while it drives: the INS hangs
+constexpr double kNoticedHold = 1.0;   // [s]
+constexpr double kClearCommand = 0.5;  // of the largest one: nobody stands still with it
+constexpr double kSilence = 1.5;       // [s] of the INS
+constexpr double kSecondKind = 0.01;   // of the commands
+
+double sizeOf(const TrackCommand& command) {
+  return std::max(std::abs(command.left), std::abs(command.right));
+}
+
+double largestCommand(const std::vector<HeardSpan>& spans) {
+  double largest = 0.0;
+  for (const HeardSpan& span : spans)
+    for (const CommandSample& sample : span.commands.commands)
+      largest = std::max(largest, sizeOf(sample.command));
+  return largest;
+}
+
+/// Seconds of clear commands between two times.
+double drivenBetween(const CommandSpan& span, double begin, double end, double least) {
+  double sum = 0.0;
+  for (size_t i = 0; i < span.commands.size(); ++i) {
+    const double from = std::max(begin, span.commands[i].time);
+    const double to =
+        std::min(end, i + 1 < span.commands.size() ? span.commands[i + 1].time : span.end);
+    if (to > from && sizeOf(span.commands[i].command) >= least) sum += to - from;
+  }
+  return sum;
+}
+
+void checkHeld(const std::vector<HeardSpan>& spans, Diagnostics& notes) {
+  const double least = kClearCommand * largestCommand(spans);
+  size_t poses = 0;
+  size_t repeated = 0;
+  for (const HeardSpan& span : spans) {
+    poses += span.ins.poses;
+    repeated += span.ins.repeated;
+    for (const HeldPose& held : span.ins.held) {
+      if (held.end - held.begin <= kNoticedHold) continue;
+      const double driven = drivenBetween(span.commands, held.begin, held.end, least);
+      if (least > 0.0 && driven > kFrozen)
+        notes.fatal("the INS is frozen: one pose from " + digits(held.begin) + " to " +
+                    digits(held.end) +
+                    " s while commands drive; cut the log before, check the INS");
+      else
+        notes.note("one pose from " + digits(held.begin) + " to " + digits(held.end) +
+                   " s; not used as measurement");
+    }
+  }
+  if (repeated > 0)
+    notes.note("the INS repeats its pose in " +
+               digits(100.0 * static_cast<double>(repeated) / static_cast<double>(poses), 0) +
+               " % of its messages while it drives; only new poses count");
+}
+
+void checkKinds(const SortedLog& log, Diagnostics& notes) {
+  size_t power = 0;
+  size_t speed = 0;
+  size_t invalid = 0;
+  for (const motor_t& motor : log.motor) {
+    const bool by_hand = motor.bridge_state == motor_t::STATE_MANUAL;
+    if (motor.bridge_state != motor_t::STATE_DRIVING && !by_hand) continue;
+    power += motor.channel_kind[0] == static_cast<int16_t>(CommandKind::kPower) ? 1 : 0;
+    speed += motor.channel_kind[0] == static_cast<int16_t>(CommandKind::kTrackSpeed) ? 1 : 0;
+    invalid += obeyed(motor) ? 0 : 1;
+  }
+  if (static_cast<double>(std::min(power, speed)) >
+      kSecondKind * static_cast<double>(power + speed))
+    notes.fatal("commands of two kinds: " + std::to_string(power) + " power, " +
+                std::to_string(speed) + " track speed; cut the log where the kind changes");
+  if (invalid > 0)
+    notes.note(std::to_string(invalid) + " MOTOR messages without a number as command; left out");
+}
+
+/// INS poses that stay away in the middle of a span.
+void checkSilences(const std::vector<HeardSpan>& spans, Diagnostics& notes) {
+  size_t silences = 0;
+  size_t jumps = 0;
+  double first_silence = 0.0;
+  double first_jump = 0.0;
+  for (const HeardSpan& span : spans) {
+    double last = span.commands.begin();
+    for (const InsReading& reading : span.ins.readings) {
+      if (!reading.fresh) continue;
+      if (reading.sample.time - last > kSilence && silences++ == 0) first_silence = last;
+      if (reading.new_track && last > span.commands.begin() && jumps++ == 0)
+        first_jump = reading.sample.time;
+      last = reading.sample.time;
+    }
+    if (span.commands.end - last > kSilence && silences++ == 0) first_silence = last;
+  }
+  if (silences > 0)
+    notes.note("no new INS pose for more than 1.5 s " + std::to_string(silences) +
+               " times, first at " + digits(first_silence) + " s; driving there is not used");
+  if (jumps > 0)
+    notes.note("the INS announces " + std::to_string(jumps) + " jumps, first at " +
+               digits(first_jump) + " s; each begins a new segment");
+}
+
+void checkCommandGaps(const std::vector<HeardSpan>& spans, Diagnostics& notes) {
+  size_t gaps = 0;
+  double first = 0.0;
+  double longest = 0.0;
+  for (size_t i = 1; i < spans.size(); ++i) {
+    if (!spans[i].commands.after_silence) continue;
+    if (gaps++ == 0) first = spans[i - 1].commands.end;
+    longest = std::max(longest, spans[i].commands.begin() - spans[i - 1].commands.end);
+  }
+  if (gaps > 0)
+    notes.note("MOTOR is silent for more than 0.3 s " + std::to_string(gaps) + " times (first at " +
+               digits(first) + " s, longest " + digits(longest) +
+               " s); each silence ends a segment");
+}
+
+constexpr size_t kFewClashes = 5;
+constexpr size_t kRepeated = 20;  // the same message so many times: its publisher hangs
+
+bool sameMessage(const Stamp& a, const Stamp& b) {
+  return a.seq == b.seq && a.utime == b.utime;
+}
+
+/// How often seq does not grow although the message is another one.
+size_t seqFallsBack(const std::vector<Stamp>& stamps) {
+  size_t count = 0;
+  bool counts = false;
+  for (size_t i = 1; i < stamps.size(); ++i) {
+    counts = counts || stamps[i].seq != stamps[0].seq;
+    if (stamps[i].seq <= stamps[i - 1].seq && !sameMessage(stamps[i], stamps[i - 1])) ++count;
+  }
+  return counts ? count : 0;
+}
+
+/// Whether messages of one time say different things.
+bool clash(const ins_t& a, const ins_t& b) {
+  const auto first = planarPose(a);
+  const auto second = planarPose(b);
+  return a.utime == b.utime && first && second &&
+         (first->position() - second->position()).norm() > 1e-6;
+}
+bool clash(const motor_t& a, const motor_t& b) {
+  return a.utime == b.utime && commandFrom(a) != commandFrom(b);
+}
+
+/// How often neighbours in the log contradict each other.
+template <class Message>
+size_t clashes(const std::vector<Message>& messages) {
+  size_t count = 0;
+  for (size_t i = 1; i < messages.size(); ++i) count += clash(messages[i - 1], messages[i]) ? 1 : 0;
+  return count;
+}
+
+bool bootsAlternate(std::vector<int64_t> boots) {
+  std::sort(boots.begin(), boots.end());
+  return std::adjacent_find(boots.begin(), boots.end()) != boots.end();
+}
+
+/// One publisher whose clock went back: in the order of their numbers, which have no gap, the
+/// messages go back in time once or twice. The number of the message before that, or none.
+std::optional<Stamp> clockWentBack(std::vector<Stamp> stamps) {
+  std::stable_sort(stamps.begin(), stamps.end(),
+                   [](const Stamp& a, const Stamp& b) { return a.seq < b.seq; });
+  std::optional<Stamp> place;
+  size_t times = 0;
+  for (size_t i = 1; i < stamps.size(); ++i) {
+    if (stamps[i].utime >= stamps[i - 1].utime - kOvertaking) continue;
+    if (!isNext(stamps[i].seq, stamps[i - 1].seq) || ++times > 2) return std::nullopt;
+    if (!place) place = stamps[i - 1];
+  }
+  return place;
+}
+
+void checkRepeated(const std::string& channel, const std::vector<Stamp>& stamps,
+                   const SortedLog& log, Diagnostics& notes) {
+  size_t run = 1;
+  for (size_t i = 1; i < stamps.size(); ++i) {
+    run = sameMessage(stamps[i], stamps[i - 1]) ? run + 1 : 1;
+    if (run == kRepeated)
+      return notes.fatal("the " + channel + " is frozen: one message of " +
+                         digits(log.seconds(stamps[i].utime)) + " s comes again and again");
+  }
+}
+
+void checkChannel(const std::string& channel, const std::vector<Stamp>& stamps, size_t clashes,
+                  const SortedLog& log, Diagnostics& notes) {
+  checkRepeated(channel, stamps, log, notes);
+  const size_t falls = seqFallsBack(stamps);
+  if (std::max(falls, clashes) < std::max(kFewClashes, stamps.size() / 100)) {
+    if (falls > 0)
+      notes.note(channel + "'s publisher was started again " + std::to_string(falls) +
+                 " times, or messages came out of order");
+    return;
+  }
+  if (const auto place = clockWentBack(stamps))
+    return notes.fatal("clock jump: " + channel + " goes back at " +
+                       digits(log.seconds(place->utime)) +
+                       " s, and its messages of both times are mixed; cut the log there");
+  notes.fatal("two robots in one log: " + channel + " has two publishers (its seq falls back " +
+              std::to_string(falls) + " times, " + std::to_string(clashes) +
+              " messages contradict another one of the same time); record one robot");
+}
+
+}  // namespace
+
+void checkChannels(const SortedLog& log, const std::vector<HeardSpan>& spans, Diagnostics& notes) {
+  const std::string of = " among " + std::to_string(log.drive.events.size()) + " events";
+  if (log.motor.empty())
+    notes.fatal("no MOTOR message" + of + ": the commands are unknown; record channel MOTOR");
+  if (log.ins.empty())
+    notes.fatal("no INS message" + of + ": the motion is unknown; record channel INS");
+  if (!log.motor.empty() && spans.empty())
+    notes.fatal("the bridge never drives or stands armed for a second: no command is known");
+  checkKinds(log, notes);
+  checkHeld(spans, notes);
+  checkSilences(spans, notes);
+  checkCommandGaps(spans, notes);
+}
+
+void checkPublishers(const SortedLog& log, Diagnostics& notes) {
+  checkChannel("MOTOR", log.drive.motor_stamps, clashes(log.drive.motor), log, notes);
+  checkChannel("INS", log.drive.ins_stamps, clashes(log.drive.ins), log, notes);
+  std::map<std::string, std::vector<int64_t>> boots;  // by process, as they follow each other
+  for (const config_t& config : log.drive.configs) {
+    std::vector<int64_t>& ids = boots[config.config_process];
+    if (ids.empty() || ids.back() != config.config_boot_id) ids.push_back(config.config_boot_id);
+  }
+  for (const auto& [process, ids] : boots)
+    if (bootsAlternate(ids))
+      return notes.fatal("two robots in one log: CONFIG of " + process +
+                         " alternates between two boots; record one robot");
+}
+
+}  // namespace tread::gap

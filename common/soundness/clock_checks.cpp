@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "common/messages/ins_messages.hpp"
+#include "common/soundness/reading.hpp"
+
+namespace tread::gap {
+namespace {
+
+constexpr int64_t kClockStep = 500'000;           // [us]
+constexpr int64_t kLongestLog = 172'800'000'000;  // [us] two days
+constexpr size_t kWindow = 200;                   // messages
+constexpr size_t kShortWindow = 20;               // messages
+constexpr int64_t kLongStep = 1'000'000;          // [us] that no driver needs between two messages
+constexpr int64_t kMotionWindow = 500'000;        // [us] over which motion is seen
+constexpr int64_t kShortest = 300'000;            // [us] over which motion can be told from noise
+constexpr int64_t kTogether = 300'000;   // [us] within which INS and MOTOR pause at one time
+constexpr double kMessage = 0.1;         // [s] period of messages
+constexpr double kPositionNoise = 0.03;  // [m] between two fixes
+constexpr double kHeadingNoise = 0.05;   // [rad]
+
+/// Least time between message and recording among up to `kWindow` messages [us]: a recorder that
+/// was held up for a while has caught up somewhere among them.
+int64_t leastDelay(const std::vector<Stamp>& stamps, size_t begin, size_t end) {
+  int64_t least = INT64_MAX;
+  for (size_t i = begin; i < end; ++i) least = std::min(least, stamps[i].logged - stamps[i].utime);
+  return least;
+}
+
+/// Whether robot's and recorder's clocks lie differently to each other from here on.
+bool clocksPart(const std::vector<Stamp>& stamps, size_t index) {
+  const size_t begin = index > kWindow ? index - kWindow : 0;
+  const size_t end = std::min(stamps.size(), index + kWindow);
+  return std::abs(leastDelay(stamps, begin, index) - leastDelay(stamps, index, end)) > kClockStep;
+}
+
+/// Whether recorder and robot run at one pace: a replay may be recorded at any.
+bool samePace(const std::vector<Stamp>& stamps) {
+  std::vector<double> paces;
+  for (size_t i = kShortWindow; i < stamps.size(); i += kShortWindow) {
+    const Stamp& before = stamps[i - kShortWindow];
+    const auto logged = static_cast<double>(stamps[i].logged - before.logged);
+    if (stamps[i].utime > before.utime)
+      paces.push_back(logged / static_cast<double>(stamps[i].utime - before.utime));
+  }
+  if (paces.empty()) return true;
+  const double usual = quantile(std::move(paces));
+  return usual > 0.8 && usual < 1.25;
+}
+
+/// Time going back, and the robot's clock against the recorder's.
+void checkStamps(const std::string& channel, const std::vector<Stamp>& stamps, const SortedLog& log,
+                 Diagnostics& notes) {
+  size_t overtaken = 0;
+  const bool same_pace = samePace(stamps);
+  for (size_t i = 1; i < stamps.size(); ++i) {
+    const int64_t step = stamps[i].utime - stamps[i - 1].utime;
+    const int64_t logged = stamps[i].logged - stamps[i - 1].logged;
+    const std::string place = " at " + digits(log.seconds(stamps[i - 1].utime)) + " s";
+    if (step < -kOvertaking)
+      return notes.fatal("clock jump: " + channel + " goes back by " +
+                         digits(-1e-6 * static_cast<double>(step), 2) + " s" + place +
+                         "; cut the log there");
+    overtaken += step < 0 ? 1 : 0;
+    const bool parts = same_pace && std::abs(logged - step) > kClockStep && clocksPart(stamps, i);
+    if (parts && step > kClockStep)
+      return notes.fatal("clock jump: " + channel + " goes on by " +
+                         digits(1e-6 * static_cast<double>(step), 2) + " s" + place +
+                         ", the recorder by " + digits(1e-6 * static_cast<double>(logged), 2) +
+                         " s; cut the log there");
+  }
+  if (overtaken > 0)
+    notes.note(std::to_string(overtaken) + " messages of " + channel +
+               " come out of order; sorted by their own time");
+}
+
+/// What counts as motion beside a pause. Where MOTOR pauses with the INS, and neither misses a
+/// number, there was most likely no pause at all, so that little motion is enough.
+struct Motion {
+  double speed = 0.3;  ///< [m/s]
+  double rate = 1e9;   ///< [rad/s]
+};
+constexpr Motion kAlone{};
+constexpr Motion kTogetherWithMotor{0.08, 0.1};
+
+/// The pose beside a pause, and how the robot moves there.
+struct Beside {
+  int64_t utime = 0;
+  Pose2 pose;
+  Motion motion;
+
+  bool moves(const Motion& least) const {
+    return motion.speed >= least.speed || motion.rate >= least.rate;
+  }
+};
+
+/// From `index` on in one direction, within half a second.
+std::optional<Beside> beside(const std::vector<ins_t>& ins, size_t index, int direction) {
+  std::optional<Beside> found;
+  for (size_t i = index; i < ins.size(); i += static_cast<size_t>(direction)) {
+    if (std::abs(ins[i].utime - ins[index].utime) > kMotionWindow) break;
+    const auto pose = planarPose(ins[i]);
+    if (!pose) continue;
+    if (!found) found = Beside{ins[i].utime, *pose, {0.0, 0.0}};
+    const int64_t since = std::abs(ins[i].utime - found->utime);
+    if (since < kShortest) continue;
+    const double time = 1e-6 * static_cast<double>(since);
+    found->motion.speed = (pose->position() - found->pose.position()).norm() / time;
+    found->motion.rate = std::abs(wrapAngle(pose->yaw - found->pose.yaw)) / time;
+  }
+  return found;
+}
+
+/// Whether the next pose from `index` on is said to be on a new track.
+bool jumpAnnounced(const std::vector<ins_t>& ins, size_t index) {
+  for (size_t i = index; i < ins.size(); ++i) {
+    if ((ins[i].ins_status & ins_t::STATUS_JUMP) != 0) return true;
+    if (planarPose(ins[i])) return false;
+  }
+  return false;
+}
+
+/// MOTOR around the middle of a pause: the last message before it, and the next one.
+std::optional<std::pair<const motor_t*, const motor_t*>> motorAround(
+    const std::vector<motor_t>& motor, int64_t begin, int64_t end) {
+  const auto after =
+      std::lower_bound(motor.begin(), motor.end(), begin + (end - begin) / 2,
+                       [](const motor_t& message, int64_t utime) { return message.utime < utime; });
+  if (after == motor.begin() || after == motor.end()) return std::nullopt;
+  return std::pair(&*(after - 1), &*after);
+}
+
+/// Whether MOTOR, too, is silent from `begin` to `end`, and misses no number.
+bool motorPauses(const std::vector<motor_t>& motor, int64_t begin, int64_t end) {
+  const auto around = motorAround(motor, begin, end);
+  return around && isNext(around->second->seq, around->first->seq) &&
+         std::abs(around->first->utime - begin) <= kTogether &&
+         std::abs(around->second->utime - end) <= kTogether;
+}
+
+/// Whether MOTOR has no message in half of the pause: nothing was recorded. The streams of an
+/// import need not end together.
+bool isBreak(const std::vector<motor_t>& motor, int64_t begin, int64_t end) {
+  const auto around = motorAround(motor, begin, end);
+  return around && around->second->utime - around->first->utime >= (end - begin) / 2;
+}
+
+/// What happened in a pause.
+struct Pause {
+  double length = 0.0;  ///< [s]
+  double rest = 0.0;    ///< [s] between the two poses but the pause, and a message's period
+  double moved = 0.0;   ///< [m]
+  double turned = 0.0;  ///< [rad]
+  Motion motion;        ///< the faster one of before and after
+};
+
+Pause pauseBetween(const Beside& before, const Beside& after, int64_t step) {
+  Pause pause;
+  pause.length = 1e-6 * static_cast<double>(step);
+  pause.rest = 1e-6 * static_cast<double>(after.utime - before.utime - step) + kMessage;
+  pause.moved = (after.pose.position() - before.pose.position()).norm();
+  pause.turned = std::abs(wrapAngle(after.pose.yaw - before.pose.yaw));
+  pause.motion.speed = std::max(before.motion.speed, after.motion.speed);
+  pause.motion.rate = std::max(before.motion.rate, after.motion.rate);
+  return pause;
+}
+
+/// Whether the robot is where it was one message later, although its motion went on.
+bool stoodStill(const Pause& pause, bool with_motor) {
+  constexpr double kFarLess = 0.3;
+  const Motion& motion = pause.motion;
+  const bool one_message =
+      pause.moved <= 2.0 * motion.speed * pause.rest + (with_motor ? kPositionNoise : 0.0) &&
+      pause.turned <= 2.0 * motion.rate * pause.rest + kHeadingNoise;
+  const bool less_way = pause.moved <= kFarLess * motion.speed * pause.length;
+  const bool less_turn = pause.turned <= kFarLess * motion.rate * pause.length;
+  return one_message && (less_way || (with_motor && less_turn));
+}
+
+std::string lineOf(const Pause& pause, const std::string& place, bool with_motor) {
+  std::string line = std::string("clock jump: INS") + (with_motor ? " and MOTOR go" : " goes") +
+                     " on by " + digits(pause.length, 2) + " s" + place +
+                     ", but the robot moves on by " + digits(pause.moved, 2) + " m at " +
+                     digits(pause.motion.speed, 2) + " m/s";
+  if (with_motor)
+    line += " and turns by " + digits(pause.turned, 2) + " rad at " + digits(pause.motion.rate, 2) +
+            " rad/s";
+  return line + "; cut the log there";
+}
+
+/// A pause after which the robot is where it was one message later, although it moves: time went
+/// on, the robot did not.
+/** Where MOTOR pauses, too, only the numbers that the robot gave its messages tell such a jump from
+ * a time in which nothing was recorded. An import numbers the rows that it has: its pauses are
+ * breaks, whatever the poses are. A robot that turns on the spot may face the same way again. */
+void checkPauses(const SortedLog& log, Numbering numbering, Diagnostics& notes) {
+  const std::vector<ins_t>& ins = log.ins;
+  for (size_t i = 1; i < ins.size(); ++i) {
+    const int64_t step = ins[i].utime - ins[i - 1].utime;
+    if (step < kLongStep || !isNext(ins[i].seq, ins[i - 1].seq) || jumpAnnounced(ins, i)) continue;
+    if (numbering == Numbering::kByImport && isBreak(log.motor, ins[i - 1].utime, ins[i].utime))
+      continue;
+    const bool with_motor = motorPauses(log.motor, ins[i - 1].utime, ins[i].utime);
+    const Motion& least = with_motor ? kTogetherWithMotor : kAlone;
+    const auto before = beside(ins, i - 1, -1);
+    const auto after = beside(ins, i, 1);
+    if (!before || !after) continue;
+    const std::string place = " at " + digits(log.seconds(ins[i - 1].utime)) + " s";
+    if (!before->moves(least) || !after->moves(least)) {
+      if (with_motor)
+        notes.note("INS and MOTOR are silent for " + digits(1e-6 * static_cast<double>(step), 2) +
+                   " s" + place +
+                   " and miss no number, while the robot stands: if its clock jumped there, what "
+                   "depends on time is wrong");
+      continue;
+    }
+    const Pause pause = pauseBetween(*before, *after, step);
+    if (!stoodStill(pause, with_motor)) continue;
+    return notes.fatal(lineOf(pause, place, with_motor));
+  }
+}
+
+}  // namespace
+
+void checkClocks(const SortedLog& log, Numbering numbering, Diagnostics& notes) {
+  checkStamps("MOTOR", log.drive.motor_stamps, log, notes);
+  checkStamps("INS", log.drive.ins_stamps, log, notes);
+  checkPauses(log, numbering, notes);
+  int64_t last = log.origin;
+  if (!log.motor.empty()) last = std::max(last, log.motor.back().utime);
+  if (!log.ins.empty()) last = std::max(last, log.ins.back().utime);
+  if (last - log.origin > kLongestLog)
+    notes.fatal("clock jump: INS and MOTOR span " + digits(log.seconds(last) / 3600.0) +
+                " hours; are both on the robot's clock?");
+}
+
+}  // namespace tread::gap

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "tools/lab/experiment/trials.hpp"
+
+namespace tread::experiment {
+
+/// How many measured ends lay inside the 90 % regions that were predicted for them.
+struct RegionCount {
+  double ends = 0.0;  ///< for which the method stated a region
+  double inside = 0.0;
+
+  void add(const RegionCount& other) {
+    ends += other.ends;
+    inside += other.inside;
+  }
+};
+
+/// The first executions of random patterns on a surface.
+struct FirstExecutions {
+  static constexpr size_t kCount = 12;
+  /// After so many of them all patterns are tested.
+  static constexpr std::array<size_t, 6> kTested{0, 1, 2, 3, 5, 10};
+
+  explicit FirstExecutions(size_t methods = 0)
+      : all_patterns(kTested.size(), Errors(methods)),
+        regions(kCount, std::vector<RegionCount>(methods)) {}
+  void addRun(const FirstExecutions& run);
+
+  std::vector<Errors> all_patterns;               ///< by kTested
+  std::vector<std::vector<RegionCount>> regions;  ///< [execution][method], before the execution
+};
+
+/// Every repetition begins anew; all methods execute the same recordings.
+FirstExecutions driveFirstExecutions(Methods& methods, const TrialSite& site);
+
+struct Tables;
+struct Setting;
+
+/// Shares of ends inside the 90 % regions, errors over all patterns, and the price on unchanged
+/// ground, by method.
+std::string textOfFirstExecutions(const Tables& tables, const Setting& setting);
+
+}  // namespace tread::experiment

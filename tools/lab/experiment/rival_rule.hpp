@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "modules/learner/core/rules/learning_rule.hpp"
+#include "tools/lab/experiment/adaptation/rivals.hpp"
+#include "tools/lab/experiment/trials.hpp"
+
+namespace tread::experiment {
+
+/// A rival of `adaptation` as a rule: the reference that it corrects is the shipped set.
+class RivalRule : public learner::LearningRule {
+ public:
+  /// `noise`: variances of a pattern's mean twist from execution to execution, by pattern.
+  RivalRule(std::unique_ptr<adaptation::Rival> rival, const PatternSet& shipped,
+            const std::vector<Eigen::Vector3d>& noise);
+  RivalRule(const RivalRule& other);
+
+  void learn(size_t executed, const learner::ConstTrajectory& measured,
+             learner::RuleNote& note) override;
+  void predict(size_t pattern, learner::Trajectory prediction) const override;
+  Pose2 predictEnd(size_t pattern) const override;
+  void assign(const learner::LearningRule& other) override;
+  std::unique_ptr<learner::LearningRule> clone() const override {
+    return std::make_unique<RivalRule>(*this);
+  }
+  /// Rivals are not stored.
+  bool restore(const learner::TrajectoryTable&, const std::vector<double>&) override {
+    return false;
+  }
+
+ private:
+  /// What the shipped set says of its patterns.
+  struct Reference {
+    double period;
+    std::vector<std::vector<Twist2>> twists;  ///< by pattern and sample
+    std::vector<adaptation::Sample> samples;  ///< by pattern
+  };
+  std::vector<Pose2> poses(size_t pattern) const;
+
+  std::shared_ptr<const Reference> reference_;
+  std::unique_ptr<adaptation::Rival> rival_;
+};
+
+/// The rivals among the names of some methods, tuned for a transition between two surfaces.
+/** They know the recordings of excitation runs of all surfaces but the new one, each as a session:
+ * how grounds differ from the one of the set that they begin with. */
+Rivals tunedRivals(const std::vector<std::string>& methods, const std::vector<Ground>& grounds,
+                   size_t from, size_t to);
+
+/// A rival that begins with a surface's averaged set.
+std::unique_ptr<learner::LearningRule> rivalRule(const adaptation::Rival& rival,
+                                                 const Ground& ground);
+
+}  // namespace tread::experiment

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/lab/experiment/first_executions.hpp"
+#include "tools/lab/experiment/trials.hpp"
+
+namespace tread::experiment {
+
+/// What to compare, on what, how often.
+struct ExperimentSettings {
+  std::vector<std::string> rules;  ///< names of methods, see methodOf()
+  learner::RuleConfig config;      ///< of all rules
+  std::vector<Sequence> sequences;
+  int64_t repetitions = 2000;  ///< of a transition; each drives all sequences once
+  int64_t excitations = 40;    ///< excitation runs of a transition, which share the repetitions
+  int64_t excitation = 200;    ///< executions on each surface of one
+  uint64_t seed = 1;
+  int threads = 1;  ///< no influence on any number
+  bool change_inside = false;
+  std::vector<int> all_patterns_after{1, 2, 3, 10};  ///< executions, ascending
+  size_t development = 30;                           ///< executions of Figure 4
+  size_t drift = 300;                                ///< executions of the drift's figure
+
+  size_t ruleIndex(const std::string& name) const;  ///< rules.size() if it is not there
+};
+
+/// One ordered pair of surfaces.
+struct TransitionErrors {
+  size_t from = 0;
+  size_t to = 0;
+  SequenceErrors sequences;
+  std::vector<Errors> all_patterns;  ///< by all_patterns_after
+  std::vector<Errors> development;   ///< by execution
+  FirstExecutions first;             ///< of random patterns
+  std::vector<double> remembered;    ///< surfaces before the transition, mean over excitation runs
+};
+
+/// Section V on one set of recordings.
+struct ExperimentErrors {
+  std::vector<TransitionErrors> transitions;     ///< from each surface to each other one, in order
+  std::vector<Errors> unchanged;                 ///< by surface, in the long run, random patterns
+  std::vector<Errors> unchanged_sequences;       ///< the same over the test sequences
+  std::vector<FirstExecutions> unchanged_first;  ///< by surface
+  /// Width of the pattern `watched` by rule, over executions on unchanged ground; see driveDrift().
+  std::vector<std::vector<double>> drift;
+};
+
+/// The widest pattern of a set that no sequence executes; nothing if all are executed or straight.
+std::optional<size_t> neverExecuted(const Ground& ground, const std::vector<Sequence>& sequences);
+
+/// Parts done and parts in all; called from the threads, one at a time.
+using Progress = std::function<void(size_t done, size_t all)>;
+
+/// Runs all trials. Same settings and grounds, same bytes, for any number of threads.
+ExperimentErrors runExperiment(const std::vector<Ground>& grounds,
+                               const ExperimentSettings& settings, const Progress& progress);
+
+inline constexpr const char* kPosition = "position";
+inline constexpr const char* kOrientation = "orientation";
+inline constexpr const char* kQuantities[] = {kPosition, kOrientation};
+
+/// Of a share of ends inside 90 % regions.
+inline constexpr const char* kRegion = "region";
+
+/// One number of a table.
+struct Row {
+  std::string from;  ///< for unchanged ground: the surface
+  std::string to;
+  std::string quantity;  ///< position: per driven metre; orientation: per radian turned
+  std::string rule;
+  std::string against;  ///< reductions: the rule that is improved on
+  int k = 0;            ///< executions before, where that counts
+  Estimate estimate;
+  double spread = std::numeric_limits<double>::quiet_NaN();  ///< deviation over sets of recordings
+};
+
+/// The numbers of an experiment.
+struct Tables {
+  std::vector<Row> errors;        ///< Table I
+  std::vector<Row> reductions;    ///< [%] Table II
+  std::vector<Row> all_patterns;  ///< errors over all patterns after k executions
+  /// Errors over all patterns after k executions of random ones; also on unchanged ground.
+  std::vector<Row> first_executions;
+  std::vector<Row> regions;    ///< [1] share of ends inside, before execution k = 1, 2, ...
+  std::vector<Row> unchanged;  ///< [1] error in the long run over the omniscient one
+  std::vector<Row> unchanged_sequences;  ///< the same over the test sequences
+};
+
+Tables tablesOf(const ExperimentErrors& errors, const ExperimentSettings& settings,
+                const std::vector<Ground>& grounds);
+
+/// Means over the sets of recordings, number by number, with the spread and the 99 % interval of
+/// the mean (by Student); of one set of recordings that set of recordings.
+Tables combined(const std::vector<Tables>& sets);
+
+/// The row of these words; nullptr if there is none.
+const Row* find(const std::vector<Row>& rows, const std::string& from, const std::string& to,
+                const std::string& quantity, const std::string& rule,
+                const std::string& against = "", int k = 0);
+
+/// Rules for which a reduction is told: all that learn.
+std::vector<std::string> learningRules(const std::vector<std::string>& rules);
+
+/// How one table is written to NAME.csv.
+struct TableFile {
+  const char* name;
+  std::vector<Row> Tables::*rows;
+  const char* header;
+  std::string (*line)(const Row& row);
+};
+/// All tables, in the order of sets of recordings.csv.
+const std::array<TableFile, 7>& tableFiles();
+std::string csvOf(const Tables& tables, const TableFile& file);
+
+/// drift.csv: rule,executions,width of the watched pattern over its shipped one [1].
+std::string csvOfDrift(const ExperimentErrors& errors, const ExperimentSettings& settings);
+/// sets of recordings.csv: table,seed,from,to,quantity,rule,against,k,value of each set of
+/// recordings.
+std::string csvOfSets(const std::vector<Tables>& sets, uint64_t first_seed);
+
+/// A cell of the paper's Tables I and II for one transition and quantity, as printed.
+struct PaperCell {
+  const char* from;
+  const char* to;
+  const char* quantity;
+  std::array<double, 4> errors;  ///< columns a, b, c, d per driven metre or radian
+  double reduction;              ///< [%] of c against b
+};
+
+/// All 24 cells.
+const std::vector<PaperCell>& paperCells();
+/// The cell, if the paper has these surfaces.
+const PaperCell* paperCell(const std::string& from, const std::string& to,
+                           const std::string& quantity);
+/// The rules of columns a, b, c, d.
+const std::array<std::string, 4>& paperRules();
+
+/// Why a printed number is probably a misprint; empty if nothing speaks against it.
+std::string doubtOfError(const PaperCell& cell, size_t column);
+std::string doubtOfReduction(const PaperCell& cell);
+
+/// How near a table comes to the paper's.
+struct Agreement {
+  /// Root of the mean squared difference in columns a, b, c, d; the transition cinder -> tarmac is
+  /// left out of the orientation. NaN where nothing can be compared.
+  std::array<double, 4> position_rms;
+  std::array<double, 4> orientation_rms;
+  int cells = 0;  ///< compared reductions of each quantity
+  int position_signs = 0;
+  int orientation_signs = 0;
+};
+
+/// Nothing if no transition of the tables is the paper's.
+std::optional<Agreement> agreementWithPaper(const Tables& tables);
+
+/// What a text about an experiment must know beside its numbers.
+struct Setting {
+  std::vector<std::string> surfaces;
+  std::vector<std::string> rules;
+  bool paper_reference = false;
+  size_t sets = 1;
+};
+
+/// Rules side by side in one table that is narrow enough to read: the paper's columns a, b, c, d
+/// first, then what else was compared.
+std::vector<std::vector<std::string>> columnGroups(const Setting& setting);
+
+/// Table I in the paper's layout: rows from, groups of columns to; a, b, c, d as in the paper,
+/// further rules in tables after them; the paper's numbers below.
+std::string textOfErrors(const Tables& tables, const Setting& setting);
+/// Table II: collective against single as in the paper, then each other rule.
+std::string textOfReductions(const Tables& tables, const Setting& setting);
+/// RMS deviations and signs, and those of single sets of recordings; empty where nothing can be
+/// compared.
+std::string textOfAgreement(const Tables& tables, const Setting& setting,
+                            const std::vector<Tables>& sets);
+/// Medians and worst cases by rule: reductions, all patterns, unchanged ground; with several sets
+/// of recordings means and deviations over them.
+std::string textOfKeyFigures(const Tables& tables, const Setting& setting,
+                             const std::vector<Tables>& sets);
+
+/// The median; NaN of nothing.
+double median(std::vector<double> values);
+
+/// What the command line asks for.
+struct Request {
+  std::string world;                   ///< file; else `recordings` is used
+  std::string recordings;              ///< folder
+  std::string robot;                   ///< of a folder of drives
+  std::vector<std::string> sessions;   ///< of it; empty = all that are comparable
+  std::vector<std::string> sequences;  ///< "left,left,right"; empty = those of the world
+  std::vector<std::string> rules;
+  int64_t repetitions = 2000;
+  int64_t excitations = 40;            ///< excitation runs of each transition
+  int64_t excitation = 200;            ///< executions on each surface of one
+  double memory = 0.5;                 ///< [1] w of equation (2)
+  std::vector<std::string> overrides;  ///< of learner.yaml: "ground.fresh=0.3"
+  uint64_t seed = 1;
+  int threads = 1;
+  int sets = 1;    ///< of a world: sets of recordings, from seeds that count up
+  int length = 1;  ///< of a world: each command is held so many times as long
+  bool change_inside = false;
+  bool extras = false;  ///< twice as long patterns and changes inside a pattern, too
+};
+
+/// The same experiment on other terms, with fewer repetitions.
+struct Variant {
+  std::string words;
+  Tables tables;
+  std::vector<Tables> sets;
+};
+
+/// A request and its results.
+struct Batch {
+  Request request;
+  Setting setting;
+  ExperimentSettings settings;
+  std::string source;              ///< the world or folder, in words
+  std::vector<std::string> notes;  ///< about the recordings
+  std::vector<Tables> sets;
+  Tables tables;                  ///< of all sets of recordings together
+  std::vector<Ground> grounds;    ///< of the first set of recordings
+  ExperimentErrors first;         ///< of it, for the pictures
+  std::vector<Variant> variants;  ///< if the request wants extras
+  double seconds = 0.0;           ///< of the trials, without recording
+};
+
+/// Runs everything; throws an exception with one line for what cannot be done. progress(share of
+/// the work that is done, 0..1).
+Batch runBatch(const Request& request, const std::function<void(double)>& progress);
+
+/// How many surfaces methods remember after an excitation run; empty if none does by nature.
+std::string textOfRemembered(const Batch& batch);
+
+/// Key figures of the variants.
+std::string textOfVariants(const Batch& batch);
+
+/// Width of the never executed pattern after 100, 200, 300 executions on unchanged ground.
+std::string textOfDrift(const Batch& batch);
+
+/// Name of the pattern that is watched for drift; empty if there is none.
+std::string watchedPattern(const Batch& batch);
+
+/// Writes all files into a folder, which is made if needed.
+void writeBatch(const std::string& folder, const Batch& batch);
+
+/// The transition of the paper's figures: from cinder to grass if it is there, else the one that
+/// costs most without learning. An index into errors.transitions.
+size_t transitionOfFigures(const ExperimentErrors& errors, const ExperimentSettings& settings,
+                           const std::vector<Ground>& grounds);
+
+/// "cinder to grass".
+std::string wordsOf(const TransitionErrors& transition, const std::vector<Ground>& grounds);
+
+/// Figure 4: error and its deviation over executions without a reset, by rule (PNG).
+void drawDevelopment(const std::string& path, const TransitionErrors& transition,
+                     const ExperimentSettings& settings, const std::string& words);
+
+/// Figure 5: how often which error occurs over the test sequences, by rule (PNG).
+void drawDistributions(const std::string& path, const TransitionErrors& transition,
+                       const ExperimentSettings& settings, const std::string& words);
+
+/// How wide each rule predicts a pattern that is never executed, over executions on unchanged
+/// ground (PNG).
+void drawDrift(const std::string& path, const std::vector<std::vector<double>>& drift,
+               const ExperimentSettings& settings, const std::string& watched);
+
+}  // namespace tread::experiment

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "common/config/config_reader.hpp"
+#include "common/config/outputs.hpp"
+#include "common/pattern/pattern_file.hpp"
+#include "common/soundness/drive_log.hpp"
+#include "common/store/store.hpp"
+#include "common/vehicle/model_document.hpp"
+#include "tools/lab/gap/commands.hpp"
+#include "tools/lab/gap/questions.hpp"
+#include "tools/lab/gap/report/report.hpp"
+#include "tools/robot/patterns/recipe.hpp"
+
+namespace tread::gap {
+namespace {
+
+struct PlanOptions {
+  std::string truth;
+  std::string rival;
+  std::string model;
+  std::string patterns;
+  std::string out;
+  std::vector<std::string> set;
+  double speed = 0.0;  // [m/s], 0 = as the model's envelope says
+};
+
+constexpr const char* kPlanFooter =
+    "Each effect is taken at its size in the model, else at its typical one (or as --set says); "
+    "the\n"
+    "other is refitted to look most like it, together with what the model says is uncertain. The\n"
+    "drive tells them apart whichever is there, so that their order makes no difference. It stays\n"
+    "within the motions that the model was made from, where its file says them. Written to --out\n"
+    "is a pattern set for tread-patterns record. Where no drive tells the two apart, the\n"
+    "measurement that does is printed instead, and the exit status is 1.";
+
+/// What the catalogue says of two confounded effects; empty where it knows no common group.
+std::string fromTable(const std::string& a, const std::string& b) {
+  std::string text;
+  for (const ConfoundedGroup* group : confoundedGroupsOf(a)) {
+    if (!contains(group->members, b)) continue;
+    const std::string when = group->when.empty() ? "" : " (" + group->when + ")";
+    text += "  " + asSentence(group->because) + when + ".\n  " + group->separates + "\n";
+  }
+  return text;
+}
+
+/// Measurements that tell the two apart, from that table, else from the catalogue.
+std::string otherWays(const std::string& a, const std::string& b) {
+  std::string text = fromTable(a, b);
+  if (!text.empty()) return text;
+  for (const std::string& name : {a, b})
+    text += "  " + titleOf(name) + ": " + effectNamed(name).separates + "\n";
+  return text;
+}
+
+std::string sizeOf(const ModelDocument& model, const std::string& name) {
+  std::vector<std::string> sizes;
+  for (const EffectParameter& parameter : effectNamed(name).parameters) {
+    const std::string path = name + "." + parameter.name;
+    const double value = *findParameter(model, path);
+    if (parameter.role == ParameterRole::kShape || value == 0.0) continue;
+    const bool natural = parameter.reciprocal();
+    sizes.push_back(
+        (natural ? parameter.natural_name : parameter.name) + " " +
+        said(naturalValue(parameter, value), natural ? naturalUnit(parameter) : parameter.unit));
+  }
+  return sizes.empty() ? "off" : joined(sizes);
+}
+
+/// The room that the patterns of a set ask for, with some to spare [m].
+double roomFor(const PatternSet& set) {
+  double farthest = 0.0;
+  for (const MotionPattern& pattern : set.patterns())
+    farthest = std::max(farthest, pattern.end().position().norm());
+  return std::max(8.0, std::ceil(2.0 * farthest));
+}
+
+std::string sequenceText(const DesignTask& task, const Design& design) {
+  std::string text;
+  for (size_t i = 0; i < task.manoeuvres.size(); ++i) {
+    if (design.counts[i] == 0) continue;
+    text += formatted("  %zu x %-24s %.1f s\n", design.counts[i], task.manoeuvres[i].name.c_str(),
+                      kManoeuvrePeriod * static_cast<double>(task.manoeuvres[i].commands.size()));
+  }
+  return text;
+}
+
+std::string sizedName(const ModelDocument& model, const std::string& effect) {
+  return inSentence(titleOf(effect)) + " (" + sizeOf(model, effect) + ")";
+}
+
+std::string sideText(const DesignSide& side) {
+  return "  " + threeDigits(side.difference) + " if it is " +
+         sizedName(side.true_model, side.truth) + ",\n    although " +
+         inSentence(titleOf(side.rival)) + " is refitted to look most like it (" +
+         sizeOf(side.rival_model, side.rival) + ")\n";
+}
+
+void tellFound(const PlanOptions& options, const DesignTask& task, const Design& design,
+               const PatternSet& set) {
+  const DesignSide& side = design.sides.front();
+  std::cout << "To tell " << inSentence(titleOf(side.truth)) << " from "
+            << inSentence(titleOf(side.rival)) << ":\n\n"
+            << sequenceText(task, design) << "\n"
+            << threeDigits(design.duration)
+            << " s of driving; expected difference of the log likelihoods ("
+            << threeDigits(task.enough) << " is enough):\n"
+            << sideText(design.sides[0]) << sideText(design.sides[1]);
+  const std::string known = fromTable(side.truth, side.rival);
+  if (!known.empty()) std::cout << "\nThey resemble each other; another way to tell:\n" << known;
+  if (options.out.empty()) return;
+  writeText(options.out, formatPatterns(set));
+  std::cout
+      << "\n"
+      << options.out << ": a pattern set. Record a log (tread-logger) while\n"
+      << "  tread-patterns record " << options.out
+      << " --recordings plan_recordings --surface here --live -n 1 --room "
+      << threeDigits(roomFor(set))
+      << "\ndrives it, and give that log to tread-gap find with the old one (--train OLD NEW).\n";
+}
+
+void tellNone(const Design& design) {
+  constexpr double kInvisible = 0.5;  // [nats]
+  const DesignSide& side = design.harder();
+  if (side.visible < kInvisible)
+    std::cout << titleOf(side.truth) << " (" << sizeOf(side.true_model, side.truth)
+              << ") shows in none of these manoeuvres on level ground. What shows it:\n";
+  else
+    std::cout << "No drive of these manoeuvres within 120 s tells "
+              << sizedName(side.true_model, side.truth) << " from "
+              << sizedName(side.rival_model, side.rival) << ": expected difference "
+              << threeDigits(side.difference) << " after " << threeDigits(design.duration)
+              << " s. What tells:\n";
+  std::cout << otherWays(design.sides.front().truth, design.sides.front().rival);
+}
+
+/// The built-in manoeuvres: what a person asks for, else what the model knows.
+std::vector<Manoeuvre> builtInManoeuvres(const PlanOptions& options, const ModelDocument& model) {
+  if (options.speed > 0.0) return planManoeuvres(model, options.speed);
+  std::vector<Manoeuvre> all = planManoeuvres(model, fullCommand(model));
+  if (model.envelope) keepWithin(*model.envelope, model.vehicle, all);
+  return all;
+}
+
+/// Of patterns and speeds that a person asks for, and where the model does not say what it knows.
+void warnBeyond(const PlanOptions& options, const ModelDocument& model, const PatternSet& set) {
+  patterns::warnOutside(model, options.model, set);
+  if (model.envelope) return;
+  const Envelope asked = patterns::envelopeOf(model.vehicle, set);
+  std::cerr << options.model << ": warning: no envelope in it; the plan asks for up to "
+            << threeDigits(asked.v) << " m/s and " << threeDigits(asked.omega)
+            << " rad/s of it, whatever it was made from\n";
+}
+
+int plan(const PlanOptions& options) {
+  effectOrGuess(options.truth);
+  effectOrGuess(options.rival);
+  if (options.truth == options.rival)
+    throw std::runtime_error("plan: twice " + options.truth + "; name two effects");
+  DesignTask task;
+  task.model = readTrackModelDocument(options.model);
+  task.first = options.truth;
+  task.second = options.rival;
+  if (options.speed > 0.0 && task.model.vehicle.kind == CommandKind::kPower)
+    throw std::runtime_error("--speed is for models that take track speeds; this one takes powers");
+  if (!options.set.empty()) {
+    ModelChange change{{}, {}, options.set};
+    if (!isOn(effectNamed(options.truth), task.model)) change.add = {options.truth};
+    task.model = changed(task.model, change);
+  }
+  std::optional<PatternSet> from;
+  if (!options.patterns.empty()) from = readPatternFile(options.patterns);
+  task.manoeuvres = from ? manoeuvresOf(*from, task.model) : builtInManoeuvres(options, task.model);
+  const Design design = designDrive(task);
+  if (!design.separates) {
+    tellNone(design);
+    return 1;
+  }
+  const PatternSet set =
+      from ? planSet(*from, design.counts) : planSet(task.model, task.manoeuvres, design.counts);
+  warnBeyond(options, task.model, set);
+  tellFound(options, task, design, set);
+  return 0;
+}
+
+struct WhatIfOptions {
+  std::string model;
+  ModelChange change;
+  std::string log;
+  std::string out;
+  double minutes = 10.0;
+  double pitch = 0.0;         // [deg]
+  double roll = 0.0;          // [deg]
+  double battery_drop = 0.0;  // [%]
+  double worked = 0.5;
+};
+
+Circumstances circumstancesOf(const WhatIfOptions& options) {
+  Circumstances circumstances;
+  circumstances.session_time = 60.0 * options.minutes;
+  circumstances.battery_drop = 0.01 * options.battery_drop;
+  circumstances.roll = options.roll * kPi / 180.0;
+  circumstances.pitch = options.pitch * kPi / 180.0;
+  circumstances.worked = options.worked;
+  return circumstances;
+}
+
+/// "What if without A, with B and limit=1.2".
+std::string questionOf(const ModelChange& change) {
+  std::vector<std::string> parts;
+  for (const std::string& effect : change.remove)
+    parts.push_back("without " + inSentence(titleOf(effect)));
+  for (const std::string& effect : change.add)
+    parts.push_back("with " + inSentence(titleOf(effect)));
+  for (const std::string& assignment : change.set) parts.push_back(assignment);
+  return "What if: " + joined(parts) + "?";
+}
+
+bool endsWith(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+void whatIf(const WhatIfOptions& options) {
+  if (options.change.remove.empty() && options.change.add.empty() && options.change.set.empty())
+    throw std::runtime_error("what-if: nothing to change; give --remove, --add or --set");
+  const bool svg = endsWith(options.out, ".svg");
+  if (!options.out.empty() && !svg && !endsWith(options.out, ".html"))
+    throw std::runtime_error(options.out + ": what kind of file? end it with .html or .svg");
+  const ModelDocument model = readTrackModelDocument(options.model);
+  const ModelDocument other = changed(model, options.change);
+  const std::vector<ManoeuvreComparison> comparisons =
+      compareModels(model, other, circumstancesOf(options));
+  std::vector<LogComparison> on_log;
+  std::string lost;
+  if (!options.log.empty()) {
+    const Drive drive = readSoundDriveFor(model, options.log);
+    lost = drive.lost;
+    on_log.push_back(compareOnLog(drive, model, other));
+  }
+  const std::string question = questionOf(options.change);
+  const std::string setting = settingOf(model, other, options.model, options.log);
+  std::cout << question << "\n" << setting << "\n\n" << textOf(comparisons);
+  for (const LogComparison& comparison : on_log) std::cout << '\n' << textOf(comparison);
+  if (!lost.empty()) std::cout << lost << '\n';
+  if (!options.out.empty())
+    writeText(options.out, svg ? svgOf(comparisons, on_log)
+                               : htmlOf(pageOf(question, setting, comparisons, on_log)));
+  std::cout << std::flush;
+}
+
+void addCircumstances(CLI::App& command, WhatIfOptions& options) {
+  command.add_option("--minutes", options.minutes, "since the start of the session")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 10000.0));
+  command.add_option("--pitch", options.pitch, "deg, of the ground, nose down positive")
+      ->check(CLI::Range(-45.0, 45.0));
+  command.add_option("--roll", options.roll, "deg, of the ground, left side up positive")
+      ->check(CLI::Range(-45.0, 45.0));
+  command.add_option("--battery-drop", options.battery_drop, "%, fall of the voltage since then")
+      ->check(CLI::Range(0.0, 100.0));
+  command.add_option("--worked", options.worked, "mean square of the duty until now, 0..1")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+}
+
+}  // namespace
+
+void addPlan(CLI::App& app, int& status) {
+  const auto options = std::make_shared<PlanOptions>();
+  CLI::App* command =
+      app.add_subcommand("plan", "the shortest drive that tells effect A from effect B");
+  command->footer(kPlanFooter);
+  command->add_option("A", options->truth, "effect that may be there")->required();
+  command->add_option("B", options->rival, "effect that may be there instead")->required();
+  command->add_option("--model", options->model, "model file (YAML)")->required();
+  command->add_option("--patterns", options->patterns,
+                      "choose among the patterns of this set instead of the built-in manoeuvres");
+  command->add_option("--set", options->set, "parameter=number: another size of A");
+  command
+      ->add_option("--speed", options->speed,
+                   "m/s, largest track speed commanded; not for models that take powers")
+      ->check(CLI::Range(0.01, 20.0));
+  Outputs(*command).file("--out", options->out, "pattern set to write (YAML)");
+  command->callback([options, &status] { status = plan(*options); });
+}
+
+void addWhatIf(CLI::App& app) {
+  const auto options = std::make_shared<WhatIfOptions>();
+  CLI::App* command = app.add_subcommand(
+      "what-if", "simulate with an effect removed, added or of another size, and show it");
+  command->add_option("--model", options->model, "model file (YAML)")->required();
+  command->add_option("--remove", options->change.remove, "turn this effect or unnamed term off");
+  command->add_option("--add", options->change.add,
+                      "turn this effect on, at its typical size; of one that is on, --set another");
+  command->add_option(
+      "--set", options->change.set,
+      "parameter=number: of the effect added, or effect.parameter, or lag, delay..");
+  command->add_option("--log", options->log, "a log; its executions are simulated, too");
+  Outputs(*command).file("--out", options->out, "pictures: FILE.html or FILE.svg");
+  addCircumstances(*command, *options);
+  command->callback([options] { whatIf(*options); });
+}
+
+}  // namespace tread::gap

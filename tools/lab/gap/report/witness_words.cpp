@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+// What wheel speeds, motor currents and battery voltage say of an effect.
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "common/soundness/core/log_validation.hpp"
+#include "tools/lab/gap/report/report.hpp"
+
+namespace tread::gap {
+namespace {
+
+std::string percent(double share) {
+  return fixed(100.0 * std::clamp(share, -9.99, 9.99), 0);
+}
+
+std::string percents(double low, double high) {
+  return " (" + percent(low) + " to " + percent(high) + " %)";
+}
+
+std::string wheelSentence(const FoundEffect& effect) {
+  if (!effect.wheels) return "";
+  const WheelWitness& wheels = *effect.wheels;
+  const std::string whole = wheels.of_lags ? "the lags together" : "it";
+  const std::string text = " The wheel speeds show " +
+                           (wheels.low > 1.0 ? "all of " + whole + " and more"
+                                             : percent(wheels.share) + " % of " + whole) +
+                           percents(wheels.low, wheels.high);
+  // A load slows the wheels, too.
+  const bool by_load = effect.currents && effect.currents->saysLoad();
+  if (wheels.saysDrive())
+    return text + (by_load ? ": the wheels turn slower." : ": it is in the drive.");
+  if (wheels.saysGround()) return text + ": it is under the wheels, not in the drive.";
+  return text + ": that does not tell whether it is in the drive.";
+}
+
+std::string currentSentence(const FoundEffect& effect) {
+  if (!effect.currents) return "";
+  const CurrentWitness& currents = *effect.currents;
+  const std::string size = " by " + fixed(currents.rise, 1) + " % per percent (" +
+                           fixed(currents.low, 1) + " to " + fixed(currents.high, 1) + ")";
+  if (currents.saysLoad())
+    return " Where it takes speed, the motor currents rise" + size +
+           ": it is load, on the ground or in the running gear.";
+  if (!currents.saysNoLoad())
+    return " The motor currents do not tell whether it is load or in the drive.";
+  const std::string text =
+      " Where it takes speed, the motor currents do not rise as with a load, but" + size;
+  if (effect.wheels && effect.wheels->saysDrive()) return text + ": the drive gives less.";
+  if (effect.wheels && effect.wheels->saysGround()) return text + ": the tracks slip.";
+  return text + ": the drive gives less, or the tracks slip.";
+}
+
+/// Whether an effect is the battery's by its name.
+bool isOfBattery(const FoundEffect& effect) {
+  const std::vector<EffectParameter>& parameters = effectNamed(effect.name).parameters;
+  return std::any_of(parameters.begin(), parameters.end(),
+                     [](const EffectParameter& parameter) { return parameter.needs_voltage; });
+}
+
+std::string voltageSentence(const FoundEffect& effect) {
+  if (!effect.voltage) return "";
+  const VoltageWitness& voltage = *effect.voltage;
+  const std::string size =
+      percent(voltage.share) + " % as much" + percents(voltage.low, voltage.high);
+  if (voltage.saysBattery())
+    return " The battery voltage falls with it, " + size +
+           (isOfBattery(effect) ? ": it is the battery." : ": it may be the battery.");
+  if (voltage.saysOther())
+    return " The battery voltage does not fall with it, " + size + ": it is not the battery.";
+  return " The battery voltage falls with it, " + size +
+         ": that does not tell whether it is the battery.";
+}
+
+}  // namespace
+
+std::string witnessSentences(const FoundEffect& effect) {
+  return wheelSentence(effect) + currentSentence(effect) + voltageSentence(effect);
+}
+
+}  // namespace tread::gap

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/lab/replay/learner_replay.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <stdexcept>
+
+#include "common/bus/virtual_bus.hpp"
+#include "common/messages/pattern_messages.hpp"
+#include "common/vehicle/kernel.hpp"
+
+namespace tread::replay {
+namespace {
+
+/// The commands of an execution by index, as applied.
+using AppliedCommands = std::map<int32_t, Command>;
+
+Command commandIn(const motor_t& motor) {
+  Command command;
+  for (size_t i = 0; i < Command::kMaxChannels; ++i)
+    if (motor.channel_kind[i] != 0) command[i] = static_cast<double>(motor.command[i]);
+  return command;
+}
+
+std::map<ExecutionKey, AppliedCommands> appliedCommands(const DriveLog& log) {
+  std::map<ExecutionKey, AppliedCommands> commands;
+  for (const motor_t& motor : log.motor)
+    if (motor.execution_id != 0 && motor.command_index >= 0)
+      commands[{motor.motor_run_id, motor.execution_id}].emplace(motor.command_index,
+                                                                 commandIn(motor));
+  return commands;
+}
+
+/// The kinds of the last command that belongs to an execution; without one, of a model.
+std::vector<CommandKind> kindsIn(const DriveLog& log, const VehicleModel& model) {
+  for (auto motor = log.motor.rbegin(); motor != log.motor.rend(); ++motor)
+    if (motor->execution_id != 0 && motor->command_index >= 0) return kindsFrom(*motor);
+  return kindsOf(model.channels());
+}
+
+/// The series that was applied in an execution; a sample that the log misses holds the one before.
+std::vector<Command> seriesOf(const AppliedCommands& applied, int32_t count) {
+  std::vector<Command> series;
+  Command held = applied.begin()->second;
+  for (int32_t index = 0; index < count; ++index) {
+    const auto found = applied.find(index);
+    if (found != applied.end()) held = found->second;
+    series.push_back(held);
+  }
+  return series;
+}
+
+/// A class for each pattern: what it does depends on the steady motion in which it begins.
+void addPattern(PatternSetContent& content, const VehicleModel& model, int id,
+                const std::vector<Command>& commands) {
+  MotionPattern pattern;
+  pattern.id = id;
+  pattern.name = "step " + std::to_string(id);
+  pattern.commands = commands;
+  const std::string steady = "steady " + std::to_string(id);
+  const MotionClass entry = classOf(model, steady, commands.front());
+  content.classes.push_back(entry);
+  pattern.entry_class = pattern.exit_class = steady;
+  if (pattern.commands.front() != pattern.commands.back()) {
+    pattern.exit_class = "after " + std::to_string(id);
+    content.classes.push_back(classOf(model, pattern.exit_class, commands.back()));
+  }
+  predict(model, static_cast<double>(content.period_us) * 1e-6, entry, pattern);
+  const ExecutionSpread& spread = model.spread;
+  if (spread.forward == 0.0 && spread.yaw == 0.0 && spread.crab == 0.0)
+    pattern.end_covariance = kUnknownCovariance;
+  content.patterns.push_back(std::move(pattern));
+}
+
+constexpr int64_t kSecond = 1'000'000;
+constexpr const char* kNode = "learner";
+
+/// Plays the events of a log and writes into EXECUTION the versions that this learner had
+/// published.
+class Player {
+ public:
+  Player(VirtualBus& bus, Commitment commitment) : bus_(bus), commitment_(commitment) {}
+
+  void play(const LogEvent& event) {
+    bus_.runUntil(std::max(bus_.now(), event.utime));
+    if (event.channel != kExecution.name)
+      return bus_.inject(event.channel.c_str(), event.bytes.data(), event.bytes.size());
+    execution_t message;
+    if (!decode(event, kExecution, message)) return;
+    for (execution_record_t& record : message.records)
+      record.record_set_version = versionFor(record);
+    bus_.outside().publish(kExecution, message);
+  }
+
+ private:
+  int64_t versionFor(const execution_record_t& record) {
+    const int64_t newest =
+        static_cast<const learner::LearnerNode*>(bus_.node(kNode))->set().version();
+    const bool running = record.outcome == execution_record_t::OUTCOME_RUNNING;
+    const ExecutionKey key = keyOf(record);
+    if (commitment_ == Commitment::kPrompt && running) return newest;
+    return versions_.emplace(key, newest).first->second;
+  }
+
+  VirtualBus& bus_;
+  Commitment commitment_;
+  std::map<ExecutionKey, int64_t> versions_;
+};
+
+/// The same log with the events that a learner hears, and executions in the order of their ends.
+DriveLog learnersPart(DriveLog log) {
+  const auto ignore = [](const auto&) {};
+  log.events.erase(std::remove_if(log.events.begin(), log.events.end(),
+                                  [&](const LogEvent& event) {
+                                    return !dispatch(event, ignore, kIns, kExecution, kMotor);
+                                  }),
+                   log.events.end());
+  std::stable_sort(log.executions.begin(), log.executions.end(),
+                   [](const auto& a, const auto& b) { return a.ended < b.ended; });
+  return log;
+}
+
+}  // namespace
+
+DriveLog toLearnerLog(const std::string& name, std::vector<LogEvent> events) {
+  return learnersPart(toDriveLog(name, std::move(events)));
+}
+
+DriveLog readLearnerLog(const std::string& path) {
+  DriveLog log = learnersPart(readDriveLog({path}));
+  log.name = std::filesystem::path(path).stem().string();
+  if (log.executions.empty())
+    throw std::runtime_error(path +
+                             ": no execution that has ended; a log with INS, MOTOR and EXECUTION "
+                             "is needed (tread-import makes one)");
+  return log;
+}
+
+PatternSet predictedSet(const DriveLog& log, const VehicleModel& model) {
+  if (kindsIn(log, model) != kindsOf(model.channels()))
+    throw std::runtime_error(log.name + ": its commands are not of the kind of model '" +
+                             model.name +
+                             "' (power, track speed or steering); give another --model");
+  PatternSetContent content;
+  content.name = log.name;
+  content.channels = model.channels();
+  const std::map<ExecutionKey, AppliedCommands> commands = appliedCommands(log);
+  std::set<int> known;
+  for (const execution_record_t& record : log.executions) {
+    const auto applied = commands.find(keyOf(record));
+    if (record.outcome != execution_record_t::OUTCOME_COMPLETED || record.commands_total < 1 ||
+        applied == commands.end() || !known.insert(record.record_pattern_id).second)
+      continue;
+    const int64_t period = (record.ended - record.started) / record.commands_total;
+    if (!content.patterns.empty() && period != content.period_us)
+      throw std::runtime_error(log.name + ": its executions have commands of different periods (" +
+                               std::to_string(content.period_us) + " and " +
+                               std::to_string(period) + " us); a pattern set has one");
+    content.period_us = period;
+    addPattern(content, model, record.record_pattern_id,
+               seriesOf(applied->second, record.commands_total));
+  }
+  std::string why = "no completed execution has commands in MOTOR";
+  auto set = content.patterns.empty() ? std::nullopt : PatternSet::make(std::move(content), why);
+  if (!set) throw std::runtime_error(log.name + ": no pattern set can be made: " + why);
+  return *set;
+}
+
+LearnerRun runLearner(const DriveLog& log, const learner::LearnerNodeConfig& config,
+                      Commitment commitment, const std::string& title) {
+  LearnerRun run;
+  run.title = title;
+  if (log.events.empty()) return run;
+  MemoryStore store;
+  VirtualBus bus(1, {}, std::max<int64_t>(1, log.events.front().utime - kSecond));
+  bus.outside().subscribe<learning_t>(
+      kLearning, [&run](const learning_t& learned) { run.learned.push_back(learned); });
+  bus.outside().subscribe<health_t>(kHealth, [&run](const health_t& health) {
+    run.health = health.health_reason;
+    for (const counter_t& counter : health.counters)
+      run.counters[counter.counter_name] = counter.counted;
+  });
+  bus.addNode(kNode,
+              [&](Bus& end) { return std::make_unique<learner::LearnerNode>(config, end, store); });
+  Player player(bus, commitment);
+  for (const LogEvent& event : log.events) player.play(event);
+  // Executions without INS at their end are given up after a while; HEALTH follows within a second.
+  bus.runUntil(bus.now() + config.settle_us + config.give_up_us + 2 * kSecond);
+  run.set = static_cast<const learner::LearnerNode*>(bus.node(kNode))->set();
+  return run;
+}
+
+}  // namespace tread::replay

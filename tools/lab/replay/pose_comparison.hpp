@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/lab/replay/learner_replay.hpp"
+
+namespace tread::replay {
+
+/// Sizes of changes of patterns' ends, summed over patterns.
+struct EndChanges {
+  double position = 0.0;  ///< [m]
+  double yaw = 0.0;       ///< [rad]
+};
+
+/// What the learner made of one drive with the INS's poses, and with those of another channel.
+struct PoseComparison {
+  std::string channel;
+  int64_t learned_with_ins = 0;    ///< executions
+  int64_t learned_with_other = 0;  ///< the same
+  ErrorSummary errors_with_ins;    ///< of predictions, each by the poses that it learned from
+  ErrorSummary errors_with_other;  ///< the same
+  size_t patterns = 0;
+  EndChanges corrected;         ///< from the shipped set to the last one, with the INS's poses
+  EndChanges apart;             ///< between the last sets of the two
+  double measured_apart = 0.0;  ///< [m] root mean square between the measured ends that both have
+  double measured_yaw_apart = 0.0;  ///< [rad] the same
+};
+
+/// Feeds the learner with the executions of a log twice, from an empty store.
+/** Throws std::runtime_error with one clear line where the log has no poses on `channel`. */
+PoseComparison comparePoses(const std::string& name, const std::vector<LogEvent>& events,
+                            const std::string& channel, const learner::LearnerNodeConfig& config);
+
+std::string reportOf(const PoseComparison& comparison);
+
+}  // namespace tread::replay

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/lab/replay/robot_replay.hpp"
+
+#include <filesystem>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include "common/drive/log_bus.hpp"
+#include "common/messages/pattern_messages.hpp"
+#include "common/pattern/pattern_file.hpp"
+#include "common/store/store.hpp"
+
+namespace tread::replay {
+namespace {
+
+/// The replay goes on so long after the log: what was under way comes out [us].
+constexpr int64_t kAfterwards = 100'000;
+
+/// Yaw is unwrapped from the first INS on: a replay that begins later rounds otherwise.
+constexpr double kMiddleTolerance = 1e-9;
+
+using SetParts = std::map<int32_t, pattern_set_part_t>;
+
+/// What the learner published: in the log, or in a replay.
+struct Published {
+  std::map<int64_t, SetParts> sets;  ///< by version and number of the part
+  std::map<ExecutionKey, learning_t> learned;
+  std::vector<LogEvent> events;
+  /// Published by the replay when the log's learner, or the recorder, may have been gone.
+  std::set<int64_t> late_versions;
+  std::set<ExecutionKey> late_learned;
+
+  void take(const LogEvent& event, bool late = false) {
+    pattern_set_part_t part;
+    if (decode(event, kPatternSet, part)) {
+      if (late && sets.count(part.set_version) == 0) late_versions.insert(part.set_version);
+      sets[part.set_version].emplace(part.part, part);
+    }
+    learning_t learning;
+    if (!decode(event, kLearning, learning)) return;
+    const ExecutionKey key{learning.learned_run_id, learning.learned_execution_id};
+    if (learned.emplace(key, learning).second && late) late_learned.insert(key);
+  }
+};
+
+/// When the learner published for the last time in a life; 0 if never.
+int64_t lastMessageOf(const RobotLog& log, const LearnerLife& life) {
+  for (size_t i = life.end_event; i-- > life.first_event;) {
+    const LogEvent& event = log.events[i].event;
+    health_t health;
+    if (event.channel == kLearning.name || event.channel == kPatternSet.name ||
+        event.channel == kLearnerState.name ||
+        (decode(event, kHealth, health) && health.process == "learner"))
+      return log.events[i].heard;
+  }
+  return 0;
+}
+
+/// Times at which the learner stepped, of the steps that say it: those that sent its HEALTH [us].
+std::vector<int64_t> knownSteps(const RobotLog& log, const LearnerLife& life) {
+  std::vector<int64_t> steps;
+  for (size_t i = life.first_event; i < life.end_event; ++i) {
+    health_t health;
+    if (decode(log.events[i].event, kHealth, health) && health.process == "learner" &&
+        (steps.empty() || health.utime > steps.back()))
+      steps.push_back(health.utime);
+  }
+  return steps;
+}
+
+void playLife(const RobotLog& log, const LearnerLife& life,
+              const learner::LearnerNodeConfig& config, Published& published) {
+  MemoryStore store;
+  LogBus bus(life.boot_id);
+  learner::LearnerNode node(config, bus, store);
+  node.resume(life.state, life.earlier);
+  // What it heard just before a step and what just behind decides what it publishes: steps are
+  // where it says, and a period apart between.
+  const int64_t begin = log.events[life.first_event].heard;
+  const std::vector<int64_t> known = knownSteps(log, life);
+  size_t next_known = 0;
+  int64_t next_step = begin;
+  if (!known.empty() && known.front() > begin)
+    next_step = known.front() - (known.front() - begin) / node.period() * node.period();
+  const auto stepUntil = [&](int64_t utime) {
+    for (; next_step <= utime; next_step += node.period()) {
+      while (next_known < known.size() && known[next_known] < next_step - node.period() / 2)
+        ++next_known;
+      if (next_known < known.size() && known[next_known] <= next_step + node.period() / 2)
+        next_step = known[next_known++];
+      bus.setNow(next_step);
+      node.step(next_step);
+    }
+  };
+  for (size_t i = life.first_event; i < life.end_event; ++i) {
+    const TimedEvent& timed = log.events[i];
+    stepUntil(timed.heard);
+    bus.setNow(timed.heard);
+    bus.hear(timed.event);
+  }
+  if (life.end_event == log.events.size()) stepUntil(log.events.back().heard + kAfterwards);
+  const int64_t late = lastMessageOf(log, life) - node.period();
+  for (LogEvent& event : bus.takePublished()) {
+    published.take(event, event.utime > late);
+    published.events.push_back(std::move(event));
+  }
+}
+
+Published replayed(const RobotLog& log, const std::vector<LearnerLife>& lives,
+                   const learner::LearnerNodeConfig& config) {
+  Published published;
+  for (const LearnerLife& life : lives) playLife(log, life, config, published);
+  return published;
+}
+
+/// What the log holds from where the replay begins.
+Published publishedInLog(const RobotLog& log, const LearnerLife& first) {
+  Published published;
+  for (size_t i = first.first_event; i < log.events.size(); ++i)
+    published.take(log.events[i].event);
+  if (!first.from_start)
+    for (const ExecutionKey& key : first.state.handled) published.learned.erase(key);
+  auto& sets = published.sets;
+  sets.erase(sets.begin(), sets.lower_bound(first.state.set.version()));
+  return published;
+}
+
+std::string partsDifference(const SetParts& log, const SetParts& replay, double tolerance) {
+  for (const auto& [number, part] : log) {
+    const auto other = replay.find(number);
+    if (other == replay.end())
+      return "version " + std::to_string(part.set_version) + ", part " + std::to_string(number) +
+             ": in the log, not in the replay";
+    const std::string difference = differenceOf(part, other->second, tolerance);
+    if (!difference.empty()) return difference;
+  }
+  return "";
+}
+
+/// Versions that a newer one of the same parent overtook before they were sent: while an execution
+/// runs, a busy host's learner has several ready at once.
+std::set<int64_t> overtaken(const Published& in_log, const Published& replay) {
+  std::map<int64_t, int64_t> newest;  // by parent
+  for (const auto& [version, parts] : in_log.sets)
+    newest[parts.begin()->second.parent_version] = version;
+  std::set<int64_t> versions;
+  for (const auto& [version, parts] : replay.sets) {
+    const auto sibling = newest.find(parts.begin()->second.parent_version);
+    if (sibling != newest.end() && sibling->second > version) versions.insert(version);
+  }
+  return versions;
+}
+
+void compare(const RobotLog& log, const Published& in_log, const Published& replay,
+             LearnerCheck& check) {
+  const auto lost = [&log](const char* channel) {
+    const auto missing = log.missing.find(channel);
+    return missing == log.missing.end() ? 0 : missing->second;
+  };
+  const double tolerance = check.tolerance;
+  std::set<int64_t> unsent = overtaken(in_log, replay);
+  unsent.insert(replay.late_versions.begin(), replay.late_versions.end());
+  check.versions = compareByKey(
+      in_log.sets, replay.sets, unsent, lost(kPatternSet.name),
+      [tolerance](const SetParts& a, const SetParts& b) {
+        return partsDifference(a, b, tolerance);
+      },
+      [](int64_t version) { return "version " + std::to_string(version); }, check);
+  check.learning = compareByKey(
+      in_log.learned, replay.learned, replay.late_learned, lost(kLearning.name),
+      [tolerance](const learning_t& a, const learning_t& b) {
+        return differenceOf(a, b, tolerance);
+      },
+      [](const ExecutionKey& key) { return "LEARNING of execution " + std::to_string(key.second); },
+      check);
+  for (const auto& [key, learned] : replay.learned)
+    if (learned.accepted) ++check.measured;
+}
+
+}  // namespace
+
+bool LearnerCheck::equal() const {
+  return same_twice && first_difference.empty() && versions.equal > 0;
+}
+
+LearnerCheck checkLearner(const RobotLog& log, const learner::LearnerNodeConfig& config) {
+  const std::vector<LearnerLife> lives = learnerLives(log, config.shipped);
+  LearnerCheck check;
+  check.name = log.name;
+  check.lives = static_cast<int>(lives.size());
+  check.from_start = lives.front().from_start;
+  check.tolerance = check.from_start ? 0.0 : kMiddleTolerance;
+  const Published in_log = publishedInLog(log, lives.front());
+  const Published first = replayed(log, lives, config);
+  check.same_twice = sameBytes(first.events, replayed(log, lives, config).events);
+  if (!in_log.sets.empty()) {
+    check.first_version = in_log.sets.begin()->first;
+    check.last_version = in_log.sets.rbegin()->first;
+  }
+  compare(log, in_log, first, check);
+  check.noteLog(log, "learner");
+  return check;
+}
+
+std::string reportOf(const LearnerCheck& check) {
+  std::ostringstream out;
+  out << check.name << ": " << check.lives << (check.lives == 1 ? " life" : " lives")
+      << " of the learner, from "
+      << (check.from_start ? "its start" : "the first state in the log (numbers compared to 1e-9)")
+      << ", versions " << check.first_version << " to " << check.last_version << "\n"
+      << notesText(check) << "  PATTERN_SET: " << countsText(check.versions, " versions")
+      << "\n  LEARNING: " << countsText(check.learning, " executions") << ", which measured "
+      << check.measured << "\n"
+      << differenceText(check) << check.name << ": learner "
+      << (check.equal() ? "EQUAL" : "DIFFERENT") << "\n";
+  return out.str();
+}
+
+}  // namespace tread::replay

@@ -1,0 +1,461 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <cmath>
+
+#include <tread/motor_t.hpp>
+#include <tread/plan_t.hpp>
+
+#include "common/messages/pattern_messages.hpp"
+#include "common/report/text.hpp"
+#include "tools/robot/why/debrief.hpp"
+#include "tools/robot/why/reasons.hpp"
+
+namespace tread::why {
+namespace {
+
+constexpr double kTogether = 1.5;    // [s] between reasons of one stop
+constexpr double kFirst = 0.6;       // [s] in which the nearest reason to the cause is looked for
+constexpr double kBefore = 1.5;      // [s] before a stop in which its cause lies
+constexpr double kAfterwards = 8.0;  // [s] after it in which processes complain or start again
+constexpr double kHealthLate = 1.4;  // [s] between HEALTH, which comes every second
+constexpr int64_t kManyGarbled = 100;
+constexpr double kOneHeading = 0.03;  // [rad] the same
+constexpr double kOnePlace = 0.05;    // [m] noise of an INS that does not move
+
+/// A reason that was published.
+struct Signal {
+  double time = 0.0;
+  const char* channel = "";
+  Topic topic = Topic::kOther;
+  std::string reason;
+};
+
+/// Reasons that belong to one stop.
+struct Incident {
+  std::vector<Signal> signals;
+  double until = 0.0;
+
+  double time() const { return signals.front().time; }
+  /// Whether what comes next is another stop: the first that an input or the bridge is to blame
+  /// for.
+  bool endsBefore(const Signal& next) const {
+    const auto takesPermission = [](const Signal& signal) {
+      return signal.channel == std::string("MOTOR") || signal.topic == Topic::kMap;
+    };
+    return takesPermission(next) && next.time > time() + kFirst &&
+           std::none_of(signals.begin(), signals.end(), takesPermission);
+  }
+  /// The one nearest to the cause.
+  const Signal& main() const {
+    const Signal* best = &signals.front();
+    for (const Signal& signal : signals)
+      if (signal.time <= time() + kFirst && signal.topic < best->topic) best = &signal;
+    return *best;
+  }
+};
+
+bool drives(int plan_state) {
+  return plan_state == plan_t::PLAN_DRIVING;
+}
+bool stops(int plan_state) {
+  return plan_state == plan_t::PLAN_WAITING || plan_state == plan_t::PLAN_BLOCKED ||
+         plan_state == plan_t::PLAN_UNREACHABLE || plan_state == plan_t::PLAN_STOPPED ||
+         plan_state == plan_t::PLAN_IDLE;
+}
+
+/// All reasons that tell of something wrong, in the order of time.
+std::vector<Signal> signalsOf(const DriveTimeline& drive) {
+  std::vector<Signal> signals;
+  const auto add = [&](const StateNote& note, const char* channel) {
+    if (!isOrdinary(note.reason))
+      signals.push_back({note.time, channel, topicOf(note.reason), note.reason});
+  };
+  bool may = false;
+  for (const StateNote& note : drive.motors) {
+    const bool now = mayDrive(static_cast<int16_t>(note.state));
+    if (may && !now) add(note, "MOTOR");
+    may = now;
+  }
+  bool drove = false;
+  for (const StateNote& note : drive.plans) {
+    drove = drove || drives(note.state);
+    if (drove && stops(note.state)) add(note, "PLAN");
+  }
+  for (const StateNote& note : drive.aborts) add(note, "EXECUTION");
+  std::stable_sort(signals.begin(), signals.end(),
+                   [](const Signal& a, const Signal& b) { return a.time < b.time; });
+  return signals;
+}
+
+/// When the planner drove again after a time; the log's end if it did not.
+double drivesAgain(const DriveTimeline& drive, double time) {
+  for (const StateNote& note : drive.plans)
+    if (note.time > time && drives(note.state)) return note.time;
+  return drive.duration;
+}
+
+std::vector<Incident> incidentsOf(const DriveTimeline& drive) {
+  std::vector<Incident> incidents;
+  for (Signal& signal : signalsOf(drive)) {
+    // What takes the permission away is a stop of its own, whatever the planner had found before.
+    const bool same = !incidents.empty() && !incidents.back().endsBefore(signal) &&
+                      (signal.time - incidents.back().signals.back().time < kTogether ||
+                       signal.time <= incidents.back().until);
+    if (!same && !incidents.empty())
+      incidents.back().until = std::min(incidents.back().until, signal.time);
+    if (!same) incidents.emplace_back();
+    incidents.back().until = drivesAgain(drive, signal.time);
+    incidents.back().signals.push_back(std::move(signal));
+  }
+  return incidents;
+}
+
+/// Finds the cause of one stop.
+class CauseSearch {
+ public:
+  CauseSearch(const DriveTimeline& drive, const Incident& incident)
+      : drive_(drive), main_(incident.main()), t_(incident.time()) {
+    finding_.kind = FindingKind::kStop;
+    finding_.time = t_;
+    finding_.until = incident.until;
+    for (const Signal& signal : incident.signals) {
+      if (finding_.evidence.size() >= 4) break;
+      finding_.evidence.push_back({signal.time, signal.channel, signal.reason});
+    }
+  }
+
+  Finding find() {
+    switch (main_.topic) {
+      case Topic::kEstop:
+        estop();
+        break;
+      case Topic::kFinder:
+        say("range_finder", "what the range finder shows was not believed: " + main_.reason);
+        if (const HealthNote* const note =
+                drive_.complaintOf("mapping", t_ - kBefore, t_ + kAfterwards, "range finder at "))
+          prove("mapping", *note);
+        break;
+      case Topic::kPerson:
+        say("disarmed", main_.reason);
+        quote("disarms");
+        break;
+      case Topic::kController:
+        controller();
+        break;
+      case Topic::kBridge:
+        if (!processFault("motor_bridge", "MOTOR", 0.2))
+          say("motor_bridge_hung", "motor_bridge was held up: " + main_.reason);
+        break;
+      case Topic::kOperator:
+        operatorLost();
+        break;
+      case Topic::kProgram:
+        if (!processFault("motor_bridge", "MOTOR", 0.2) &&
+            !processFault("planner", "PROGRAM", 0.16))
+          lost("PROGRAM", "planner", "motor_bridge");
+        break;
+      case Topic::kInsStale:
+        insStale();
+        break;
+      case Topic::kInsBlind:
+        insBlind();
+        break;
+      case Topic::kTilt:
+        say("tilt", "it leaned too far: " + main_.reason);
+        break;
+      case Topic::kFence:
+        say("fence", "a fence stopped it: " + main_.reason);
+        break;
+      case Topic::kMotion:
+        motion();
+        break;
+      case Topic::kMap:
+        map();
+        break;
+      case Topic::kPatterns:
+        if (!processFault("learner", "PATTERN_SET", 3.5)) lost("PATTERN_SET", "learner", "planner");
+        break;
+      case Topic::kObstacle:
+      case Topic::kPlan:
+        obstacle();
+        break;
+      case Topic::kGoal:
+        say("goal", main_.reason);
+        break;
+      case Topic::kOther:
+        say("other", main_.reason);
+    }
+    return std::move(finding_);
+  }
+
+ private:
+  void say(const std::string& cause, const std::string& sentence) {
+    finding_.cause = cause;
+    finding_.sentence = sentence;
+  }
+  void prove(double time, const std::string& channel, const std::string& words) {
+    finding_.evidence.push_back({time, channel, words});
+  }
+  void prove(const std::string& process, const HealthNote& note) {
+    prove(note.time, "HEALTH", process + ": " + note.reason);
+  }
+  /// What a person said shortly before.
+  const PersonNote* quote(const std::string& what) {
+    const PersonNote* last = nullptr;
+    for (const PersonNote& note : drive_.people)
+      if (note.time <= t_ + 0.3 && note.time > t_ - 3.0 && note.what.rfind(what, 0) == 0)
+        last = &note;
+    if (last != nullptr)
+      prove(last->time, what == "E-stop" ? "ESTOP" : "ARM", last->who + " " + last->what);
+    return last;
+  }
+
+  void estop() {
+    const PersonNote* const person = quote("E-stop");
+    say("estop", person != nullptr
+                     ? person->who + " pressed the emergency stop (" + person->what + ")"
+                     : main_.reason);
+  }
+
+  void controller() {
+    const bool weak = main_.reason.find("voltage") != std::string::npos;
+    if (weak) return say("battery", "the motor controller ran short of voltage: " + main_.reason);
+    say("motor_line", "the motor controller did not answer: " + main_.reason);
+    if (const HealthNote* const note =
+            drive_.complaintOf("motor_bridge", t_, t_ + kAfterwards, "controller"))
+      prove("motor_bridge", *note);
+  }
+
+  void operatorLost() {
+    if (const auto silence = drive_.silenceOf("OPERATOR", t_ - 0.5, 0.6)) {
+      say("operator_lost", "the operator's program fell silent: " + main_.reason);
+      prove(silence->from, "OPERATOR",
+            formatted("nothing from here on for %.1f s", silence->length()));
+      return;
+    }
+    if (main_.reason.find("has let go") != std::string::npos)
+      return say("operator_left", main_.reason);
+    lost("OPERATOR", "the operator's program", "motor_bridge");
+  }
+
+  /// Whether a process that publishes on a channel had died or hung; tells it then.
+  bool processFault(const std::string& process, const std::string& channel, double longest) {
+    if (const auto restart = drive_.restartOf(process, t_ - kBefore, t_ + kAfterwards)) {
+      say(process + "_died", process + " died and was started again");
+      prove(*restart, "HEALTH", process + ": another boot_id");
+      return true;
+    }
+    if (const auto death = drive_.deathOf(process); death && *death < t_ + 1.5) {
+      say(process + "_died", process + " died, and nobody started it again");
+      prove(*death, "HEALTH", process + ": its last message");
+      return true;
+    }
+    const auto silence = drive_.silenceOf(channel, t_, longest);
+    if (!silence) return false;
+    if (!healthLate(process, *silence)) return false;
+    say(process + "_hung", process + formatted(" did nothing for %.2f s", silence->length()));
+    prove(silence->from, channel, formatted("nothing from here on for %.2f s", silence->length()));
+    return true;
+  }
+
+  /// Whether a process' HEALTH was late, too: it did nothing at all.
+  bool healthLate(const std::string& process, const DriveTimeline::Silence& silence) const {
+    const auto found = drive_.health.find(process);
+    if (found == drive_.health.end()) return true;
+    const std::vector<HealthNote>& notes = found->second;
+    for (size_t i = 1; i < notes.size(); ++i) {
+      const bool around = notes[i - 1].time < silence.to && notes[i].time > silence.from;
+      const double period = notes[i].time - notes[i - 1].time;
+      // It was due within the silence and came when that had ended.
+      const double due = notes[i - 1].time + 1.0;
+      const bool at_end =
+          due > silence.from + 0.02 && due < silence.to - 0.06 && notes[i].time > silence.to - 0.06;
+      if (around && (period > kHealthLate || at_end)) return true;
+    }
+    // A short one may lie between two of them: what else says the process?
+    return silence.length() < 1.0 && !dueWithin(notes, silence) && !deviceComplains(process);
+  }
+  static bool dueWithin(const std::vector<HealthNote>& notes,
+                        const DriveTimeline::Silence& silence) {
+    return std::any_of(notes.begin(), notes.end(), [&](const HealthNote& note) {
+      return note.time > silence.from + 0.02 && note.time < silence.to - 0.02;
+    });
+  }
+  bool deviceComplains(const std::string& process) const {
+    return drive_.complaintOf(process, t_ - 1.0, t_ + kAfterwards, "byte") != nullptr;
+  }
+
+  /// What was sent and did not come in time: lost, late or broken where the receiver counted that.
+  void lost(const std::string& channel, const std::string& from, const std::string& to) {
+    say("lost_" + channel, channel + " was sent by " + from + ", and did not reach " + to +
+                               " in time: messages were lost or late between them");
+    const auto heard = drive_.heard.find(channel);
+    const std::vector<double> sent =
+        heard == drive_.heard.end() ? std::vector<double>() : heard->second;
+    const auto within = std::upper_bound(sent.begin(), sent.end(), t_) -
+                        std::lower_bound(sent.begin(), sent.end(), t_ - 1.0);
+    prove(t_, channel, formatted("%td messages within the second before", within));
+    // Several senders share this channel, and nobody counts what is missing of it.
+    if (channel == "OPERATOR") return;
+    const HealthNote* const before = drive_.healthAt(to, t_ - 1.0);
+    const HealthNote* const after = drive_.healthAt(to, t_ + kAfterwards);
+    if (before == nullptr || after == nullptr || before->boot != after->boot) return;
+    const int64_t missing = after->lost - before->lost, late = after->late - before->late,
+                  broken = after->undecodable - before->undecodable;
+    prove(after->time, "HEALTH",
+          to + ": since a second before the stop " +
+              (missing > kMostLost
+                   ? std::string("numbers of messages that cannot be")
+                   : formatted("%lld messages lost", static_cast<long long>(missing))) +
+              formatted(", %lld late, %lld broken", static_cast<long long>(late),
+                        static_cast<long long>(broken)));
+    if (missing == 0 && late == 0 && broken == 0)
+      say("late_" + channel, channel + " was too old for " + to +
+                                 ", though no message was lost on the way: " + main_.reason);
+  }
+
+  void insStale() {
+    if (processFault("ins_driver", "INS", 0.095)) return;
+    const auto silence = drive_.silenceOf("INS", t_, 0.095);
+    if (!silence)
+      return lost("INS", "ins_driver",
+                  main_.channel == std::string("PLAN") ? "planner" : "motor_bridge");
+    say("ins_device", formatted("the INS gave nothing usable for %.2f s", silence->length()));
+    prove(silence->from, "INS", formatted("nothing from here on for %.2f s", silence->length()));
+    for (const char* words : {"byte", "no position", "no heading"})
+      if (const HealthNote* const note =
+              drive_.complaintOf("ins_driver", t_ - 1.0, t_ + kAfterwards, words))
+        return prove("ins_driver", *note);
+  }
+
+  void insBlind() {
+    const auto blind = std::find_if(drive_.ins.begin(), drive_.ins.end(), [&](const InsNote& note) {
+      return note.time > t_ - kBefore && note.time < t_ + 1.0 && !note.placed;
+    });
+    // What motor_bridge took for no position had one when it was sent.
+    if (blind == drive_.ins.end()) return lost("INS", "ins_driver", "motor_bridge");
+    const int64_t garbled = garbledSince(t_ - kBefore);
+    if (garbled > kManyGarbled) {
+      say("ins_device", "what the INS says arrives garbled, and no pose comes of it");
+      prove(t_, "HEALTH",
+            formatted("ins_driver: %lld bytes or sentences more that make no sense",
+                      static_cast<long long>(garbled)));
+    } else {
+      say("ins_no_fix", "the INS lost its position or heading");
+    }
+    prove(blind->time, "INS", formatted("status %d, no pose", blind->status));
+    if (const HealthNote* const note =
+            drive_.complaintOf("ins_driver", t_ - 1.0, t_ + kAfterwards, "no "))
+      prove("ins_driver", *note);
+  }
+
+  /// How many bytes and sentences ins_driver counted as senseless from then to 3 s later.
+  int64_t garbledSince(double time) const {
+    const HealthNote* const before = drive_.healthAt("ins_driver", time);
+    const HealthNote* const after = drive_.healthAt("ins_driver", time + 3.0);
+    if (before == nullptr || after == nullptr || before->boot != after->boot) return 0;
+    int64_t garbled = 0;
+    for (const char* name : {"stray bytes", "refused: wrong checksum", "refused: not printable"}) {
+      const auto then = before->counters.find(name), now = after->counters.find(name);
+      if (now == after->counters.end()) continue;
+      garbled += now->second - (then == before->counters.end() ? 0 : then->second);
+    }
+    return garbled;
+  }
+
+  void motion() {
+    const auto says = [&](const char* words) {
+      return main_.reason.find(words) != std::string::npos;
+    };
+    for (const InsNote& note : drive_.ins)
+      if (note.time > t_ - kBefore && note.time < t_ + 0.5 &&
+          (note.status & ins_t::STATUS_JUMP) != 0) {
+        prove(note.time, "INS", "STATUS_JUMP");
+        return say("ins_jump", "the INS jumped: " + main_.reason);
+      }
+    if (says("jumps")) return say("ins_jump", "the INS jumped: " + main_.reason);
+    if (frozen())
+      return say("ins_frozen", "the INS repeated one place while the robot moved: " + main_.reason);
+    if (says("track dead") || says("tracks blocked") || says("wrong way"))
+      return say("drive", "the drive failed: " + main_.reason);
+    if (says("frozen")) return say("stuck", "it got stuck: " + main_.reason);
+    say("ins_drift", "the pose moved in a way that the commands do not explain: " + main_.reason);
+  }
+
+  /// Whether the pose stayed in one place for a while after the robot had moved.
+  bool frozen() {
+    const auto last = drive_.poseAt(t_);
+    if (!last) return false;
+    double since = t_;
+    for (auto note = drive_.ins.rbegin(); note != drive_.ins.rend(); ++note) {
+      if (note->time > t_ || !note->placed) continue;
+      if (!atOnePlace(note->T_map_body, *last, 1.0)) break;
+      since = note->time;
+    }
+    const auto before = drive_.poseAt(since - 0.5);
+    const bool moved = before && !atOnePlace(*before, *last, 3.0);
+    if (t_ - since < 0.3 || !moved) return false;
+    prove(since, "INS", formatted("one place for %.2f s", t_ - since));
+    return true;
+  }
+
+  static bool atOnePlace(const Pose2& a, const Pose2& b, double tolerance) {
+    return distanceBetween(a, b) < tolerance * kOnePlace &&
+           std::abs(wrapAngle(a.yaw - b.yaw)) < tolerance * kOneHeading;
+  }
+
+  void map() {
+    if (processFault("ins_driver", "INS", 0.3)) return;
+    if (processFault("lidar_driver", "SCAN", 0.35)) return;
+    if (processFault("mapping", "MAP", 0.6)) return;
+    if (const auto silence = drive_.silenceOf("SCAN", t_, 0.35)) {
+      say("range_finder", formatted("the range finder gave nothing for %.1f s", silence->length()));
+      prove(silence->from, "SCAN", formatted("nothing from here on for %.1f s", silence->length()));
+      return;
+    }
+    lost("MAP", "mapping", "planner");
+  }
+
+  /// Of the cells that became obstacles shortly before, those about the one nearest to the robot;
+  /// whether they went again afterwards.
+  void obstacle() {
+    const auto pose = drive_.poseAt(t_);
+    const CellNote* nearest = nullptr;
+    const auto distance = [&](const CellNote& cell) {
+      return pose ? (cell.p_map - pose->position()).norm() : 0.0;
+    };
+    for (const CellNote& cell : drive_.cells)
+      if (cell.came && cell.time > t_ - 3.0 && cell.time <= t_ + 0.3 &&
+          (nearest == nullptr || distance(cell) < distance(*nearest)))
+        nearest = &cell;
+    if (nearest == nullptr) return say("no_way", "no way was free: " + main_.reason);
+    const auto ghost = drive_.ghostAt(nearest->p_map, t_ - 3.0, t_ + 0.3);
+    const std::string where = formatted("x %.1f m, y %.1f m, %.1f m from the robot",
+                                        nearest->p_map.x(), nearest->p_map.y(), distance(*nearest));
+    prove(nearest->time, "MAP",
+          formatted("%d cells there became obstacles, %d went again", ghost.came, ghost.went));
+    if (ghost.alone && ghost.went * 2 >= ghost.came)
+      return say("ghost", "an obstacle appeared at " + where +
+                              ", and went again: something passed, or the range finder saw what "
+                              "was not there");
+    say("obstacle", "an obstacle came into view at " + where);
+  }
+
+  const DriveTimeline& drive_;
+
+  const Signal& main_;
+  double t_;
+  Finding finding_;
+};
+
+}  // namespace
+
+std::vector<Finding> stopsOf(const DriveTimeline& drive) {
+  std::vector<Finding> findings;
+  for (const Incident& incident : incidentsOf(drive))
+    findings.push_back(CauseSearch(drive, incident).find());
+  return findings;
+}
+
+}  // namespace tread::why

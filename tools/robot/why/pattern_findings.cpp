@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <algorithm>
+#include <cmath>
+
+#include "common/report/text.hpp"
+#include "tools/robot/why/debrief.hpp"
+
+namespace tread::why {
+namespace {
+
+constexpr double kMuchWorse = 2.5;  // [1] of the errors before
+constexpr size_t kManyRefused = 3;
+constexpr size_t kRun = 4;  // patterns that are compared with those before
+
+/// Patterns that ended far from their predictions from the first on, until they had been corrected.
+void addBeginning(const std::vector<const PatternNote*>& measured, std::vector<Finding>& findings) {
+  if (measured.size() < 4 * kRun) return;
+  std::vector<double> first, later;
+  for (size_t i = 0; i < measured.size(); ++i)
+    if (i < kRun || i >= 2 * kRun)
+      (i < kRun ? first : later).push_back(std::abs(measured[i]->position));
+  const double begun = median(first), usual = std::max(0.03, median(later));
+  if (begun < kMuchWorse * usual) return;
+  Finding finding;
+  finding.kind = FindingKind::kPrediction;
+  finding.cause = "prediction";
+  finding.time = measured.front()->time;
+  finding.until = measured[kRun - 1]->time;
+  finding.sentence = formatted(
+      "the first patterns ended %.2f m from their predictions, later ones %.2f m: the set that it "
+      "began with was another vehicle's or ground's",
+      begun, usual);
+  for (size_t i = 0; i < kRun; ++i)
+    finding.evidence.push_back(
+        {measured[i]->time, "LEARNING",
+         measured[i]->pattern + formatted(": %.2f m", measured[i]->position)});
+  findings.push_back(std::move(finding));
+}
+
+/// Stretches in which patterns ended much further from their predictions than before.
+void addPredictions(const DriveTimeline& drive, std::vector<Finding>& findings) {
+  std::vector<const PatternNote*> measured;
+  for (const PatternNote& note : drive.patterns)
+    if (note.accepted && std::isfinite(note.position)) measured.push_back(&note);
+  const auto typical = [&](size_t from, size_t to, double PatternNote::*error) {
+    std::vector<double> errors;
+    for (size_t i = from; i < to; ++i) errors.push_back(std::abs(measured[i]->*error));
+    return median(errors);
+  };
+  addBeginning(measured, findings);
+  for (size_t i = kRun; i + kRun <= measured.size();) {
+    const size_t before = i > 2 * kRun ? i - 2 * kRun : 0;
+    const double usual = std::max(0.03, typical(before, i, &PatternNote::position));
+    const double usual_yaw = std::max(0.02, typical(before, i, &PatternNote::yaw));
+    const double now = typical(i, i + kRun, &PatternNote::position);
+    const double now_yaw = typical(i, i + kRun, &PatternNote::yaw);
+    if (now < kMuchWorse * usual && now_yaw < kMuchWorse * usual_yaw) {
+      ++i;
+      continue;
+    }
+    Finding finding;
+    finding.kind = FindingKind::kPrediction;
+    finding.cause = "prediction";
+    finding.time = measured[i]->time;
+    finding.until = measured[i + kRun - 1]->time;
+    finding.sentence = formatted(
+        "patterns ended %.2f m and %.1f deg from their predictions, %.2f m and %.1f deg before",
+        now, now_yaw * 180.0 / kPi, usual, usual_yaw * 180.0 / kPi);
+    for (size_t k = i; k < i + kRun; ++k) {
+      const PatternNote& note = *measured[k];
+      std::string words =
+          note.pattern + formatted(": %.2f m, %.1f deg", note.position, note.yaw * 180.0 / kPi);
+      if (note.ground_changed > 0.5) words += ", the learner takes it for another ground";
+      if (!note.words.empty()) words += "; " + note.words;
+      finding.evidence.push_back({note.time, "LEARNING", words});
+    }
+    const auto sameSide = [&](double sign) {
+      return std::all_of(measured.begin() + static_cast<long>(i),
+                         measured.begin() + static_cast<long>(i + kRun),
+                         [&](const PatternNote* note) { return sign * note->yaw > 0.01; });
+    };
+    if (sameSide(1.0) || sameSide(-1.0))
+      finding.sentence +=
+          std::string(", each time too far to the ") + (sameSide(1.0) ? "left" : "right");
+    const auto changed = std::find_if(
+        measured.begin() + static_cast<long>(i), measured.begin() + static_cast<long>(i + kRun),
+        [](const PatternNote* note) { return note->ground_changed > 0.5; });
+    if (changed != measured.begin() + static_cast<long>(i + kRun))
+      finding.sentence +=
+          (*changed)->surface > 0
+              ? formatted(": the ground became another, known as surface %d", (*changed)->surface)
+              : ": the ground became another, which was not known";
+    findings.push_back(std::move(finding));
+    i += kRun;
+  }
+}
+
+/// Patterns of which the learner took no measurement, by reason.
+void addRefusals(const DriveTimeline& drive, std::vector<Finding>& findings) {
+  std::map<std::string, std::vector<const PatternNote*>> by_reason;
+  size_t refused = 0;
+  for (const PatternNote& note : drive.patterns)
+    if (!note.accepted) {
+      by_reason[note.words].push_back(&note);
+      ++refused;
+    }
+  if (refused < kManyRefused || refused * 5 < drive.patterns.size()) return;
+  Finding finding;
+  finding.kind = FindingKind::kRefusal;
+  finding.cause = "refused_measurements";
+  finding.time = finding.until = by_reason.begin()->second.front()->time;
+  std::vector<std::string> words;
+  for (const auto& [reason, notes] : by_reason) {
+    words.push_back(formatted("%zu for ", notes.size()) + reason);
+    finding.time = std::min(finding.time, notes.front()->time);
+    finding.until = std::max(finding.until, notes.back()->time);
+    finding.evidence.push_back(
+        {notes.front()->time, "LEARNING", notes.front()->pattern + ": " + reason});
+  }
+  finding.sentence =
+      formatted("the learner refused %zu of %zu patterns: ", refused, drive.patterns.size()) +
+      joined(words);
+  findings.push_back(std::move(finding));
+}
+
+}  // namespace
+
+std::vector<Finding> patternFindingsOf(const DriveTimeline& drive) {
+  std::vector<Finding> findings;
+  addPredictions(drive, findings);
+  addRefusals(drive, findings);
+  return findings;
+}
+
+}  // namespace tread::why
