@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "common/vehicle/model_document.hpp"
-#include "modules/identification/core/drive.hpp"
+#include "common/soundness/core/drive.hpp"
 
 namespace tread::gap {
 
