@@ -8,7 +8,7 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kTellsNothing = 0.5;  // [1] of a limit's tenfold; readings less sure are no stake
+constexpr double kTellsNothing = 5.0;   // limits; a reading that is less sure is no stake
 constexpr double kSpreadMemory = 0.02;  // [1] of each new reading in the spread
 constexpr double kOneSide = 0.5;        // [1] the other drive changed by less than that of this one
 constexpr size_t kMostRecent = 2000;    // readings, some three hours
@@ -73,75 +73,88 @@ std::optional<double> GapWatch::play(Part& part, ChangedPart which, double chang
   return since;
 }
 
-/// Its size since then, by all readings.
+/// Its size since then, by all readings; as sure as they agree, which share no noise.
 NoticedGap GapWatch::noticed(ChangedPart part, double since, double now) const {
-  double weight = 0.0, sum = 0.0;
-  for (const WatchReading& reading : recent_) {
-    if (reading.begin < since) continue;
-    const Said said = saidOf(reading, part);
-    const double precision = 1.0 / (said.uncertainty * said.uncertainty);
-    weight += precision;
-    sum += precision * said.change;
-  }
   NoticedGap gap{part, since, now, 0.0, 0.0, false};
-  if (weight > 0.0) {
-    gap.change = sum / weight;
-    gap.uncertainty = 1.0 / std::sqrt(weight);
-  }
+  double weights = 0.0;
+  const auto each = [&](const auto& use) {
+    for (const WatchReading& reading : recent_) {
+      if (reading.begin < since) continue;
+      const Said said = saidOf(reading, part);
+      use(said.change, 1.0 / (said.uncertainty * said.uncertainty));
+    }
+  };
+  each([&](double change, double weight) {
+    weights += weight;
+    gap.change += weight * change;
+  });
+  if (weights <= 0.0) return gap;
+  gap.change /= weights;
+  double apart = 0.0;
+  each([&](double change, double weight) {
+    apart += weight * weight * (change - gap.change) * (change - gap.change);
+  });
+  gap.uncertainty = std::sqrt(apart) / weights;
   return gap;
 }
 
 /// From now on that is what holds.
 void GapWatch::say(const NoticedGap& gap) {
-  const auto set = [this](ChangedPart part, double change) {
-    parts_[static_cast<size_t>(part)].said = change;
-  };
-  const auto saidOfPart = [this](ChangedPart part) { return parts_[static_cast<size_t>(part)].said; };
   const double change = gap.as_model ? 0.0 : gap.change;
+  const auto set = [this](ChangedPart part, double said) {
+    parts_[static_cast<size_t>(part)].said = said;
+  };
   set(gap.part, change);
   if (gap.part == ChangedPart::kBothDrives) {
     set(ChangedPart::kLeftDrive, change);
     set(ChangedPart::kRightDrive, change);
   } else {
     set(ChangedPart::kBothDrives,
-        0.5 * (saidOfPart(ChangedPart::kLeftDrive) + saidOfPart(ChangedPart::kRightDrive)));
+        0.5 * (saidBefore(ChangedPart::kLeftDrive) + saidBefore(ChangedPart::kRightDrive)));
   }
   // One change moves several readings a little: all begin anew.
   for (Part& part : parts_) part.games = {};
 }
 
-std::optional<NoticedGap> GapWatch::take(const WatchReading& reading) {
-  recent_.push_back(reading);
-  if (recent_.size() > kMostRecent) recent_.pop_front();
+/// What is furthest from what was said, of all that is sure by now.
+std::optional<NoticedGap> GapWatch::furthest(const WatchReading& reading) {
   std::optional<NoticedGap> most;
   double largest = 0.0;
   for (size_t p = 0; p < kChangedParts; ++p) {
     const auto part = static_cast<ChangedPart>(p);
     const Said said = saidOf(reading, part);
-    if (said.uncertainty > 10.0 * kTellsNothing * limitOf(part)) continue;
+    if (said.uncertainty > kTellsNothing * limitOf(part)) continue;
     const auto since = play(parts_[p], part, said.change, reading.begin);
     if (!since) continue;
     const NoticedGap gap = noticed(part, *since, reading.end);
-    const double size = std::abs(gap.change - parts_[p].said) / limitOf(part);
+    const double size = std::abs(gap.change - saidBefore(part)) / limitOf(part);
     if (size <= largest) continue;
     largest = size;
     most = gap;
   }
-  if (!most) return std::nullopt;
-  const bool a_drive =
-      most->part == ChangedPart::kLeftDrive || most->part == ChangedPart::kRightDrive;
-  if (a_drive) {
-    const ChangedPart other = most->part == ChangedPart::kLeftDrive ? ChangedPart::kRightDrive
-                                                                    : ChangedPart::kLeftDrive;
-    const double here = most->change - parts_[static_cast<size_t>(most->part)].said;
-    const double there = noticed(other, most->since, reading.end).change -
-                         parts_[static_cast<size_t>(other)].said;
-    if (there / here > kOneSide) most = noticed(ChangedPart::kBothDrives, most->since, reading.end);
-  }
-  const double said = parts_[static_cast<size_t>(most->part)].said;
-  most->as_model = said != 0.0 && std::abs(most->change) < limitOf(most->part);
-  say(*most);
   return most;
+}
+
+/// Where the other drive has changed in the same way, it is both.
+NoticedGap GapWatch::withOther(const NoticedGap& gap) const {
+  if (gap.part != ChangedPart::kLeftDrive && gap.part != ChangedPart::kRightDrive) return gap;
+  const ChangedPart other =
+      gap.part == ChangedPart::kLeftDrive ? ChangedPart::kRightDrive : ChangedPart::kLeftDrive;
+  const double here = gap.change - saidBefore(gap.part);
+  const double there = noticed(other, gap.since, gap.noticed).change - saidBefore(other);
+  if (there / here <= kOneSide) return gap;
+  return noticed(ChangedPart::kBothDrives, gap.since, gap.noticed);
+}
+
+std::optional<NoticedGap> GapWatch::take(const WatchReading& reading) {
+  recent_.push_back(reading);
+  if (recent_.size() > kMostRecent) recent_.pop_front();
+  const std::optional<NoticedGap> most = furthest(reading);
+  if (!most) return std::nullopt;
+  NoticedGap gap = withOther(*most);
+  gap.as_model = saidBefore(gap.part) != 0.0 && std::abs(gap.change) < limitOf(gap.part);
+  say(gap);
+  return gap;
 }
 
 }  // namespace tread::gap

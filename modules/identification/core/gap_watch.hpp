@@ -5,7 +5,6 @@
 #include <array>
 #include <deque>
 #include <optional>
-#include <vector>
 
 #include "modules/identification/core/running_fit.hpp"
 
@@ -17,10 +16,10 @@ inline constexpr size_t kChangedParts = 5;
 
 /// When a change counts.
 struct WatchLimits {
-  double gain = 0.03;     ///< [1] less is no change
-  double delay = 0.05;    ///< [s] less is no change
-  double hours = 100.0;   ///< [h] of driving between two false words, at least, on average
-  double stretch = 5.0;   ///< [s] of driving in a reading
+  double gain = 0.03;    ///< [1] less is no change
+  double delay = 0.05;   ///< [s] less is no change
+  double hours = 100.0;  ///< [h] of driving between two false words, at least, on average
+  double stretch = 5.0;  ///< [s] of driving in a reading
 };
 
 /// Something is new beyond chance.
@@ -34,14 +33,14 @@ struct NoticedGap {
 };
 
 /// Watches readings for a change that lasts.
-/** For each part and direction, a game against "the change is at most the limit, on average": a
- * gambler stakes a share l of his wealth on each reading and wins or loses by how far it is beyond
- * the limit,
+/** For each part and direction a test martingale against "the change is at most the limit, on
+ * average". A share l of the wealth W is staked on each reading, which wins or loses by how far it is
+ * beyond the limit:
  *    W <- max(1, W) (1 + l clamp((s (g - g_0) - limit) / m, -1, 1))
  * with s = +-1, g_0 what was said last (0: the model), m the spread of the readings so far. On
- * average he cannot win while the change is no larger, however the readings are distributed (Ville's
- * inequality; Shin, Ramdas and Rinaldo: e-detectors), so that W exceeds c on average no sooner than
- * after c readings. c is chosen for `hours`. `since` is when his run of luck began. */
+ * average he cannot win while the change is no larger, however the readings are distributed
+ * (Ville's inequality; Shin, Ramdas and Rinaldo: e-detectors), so that W exceeds c on average no
+ * sooner than after c readings. c is chosen for `hours`. `since` is when his run of luck began. */
 class GapWatch {
  public:
   explicit GapWatch(const WatchLimits& limits = {});
@@ -64,7 +63,10 @@ class GapWatch {
   double limitOf(ChangedPart part) const;
   std::optional<double> play(Part& part, ChangedPart which, double change, double begin);
   NoticedGap noticed(ChangedPart part, double since, double now) const;
+  std::optional<NoticedGap> furthest(const WatchReading& reading);
+  NoticedGap withOther(const NoticedGap& gap) const;
   void say(const NoticedGap& gap);
+  double saidBefore(ChangedPart part) const { return parts_[static_cast<size_t>(part)].said; }
 
   WatchLimits limits_;
   double enough_;

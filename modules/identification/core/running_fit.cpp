@@ -12,9 +12,8 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kPrior = 0.3;      // [1] and [s], standard deviation before the driving
-constexpr double kGainStep = 0.02;  // [1]
-constexpr double kDelayStep = 0.02;  // [s]
+constexpr double kPrior = 0.3;  // [1] and [s], standard deviation before the driving
+constexpr double kStep = 0.02;  // [1] and [s] of a change, for derivatives
 constexpr int kFits = 3;
 // Rows of one stretch share its ground: they are worth a third of their number.
 constexpr double kAlike = 3.0;
@@ -37,22 +36,23 @@ Eigen::VectorXd predictionOf(const Drive& drive, const ModelDocument& model) {
   return Observations(drives, ObservationSettings{}).predict(model);
 }
 
+/// Change of the rows per unit of each change.
 Derivatives derivatives(const Drive& drive, const ModelDocument& model,
                         const Eigen::VectorXd& predicted) {
   Derivatives all(predicted.size(), kWatched);
-  const auto put = [&](Watched what, const Eigen::VectorXd& changed, double step) {
-    all.col(static_cast<Eigen::Index>(what)) = (changed - predicted) / step;
+  const auto put = [&](Watched what, const Drive& other_drive, const ModelDocument& other_model) {
+    all.col(static_cast<Eigen::Index>(what)) =
+        (predictionOf(other_drive, other_model) - predicted) / kStep;
   };
-  put(Watched::kLeft,
-      predictionOf(scaled(drive, &TrackCommand::left, 1.0 + kGainStep), model), kGainStep);
-  put(Watched::kRight,
-      predictionOf(scaled(drive, &TrackCommand::right, 1.0 + kGainStep), model), kGainStep);
-  ModelDocument other = model;
-  other.vehicle.yaw_gain *= 1.0 + kGainStep;
-  put(Watched::kTurning, predictionOf(drive, other), kGainStep);
-  other = model;
-  other.vehicle.delay += kDelayStep;
-  put(Watched::kDelay, predictionOf(drive, other), kDelayStep);
+  const auto with = [&model](const auto& change) {
+    ModelDocument other = model;
+    change(other.vehicle);
+    return other;
+  };
+  put(Watched::kLeft, scaled(drive, &TrackCommand::left, 1.0 + kStep), model);
+  put(Watched::kRight, scaled(drive, &TrackCommand::right, 1.0 + kStep), model);
+  put(Watched::kTurning, drive, with([](VehicleModel& v) { v.yaw_gain *= 1.0 + kStep; }));
+  put(Watched::kDelay, drive, with([](VehicleModel& v) { v.delay += kStep; }));
   return all;
 }
 
