@@ -103,8 +103,9 @@ std::optional<std::string> WatchedDrive::take(const LogEvent& event) {
   auto utime = utimeOf(event, kIns);
   if (!utime) utime = utimeOf(event, kMotor);
   if (!utime) return std::nullopt;
-  if (begin_ == 0) begin_ = *utime;
-  if (std::abs(*utime - newest_) > kMostJump) startAt(*utime);
+  const bool first = !begin_;
+  if (first) begin_ = *utime;
+  if (first || std::abs(*utime - newest_) > kMostJump) startAt(*utime);
   newest_ = std::max(newest_, *utime);
   recent_.push_back(event);
   recent_.back().utime = *utime;
@@ -137,7 +138,8 @@ std::optional<std::string> WatchedDrive::evaluate() {
 
 std::string WatchedDrive::lineOf(const NoticedGap& gap) const {
   const PartWords words = wordsOf(gap.part);
-  const std::string since = "since " + clock_.timeOf(microseconds(gap.since), begin_) + " ";
+  const std::string since =
+      "since " + clock_.timeOf(microseconds(gap.since), begin_.value_or(0)) + " ";
   if (gap.as_model) return since + words.subject + " as the model says again";
   return since + words.subject + " " + sizeOf(gap, words) + ": " + words.causes;
 }

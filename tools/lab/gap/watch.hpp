@@ -49,9 +49,9 @@ class WatchedDrive {
   GapWatch watch_;
   WallClock clock_;
   std::deque<LogEvent> recent_;
-  int64_t begin_ = 0;   ///< [us] of the first message
-  int64_t newest_ = 0;  ///< [us]
-  int64_t next_ = 0;    ///< [us] begin of the next reading
+  std::optional<int64_t> begin_;  ///< [us] of the first message
+  int64_t newest_ = 0;            ///< [us]
+  int64_t next_ = 0;              ///< [us] begin of the next reading
   double compared_ = 0.0;
 };
 

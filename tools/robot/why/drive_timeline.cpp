@@ -161,8 +161,8 @@ class TimelineReader {
   }
   void hear(const fence_t& fence) { person(fence.fence_by, "fence " + fence.fence_name); }
   void hear(const mark_t& mark) {
-    if (mark.mark_kind == "gap")  // tread-gap watch
-      person("gap_watch", mark.mark_value);
+    if (mark.mark_kind == "gap")
+      drive_.gaps.push_back({now_, mark.mark_value});
     else
       person("operator", mark.mark_kind + ": " + mark.mark_value);
   }
