@@ -11,5 +11,6 @@ namespace tread::gap {
 
 void addPlan(CLI::App& app, int& status);
 void addWhatIf(CLI::App& app);
+void addWatch(CLI::App& app, int& status);
 
 }  // namespace tread::gap

@@ -328,6 +328,7 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     tread::gap::addFind(app, status);
     tread::gap::addExplain(app);
+    tread::gap::addWatch(app, status);
     tread::gap::addWhatIf(app);
     tread::gap::addPlan(app, status);
     tread::gap::addCompare(app, status);

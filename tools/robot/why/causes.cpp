@@ -169,6 +169,7 @@ class CauseSearch {
         break;
       case Topic::kMotion:
         motion();
+        proveGap();
         break;
       case Topic::kMap:
         map();
@@ -179,6 +180,7 @@ class CauseSearch {
       case Topic::kObstacle:
       case Topic::kPlan:
         obstacle();
+        proveGap();
         break;
       case Topic::kGoal:
         say("goal", main_.reason);
@@ -199,6 +201,13 @@ class CauseSearch {
   }
   void prove(const std::string& process, const HealthNote& note) {
     prove(note.time, "HEALTH", process + ": " + note.reason);
+  }
+  /// A vehicle that is not its model any more moves otherwise than it was planned.
+  void proveGap() {
+    const GapNote* last = nullptr;
+    for (const GapNote& note : drive_.gaps)
+      if (note.time <= t_) last = &note;
+    if (last != nullptr) prove(last->time, "MARK", "gap_watch: " + last->words);
   }
   /// What a person said shortly before.
   const PersonNote* quote(const std::string& what) {

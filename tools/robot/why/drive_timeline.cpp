@@ -160,7 +160,12 @@ class TimelineReader {
                                (estop.estop_reason.empty() ? "" : ": " + estop.estop_reason));
   }
   void hear(const fence_t& fence) { person(fence.fence_by, "fence " + fence.fence_name); }
-  void hear(const mark_t& mark) { person("operator", mark.mark_kind + ": " + mark.mark_value); }
+  void hear(const mark_t& mark) {
+    if (mark.mark_kind == "gap")
+      drive_.gaps.push_back({now_, mark.mark_value});
+    else
+      person("operator", mark.mark_kind + ": " + mark.mark_value);
+  }
   void hear(const config_t& config) { drive_.configs[config.config_process] = config.config_text; }
 
   DriveTimeline& drive_;

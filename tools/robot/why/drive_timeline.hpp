@@ -67,6 +67,12 @@ struct PersonNote {
   std::string what;
 };
 
+/// How the vehicle differs from its model from then on.
+struct GapNote {
+  double time = 0.0;
+  std::string words;
+};
+
 /// An obstacle cell that came or went near the robot.
 struct CellNote {
   double time = 0.0;
@@ -89,6 +95,7 @@ struct DriveTimeline {
   std::vector<InsNote> ins;  ///< every tenth of a second, and where the status changes
   std::vector<GoalNote> goals;
   std::vector<PersonNote> people;  ///< arming, disarming, E-stops, fences, marks
+  std::vector<GapNote> gaps;       ///< what tread-gap watch found new
   std::vector<CellNote> cells;
   std::vector<std::pair<double, double>> battery;  ///< [s], [V] once a second
 

@@ -30,10 +30,12 @@ struct InventedDrive {
   double error = 0.04;
   double error_late = 0.04;  ///< from 10 s on
   int refused = 0;           ///< of the twenty patterns
+  std::string gap;           ///< what tread-gap watch says after 5 s; empty = nothing
 
   void write(const std::string& path) const {
     DriveLogBuilder log;
     for (int i = 0; i < 200; ++i) step(log, 0.1 * i);
+    if (!gap.empty()) log.addMark(at(5.0), "gap", gap);
     LogWriter writer(path);
     for (const LogEvent& event : log.sorted())
       writer.write(event.utime, event.channel, event.bytes.data(), event.bytes.size());
@@ -141,6 +143,19 @@ TEST_CASE("a silent INS is told apart from messages that get lost, with its evid
   REQUIRE(lost.worst() != nullptr);
   CHECK(lost.worst()->cause == "lost_INS");
   CHECK(lost.figures.stops == 1);
+}
+
+TEST_CASE("what tread-gap watch found before a stop for its motion is evidence of it") {
+  InventedDrive drive;
+  drive.stop = 8.0;
+  drive.reason = "left track dead: 0.02 m/s where its commands explain 0.6 m/s";
+  drive.gap = "since 4 s the left drive gives 30 % less than the model says (28 to 32 %): motor";
+  const Debrief found = debriefOf(drive);
+  REQUIRE(found.worst() != nullptr);
+  CHECK(found.worst()->cause == "drive");
+  CHECK_THAT(textOf(found, -1.0), Catch::Contains("gap_watch: " + drive.gap));
+  drive.gap.clear();
+  CHECK_THAT(textOf(debriefOf(drive), -1.0), !Catch::Contains("gap_watch"));
 }
 
 TEST_CASE("patterns that end further off than before are told with the patterns") {

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include "tools/lab/gap/watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <stdexcept>
+#include <utility>
+
+#include "common/soundness/core/log_validation.hpp"
+#include "common/soundness/drive_log.hpp"
+
+namespace tread::gap {
+namespace {
+
+constexpr int64_t kBefore = 8'000'000;    // [us] before a reading, so that its entry is known
+constexpr int64_t kBehind = 1'500'000;    // [us] behind it, for messages and rows that end later
+constexpr int64_t kMostJump = 5'000'000;  // [us] no driving goes on over more
+constexpr double kSure = 2.0;             // deviations said with a size
+
+int64_t microseconds(double seconds) {
+  return std::llround(1e6 * seconds);
+}
+
+/// How a part is said to have changed.
+struct PartWords {
+  const char* subject;
+  const char* more;  ///< what a positive change is
+  const char* less;
+  const char* unit;
+  double factor;       ///< of the number into that unit
+  const char* causes;  ///< what it may come from
+};
+
+PartWords wordsOf(ChangedPart part) {
+  switch (part) {
+    case ChangedPart::kLeftDrive:
+      return {"the left drive gives", "more", "less", "%", 100.0, "motor, controller or track"};
+    case ChangedPart::kRightDrive:
+      return {"the right drive gives", "more", "less", "%", 100.0, "motor, controller or track"};
+    case ChangedPart::kBothDrives:
+      return {"both drives give", "more", "less", "%", 100.0, "ground, load or battery"};
+    case ChangedPart::kTurning:
+      return {"the vehicle turns", "more", "less", "%", 100.0, "ground, load or tracks"};
+    case ChangedPart::kDelay:
+      break;
+  }
+  return {"commands act", "later", "earlier",
+          "ms",           1000.0,  "the link, the controller or time stamps"};
+}
+
+/// "6 % less than the model says (4 to 8 %)".
+std::string sizeOf(const NoticedGap& gap, const PartWords& words) {
+  const double size = words.factor * std::abs(gap.change);
+  const double error = words.factor * kSure * gap.uncertainty;
+  const int places = size < 10.0 ? 1 : 0;
+  return digits(size, places) + " " + words.unit + " " +
+         (gap.change > 0.0 ? words.more : words.less) + " than the model says (" +
+         digits(std::max(0.0, size - error), places) + " to " + digits(size + error, places) + " " +
+         words.unit + ")";
+}
+
+/// Its time where it is one of those that are compared.
+template <class Message>
+std::optional<int64_t> utimeOf(const LogEvent& event, const tread::Channel<Message>& channel) {
+  Message message{};
+  if (event.channel != channel.name || !decode(event, channel, message)) return std::nullopt;
+  return message.utime;
+}
+
+}  // namespace
+
+void WallClock::set(int64_t utime, int64_t utc) {
+  if (utc > 0) ahead_ = utc - utime;
+}
+
+std::string WallClock::timeOf(int64_t utime, int64_t begin) const {
+  if (!ahead_) return std::to_string((utime - begin) / 1'000'000) + " s";
+  const auto seconds = static_cast<std::time_t>((utime + *ahead_) / 1'000'000);
+  std::tm local{};
+  localtime_r(&seconds, &local);
+  char text[16];
+  std::strftime(text, sizeof text, "%H:%M:%S", &local);
+  return text;
+}
+
+WatchedDrive::WatchedDrive(ModelDocument model, const WatchLimits& limits)
+    : model_(std::move(model)), limits_(limits), watch_(limits) {}
+
+void WatchedDrive::startAt(int64_t utime) {
+  recent_.clear();
+  newest_ = utime;
+  next_ = utime + kBefore;
+}
+
+std::optional<std::string> WatchedDrive::take(const LogEvent& event) {
+  health_t health{};
+  if (event.channel == kHealth.name && decode(event, kHealth, health)) {
+    clock_.set(health.utime, health.utc);
+    return std::nullopt;
+  }
+  auto utime = utimeOf(event, kIns);
+  if (!utime) utime = utimeOf(event, kMotor);
+  if (!utime) return std::nullopt;
+  const bool first = !begin_;
+  if (first) begin_ = *utime;
+  if (first || std::abs(*utime - newest_) > kMostJump) startAt(*utime);
+  newest_ = std::max(newest_, *utime);
+  recent_.push_back(event);
+  recent_.back().utime = *utime;
+  const int64_t length = microseconds(limits_.stretch);
+  if (newest_ < next_ + length + kBehind) return std::nullopt;
+  auto line = evaluate();
+  next_ += length;
+  while (!recent_.empty() && recent_.front().utime < next_ - kBefore) recent_.pop_front();
+  return line;
+}
+
+std::optional<std::string> WatchedDrive::evaluate() {
+  const Drive drive = toDrive(toDriveLog("watch", {recent_.begin(), recent_.end()}));
+  if (drive.segments.empty()) return std::nullopt;
+  if (drive.kind != model_.vehicle.kind)
+    throw std::runtime_error(
+        "the robot's commands are of another kind than the model's; give the model of this robot");
+  int64_t origin = recent_.front().utime;
+  for (const LogEvent& event : recent_) origin = std::min(origin, event.utime);
+  const double from = 1e-6 * static_cast<double>(next_ - origin);
+  auto reading = readChanges(drive, model_, from, from + limits_.stretch);
+  if (!reading) return std::nullopt;
+  compared_ += limits_.stretch;
+  reading->begin = 1e-6 * static_cast<double>(next_);
+  reading->end = reading->begin + limits_.stretch;
+  const auto gap = watch_.take(*reading);
+  if (!gap) return std::nullopt;
+  return lineOf(*gap);
+}
+
+std::string WatchedDrive::lineOf(const NoticedGap& gap) const {
+  const PartWords words = wordsOf(gap.part);
+  const std::string since =
+      "since " + clock_.timeOf(microseconds(gap.since), begin_.value_or(0)) + " ";
+  if (gap.as_model) return since + words.subject + " as the model says again";
+  return since + words.subject + " " + sizeOf(gap, words) + ": " + words.causes;
+}
+
+}  // namespace tread::gap

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/bus/key_option.hpp"
+#include "common/bus/shell.hpp"
+#include "common/seal/key_file.hpp"
+#include "tools/lab/gap/commands.hpp"
+#include "tools/lab/gap/watch.hpp"
+#include "tools/lab/gap/watch_node.hpp"
+
+namespace tread::gap {
+namespace {
+
+constexpr int kSomethingNew = 10;
+
+struct WatchOptions {
+  std::string model;
+  std::vector<std::string> logs;
+  std::string lcm_url;
+  std::string key;
+  WatchLimits limits;
+};
+
+int watchLogs(const WatchOptions& options, const ModelDocument& model) {
+  const DriveLog log = readDriveLog(options.logs);
+  if (!log.damage.empty()) std::cout << log.damage << '\n';
+  WatchedDrive drive(model, options.limits);
+  bool anything = false;
+  for (const LogEvent& event : log.events)
+    if (const auto line = drive.take(event)) {
+      std::cout << *line << std::endl;
+      anything = true;
+    }
+  const auto seconds = static_cast<int64_t>(drive.compared());
+  if (!anything)
+    std::cout << "nothing new beyond chance in " << seconds << " s of driving" << std::endl;
+  return anything ? kSomethingNew : 0;
+}
+
+int watchRobot(const WatchOptions& options, const ModelDocument& model) {
+  LcmBus bus({options.lcm_url, hostSealer(options.key)}, TimeSource::kFollow);
+  WatchNode node(bus, model, options.limits);
+  bus.run(node, stopRequest(0));
+  return node.anything() ? kSomethingNew : 0;
+}
+
+}  // namespace
+
+void addWatch(CLI::App& app, int& status) {
+  const auto options = std::make_shared<WatchOptions>();
+  CLI::App* command = app.add_subcommand(
+      "watch", "while the robot drives: what is new against its model, one line each");
+  command->footer(
+      "Reads INS and MOTOR from the bus and compares the last seconds of driving with the model:\n"
+      "what each drive gives, how it turns, when commands act. A change that lasts is said once, "
+      "on\n"
+      "the terminal, in HEALTH of gap_watch and as a MARK in the log. With LOGS the same of a\n"
+      "recording. On ground that is not the model's both drives and the turning differ: give a\n"
+      "model of the ground that is driven on. Exit status: 0 nothing new, 10 something, 2 bad "
+      "input.");
+  command->add_option("LOGS", options->logs,
+                      "LCM logs instead of the bus; several are parts of one recording");
+  command->add_option("--model", options->model, "model file (YAML)")->required();
+  command->add_option("--least", options->limits.gain, "a gain that changed by less is no news [1]")
+      ->capture_default_str()
+      ->check(CLI::Range(0.005, 0.5));
+  command
+      ->add_option("--hours", options->limits.hours,
+                   "of driving between two false words, at least, on average [h]")
+      ->capture_default_str()
+      ->check(CLI::Range(1.0, 1e6));
+  command->add_option("--lcm-url", options->lcm_url, "LCM provider");
+  addKeyOption(*command, options->key);
+  command->callback([options, &status] {
+    const ModelDocument model = readTrackModelDocument(options->model);
+    status = options->logs.empty() ? watchRobot(*options, model) : watchLogs(*options, model);
+  });
+}
+
+}  // namespace tread::gap

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/bus/bus.hpp"
+#include "tools/lab/gap/watch.hpp"
+
+namespace tread::gap {
+
+/// Says what is new against the model: on the terminal, in HEALTH of gap_watch, as a MARK for the log.
+/** A robot whose commands are not the model's is said once, as FAILED; the node goes on silently. */
+class WatchNode : public Node {
+ public:
+  WatchNode(Bus& bus, const ModelDocument& model, const WatchLimits& limits);
+
+  int64_t period() const override { return 100'000; }
+  void step(int64_t utime) override;
+  /// Whether something was new.
+  bool anything() const { return anything_; }
+
+ private:
+  template <class Message>
+  void listen(const tread::Channel<Message>& channel);
+  void hear(const LogEvent& event);
+  void say(const std::string& line);
+
+  Bus& bus_;
+  HealthReporter health_;
+  WatchedDrive drive_;
+  int64_t now_ = 0;
+  int64_t seq_ = 0;
+  bool anything_ = false;
+  bool failed_ = false;
+};
+
+}  // namespace tread::gap
