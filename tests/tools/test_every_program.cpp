@@ -49,9 +49,10 @@ TEST_CASE("every program and command says in --help what it is for, and how it i
   }
 }
 
-// The commit: of this checkout, or none in an archive that does not say it.
-TEST_CASE("every program says its version and the commit it was built from, all the same") {
-  const std::regex words(R"re(([a-z-]+) (\d+\.\d+\.\d+( \(commit [0-9a-f]{7,}(-dirty)?\))?)\n)re");
+// The commit: of this checkout when the program was linked, or none in an archive that does not say
+// it.
+TEST_CASE("every program says its version, the same for all, and the commit it was built from") {
+  const std::regex words(R"re(([a-z-]+) (\d+\.\d+\.\d+)( \(commit [0-9a-f]{7,}(-dirty)?\))?\n)re");
   std::set<std::string> versions;
   for (const std::string& program : programs()) {
     const CalledProgram called_version = called(program + " --version </dev/null");
