@@ -15,6 +15,7 @@
 #include "common/report/page.hpp"
 #include "common/store/output_file.hpp"
 #include "common/store/store.hpp"
+#include "common/vehicle/effect_file.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "modules/identification/core/discovery.hpp"
 #include "tools/gap/commands.hpp"
@@ -192,7 +193,9 @@ int compare(const CompareOptions& options) {
   return change.anyMoved() ? kSomethingMoved : 0;
 }
 
+/// What all commands that fit have.
 void addSeedAndThreads(CLI::App& command, FindOptions& options) {
+  addEffectsOption(command);
   command.add_option("--seed", options.seed, "of the random draws of the tests")
       ->capture_default_str()
       ->check(CLI::Range(int64_t{0}, int64_t{9'000'000'000'000'000'000}));
@@ -262,15 +265,34 @@ struct NameOptions {
   std::string model;
   std::string from;
   std::string to;
+  std::string effect;  ///< file to write; empty = the term stays one
 };
+
+/// Writes a term of the model as an effect, which takes its place there.
+void keepAsEffect(ModelDocument& model, const NameOptions& options) {
+  ModelDocument named = model;
+  renameTerm(named, options.from, options.to);
+  const UnnamedTerm& term = *termOfPath(named, options.to + ".0");
+  const std::string text = formatEffect(effectOf(term, options.to));
+  ConfigReader reader = ConfigReader::fromText(text, options.effect);
+  addEntry(readEffectEntry(reader), reader);
+  replaceTerm(model, options.from, effectNamed(options.to));
+  writeText(options.effect, text);
+}
 
 void name(const NameOptions& options) {
   ModelDocument model = readModelDocument(options.model);
-  renameTerm(model, options.from, options.to);
+  if (options.effect.empty())
+    renameTerm(model, options.from, options.to);
+  else
+    keepAsEffect(model, options);
   const std::string text = formatModelDocument(model);
   parseModelDocument(text, options.model);  // a file that nobody can read is none
   writeText(options.model, text);
   say(options.from + " is " + options.to + " in " + options.model + " now");
+  if (!options.effect.empty())
+    say("Effect for a catalogue of your own: " + options.effect +
+        "; find --effects FOLDER looks for it");
 }
 
 void addName(CLI::App& app) {
@@ -283,6 +305,9 @@ void addName(CLI::App& app) {
   command->add_option("MODEL", options->model, "model file (YAML); it is changed")->required();
   command->add_option("TERM", options->from, "its name now, as unnamed_1")->required();
   command->add_option("NAME", options->to, "its name from now on: a-z, 0-9 and _")->required();
+  Outputs(*command).file("--effect", options->effect,
+                         "write the term as an effect of a catalogue of your own (YAML), for "
+                         "find --effects");
   command->callback([options] { name(*options); });
 }
 
@@ -292,6 +317,7 @@ void addExplain(CLI::App& app) {
       "explain", "what an effect is, what it looks like and how to check it in two minutes");
   command->add_option("EFFECT", *name,
                       "name of an effect, or start, verdicts or words; without it, a list");
+  addEffectsOption(*command);
   command->callback([name] {
     const auto about = topic(*name);
     std::cout << (name->empty() ? listOfEffects() + listOfTopics()
@@ -314,6 +340,7 @@ void addCompare(CLI::App& app, int& status) {
   command->add_option("--model", options->model, "model file whose terms are fitted (YAML)")
       ->required();
   addThreads(*command, options->threads);
+  addEffectsOption(*command);
   command->callback([options, &status] { status = compare(*options); });
 }
 
