@@ -268,8 +268,10 @@ struct NameOptions {
   std::string effect;  ///< file to write; empty = the term stays one
 };
 
-/// Writes a term of the model as an effect, which takes its place there.
-void keepAsEffect(ModelDocument& model, const NameOptions& options) {
+/// Puts an effect in the place of a term; returns the text of its file.
+std::string keepAsEffect(ModelDocument& model, const NameOptions& options) {
+  if (std::filesystem::exists(options.effect))
+    throw std::runtime_error(options.effect + ": is there already; choose another file");
   ModelDocument named = model;
   renameTerm(named, options.from, options.to);
   const UnnamedTerm& term = *termOfPath(named, options.to + ".0");
@@ -277,22 +279,25 @@ void keepAsEffect(ModelDocument& model, const NameOptions& options) {
   ConfigReader reader = ConfigReader::fromText(text, options.effect);
   addEntry(readEffectEntry(reader), reader);
   replaceTerm(model, options.from, effectNamed(options.to));
-  writeText(options.effect, text);
+  return text;
 }
 
 void name(const NameOptions& options) {
   ModelDocument model = readModelDocument(options.model);
-  if (options.effect.empty())
-    renameTerm(model, options.from, options.to);
+  const bool keep = !options.effect.empty();
+  std::string effect;
+  if (keep)
+    effect = keepAsEffect(model, options);
   else
-    keepAsEffect(model, options);
+    renameTerm(model, options.from, options.to);
   const std::string text = formatModelDocument(model);
   parseModelDocument(text, options.model);  // a file that nobody can read is none
+  if (keep) writeText(options.effect, effect);
   writeText(options.model, text);
   say(options.from + " is " + options.to + " in " + options.model + " now");
-  if (!options.effect.empty())
-    say("Effect for a catalogue of your own: " + options.effect +
-        "; find --effects FOLDER looks for it");
+  if (keep)
+    say("It is an effect now: " + options.effect +
+        "; edit its words, and give its folder to find --effects for other logs and models.");
 }
 
 void addName(CLI::App& app) {
@@ -305,9 +310,9 @@ void addName(CLI::App& app) {
   command->add_option("MODEL", options->model, "model file (YAML); it is changed")->required();
   command->add_option("TERM", options->from, "its name now, as unnamed_1")->required();
   command->add_option("NAME", options->to, "its name from now on: a-z, 0-9 and _")->required();
-  Outputs(*command).file("--effect", options->effect,
-                         "write the term as an effect of a catalogue of your own (YAML), for "
-                         "find --effects");
+  command->add_option("--effect", options->effect,
+                      "file to write (YAML): the term becomes an effect of a catalogue of your "
+                      "own, which find --effects FOLDER looks for");
   command->callback([options] { name(*options); });
 }
 
