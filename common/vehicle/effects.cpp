@@ -10,8 +10,8 @@
 namespace tread {
 namespace {
 
-std::vector<Effect> allEffects() {
-  std::vector<Effect> all;
+std::deque<Effect> allEffects() {
+  std::deque<Effect> all;
   for (auto part :
        {commandEffects, powerEffects, lagEffects, slipEffects, turningEffects, turningChangeEffects,
         gripEffects, speedLossEffects, inertiaEffects, sideEffects, timingEffects, mountingEffects})
@@ -19,11 +19,45 @@ std::vector<Effect> allEffects() {
   return all;
 }
 
+/// What the program knows, added effects among it; they come in before anything is computed.
+struct Catalogue {
+  std::deque<Effect> effects = allEffects();
+  std::deque<ConfoundedGroup> groups;
+  size_t added = 0;  ///< parameters
+
+  Catalogue() {
+    for (auto part : {groupsOfEveryDrive, groupsOfPoorDrives})
+      for (ConfoundedGroup& group : part()) groups.push_back(std::move(group));
+  }
+};
+
+Catalogue& catalogue() {
+  static Catalogue all;
+  return all;
+}
+
 }  // namespace
 
-const std::vector<Effect>& effectCatalogue() {
-  static const std::vector<Effect> catalogue = allEffects();
-  return catalogue;
+const std::deque<Effect>& effectCatalogue() {
+  return catalogue().effects;
+}
+
+void addEffect(Effect effect, std::vector<ConfoundedGroup> groups) {
+  Catalogue& all = catalogue();
+  if (all.added + effect.parameters.size() > kMostAdded)
+    throw std::runtime_error("effects that are added have at most " + std::to_string(kMostAdded) +
+                             " parameters together; leave some out");
+  for (EffectParameter& parameter : effect.parameters) parameter.added = all.added++;
+  all.effects.push_back(std::move(effect));
+  for (ConfoundedGroup& group : groups) all.groups.push_back(std::move(group));
+}
+
+double& valueIn(EffectValues& values, const EffectParameter& parameter) {
+  return parameter.added ? values.added[*parameter.added] : values.*parameter.vehicle;
+}
+
+double valueIn(const EffectValues& values, const EffectParameter& parameter) {
+  return valueIn(const_cast<EffectValues&>(values), parameter);
 }
 
 const Effect* findEffect(const std::string& name) {
@@ -79,8 +113,8 @@ std::vector<const Effect*> nuisanceEffects() {
 bool isOn(const Effect& effect, const EffectValues& vehicle, const MeasurementModel& measurement) {
   for (const EffectParameter& parameter : effect.parameters) {
     if (parameter.role == ParameterRole::kShape) continue;
-    const double value =
-        parameter.vehicle != nullptr ? vehicle.*parameter.vehicle : measurement.*parameter.measured;
+    const double value = parameter.measured != nullptr ? measurement.*parameter.measured
+                                                       : valueIn(vehicle, parameter);
     if (value != 0.0) return true;
   }
   return false;
@@ -91,13 +125,8 @@ double naturalValue(const EffectParameter& parameter, double value) {
   return value == 0.0 ? std::numeric_limits<double>::infinity() : 1.0 / value;
 }
 
-const std::vector<ConfoundedGroup>& confoundedGroups() {
-  static const std::vector<ConfoundedGroup> groups = [] {
-    std::vector<ConfoundedGroup> all = groupsOfEveryDrive();
-    for (ConfoundedGroup& group : groupsOfPoorDrives()) all.push_back(std::move(group));
-    return all;
-  }();
-  return groups;
+const std::deque<ConfoundedGroup>& confoundedGroups() {
+  return catalogue().groups;
 }
 
 std::vector<const ConfoundedGroup*> confoundedGroupsOf(const std::string& effect) {

@@ -3,12 +3,15 @@
 #pragma once
 
 #include <algorithm>
+#include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace tread {
 
+struct AddedLaw;          // added_effects.hpp
 struct EffectValues;      // model.hpp
 struct VehicleModel;      // model.hpp
 struct MeasurementModel;  // kernel.hpp
@@ -59,6 +62,9 @@ struct EffectParameter {
   /// What the sign means on the ground, where the effect's sentence leaves that open.
   std::string positive{};
   std::string negative{};
+  std::optional<size_t> added{};  ///< where the value of an added effect is
+  /// Of a distance on the vehicle: plausible up to so many gauges; 0 = no matter how large it is.
+  double gauges = 0.0;
 
   /// Whether people say 1 / value.
   bool reciprocal() const { return !natural_name.empty(); }
@@ -90,7 +96,8 @@ struct EffectSearch {
 
 /// A named departure from the nominal two-track model.
 /** A new effect is one more entry of the catalogue and its value and line in model.hpp (or
- * kernel.hpp); files, search, tests and reports learn of it from the catalogue. */
+ * kernel.hpp), or a file (effect_file.hpp); files, search, tests and reports learn of it from the
+ * catalogue. */
 struct Effect {
   std::string name;      ///< identifier in files and reports
   std::string title;     ///< what the field calls it
@@ -106,15 +113,28 @@ struct Effect {
   EffectSearch search{};
   /// What to check first where its first parameter is negative; the size follows. May be empty.
   std::string negative_check{};
+  std::shared_ptr<const AddedLaw> law{};  ///< of an added effect; else it is in the kernel
 
   /// What its parameters belong to.
   EffectKind kind() const {
-    return parameters.front().vehicle != nullptr ? EffectKind::kVehicle : EffectKind::kMeasurement;
+    return parameters.front().measured != nullptr ? EffectKind::kMeasurement : EffectKind::kVehicle;
   }
 };
 
-/// All effects: vehicle effects in the order in which they act, then measurement effects.
-const std::vector<Effect>& effectCatalogue();
+/// All effects: vehicle effects in the order in which they act, then measurement effects, then
+/// those that were added.
+const std::deque<Effect>& effectCatalogue();
+
+struct ConfoundedGroup;
+
+/// Adds a vehicle effect with a law, and what it is confounded with; gives its parameters places.
+/** Before the first model is made: not while another thread uses the catalogue. Throws
+ * std::runtime_error with one line where there are too many parameters. */
+void addEffect(Effect effect, std::vector<ConfoundedGroup> groups);
+
+/// The value of a parameter of a vehicle effect.
+double& valueIn(EffectValues& values, const EffectParameter& parameter);
+double valueIn(const EffectValues& values, const EffectParameter& parameter);
 
 /// An effect by name; none for an unknown one.
 const Effect* findEffect(const std::string& name);
@@ -166,7 +186,7 @@ struct ConfoundedGroup {
 };
 
 /// All groups: first those that no drive tells apart, then those of poor drives.
-const std::vector<ConfoundedGroup>& confoundedGroups();
+const std::deque<ConfoundedGroup>& confoundedGroups();
 
 /// The groups that an effect is a member of.
 std::vector<const ConfoundedGroup*> confoundedGroupsOf(const std::string& effect);

@@ -24,6 +24,18 @@ double supplied(const VehicleModel& model, const DriveContext& context, double a
   return suppliedSpeed(model.effects, asked, context.session_time, context.battery_drop);
 }
 
+/// Speeds that the drives are asked for, of what is supplied to them, before added effects.
+TrackCommand driveTargets(const VehicleModel& model, const TrackCommand& supply,
+                          const TrackCommand& heat) {
+  return {driveTarget(model.effects, supply.left, 1.0, heat.left),
+          driveTarget(model.effects, supply.right, -1.0, heat.right)};
+}
+
+TrackCommand supplied(const VehicleModel& model, const DriveContext& context,
+                      const TrackCommand& asked) {
+  return {supplied(model, context, asked.left), supplied(model, context, asked.right)};
+}
+
 /// A track that has run in its direction for long has its slack behind it.
 TrackState enteredTrack(const EffectValues& effects, double speed, double ramp, double heat) {
   return {speed, ramp, speed < 0.0 ? effects.track_backlash : 0.0, heat};
@@ -61,9 +73,12 @@ EntryState steadyEntry(const VehicleModel& model, const TrackCommand& command,
                        const DriveContext& context) {
   const TrackCommand asked = model.trackSpeeds(command);
   EntryState entry;
-  entry.track_speeds = {
-      driveTarget(model.effects, supplied(model, context, asked.left), 1.0, 0.0),
-      driveTarget(model.effects, supplied(model, context, asked.right), -1.0, 0.0)};
+  entry.track_speeds = driveTargets(model, supplied(model, context, asked), {});
+  AddedEffects added(model.effects);
+  if (added.changeTracks()) {
+    added.settleTracks(entry.track_speeds, model.gauge, context);
+    entry.track_speeds = added.tracks(entry.track_speeds, model.gauge, context, 0.0);
+  }
   entry.command = command;
   entry.context = context;
   return entry;
@@ -77,6 +92,7 @@ Twist2 steadyTwist(const VehicleModel& model, const TrackCommand& command,
 VehicleKernel::VehicleKernel(const VehicleModel& model, const EntryState& entry,
                              const ExecutionNoise& noise)
     : model_(model),
+      added_(model.effects),
       context_(entry.context),
       left_(enteredTrack(model.effects, entry.track_speeds.left,
                          entry.ramps.value_or(entry.track_speeds).left, entry.heat.left)),
@@ -90,6 +106,14 @@ VehicleKernel::VehicleKernel(const VehicleModel& model, const EntryState& entry,
   led_to_ = groundMotion(model_, noise_, changes, on_ground_);
   body_ = entry.body ? *entry.body : led_to_;
   memory_ = entry.memory.value_or(TermMemory{body_.v, body_.omega, 0.0});
+  if (added_.changeTracks())
+    added_.settleTracks(
+        driveTargets(model_, supplied(model_, context_, model_.trackSpeeds(acting_)), entry.heat),
+        model_.gauge, context_);
+  if (added_.changeMotion())
+    added_.settleMotion(known(withCommand(inputsNow(body_.v, body_.omega, memory_)), on_ground_),
+                        {body_.v, 0.0, body_.omega});
+  added_.remember(entry.added_memory);
 }
 
 void VehicleKernel::setNoise(const ExecutionNoise& noise) {
@@ -139,19 +163,22 @@ void VehicleKernel::advance(double duration) {
 
 void VehicleKernel::integrateStep(const TrackCommand& asked, double dt) {
   const EffectValues& effects = model_.effects;
-  const TrackCommand driven{
-      driveTrack(model_, supplied(model_, context_, asked.left), 1.0, dt, left_),
-      driveTrack(model_, supplied(model_, context_, asked.right), -1.0, dt, right_)};
+  const TrackCommand supply = supplied(model_, context_, asked);
+  TrackCommand targets = driveTargets(model_, supply, {left_.heat, right_.heat});
+  if (added_.changeTracks()) targets = added_.tracks(targets, model_.gauge, context_, dt);
+  const TrackCommand driven{driveTrack(model_, supply.left, targets.left, dt, left_),
+                            driveTrack(model_, supply.right, targets.right, dt, right_)};
   on_ground_ = model_.onGround(driven, steer(dt));
   const ChangesInForce changes = changesAt(effects, context_.session_time, dt);
   const PlaneMotion steady = groundMotion(model_, noise_, changes, on_ground_);
   const PlaneMotion motion = moveBody(changes, steady, dt);
   Twist2 v_body;
-  if (model_.unnamed.empty()) {
+  if (!addsToMotion()) {
     v_body = bodyTwist(effects, tan_crab_, changes, context_, on_ground_, motion);
   } else {
     inputs_ = withCommand(remember(motion.v, motion.omega, dt, memory_));
-    v_body = withTerms(inputs_, changes, on_ground_, motion);
+    v_body = withTerms(inputs_, changes, on_ground_, motion,
+                       addedTo(motion, inputs_, changes, on_ground_, dt, added_));
   }
   T_start_body_ = T_start_body_ * integrate(v_body, dt);
   context_.session_time += dt;
@@ -164,13 +191,26 @@ TermInputs VehicleKernel::withCommand(TermInputs inputs) const {
   return inputs;
 }
 
+LawInputs VehicleKernel::known(const TermInputs& inputs, const TrackCommand& tracks) const {
+  return {inputs, tracks, context_, model_.gauge, movingShare(model_, tracks, inputs)};
+}
+
+Twist2 VehicleKernel::addedTo(const PlaneMotion& motion, const TermInputs& inputs,
+                              const ChangesInForce& changes, const TrackCommand& tracks, double dt,
+                              AddedEffects& added) const {
+  if (!added.changeMotion()) return {};
+  const Twist2 plain = bodyTwist(model_.effects, tan_crab_, changes, context_, tracks, motion);
+  return added.changes(known(inputs, tracks), {motion.v, plain.v_y, motion.omega}, dt);
+}
+
 Twist2 VehicleKernel::withTerms(const TermInputs& inputs, const ChangesInForce& changes,
-                                const TrackCommand& tracks, PlaneMotion motion) const {
-  const Twist2 more = unnamedTwist(model_, tracks, inputs);
-  motion.v += more.v_x;
-  motion.omega += more.omega;
+                                const TrackCommand& tracks, PlaneMotion motion,
+                                const Twist2& added) const {
+  const Twist2 more = unnamedTwist(model_, movingShare(model_, tracks, inputs), inputs);
+  motion.v += more.v_x + added.v_x;
+  motion.omega += more.omega + added.omega;
   Twist2 v_body = bodyTwist(model_.effects, tan_crab_, changes, context_, tracks, motion);
-  v_body.v_y += more.v_y;
+  v_body.v_y += more.v_y + added.v_y;
   return v_body;
 }
 
@@ -209,10 +249,11 @@ Twist2 VehicleKernel::twist() const {
   PlaneMotion motion = groundMotion(model_, noise_, changes, tracks);
   if (effects.body_inertia > 0.0) motion.v = body_.v;
   if (effects.yaw_inertia > 0.0) motion.omega = body_.omega;
-  if (model_.unnamed.empty())
-    return bodyTwist(effects, tan_crab_, changes, context_, tracks, motion);
-  return withTerms(withCommand(inputsNow(motion.v, motion.omega, memory_)), changes, tracks,
-                   motion);
+  if (!addsToMotion()) return bodyTwist(effects, tan_crab_, changes, context_, tracks, motion);
+  const TermInputs inputs = withCommand(inputsNow(motion.v, motion.omega, memory_));
+  AddedEffects added = added_;
+  return withTerms(inputs, changes, tracks, motion,
+                   addedTo(motion, inputs, changes, tracks, 0.0, added));
 }
 
 EntryState VehicleKernel::state() const {
@@ -225,6 +266,7 @@ EntryState VehicleKernel::state() const {
   state.ramps = {left_.ramp, right_.ramp};
   state.steering = steering_;
   state.memory = memory_;
+  state.added_memory = added_.memory();
   return state;
 }
 
@@ -317,7 +359,7 @@ double yawRateAt(const std::vector<MotionSample>& motion, double time) {
 }
 
 bool isPerfect(const MeasurementModel& measurement) {
-  const std::vector<Effect>& effects = effectCatalogue();
+  const std::deque<Effect>& effects = effectCatalogue();
   return std::none_of(effects.begin(), effects.end(), [&](const Effect& effect) {
     return effect.kind() == EffectKind::kMeasurement && isOn(effect, {}, measurement);
   });

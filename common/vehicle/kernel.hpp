@@ -9,6 +9,7 @@
 
 #include "common/geometry/se2.hpp"
 #include "common/pattern/pattern.hpp"
+#include "common/vehicle/added_effects.hpp"
 #include "common/vehicle/model.hpp"
 
 namespace tread {
@@ -27,6 +28,7 @@ struct EntryState {
   std::optional<double> steering = std::nullopt;  ///< [rad] of a car; else that of the command
   /// Of unnamed terms; else as after a long time in the motion at the start, turns forgotten.
   std::optional<TermMemory> memory = std::nullopt;
+  AddedMemory added_memory{};  ///< of added effects of the same model; else as after a long time
 };
 
 /// The state that a command leads to when it is held for long (motors cold).
@@ -70,7 +72,8 @@ class VehicleKernel {
   Twist2 twist() const;
   /// Speeds of the drive, before slack and slip [m/s].
   TrackCommand trackSpeeds() const { return {left_.speed, right_.speed}; }
-  /// What unnamed terms depended on in the last step; nothing is kept of a model without terms.
+  /// What unnamed terms depended on in the last step; nothing is kept of a model with neither terms
+  /// nor added effects of the motion.
   const TermInputs& termInputs() const { return inputs_; }
   /// State from which another kernel can begin (without waiting commands and slack).
   EntryState state() const;
@@ -92,11 +95,19 @@ class VehicleKernel {
   PlaneMotion moveBody(const ChangesInForce& changes, const PlaneMotion& mean, double dt);
   /// The same inputs with what the command asks for.
   TermInputs withCommand(TermInputs inputs) const;
-  /// The body twist of a motion to which unnamed terms are added.
+  /// What added effects add to a motion; their memories move on by dt.
+  Twist2 addedTo(const PlaneMotion& motion, const TermInputs& inputs, const ChangesInForce& changes,
+                 const TrackCommand& tracks, double dt, AddedEffects& added) const;
+  /// The body twist of a motion to which that and unnamed terms are added.
   Twist2 withTerms(const TermInputs& inputs, const ChangesInForce& changes,
-                   const TrackCommand& tracks, PlaneMotion motion) const;
+                   const TrackCommand& tracks, PlaneMotion motion, const Twist2& added) const;
+  LawInputs known(const TermInputs& inputs, const TrackCommand& tracks) const;
+
+  /// Whether anything is added to the motion.
+  bool addsToMotion() const { return !model_.unnamed.empty() || added_.changeMotion(); }
 
   VehicleModel model_;
+  AddedEffects added_;
   ExecutionNoise noise_;
   DriveContext context_;
   double tan_crab_ = 0.0;

@@ -96,8 +96,8 @@ Envelope envelopeOf(const VehicleModel& model, const std::vector<TrackCommand>& 
 }
 
 double& valueOf(ModelDocument& document, const EffectParameter& parameter) {
-  return parameter.vehicle != nullptr ? document.vehicle.effects.*parameter.vehicle
-                                      : document.measurement.*parameter.measured;
+  return parameter.measured != nullptr ? document.measurement.*parameter.measured
+                                       : valueIn(document.vehicle.effects, parameter);
 }
 
 double valueOf(const ModelDocument& document, const EffectParameter& parameter) {
@@ -224,7 +224,9 @@ std::optional<ParameterBounds> plausibleBounds(const ModelDocument& document,
   if (parameter == nullptr) return std::nullopt;
   const double min =
       parameter->adds_to != nullptr ? -(document.vehicle.*parameter->adds_to) : parameter->min;
-  return ParameterBounds{path, min, parameter->max};
+  if (parameter->gauges <= 0.0) return ParameterBounds{path, min, parameter->max};
+  const double far = parameter->gauges * document.vehicle.gauge;
+  return ParameterBounds{path, std::max(min, -far), std::min(parameter->max, far)};
 }
 
 }  // namespace tread

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <string>
@@ -17,6 +18,8 @@
 // new vehicle effect is a value and a line in this file, and its entry in the catalogue.
 namespace tread {
 
+inline constexpr size_t kMostAdded = 32;  ///< parameters of all added effects
+
 /// Values of the parameters of all vehicle effects, in the order in which they act; 0 = off.
 /** What each one means, its unit and its bounds stand in the catalogue (effects.hpp). Limits are
  * held as their reciprocals, so that no limit is 0 and small values are weak effects. What happens
@@ -26,6 +29,7 @@ namespace tread {
  *       -> waits: delay + command_delay
  *       -> each track: full_speed, motor_deadband, speed_saturation, battery_sag,
  *          thermal_derating, track_asymmetry
+ *       -> added effects of tracks (added_effects.hpp)
  *       -> the drive follows: slew_limit, then lag + actuator_lag (lag_asymmetry when slowing);
  *          track_backlash
  *     track speeds on the ground
@@ -36,7 +40,7 @@ namespace tread {
  *       -> forward speed: turn_speed_loss, reverse_speed_gain, payload_change, quadratic_drag,
  *          rolling_resistance
  *       -> the body follows: yaw_inertia, body_inertia
- *       -> unnamed terms, see VehicleModel::unnamed
+ *       -> unnamed terms, see VehicleModel::unnamed, and added effects of the motion
  *       -> to the side: icr_offset and payload_change, crab, centrifugal_drift
  *       -> slope_pitch, slope_roll
  *     body twist -> pose */
@@ -91,6 +95,8 @@ struct EffectValues {
   double centrifugal_drift = 0.0;  ///< [s]
   double slope_pitch = 0.0;        ///< [s]
   double slope_roll = 0.0;         ///< [s]
+  // What files describe.
+  std::array<double, kMostAdded> added{};
 };
 
 /// How much one execution differs from the next on the same ground: standard deviations.
@@ -310,12 +316,11 @@ inline double behindSlack(double slack, double mean, double dt, TrackState& trac
   return passed / dt;
 }
 
-/// Moves one track on by dt towards `supplied`; returns the mean speed of the track on the ground
-/// side of its slack.
-inline double driveTrack(const VehicleModel& model, double supplied, double side, double dt,
+/// Moves one track on by dt towards `target`, which comes of `supplied`; returns the mean speed of
+/// the track on the ground side of its slack.
+inline double driveTrack(const VehicleModel& model, double supplied, double target, double dt,
                          TrackState& track) {
   const EffectValues& effects = model.effects;
-  const double target = driveTarget(effects, supplied, side, track.heat);
   double lag = model.driveLag();
   if (effects.lag_asymmetry != 0.0 &&
       (std::abs(target) < std::abs(track.speed) || target * track.speed < 0.0))
@@ -400,12 +405,16 @@ inline Twist2 bodyTwist(const EffectValues& effects, double tan_crab, const Chan
   return v_body;
 }
 
-/// What unnamed terms add to a motion; it fades out at standstill, as what stands stays.
-inline Twist2 unnamedTwist(const VehicleModel& model, const TrackCommand& track_speeds,
-                           const TermInputs& inputs) {
+/// How much what depends on the motion may change it: 0 at standstill, as what stands stays.
+inline double movingShare(const VehicleModel& model, const TrackCommand& track_speeds,
+                          const TermInputs& inputs) {
   const double fastest = std::max({std::abs(track_speeds.left), std::abs(track_speeds.right),
                                    std::abs(inputs.v), 0.5 * model.gauge * std::abs(inputs.omega)});
-  const double share = std::min(1.0, fastest / kTermFullSpeed);
+  return std::min(1.0, fastest / kTermFullSpeed);
+}
+
+/// What unnamed terms add to a motion of that share.
+inline Twist2 unnamedTwist(const VehicleModel& model, double share, const TermInputs& inputs) {
   const Twist2 all = twistOf(model.unnamed, inputs);
   return {share * all.v_x, share * all.v_y, share * all.omega};
 }

@@ -13,6 +13,7 @@
 
 #include "common/config/scalars.hpp"
 #include "common/geometry/degrees.hpp"
+#include "common/vehicle/effect_file.hpp"
 
 namespace tread {
 namespace {
@@ -240,6 +241,7 @@ ModelDocument readDocument(ConfigReader reader) {
   VehicleModel& model = document.vehicle;
   reader.text("name", model.name, true);
   readTracks(reader, model);
+  for (ConfigReader& entry : reader.sections("catalogue")) addEntry(readEffectEntry(entry), entry);
   ConfigReader effects = reader.section("effects");
   readEffects(effects, model.effects);
   readMeasurement(reader.section("measurement"), document.measurement);
@@ -294,6 +296,20 @@ void writeEffects(std::ostringstream& out, const ModelDocument& document, Effect
       const double value = valueOf(document, parameter);
       line(out, "    " + parameter.name, value, unitOf(parameter, value));
     }
+  }
+}
+
+/// The effects of the model that files describe: it is read where those files are not.
+void writeCatalogue(std::ostringstream& out, const ModelDocument& document) {
+  bool any = false;
+  for (const Effect& effect : effectCatalogue()) {
+    if (effect.law == nullptr || isDefault(document, effect)) continue;
+    if (!any) out << "catalogue:  # effects below that the catalogue had from files\n";
+    any = true;
+    std::istringstream lines(formatEffect(entryOf(effect)));
+    std::string text;
+    for (const char* indent = "  - "; std::getline(lines, text); indent = "    ")
+      out << indent << text << '\n';
   }
 }
 
@@ -419,9 +435,13 @@ void writeEnvelope(std::ostringstream& out, const Envelope& envelope) {
 void readEffects(ConfigReader& effects, EffectValues& values) {
   for (const Effect& effect : effectCatalogue()) {
     if (effect.kind() != EffectKind::kVehicle) continue;
+    const bool added = effect.law != nullptr && effects.has(effect.name);
     ConfigReader section = effects.section(effect.name);
-    for (const EffectParameter& parameter : effect.parameters)
-      readParameter(section, parameter, values.*parameter.vehicle);
+    for (const EffectParameter& parameter : effect.parameters) {
+      double& value = valueIn(values, parameter);
+      if (added && parameter.role == ParameterRole::kShape) value = parameter.typical;
+      readParameter(section, parameter, value);
+    }
   }
 }
 
@@ -458,6 +478,7 @@ VehicleModel readModelFile(const std::string& path) {
 std::string formatModelDocument(const ModelDocument& document) {
   std::ostringstream out;
   writeNominal(out, document.vehicle);
+  writeCatalogue(out, document);
   writeEffects(out, document, EffectKind::kVehicle, "effects");
   writeEffects(out, document, EffectKind::kMeasurement, "measurement");
   writeUnnamed(out, document.vehicle.unnamed);

@@ -8,8 +8,6 @@
 namespace tread {
 namespace {
 
-constexpr double kSignWidth = 0.05;  // [m/s or rad/s] over which a sign changes
-
 double signOf(double value) {
   return std::tanh(value / kSignWidth);
 }
@@ -26,20 +24,25 @@ double followMemory(double now, double dt, double& memory) {
 
 const std::vector<TermCondition>& termConditions() {
   static const std::vector<TermCondition> all{
-      {"v", "m/s", [](const TermInputs& m) { return m.v; }},
-      {"yaw rate", "rad/s", [](const TermInputs& m) { return m.omega; }},
-      {"|v|", "m/s", [](const TermInputs& m) { return std::abs(m.v); }},
-      {"|yaw rate|", "rad/s", [](const TermInputs& m) { return std::abs(m.omega); }},
-      {"change of v", "m/s2", [](const TermInputs& m) { return m.v_change; }},
-      {"change of yaw rate", "rad/s2", [](const TermInputs& m) { return m.omega_change; }},
-      {"change of |v|", "m/s2", [](const TermInputs& m) { return signOf(m.v) * m.v_change; }},
+      {"v", "m/s", [](const TermInputs& m) { return m.v; }, "v"},
+      {"yaw rate", "rad/s", [](const TermInputs& m) { return m.omega; }, "yaw_rate"},
+      {"|v|", "m/s", [](const TermInputs& m) { return std::abs(m.v); }, "abs(v)"},
+      {"|yaw rate|", "rad/s", [](const TermInputs& m) { return std::abs(m.omega); },
+       "abs(yaw_rate)"},
+      {"change of v", "m/s2", [](const TermInputs& m) { return m.v_change; }, "v_change"},
+      {"change of yaw rate", "rad/s2", [](const TermInputs& m) { return m.omega_change; },
+       "yaw_rate_change"},
+      {"change of |v|", "m/s2", [](const TermInputs& m) { return signOf(m.v) * m.v_change; },
+       "smooth_sign(v) * v_change"},
       {"change of |yaw rate|", "rad/s2",
-       [](const TermInputs& m) { return signOf(m.omega) * m.omega_change; }},
-      {"turns before", "1", [](const TermInputs& m) { return m.turned; }},
-      {"forward command", "m/s", [](const TermInputs& m) { return m.forward; }},
-      {"turning command", "m/s", [](const TermInputs& m) { return m.turning; }},
-      {"sign of v", "1", [](const TermInputs& m) { return signOf(m.v); }},
-      {"sign of yaw rate", "1", [](const TermInputs& m) { return signOf(m.omega); }}};
+       [](const TermInputs& m) { return signOf(m.omega) * m.omega_change; },
+       "smooth_sign(yaw_rate) * yaw_rate_change"},
+      {"turns before", "1", [](const TermInputs& m) { return m.turned; }, "turns_before"},
+      {"forward command", "m/s", [](const TermInputs& m) { return m.forward; }, "forward_command"},
+      {"turning command", "m/s", [](const TermInputs& m) { return m.turning; }, "turning_command"},
+      {"sign of v", "1", [](const TermInputs& m) { return signOf(m.v); }, "smooth_sign(v)"},
+      {"sign of yaw rate", "1", [](const TermInputs& m) { return signOf(m.omega); },
+       "smooth_sign(yaw_rate)"}};
   return all;
 }
 

@@ -23,10 +23,20 @@ struct TermInputs {
   double turning = 0.0;       ///< [m/s] half of their difference, right less left
 };
 
+/// One of them with its name in formulas.
+struct TermInput {
+  const char* name;
+  double TermInputs::*value;
+};
+
 /// All of them.
-inline constexpr double TermInputs::*kTermInputs[] = {
-    &TermInputs::v,      &TermInputs::omega,   &TermInputs::v_change, &TermInputs::omega_change,
-    &TermInputs::turned, &TermInputs::forward, &TermInputs::turning};
+inline constexpr TermInput kTermInputs[] = {{"v", &TermInputs::v},
+                                            {"yaw_rate", &TermInputs::omega},
+                                            {"v_change", &TermInputs::v_change},
+                                            {"yaw_rate_change", &TermInputs::omega_change},
+                                            {"turns_before", &TermInputs::turned},
+                                            {"forward_command", &TermInputs::forward},
+                                            {"turning_command", &TermInputs::turning}};
 
 /// What the kernel remembers for them; first-order low-passes of the motion.
 struct TermMemory {
@@ -36,6 +46,7 @@ struct TermMemory {
 };
 
 inline constexpr double kTermMemory = 0.4;   ///< [s] time constant of the memory of v and yaw rate
+inline constexpr double kSignWidth = 0.05;   ///< [m/s or rad/s] over which a sign changes
 inline constexpr double kTurnsMemory = 0.8;  ///< [rad] of turning that forgets earlier turns
 
 /// A quantity on which a term may depend. Names are those of the conditions that adequacy tests.
@@ -43,6 +54,7 @@ struct TermCondition {
   const char* name;
   const char* unit;
   double (*value)(const TermInputs&);
+  const char* formula;  ///< the same as formulas say it
 };
 
 /// All of them.

@@ -31,7 +31,7 @@ class RandomCase {
 
   /// Switches some effects of the catalogue on, at .2 to 1.5 times their typical sizes.
   void turnOn(ModelDocument& model, size_t most) {
-    const std::vector<Effect>& all = effectCatalogue();
+    const std::deque<Effect>& all = effectCatalogue();
     for (size_t i = below(most + 1); i > 0; --i) {
       const Effect& effect = all[below(all.size())];
       for (const EffectParameter& parameter : effect.parameters) {

@@ -182,10 +182,11 @@ TermInputs meanInputs(const std::vector<TermSample>& samples, double from, doubl
   for (; sample != samples.end() && sample->begin < to; ++sample) {
     const double share = std::min(to, sample->end) - std::max(from, sample->begin);
     all += share;
-    for (double TermInputs::*input : kTermInputs) mean.*input += share * sample->inputs.*input;
+    for (const TermInput& input : kTermInputs)
+      mean.*input.value += share * sample->inputs.*input.value;
   }
   if (all > 0.0)
-    for (double TermInputs::*input : kTermInputs) mean.*input /= all;
+    for (const TermInput& input : kTermInputs) mean.*input.value /= all;
   return mean;
 }
 

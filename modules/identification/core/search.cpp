@@ -275,7 +275,7 @@ class EffectSelection {
     const auto isDelay = [](const Effect& effect) {
       return effect.search.late_by == LateBy::kCommand || effect.search.late_by == LateBy::kPoses;
     };
-    const std::vector<Effect>& all = effectCatalogue();
+    const std::deque<Effect>& all = effectCatalogue();
     if (std::all_of(all.begin(), all.end(), [&](const Effect& effect) {
           return !isDelay(effect) || isOn(effect, state().model);
         }))

@@ -90,14 +90,15 @@ void hide(const Arguments& arguments) {
 
 const char* kindText(EffectKind kind) {
   if (kind == EffectKind::kVehicle || kind == EffectKind::kVehicleVariant) return "vehicle";
+  if (kind == EffectKind::kAdded) return "added";
   return kind == EffectKind::kOutOfCatalogue ? "unlisted" : "measurement";
 }
 
 void list() {
   for (const EffectSpec& effect : effectList())
-    std::printf("%-22s %-12s %-9s %-6s %s\n", effect.name, kindText(effect.kind),
+    std::printf("%-22s %-12s %-9s %-6s %s\n", effect.name.c_str(), kindText(effect.kind),
                 effect.form == EffectForm::kPhysical ? "physical" : "kinematic",
-                effect.shape == EffectShape::kSame ? "same" : "other", effect.how);
+                effect.shape == EffectShape::kSame ? "same" : "other", effect.how.c_str());
   for (const std::string& defect : defectNames()) std::printf("%-22s bad log\n", defect.c_str());
 }
 
@@ -152,6 +153,10 @@ void addOptions(CLI::App& app, Arguments& arguments) {
       ->check(CLI::IsMember({"null", "single", "pair", "out_of_catalogue", "degenerate", "bad"}));
   app.add_flag("--null", arguments.null, "nothing hidden: the plain vehicle");
   app.add_option("--effect", arguments.plan.effects, "one, or two with a comma")->delimiter(',');
+  app.add_option_function<std::string>("--effect-file", addEffectOfFile,
+                                       "effect of a file (YAML, as in config/effects), to be "
+                                       "hidden by its formula; --effect names it")
+      ->trigger_on_parse();
   app.add_option("--bad", arguments.plan.defect, "spoils the log in this way")
       ->check(CLI::IsMember(defectNames()));
   app.add_option("--size", arguments.plan.size, "1 is hardly visible, 2 usual, 4 large")

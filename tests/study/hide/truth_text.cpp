@@ -10,7 +10,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 const char* nameOf(EffectKind kind) {
-  if (kind == EffectKind::kVehicle || kind == EffectKind::kVehicleVariant) return "vehicle";
+  if (kind == EffectKind::kVehicle || kind == EffectKind::kVehicleVariant ||
+      kind == EffectKind::kAdded)
+    return "vehicle";
   return kind == EffectKind::kOutOfCatalogue ? "out_of_catalogue" : "measurement";
 }
 

@@ -9,6 +9,8 @@
 // program with its one line and 2.
 namespace tread::gap {
 
+/// --effects: adds the effects of a folder to the catalogue as soon as it is read.
+void addEffectsOption(CLI::App& command);
 void addPlan(CLI::App& app, int& status);
 void addWhatIf(CLI::App& app);
 void addWatch(CLI::App& app, int& status);

@@ -16,6 +16,7 @@
 #include "common/soundness/drive_log.hpp"
 #include "common/store/output_file.hpp"
 #include "common/store/store.hpp"
+#include "common/vehicle/effect_file.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "modules/identification/core/discovery.hpp"
 #include "tools/lab/gap/commands.hpp"
@@ -192,7 +193,9 @@ int compare(const CompareOptions& options) {
   return change.anyMoved() ? kSomethingMoved : 0;
 }
 
+/// What all commands that fit have.
 void addSeedAndThreads(CLI::App& command, FindOptions& options) {
+  addEffectsOption(command);
   command.add_option("--seed", options.seed, "of the random draws of the tests")
       ->capture_default_str()
       ->check(CLI::Range(int64_t{0}, int64_t{9'000'000'000'000'000'000}));
@@ -262,15 +265,39 @@ struct NameOptions {
   std::string model;
   std::string from;
   std::string to;
+  std::string effect;  ///< file to write; empty = the term stays one
 };
+
+/// Puts an effect in the place of a term; returns the text of its file.
+std::string keepAsEffect(ModelDocument& model, const NameOptions& options) {
+  if (std::filesystem::exists(options.effect))
+    throw std::runtime_error(options.effect + ": is there already; choose another file");
+  ModelDocument named = model;
+  renameTerm(named, options.from, options.to);
+  const UnnamedTerm& term = *termOfPath(named, options.to + ".0");
+  const std::string text = formatEffect(effectOf(term, options.to));
+  ConfigReader reader = ConfigReader::fromText(text, options.effect);
+  addEntry(readEffectEntry(reader), reader);
+  replaceTerm(model, options.from, effectNamed(options.to));
+  return text;
+}
 
 void name(const NameOptions& options) {
   ModelDocument model = readModelDocument(options.model);
-  renameTerm(model, options.from, options.to);
+  const bool keep = !options.effect.empty();
+  std::string effect;
+  if (keep)
+    effect = keepAsEffect(model, options);
+  else
+    renameTerm(model, options.from, options.to);
   const std::string text = formatModelDocument(model);
   parseModelDocument(text, options.model);  // a file that nobody can read is none
+  if (keep) writeText(options.effect, effect);
   writeText(options.model, text);
   say(options.from + " is " + options.to + " in " + options.model + " now");
+  if (keep)
+    say("It is an effect now: " + options.effect +
+        "; edit its words, and give its folder to find --effects for other logs and models.");
 }
 
 void addName(CLI::App& app) {
@@ -283,6 +310,9 @@ void addName(CLI::App& app) {
   command->add_option("MODEL", options->model, "model file (YAML); it is changed")->required();
   command->add_option("TERM", options->from, "its name now, as unnamed_1")->required();
   command->add_option("NAME", options->to, "its name from now on: a-z, 0-9 and _")->required();
+  command->add_option("--effect", options->effect,
+                      "file to write (YAML): the term becomes an effect of a catalogue of your "
+                      "own, which find --effects FOLDER looks for");
   command->callback([options] { name(*options); });
 }
 
@@ -292,6 +322,7 @@ void addExplain(CLI::App& app) {
       "explain", "what an effect is, what it looks like and how to check it in two minutes");
   command->add_option("EFFECT", *name,
                       "name of an effect, or start, verdicts or words; without it, a list");
+  addEffectsOption(*command);
   command->callback([name] {
     const auto about = topic(*name);
     std::cout << (name->empty() ? listOfEffects() + listOfTopics()
@@ -314,6 +345,7 @@ void addCompare(CLI::App& app, int& status) {
   command->add_option("--model", options->model, "model file whose terms are fitted (YAML)")
       ->required();
   addThreads(*command, options->threads);
+  addEffectsOption(*command);
   command->callback([options, &status] { status = compare(*options); });
 }
 

@@ -14,6 +14,7 @@
 #include "common/pattern/pattern_file.hpp"
 #include "common/soundness/drive_log.hpp"
 #include "common/store/store.hpp"
+#include "common/vehicle/effect_file.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "tools/lab/gap/commands.hpp"
 #include "tools/lab/gap/questions.hpp"
@@ -274,6 +275,14 @@ void addCircumstances(CLI::App& command, WhatIfOptions& options) {
 
 }  // namespace
 
+void addEffectsOption(CLI::App& command) {
+  command
+      .add_option_function<std::string>("--effects", addEffectsOf,
+                                        "folder of effects (*.yaml) beside those of the catalogue; "
+                                        "config/effects has examples")
+      ->trigger_on_parse();
+}
+
 void addPlan(CLI::App& app, int& status) {
   const auto options = std::make_shared<PlanOptions>();
   CLI::App* command =
@@ -289,6 +298,7 @@ void addPlan(CLI::App& app, int& status) {
       ->add_option("--speed", options->speed,
                    "m/s, largest track speed commanded; not for models that take powers")
       ->check(CLI::Range(0.01, 20.0));
+  addEffectsOption(*command);
   Outputs(*command).file("--out", options->out, "pattern set to write (YAML)");
   command->callback([options, &status] { status = plan(*options); });
 }
@@ -307,6 +317,7 @@ void addWhatIf(CLI::App& app) {
   command->add_option("--log", options->log, "a log; its executions are simulated, too");
   Outputs(*command).file("--out", options->out, "pictures: FILE.html or FILE.svg");
   addCircumstances(*command, *options);
+  addEffectsOption(*command);
   command->callback([options] { whatIf(*options); });
 }
 

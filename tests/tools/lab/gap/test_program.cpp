@@ -145,8 +145,10 @@ TEST_CASE("a log that is too short cannot tell: status 15, the reason, and no mo
   }
 }
 
-TEST_CASE("a term that find has added gets the name that a person gives it") {
-  const Folder folder;
+namespace {
+
+/// A model with a term, as find writes it.
+ModelDocument withTerm() {
   ModelDocument model = readModelDocument(kModels + "warthog_asphalt.yaml");
   UnnamedTerm term;
   term.name = "unnamed_1";
@@ -154,6 +156,64 @@ TEST_CASE("a term that find has added gets the name that a person gives it") {
   term.at = {-1.0, 0.0, 1.0};
   term.values = {-0.1, 0.0, 0.02};
   model.vehicle.unnamed = {term};
+  return model;
+}
+
+}  // namespace
+
+TEST_CASE("a term becomes an effect of a catalogue of one's own") {
+  const Folder folder;
+  const std::string model = folder.path("model.yaml");
+  const std::string file = folder.path("steering_hysteresis.yaml");
+  writeText(model, formatModelDocument(withTerm()));
+  const std::string name = "name " + model + " unnamed_1 steering_hysteresis --effect " + file;
+  const Run kept = run(name);
+  INFO(kept.printed);
+  CHECK(kept.status == 0);
+  CHECK(run("explain steering_hysteresis").status == 2);
+  // The model carries the effect with it; its folder is for other models.
+  const Run what_if = run("what-if --model " + model + " --remove steering_hysteresis");
+  INFO(what_if.printed);
+  CHECK(what_if.status == 0);
+  CHECK(what_if.says("What if: without steering hysteresis?"));
+  std::filesystem::create_directories(folder.path("own"));
+  std::filesystem::rename(file, folder.path("own/steering_hysteresis.yaml"));
+  const Run explained = run("explain steering_hysteresis --effects " + folder.path("own"));
+  INFO(explained.printed);
+  CHECK(explained.status == 0);
+  CHECK(explained.says("yaw_rate + share * moving * curve(smooth_sign(yaw_rate)"));
+  const Run added = run("what-if --model " + kModels + "teodor_grass.yaml --effects " +
+                        folder.path("own") + " --add steering_hysteresis");
+  INFO(added.printed);
+  CHECK(added.status == 0);
+  // Nothing is written over, and nothing of a refused name is left.
+  writeText(model, formatModelDocument(withTerm()));
+  writeText(file, "mine");
+  CHECK(run(name).says("is there already; choose another file"));
+  CHECK(folder.text("steering_hysteresis.yaml") == "mine");
+  CHECK(run("name " + model + " unnamed_1 yaw_pull --effect " + folder.path("x.yaml")).status == 2);
+  CHECK_FALSE(std::filesystem::exists(folder.path("x.yaml")));
+}
+
+TEST_CASE("effects that are none end the program with one line that names file and entry") {
+  const Folder folder;
+  std::filesystem::create_directories(folder.path("own"));
+  writeText(folder.path("own/bad.yaml"),
+            "name: bad\ntitle: T\nsentence: S\nchannels: x\nchanges: v\nto: v + p * spede\n"
+            "parameters: [{name: p, unit: '1', min: 0, max: 1, typical: 0.1}]\n"
+            "looks_like: L\nseparates: S\ncheck: C\n");
+  for (const char* command : {"explain", "find --model M --train L --out O"}) {
+    const Run refused = run(std::string(command) + " --effects " + folder.path("own"));
+    INFO(refused.printed);
+    CHECK(refused.status == 2);
+    CHECK(refused.says("bad.yaml:6: to: 'v + p * spede' is no formula: 'spede' is unknown"));
+  }
+  CHECK(run("explain --effects " + folder.path("nowhere")).says("is no folder with effects"));
+}
+
+TEST_CASE("a term that find has added gets the name that a person gives it") {
+  const Folder folder;
+  const ModelDocument model = withTerm();
   writeText(folder.path("model.yaml"), formatModelDocument(model));
   const Run named = run("name " + folder.path("model.yaml") + " unnamed_1 steering_hysteresis");
   INFO(named.printed);
@@ -161,7 +221,7 @@ TEST_CASE("a term that find has added gets the name that a person gives it") {
   const ModelDocument now = readModelDocument(folder.path("model.yaml"));
   REQUIRE(now.vehicle.unnamed.size() == 1);
   CHECK(now.vehicle.unnamed[0].name == "steering_hysteresis");
-  CHECK(now.vehicle.unnamed[0].values == term.values);
+  CHECK(now.vehicle.unnamed[0].values == model.vehicle.unnamed[0].values);
   const Run what_if = run("what-if --model " + folder.path("model.yaml") +
                           " --remove steering_hysteresis --out " + folder.path("what_if.html"));
   INFO(what_if.printed);

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/vehicle/effects.hpp"
+#include "common/vehicle/model_document.hpp"
+
+namespace tread {
+
+class ConfigReader;
+
+/// An effect that a file describes, with what it is confounded with.
+struct EffectEntry {
+  Effect effect;
+  std::vector<ConfoundedGroup> groups;
+};
+
+/// Reads the file of an effect (YAML; config/effects has examples, common/vehicle/README.md the
+/// keys).
+/** Throws ConfigError with one line for what is no effect: a formula that does not compile, has no
+ * value or changes something while the strengths are 0, missing ranges, a name that is taken. */
+EffectEntry readEffectFile(const std::string& path);
+
+/// The same of a section of another file.
+EffectEntry readEffectEntry(ConfigReader& reader);
+
+/// Reads all files of a folder (*.yaml, by name) and adds their effects to the catalogue.
+/** An effect that is there in the same words is not added twice; another one of its name is
+ * refused. Throws ConfigError. */
+void addEffectsOf(const std::string& folder);
+
+/// Adds an entry to the catalogue as addEffectsOf() does; `reader` is where it was read.
+void addEntry(EffectEntry entry, const ConfigReader& reader);
+
+/// Text of an effect's file; reading it gives the same effect.
+std::string formatEffect(const EffectEntry& entry);
+
+/// An unnamed term as an effect of the name, with `share` of the term's values as its size.
+EffectEntry effectOf(const UnnamedTerm& term, const std::string& name);
+
+/// Replaces an unnamed term of a model by the effect of the name, which effectOf() made of it and
+/// which is in the catalogue. What is known of its values is known of its share.
+void replaceTerm(ModelDocument& document, const std::string& term, const Effect& effect);
+
+/// The entry of an added effect of the catalogue.
+EffectEntry entryOf(const Effect& effect);
+
+}  // namespace tread
