@@ -24,6 +24,7 @@ file(WRITE ${exports}/tread-config.cmake [[
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 3.4 NO_MODULE)
 find_dependency(mrpt-poses 2.5)
+find_dependency(muparser 2.3)
 find_dependency(Threads)
 include(${CMAKE_CURRENT_LIST_DIR}/tread-targets.cmake)
 ]])
