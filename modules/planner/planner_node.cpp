@@ -177,8 +177,9 @@ PlannerConfig readConfig(ConfigReader& reader, bool logged) {
   map.field.inflation = map.footprint.half_width;
   map.field.wide = kWide * map.footprint.half_width;
   config.search.frontier = kFrontier * map.footprint.length();
+  // Open ground must be known as wide, whatever the robot's size.
   map.clearance.clearance_cap =
-      std::max(map.clearance.clearance_cap, 1.5 * map.footprint.half_width);
+      std::max({map.clearance.clearance_cap, 1.5 * map.footprint.half_width, map.field.wide});
   readMargins(reader.section("margins"), map.margins);
   readMap(reader.section("map"), map);
   readField(reader.section("field"), map.field);

@@ -121,6 +121,28 @@ TEST_CASE("what is as the model says again is told once, too") {
   CHECK(gaps[1].since == Approx(300 * kStretch).margin(50.0));
 }
 
+TEST_CASE("a clock that begins anew forgets what was read, not what was said") {
+  std::mt19937_64 random(12);
+  GapWatch watch;
+  std::vector<NoticedGap> gaps;
+  const auto drive = [&](int from, int to, double change) {
+    for (int i = from; i < to; ++i)
+      if (const auto gap = watch.take(scattered(kStretch * i, 0, change, random)))
+        gaps.push_back(*gap);
+  };
+  drive(1000, 1200, -0.1);
+  REQUIRE(gaps.size() == 1);
+  CHECK_FALSE(watch.asModel());
+  watch.restart();
+  drive(0, 200, -0.1);
+  CHECK(gaps.size() == 1);
+  drive(200, 400, 0.0);
+  REQUIRE(gaps.size() == 2);
+  CHECK(gaps[1].as_model);
+  CHECK(gaps[1].since == Approx(200 * kStretch).margin(50.0));
+  CHECK(watch.asModel());
+}
+
 TEST_CASE("false words are rarer than one in the hours that are asked for", "[statistics]") {
   // A change that is just no news, for which a game is fair, and readings of heavy tails.
   std::mt19937_64 random(10);

@@ -8,7 +8,7 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kTellsNothing = 5.0;   // limits; a reading that is less sure is no stake
+constexpr double kTellsNothing = 2.0;   // limits; a reading that is less sure is no stake
 constexpr double kSpreadMemory = 0.02;  // [1] of each new reading in the spread
 constexpr double kOneSide = 0.5;        // [1] the other drive changed by less than that of this one
 constexpr size_t kMostRecent = 2000;    // readings, some three hours
@@ -73,14 +73,14 @@ std::optional<double> GapWatch::play(Part& part, ChangedPart which, double chang
   return since;
 }
 
-/// Its size since then, by all readings; as sure as they agree, which share no noise.
+/// Its size since then, by all readings; its uncertainty comes from their scatter.
 NoticedGap GapWatch::noticed(ChangedPart part, double since, double now) const {
   NoticedGap gap{part, since, now, 0.0, 0.0, false};
   double weights = 0.0;
   const auto each = [&](const auto& use) {
     for (const WatchReading& reading : recent_) {
-      if (reading.begin < since) continue;
       const Said said = saidOf(reading, part);
+      if (reading.begin < since || said.uncertainty > kTellsNothing * limitOf(part)) continue;
       use(said.change, 1.0 / (said.uncertainty * said.uncertainty));
     }
   };
@@ -155,6 +155,16 @@ std::optional<NoticedGap> GapWatch::take(const WatchReading& reading) {
   gap.as_model = saidBefore(gap.part) != 0.0 && std::abs(gap.change) < limitOf(gap.part);
   say(gap);
   return gap;
+}
+
+void GapWatch::restart() {
+  recent_.clear();
+  for (Part& part : parts_) part.games = {};
+}
+
+bool GapWatch::asModel() const {
+  return std::all_of(parts_.begin(), parts_.end(),
+                     [](const Part& part) { return part.said == 0.0; });
 }
 
 }  // namespace tread::gap

@@ -18,7 +18,7 @@ inline constexpr size_t kChangedParts = 5;
 struct WatchLimits {
   double gain = 0.03;    ///< [1] less is no change
   double delay = 0.05;   ///< [s] less is no change
-  double hours = 100.0;  ///< [h] of driving between two false words, at least, on average
+  double hours = 100.0;  ///< [h] of driving between two false alarms, at least, on average
   double stretch = 5.0;  ///< [s] of driving in a reading
 };
 
@@ -33,20 +33,24 @@ struct NoticedGap {
 };
 
 /// Watches readings for a change that lasts.
-/** For each part and direction a test martingale against "the change is at most the limit, on
- * average". A share l of the wealth W is staked on each reading, which wins or loses by how far it is
- * beyond the limit:
- *    W <- max(1, W) (1 + l clamp((s (g - g_0) - limit) / m, -1, 1))
- * with s = +-1, g_0 what was said last (0: the model), m the spread of the readings so far. On
- * average he cannot win while the change is no larger, however the readings are distributed
- * (Ville's inequality; Shin, Ramdas and Rinaldo: e-detectors), so that W exceeds c on average no
- * sooner than after c readings. c is chosen for `hours`. `since` is when his run of luck began. */
+/** For each part and direction a test martingale against "the change is at most the limit". A share
+ * l of the wealth W is staked on each reading, which wins or loses by how far it is beyond the
+ * limit: W <- max(1, W) (1 + l clamp((s (g - g_0) - limit) / m, -1, 1)) with s = +-1, g_0 what was
+ * said last (0: the model), m the spread of the readings so far. While the clamped excess is not
+ * positive on average, W does not grow on average either, and exceeds c no sooner than after c
+ * readings on average (Ville's inequality; Shin, Ramdas and Rinaldo 2024: e-detectors). c is chosen
+ * for `hours`; `since` is when W began to grow. Readings that follow each other may share some of
+ * their ground: that is what the limit is for. */
 class GapWatch {
  public:
   explicit GapWatch(const WatchLimits& limits = {});
 
   /// In order of time; each may be the last that a change needs.
   std::optional<NoticedGap> take(const WatchReading& reading);
+  /// The robot's clock begins anew: what was said still holds, what was read does not count.
+  void restart();
+  /// Whether nothing that was said holds any more.
+  bool asModel() const;
 
  private:
   struct Game {

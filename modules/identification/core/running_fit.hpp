@@ -26,7 +26,7 @@ struct WatchReading {
   double end = 0.0;         ///< [s]
   WatchedNumbers change{};  ///< less the model's; gains relative to the model's
   WatchedNumbers
-      uncertainty{};  ///< standard deviations; as before the driving where it says nothing
+      uncertainty{};  ///< standard deviations; the prior's where the driving tells nothing
 };
 
 /// Least squares over the rows that begin between two times [s] of a drive with track commands.

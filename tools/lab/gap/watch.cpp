@@ -3,6 +3,7 @@
 #include "tools/lab/gap/watch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ctime>
 #include <stdexcept>
@@ -33,7 +34,7 @@ struct PartWords {
   const char* causes;  ///< what it may come from
 };
 
-PartWords wordsOf(ChangedPart part) {
+PartWords partWords(ChangedPart part) {
   switch (part) {
     case ChangedPart::kLeftDrive:
       return {"the left drive gives", "more", "less", "%", 100.0, "motor, controller or track"};
@@ -61,13 +62,9 @@ std::string sizeOf(const NoticedGap& gap, const PartWords& words) {
          words.unit + ")";
 }
 
-/// Its time where it is one of those that are compared.
-template <class Message>
-std::optional<int64_t> utimeOf(const LogEvent& event, const tread::Channel<Message>& channel) {
-  Message message{};
-  if (event.channel != channel.name || !decode(event, channel, message)) return std::nullopt;
-  return message.utime;
-}
+/// Effects that depend on what was before the last seconds.
+constexpr std::array<const char*, 4> kOfSession{"battery_sag", "thermal_derating", "payload_change",
+                                                "terrain_change"};
 
 }  // namespace
 
@@ -86,29 +83,38 @@ std::string WallClock::timeOf(int64_t utime, int64_t begin) const {
 }
 
 WatchedDrive::WatchedDrive(ModelDocument model, const WatchLimits& limits)
-    : model_(std::move(model)), limits_(limits), watch_(limits) {}
+    : model_(std::move(model)), limits_(limits), watch_(limits) {
+  for (const char* name : kOfSession)
+    if (isOn(effectNamed(name), model_))
+      throw std::runtime_error(model_.vehicle.name + ": watch sees seconds, and " + name +
+                               " depends on what was before; take it out of the model");
+}
 
 void WatchedDrive::startAt(int64_t utime) {
   recent_.clear();
+  if (utime < newest_) watch_.restart();
   newest_ = utime;
   next_ = utime + kBefore;
 }
 
-std::optional<std::string> WatchedDrive::take(const LogEvent& event) {
+std::optional<WatchLine> WatchedDrive::take(const LogEvent& event) {
   health_t health{};
-  if (event.channel == kHealth.name && decode(event, kHealth, health)) {
+  if (event.channel == kHealth.name && decode(event, kHealth, health))
     clock_.set(health.utime, health.utc);
-    return std::nullopt;
-  }
-  auto utime = utimeOf(event, kIns);
-  if (!utime) utime = utimeOf(event, kMotor);
-  if (!utime) return std::nullopt;
+  ins_t ins{};
+  motor_t motor{};
+  const bool of_motor = event.channel == kMotor.name && decode(event, kMotor, motor);
+  if (!of_motor && !(event.channel == kIns.name && decode(event, kIns, ins))) return std::nullopt;
+  const int64_t utime = of_motor ? motor.utime : ins.utime;
   const bool first = !begin_;
-  if (first) begin_ = *utime;
-  if (first || std::abs(*utime - newest_) > kMostJump) startAt(*utime);
-  newest_ = std::max(newest_, *utime);
+  if (first) begin_ = utime;
+  if (first || std::abs(utime - newest_) > kMostJump) startAt(utime);
+  newest_ = std::max(newest_, utime);
+  if (of_motor &&
+      (motor.bridge_state == motor_t::STATE_DRIVING || motor.bridge_state == motor_t::STATE_MANUAL))
+    driven_ = utime;
   recent_.push_back(event);
-  recent_.back().utime = *utime;
+  recent_.back().utime = utime;
   const int64_t length = microseconds(limits_.stretch);
   if (newest_ < next_ + length + kBehind) return std::nullopt;
   auto line = evaluate();
@@ -117,7 +123,9 @@ std::optional<std::string> WatchedDrive::take(const LogEvent& event) {
   return line;
 }
 
-std::optional<std::string> WatchedDrive::evaluate() {
+std::optional<WatchLine> WatchedDrive::evaluate() {
+  // Whoever stands says nothing, nor of what kind its commands are.
+  if (driven_ < next_) return std::nullopt;
   const Drive drive = toDrive(toDriveLog("watch", {recent_.begin(), recent_.end()}));
   if (drive.segments.empty()) return std::nullopt;
   if (drive.kind != model_.vehicle.kind)
@@ -133,11 +141,11 @@ std::optional<std::string> WatchedDrive::evaluate() {
   reading->end = reading->begin + limits_.stretch;
   const auto gap = watch_.take(*reading);
   if (!gap) return std::nullopt;
-  return lineOf(*gap);
+  return WatchLine{wordsOf(*gap), watch_.asModel()};
 }
 
-std::string WatchedDrive::lineOf(const NoticedGap& gap) const {
-  const PartWords words = wordsOf(gap.part);
+std::string WatchedDrive::wordsOf(const NoticedGap& gap) const {
+  const PartWords words = partWords(gap.part);
   const std::string since =
       "since " + clock_.timeOf(microseconds(gap.since), begin_.value_or(0)) + " ";
   if (gap.as_model) return since + words.subject + " as the model says again";

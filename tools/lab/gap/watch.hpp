@@ -26,23 +26,31 @@ class WallClock {
   std::optional<int64_t> ahead_;  ///< [us] of UTC before the robot's clock
 };
 
+/// One line on what is new.
+struct WatchLine {
+  std::string text;
+  bool as_model = false;  ///< nothing that was said holds any more
+};
+
 /// Compares a drive with a model while it goes on.
 /** Messages come in the order of a log. A reading needs some ten seconds of INS and MOTOR without a
  * gap; where a clock jumps or a channel is silent the watch goes on behind it. */
 class WatchedDrive {
  public:
+  /// Throws std::runtime_error with one line for a model whose terms depend on what was before the
+  /// last seconds: time, battery, heat.
   WatchedDrive(ModelDocument model, const WatchLimits& limits);
 
-  /// What is new, as one line; mostly nothing.
+  /// What is new; mostly nothing.
   /** Throws std::runtime_error with one line where the commands are not the model's. */
-  std::optional<std::string> take(const LogEvent& event);
+  std::optional<WatchLine> take(const LogEvent& event);
   /// [s] of driving that was compared.
   double compared() const { return compared_; }
 
  private:
-  std::optional<std::string> evaluate();
+  std::optional<WatchLine> evaluate();
   void startAt(int64_t utime);
-  std::string lineOf(const NoticedGap& gap) const;
+  std::string wordsOf(const NoticedGap& gap) const;
 
   ModelDocument model_;
   WatchLimits limits_;
@@ -52,6 +60,7 @@ class WatchedDrive {
   std::optional<int64_t> begin_;  ///< [us] of the first message
   int64_t newest_ = 0;            ///< [us]
   int64_t next_ = 0;              ///< [us] begin of the next reading
+  int64_t driven_ = 0;            ///< [us] when it last drove
   double compared_ = 0.0;
 };
 

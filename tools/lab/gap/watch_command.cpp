@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -27,15 +28,21 @@ struct WatchOptions {
 
 int watchLogs(const WatchOptions& options, const ModelDocument& model) {
   const DriveLog log = readDriveLog(options.logs);
-  if (!log.damage.empty()) std::cout << log.damage << '\n';
   WatchedDrive drive(model, options.limits);
   bool anything = false;
   for (const LogEvent& event : log.events)
     if (const auto line = drive.take(event)) {
-      std::cout << *line << std::endl;
+      std::cout << line->text << std::endl;
       anything = true;
     }
   const auto seconds = static_cast<int64_t>(drive.compared());
+  if (seconds == 0)
+    throw std::runtime_error(log.damage.empty()
+                                 ? options.logs.front() +
+                                       ": no ten seconds of driving with INS and MOTOR; give a log "
+                                       "of a drive"
+                                 : log.damage);
+  if (!log.damage.empty()) std::cout << log.damage << '\n';
   if (!anything)
     std::cout << "nothing new beyond chance in " << seconds << " s of driving" << std::endl;
   return anything ? kSomethingNew : 0;
@@ -65,12 +72,12 @@ void addWatch(CLI::App& app, int& status) {
   command->add_option("LOGS", options->logs,
                       "LCM logs instead of the bus; several are parts of one recording");
   command->add_option("--model", options->model, "model file (YAML)")->required();
-  command->add_option("--least", options->limits.gain, "a gain that changed by less is no news [1]")
+  command->add_option("--least", options->limits.gain, "smaller changes of a gain are ignored [1]")
       ->capture_default_str()
       ->check(CLI::Range(0.005, 0.5));
   command
       ->add_option("--hours", options->limits.hours,
-                   "of driving between two false words, at least, on average [h]")
+                   "of driving between two false alarms, at least, on average [h]")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 1e6));
   command->add_option("--lcm-url", options->lcm_url, "LCM provider");

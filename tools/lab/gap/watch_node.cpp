@@ -41,15 +41,16 @@ void WatchNode::hear(const LogEvent& event) {
   }
 }
 
-void WatchNode::say(const std::string& line) {
+void WatchNode::say(const WatchLine& line) {
   anything_ = true;
-  std::cout << line << std::endl;
-  health_.setState(health_t::HEALTH_DEGRADED, line);
+  std::cout << line.text << std::endl;
+  health_.setState(line.as_model ? health_t::HEALTH_OK : health_t::HEALTH_DEGRADED,
+                   line.as_model ? "" : line.text);
   auto mark = blank<mark_t>();
   mark.utime = now_;
   mark.seq = seq_++;
-  mark.mark_kind = "gap";
-  mark.mark_value = line;
+  mark.mark_kind = line.as_model ? "no gap" : "gap";
+  mark.mark_value = line.text;
   bus_.publish(kMark, mark);
 }
 

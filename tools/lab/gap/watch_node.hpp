@@ -10,8 +10,10 @@
 
 namespace tread::gap {
 
-/// Says what is new against the model: on the terminal, in HEALTH of gap_watch, as a MARK for the log.
-/** A robot whose commands are not the model's is said once, as FAILED; the node goes on silently. */
+/// Reports what is new against the model: on the terminal, in HEALTH of gap_watch, as a MARK for
+/// the log.
+/** If the robot's commands are of another kind than the model's, this is reported once, as FAILED;
+ * the node goes on silently. */
 class WatchNode : public Node {
  public:
   WatchNode(Bus& bus, const ModelDocument& model, const WatchLimits& limits);
@@ -25,7 +27,7 @@ class WatchNode : public Node {
   template <class Message>
   void listen(const tread::Channel<Message>& channel);
   void hear(const LogEvent& event);
-  void say(const std::string& line);
+  void say(const WatchLine& line);
 
   Bus& bus_;
   HealthReporter health_;

@@ -207,7 +207,7 @@ class CauseSearch {
     const GapNote* last = nullptr;
     for (const GapNote& note : drive_.gaps)
       if (note.time <= t_) last = &note;
-    if (last != nullptr) prove(last->time, "MARK", "gap_watch: " + last->words);
+    if (last != nullptr && last->holds) prove(last->time, "MARK", "gap_watch: " + last->words);
   }
   /// What a person said shortly before.
   const PersonNote* quote(const std::string& what) {

@@ -161,8 +161,8 @@ class TimelineReader {
   }
   void hear(const fence_t& fence) { person(fence.fence_by, "fence " + fence.fence_name); }
   void hear(const mark_t& mark) {
-    if (mark.mark_kind == "gap")
-      drive_.gaps.push_back({now_, mark.mark_value});
+    if (mark.mark_kind == "gap" || mark.mark_kind == "no gap")
+      drive_.gaps.push_back({now_, mark.mark_value, mark.mark_kind == "gap"});
     else
       person("operator", mark.mark_kind + ": " + mark.mark_value);
   }

@@ -71,6 +71,7 @@ struct PersonNote {
 struct GapNote {
   double time = 0.0;
   std::string words;
+  bool holds = true;  ///< else the vehicle is as its model again
 };
 
 /// An obstacle cell that came or went near the robot.

@@ -148,6 +148,8 @@ bool MovingControl::stopNext(const Prediction& running) {
       if (free) best = stop;
     }
   }
+  // A stop is no plan that leads on, which a later search would keep.
+  state_.plan.end = SearchEnd::kNothing;
   state_.plan.steps.clear();
   if (best == nullptr) {
     state_.tracker.clearNext();

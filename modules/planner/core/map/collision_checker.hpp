@@ -17,8 +17,8 @@ namespace tread::planner {
 struct Margins {
   double check = 0.03;  ///< when what is already under way is checked again
   double plan = 0.05;   ///< when the next pattern is chosen
-  /// When nothing is free with more, and growth times the standard deviation is no more; 0 = that
-  /// is not tried. Not less than check, not more than plan.
+  /// Where no plan with more leads on, and for a plan that is kept, if growth times the standard
+  /// deviation is no more; 0 = that is not tried. Not less than check, not more than plan.
   double narrow = 0.0;
   double growth = 0.5;    ///< [1] of the standard deviation of where the pattern ends
   double largest = 0.09;  ///< never more than this, so that narrow gaps stay open

@@ -78,8 +78,9 @@ struct SearchProblem {
   /// Ids of the patterns that the plan has to begin with; the margin for checking is enough for
   /// them.
   std::vector<int> branch;
-  bool branch_is_plan =
-      false;  ///< they need as much as others; Margins::narrow where that is allowed
+  /// The branch is the last plan: it is checked with the planning margin, or with Margins::narrow
+  /// where that is configured.
+  bool branch_is_plan = false;
   /// Told whenever a plan, or a cheaper one, was found, with its cost.
   std::function<void(double cost, int expansions)> on_better;
 };

@@ -25,7 +25,8 @@ constexpr const char* kWatchedModel = "name: watched\nkind: track_speed\ngauge: 
 
 /// Arcs of two seconds, of which the ground takes or adds a few per cent; from `from` on the left
 /// drive gives this share of what it is asked for.
-std::vector<LogEvent> driveWithLeft(double seconds, double from, double gain) {
+std::vector<LogEvent> driveWithLeft(double seconds, double from, double gain,
+                                    double stands_until = 0.0) {
   const ModelDocument model = parseModelDocument(kWatchedModel, "model");
   VehicleKernel kernel(model.vehicle, EntryState{});
   std::mt19937_64 random(3);
@@ -39,6 +40,11 @@ std::vector<LogEvent> driveWithLeft(double seconds, double from, double gain) {
     if (i % 40 == 0) {
       asked = {0.6 + 0.4 * uniform(random), 0.6 + 0.4 * uniform(random)};
       kernel.setNoise({1.0 + 0.02 * gauss(random), 1.0 + 0.02 * gauss(random), 0.0});
+    }
+    if (time < stands_until) {
+      log.motor(time, {}, motor_t::STATE_ARMED);
+      log.ins(time, kernel.pose(), 0.0);
+      continue;
     }
     log.motor(time, asked);
     const Pose2 pose = kernel.pose();
@@ -94,13 +100,29 @@ TEST_CASE("watch says in one line what a recording has that its model has not, a
   CHECK(sound.says("nothing new beyond chance in 2"));
 }
 
+TEST_CASE("a robot that stands armed before it drives is watched when it drives") {
+  const Folder folder;
+  writeEvents(driveWithLeft(200.0, 1000.0, 1.0, 60.0), folder.path("drive.lcmlog"));
+  const Run drive = run("watch --model " + folder.write("model.yaml", kWatchedModel) + " " +
+                        folder.path("drive.lcmlog"));
+  INFO(drive.printed);
+  CHECK(drive.status == 0);
+  CHECK(drive.says("nothing new beyond chance in 1"));
+}
+
 TEST_CASE("watch refuses a robot of other commands, and logs that are none, in one line") {
   const Folder folder;
   writeEvents(driveWithLeft(60.0, 100.0, 1.0), folder.path("drive.lcmlog"));
   const std::string power =
       folder.write("power.yaml", "name: p\nkind: power\nfull_speed: 1\ngauge: 1\n");
-  for (const Run& refused : {run("watch --model " + power + " " + folder.path("drive.lcmlog")),
-                             run("watch --model " + power + " " + folder.path("none.lcmlog"))}) {
+  for (const Run& refused :
+       {run("watch --model " + power + " " + folder.path("drive.lcmlog")),
+        run("watch --model " + power + " " + folder.path("none.lcmlog")),
+        run("watch --model " + power + " " + folder.write("notes.txt", "no log\n")),
+        run("watch --model " +
+            folder.write("battery.yaml", std::string(kWatchedModel) + "effects:\n  battery_sag:\n"
+                                                                      "    per_drop: 0.5\n") +
+            " " + folder.path("drive.lcmlog"))}) {
     INFO(refused.printed);
     CHECK(refused.status == 2);
     CHECK(refused.isOneLine());
