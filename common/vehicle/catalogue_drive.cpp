@@ -66,6 +66,37 @@ std::vector<Effect> commandEffects() {
   };
 }
 
+namespace {
+
+/// One track alone; what an asymmetry with a slip of both would be, too.
+Effect oneSided(const std::string& side, double EffectValues::*value) {
+  const std::string other = side == "left" ? "right" : "left";
+  Effect effect;
+  effect.name = side + "_track_loss";
+  effect.title = "Loss of the " + side + " track";
+  effect.channels = "xw";
+  effect.sentence = "The " + side +
+                    " track gives less than it is asked for, by the same share at " +
+                    "all speeds; the " + other + " one is right";
+  effect.equation = "u_" + side + " -> u_" + side + " (1 - loss)";
+  effect.looks_like = "Driving straight it turns to the " + side +
+                      ", by an angle per metre, and is too slow by half of what that track lacks.";
+  effect.separates =
+      "Straight drives and turns both ways: an asymmetry keeps the mean speed, a pull is not in "
+      "the "
+      "wheels. Wheel speeds tell a drive that gives less from a sprocket that is smaller.";
+  effect.check =
+      "Lift the vehicle off the ground, command both tracks alike, and count the "
+      "revolutions of both sprockets; measure the sprockets.";
+  effect.parameters = {strength("loss", "1", -0.5, 0.9, 0.06, value)};
+  effect.negative_sentence =
+      "The " + side + " track gives more than it is asked for, by the same share at all speeds";
+  effect.search = inPlace();
+  return effect;
+}
+
+}  // namespace
+
 std::vector<Effect> powerEffects() {
   using V = EffectValues;
   return {
@@ -107,6 +138,8 @@ std::vector<Effect> powerEffects() {
        "Drive 20 m along a line with equal commands, then back in reverse; measure both misses.",
        {withSigns(strength("share", "1", -0.3, 0.3, 0.03, &V::track_asymmetry),
                   "the left track is the faster one", "the right track is the faster one")}},
+      oneSided("left", &V::left_track_loss),
+      oneSided("right", &V::right_track_loss),
   };
 }
 

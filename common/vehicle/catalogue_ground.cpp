@@ -191,7 +191,9 @@ std::vector<Effect> gripEffects() {
        "Drive 20 m straight slowly and fast: a pull misses by the same angle, a bias by more when "
        "slow.",
        {withSigns(strength("pull", "rad/m", -0.5, 0.5, 0.05, &V::yaw_pull), "it pulls to the left",
-                  "it pulls to the right")}},
+                  "it pulls to the right")},
+       "",
+       inWheels({"left_track_loss", "right_track_loss", "track_asymmetry"})},
       {"yaw_rate_offset",
        "Constant turning",
        "w",

@@ -35,6 +35,20 @@ inline EffectSearch secondName() {
   return search;
 }
 
+/// Search settings of an effect that is put in the place of others.
+inline EffectSearch inPlace() {
+  EffectSearch search;
+  search.in_place = true;
+  return search;
+}
+
+/// Search settings of an effect under the wheels that these others are where wheels show it.
+inline EffectSearch inWheels(std::vector<std::string> names) {
+  EffectSearch search;
+  search.in_wheels = std::move(names);
+  return search;
+}
+
 /// Search settings of an effect that makes something late.
 inline EffectSearch isLate(LateBy late_by, EffectSearch search = {}) {
   search.late_by = late_by;
@@ -100,6 +114,12 @@ inline EffectParameter withSigns(EffectParameter parameter, std::string positive
                                  std::string negative) {
   parameter.positive = std::move(positive);
   parameter.negative = std::move(negative);
+  return parameter;
+}
+
+/// A distance on the vehicle, plausible up to so many gauges.
+inline EffectParameter upToGauges(double gauges, EffectParameter parameter) {
+  parameter.gauges = gauges;
   return parameter;
 }
 

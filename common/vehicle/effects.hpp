@@ -91,7 +91,12 @@ struct EffectSearch {
   std::vector<ChangePoint> change_points{};  ///< in order of time
   /// The same motion under a second name: never searched for, only told beside the other one.
   bool second_name = false;
+  /// Others do the same less simply: never searched for, but put in the place of one or two of
+  /// them where it explains more, or as much.
+  bool in_place = false;
   LateBy late_by = LateBy::kNothing;
+  /// Of an effect under the wheels: what it is, where they show it.
+  std::vector<std::string> in_wheels{};
 };
 
 /// A named departure from the nominal two-track model.

@@ -28,7 +28,7 @@ inline constexpr size_t kMostAdded = 32;  ///< parameters of all added effects
  *     command
  *       -> waits: delay + command_delay
  *       -> each track: full_speed, motor_deadband, speed_saturation, battery_sag,
- *          thermal_derating, track_asymmetry
+ *          thermal_derating, track_asymmetry, left_track_loss, right_track_loss
  *       -> added effects of tracks (added_effects.hpp)
  *       -> the drive follows: slew_limit, then lag + actuator_lag (lag_asymmetry when slowing);
  *          track_backlash
@@ -54,6 +54,8 @@ struct EffectValues {
   double thermal_derating = 0.0;      ///< [1]
   double thermal_time = 240.0;        ///< [s], shape
   double track_asymmetry = 0.0;       ///< [1]
+  double left_track_loss = 0.0;       ///< [1]
+  double right_track_loss = 0.0;      ///< [1]
   double actuator_lag = 0.0;          ///< [s], added to the model's lag
   double lag_asymmetry = 0.0;         ///< [s]
   double slew_limit = 0.0;            ///< [s2/m], 1 / greatest acceleration
@@ -304,6 +306,8 @@ inline double driveTarget(const EffectValues& effects, double supplied, double s
   if (effects.thermal_derating != 0.0)
     target *= std::max(0.0, 1.0 - effects.thermal_derating * heat);
   if (effects.track_asymmetry != 0.0) target *= 1.0 + side * effects.track_asymmetry;
+  const double loss = side > 0.0 ? effects.left_track_loss : effects.right_track_loss;
+  if (loss != 0.0) target *= 1.0 - loss;
   return target;
 }
 

@@ -73,3 +73,14 @@ TEST_CASE("lags without a delay get none") {
       found({{"yaw_inertia.lag", 1.0}, {"body_inertia.lag", 0.6}}, 300.0, 1, 0.03);
   CHECK(result.effects == Names{"yaw_inertia", "body_inertia"});
 }
+
+TEST_CASE("a loss on one track is one effect of that track, and an asymmetry of both stays one") {
+  for (const auto& [path, value] : Values{{"left_track_loss.loss", 0.1},
+                                          {"right_track_loss.loss", 0.06},
+                                          {"track_asymmetry.share", 0.05}}) {
+    INFO(path);
+    const FoundTerms result = found({{path, value}}, 400.0, 7, 0.03);
+    CHECK(result.effects == Names{effectOfPath(path)});
+    CHECK(*findParameter(result.state.model, path) == Approx(value).margin(0.01));
+  }
+}

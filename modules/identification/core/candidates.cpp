@@ -234,7 +234,8 @@ Excitation excitationOf(const Observations& data, const ModelDocument& model) {
 std::vector<Candidate> candidatesFor(const ModelDocument& model, const Excitation& most) {
   std::vector<Candidate> all;
   for (const Effect& effect : effectCatalogue())
-    if (!effect.search.second_name) addCandidates(effect, model, most, all);
+    if (!effect.search.second_name && !effect.search.in_place)
+      addCandidates(effect, model, most, all);
   return all;
 }
 

@@ -9,6 +9,7 @@
 
 #include "modules/identification/core/end_errors.hpp"
 #include "modules/identification/core/search.hpp"
+#include "modules/identification/core/witness.hpp"
 
 namespace tread::gap {
 namespace {
@@ -51,6 +52,7 @@ std::string reasonNotSized(const Fitter& fitter, const FitState& state,
 constexpr double kHopeless = 2.5;       // standard errors by which a pair is better in first order
 constexpr double kHopelessNats = 20.0;  // and what rounding of that order may cost
 constexpr double kBearableNats = 10.0;  // that simplicity may cost
+constexpr double kInWheels = 0.7;       // of an effect: the wheels show it
 constexpr double kImitated = 0.35;  // uniqueness below which the found effects imitate another one
 
 /// An effect that the found ones can imitate, and what it would change.
@@ -59,11 +61,16 @@ struct Single {
   Eigen::VectorXd direction;
 };
 
-/// One of each such effect.
+/// One of each such effect, those among them that are only put in the place of others.
 std::vector<Single> imitated(const SearchState& search) {
   const Fitter& fitter = search.fitter;
   const FitState& state = search.result.state;
-  auto candidates = candidatesFor(state, excitationOf(fitter.data(), state.model));
+  const Excitation most = excitationOf(fitter.data(), state.model);
+  auto candidates = candidatesFor(state, most);
+  for (const Effect& effect : effectCatalogue())
+    if (effect.search.in_place)
+      for (Candidate& candidate : candidatesOf(effect.name, state, most))
+        candidates.push_back(std::move(candidate));
   leaveOut(candidates, search.settings.rejected);
   const Eigen::MatrixXd directions = directionsOf(fitter, state, candidates);
   const ScoreTest test(fitter, state, directions);
@@ -149,6 +156,66 @@ void tryExchange(const SearchState& search, const Single& imitated_one, const st
   const Gain pair_gain = gainOf(fitter, heldOutLoss(fitter, tried), loss.held_out);
   if (pair_gain.value > std::min(pair_gain.error, kBearableNats)) return;
   best = Exchange{single.effect, a, b, std::move(tried), pair_gain};
+}
+
+/// Whether the wheels show most of an effect that is none of theirs.
+bool isInWheels(const SearchState& search, const std::string& effect) {
+  if (effectNamed(effect).search.in_wheels.empty()) return false;
+  const auto witnesses = wheelWitnesses(search.fitter, search.result.state, search.result.effects);
+  const auto found = witnesses.find(effect);
+  return found != witnesses.end() && found->second.share > kInWheels && found->second.low > 0.0;
+}
+
+/// An effect that may be put in the place of another one.
+struct Substitute {
+  Candidate candidate;
+  std::string other;
+  bool shown_by_wheels = false;  ///< it need not be better
+};
+
+std::vector<Substitute> substitutes(const SearchState& search) {
+  std::vector<Substitute> all;
+  const std::vector<Single> singles = imitated(search);
+  for (const std::string& other : search.result.effects) {
+    if (search.isAccepted(other)) continue;
+    const bool shown = isInWheels(search, other);
+    for (const Single& single : singles) {
+      const Effect& effect = effectNamed(single.candidate.effect);
+      const bool is_theirs = shown && contains(effectNamed(other).search.in_wheels, effect.name);
+      if (is_theirs || effect.search.in_place) all.push_back({single.candidate, other, is_theirs});
+    }
+  }
+  return all;
+}
+
+/// Whether a substitute explains more, by what it fits and not less by blocks left out; or, where
+/// the wheels speak for it, as much.
+bool isBetter(const SearchState& search, const FitState& tried, const BlockLosses& loss,
+              bool shown_by_wheels) {
+  const double least = shown_by_wheels ? -2.0 * kBearableNats : 2.0 * kBearableNats;
+  if (!(search.result.state.loss - tried.loss > least)) return false;
+  const Gain gain = gainOf(search.fitter, loss.held_out, heldOutLoss(search.fitter, tried));
+  return gain.value > -gain.error;
+}
+
+/// One effect in the place of another that does the same less well, the best of them.
+std::optional<Exchange> betterOne(const SearchState& search) {
+  const Fitter& fitter = search.fitter;
+  const FitState& state = search.result.state;
+  if (search.result.effects.empty() || search.isCutShort()) return std::nullopt;
+  const BlockLosses loss{{}, heldOutLoss(fitter, state)};
+  std::optional<Exchange> best;
+  for (const Substitute& one : substitutes(search)) {
+    if (search.isCutShort()) break;
+    FitState tried = switchedOff(fitter, state, {one.other});
+    const ScoreTest test(fitter, tried, directionsOf(fitter, tried, {one.candidate}));
+    addCandidate(fitter, tried, one.candidate, test.size(0));
+    fitter.fitRoughly(tried);
+    if (best && tried.loss >= best->state.loss) continue;
+    if (isBetter(search, tried, loss, one.shown_by_wheels))
+      best = Exchange{one.candidate.effect, one.other, "", std::move(tried), {}};
+  }
+  return best;
 }
 
 /// The exchange whose single effect fits best, if any is bearable.
@@ -239,20 +306,34 @@ std::string takeIn(const Fitter& fitter, FitState& state, const std::string& eff
 }
 
 void replacePairs(const SearchState& search) {
-  // Each exchange takes an effect away.
-  while (const auto exchange = bestExchange(search)) {
-    const auto& [single, a, b, state, pair_gain] = *exchange;
-    const std::string remark = "in the place of " + a + " and " + b;
-    search.result.record.steps.push_back(
-        {single, false, 0.0, 1.0, -pair_gain.value, pair_gain.error, {}, remark});
-    search.say("  = " + single + " " + remark);
+  const auto exchangeFor = [&search](const Exchange& exchange) {
+    std::vector<std::string> replaced{exchange.a};
+    if (!exchange.b.empty()) replaced.push_back(exchange.b);
+    const std::string remark =
+        "in the place of " + exchange.a + (exchange.b.empty() ? "" : " and " + exchange.b);
+    search.result.record.steps.push_back({exchange.single,
+                                          false,
+                                          0.0,
+                                          1.0,
+                                          -exchange.pair_gain.value,
+                                          exchange.pair_gain.error,
+                                          {},
+                                          remark});
+    search.say("  = " + exchange.single + " " + remark);
     auto& effects = search.result.effects;
-    effects.erase(std::remove(effects.begin(), effects.end(), a), effects.end());
-    effects.erase(std::remove(effects.begin(), effects.end(), b), effects.end());
-    effects.push_back(single);
-    search.result.evidence[single].replaced = {a, b};
-    search.result.state = state;
-  }
+    for (const std::string& gone : replaced)
+      effects.erase(std::remove(effects.begin(), effects.end(), gone), effects.end());
+    effects.push_back(exchange.single);
+    EffectEvidence& evidence = search.result.evidence[exchange.single];
+    if (replaced.size() > 1)
+      evidence.replaced = replaced;
+    else
+      evidence.p_value = search.result.evidence[exchange.a].p_value;
+    search.result.state = exchange.state;
+  };
+  // Each exchange takes an effect away, or puts one that nothing else replaces in its place.
+  while (const auto exchange = bestExchange(search)) exchangeFor(*exchange);
+  while (const auto exchange = betterOne(search)) exchangeFor(*exchange);
 }
 
 Eigen::MatrixXd missedOnOtherHalves(const Fitter& fitter, const FitState& state,

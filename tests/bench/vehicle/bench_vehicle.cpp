@@ -5,6 +5,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "common/vehicle/effect_file.hpp"
 #include "common/vehicle/effects.hpp"
 #include "common/vehicle/kernel.hpp"
 
@@ -24,7 +25,7 @@ VehicleModel plain(double step) {
 
 void turnOn(const Effect& effect, VehicleModel& model) {
   for (const EffectParameter& parameter : effect.parameters)
-    model.effects.*parameter.vehicle = parameter.typical;
+    valueIn(model.effects, parameter) = parameter.typical;
 }
 
 VehicleModel everything(double step) {
@@ -53,6 +54,7 @@ int main(int argc, char** argv) {
     benchmark::RegisterBenchmark(("all off" + name).c_str(), drive, plain(step));
     benchmark::RegisterBenchmark(("all on" + name).c_str(), drive, everything(step));
   }
+  addEffectsOf(TREAD_SOURCE_DIR "/config/effects");
   for (const Effect& effect : effectCatalogue()) {
     if (effect.kind() != EffectKind::kVehicle) continue;
     VehicleModel model = plain(0.005);
