@@ -137,7 +137,7 @@ std::optional<WatchLine> WatchedDrive::take(const LogEvent& event) {
 }
 
 std::optional<WatchLine> WatchedDrive::evaluate() {
-  // Whoever stands says nothing, nor of what kind its commands are.
+  // A robot that stands shows nothing, not even the kind of its commands.
   if (driven_ < next_) return std::nullopt;
   const Drive drive = toDrive(toDriveLog("watch", {recent_.begin(), recent_.end()}));
   if (drive.segments.empty()) return std::nullopt;

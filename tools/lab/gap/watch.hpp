@@ -14,7 +14,7 @@
 
 namespace tread::gap {
 
-/// When a robot's clock said what a day's clock did.
+/// Relates the robot's clock to the time of day.
 class WallClock {
  public:
   /// From any process's HEALTH; virtual time has none.
