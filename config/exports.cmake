@@ -3,7 +3,7 @@
 # What other projects may link: find_package(tread), then tread::learner (patterns and their learner) or
 # tread::identification. tests/packages/examples shows each. They are in the package tread-lab.
 include(CMakePackageConfigHelpers)
-set(exported tread_options tread_learner_core tread_gap_core tread_log_validation tread_execution tread_geometry
+set(exported tread_options tread_learner_core tread_gap_core tread_log_validation tread_execution tread_stop_reason tread_geometry
     tread_grid tread_ground tread_omni_wheels tread_parallel tread_pattern tread_vehicle)
 foreach(target IN LISTS exported)
   string(REPLACE tread_ "" name ${target})

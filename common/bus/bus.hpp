@@ -287,7 +287,6 @@ class HealthReporter {
   void setCounter(const std::string& name, int64_t value);
   void addToCounter(const std::string& name, int64_t increment = 1);
   /// For counters of what comes and goes: HEALTH has its size.
-  void removeCounter(const std::string& name) { counters_.erase(name); }
   /// Call in each step.
   void step(int64_t utime);
 

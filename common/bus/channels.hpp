@@ -9,6 +9,7 @@
 #include <tread/estop_t.hpp>
 #include <tread/execution_t.hpp>
 #include <tread/fence_t.hpp>
+#include <tread/fences_t.hpp>
 #include <tread/goal_t.hpp>
 #include <tread/grip_t.hpp>
 #include <tread/health_t.hpp>
@@ -55,7 +56,7 @@ inline constexpr Channel<plan_t> kPlan{{"PLAN", "plan_t", "planner", 5, 1000, 20
 inline constexpr Channel<plan_tree_t> kPlanTree{
     {"PLAN_TREE", "plan_tree_t", "planner", 1, 3000, 60000}};
 inline constexpr Channel<program_t> kProgram{{"PROGRAM", "program_t", "planner", 20, 200, 20000}};
-inline constexpr Channel<motor_t> kMotor{{"MOTOR", "motor_t", "motor_bridge", 20, 150, 400}};
+inline constexpr Channel<motor_t> kMotor{{"MOTOR", "motor_t", "motor_bridge", 20, 150, 500}};
 inline constexpr Channel<execution_t> kExecution{
     {"EXECUTION", "execution_t", "motor_bridge", 5, 1000, 2000}};
 inline constexpr Channel<stopping_t> kStoppingTime{
@@ -74,6 +75,8 @@ inline constexpr Channel<operator_t> kOperator{
 inline constexpr Channel<manual_t> kManual{{"MANUAL", "manual_t", "tread-drive", 50, 200, 200}};
 inline constexpr Channel<estop_t> kEstop{{"ESTOP", "estop_t", "anyone", 0, 0, 1000}};
 inline constexpr Channel<fence_t> kFence{{"FENCE", "fence_t", "anyone", 0, 0, 1500}};
+inline constexpr Channel<fences_t> kFences{
+    {"FENCES", "fences_t", "planner, motor_bridge", 1, 3000, 15000}};
 inline constexpr Channel<mark_t> kMark{{"MARK", "mark_t", "anyone", 0, 0, 1000}};
 inline constexpr Channel<config_t> kConfig{{"CONFIG", "config_t", "every process", 0.1, 0, 60000}};
 
@@ -102,9 +105,10 @@ inline void forgetSender(fence_t& message) {
 }
 
 /// The whole table, for README, health checks and tests.
-inline constexpr std::array<ChannelSpec, 24> kChannels{
-    kIns,   kScanMatching, kScan,       kMap,          kGoal,         kPlan,  kPlanTree, kProgram,
-    kMotor, kExecution,    kPatternSet, kLearnerState, kLearning,     kShock, kGrip,     kHealth,
-    kArm,   kOperator,     kManual,     kEstop,        kStoppingTime, kFence, kMark,     kConfig};
+inline constexpr std::array<ChannelSpec, 25> kChannels{
+    kIns,     kScanMatching, kScan,      kMap,        kGoal,         kPlan,     kPlanTree,
+    kProgram, kMotor,        kExecution, kPatternSet, kLearnerState, kLearning, kShock,
+    kGrip,    kHealth,       kArm,       kOperator,   kManual,       kEstop,    kStoppingTime,
+    kFence,   kFences,       kMark,      kConfig};
 
 }  // namespace tread

@@ -50,7 +50,7 @@ const Headings& headings() {
     add(true, kIns, kMotor, kExecution);
     add(false, kScanMatching, kScan, kMap, kGoal, kPlan, kPlanTree, kProgram, kPatternSet,
         kLearnerState, kLearning, kShock, kGrip, kHealth, kArm, kOperator, kManual, kEstop,
-        kStoppingTime, kFence, kMark, kConfig);
+        kStoppingTime, kFence, kFences, kMark, kConfig);
     return table;
   }();
   return all;

@@ -75,7 +75,7 @@ void ExecutionTracker::stop() {
   confirmed_ = false;
 }
 
-ExecutionTracker::Event ExecutionTracker::finish(Event event, const std::string& reason) {
+ExecutionTracker::Event ExecutionTracker::finish(Event event, const Reason& reason) {
   abort_reason_ = reason;
   stop();
   return event;
@@ -132,7 +132,7 @@ ExecutionTracker::Event ExecutionTracker::followExecutions(const RobotReadings& 
   confirmed_ = confirmed_ || begun;
   // The bridge ended a pattern and began none of ours at once: it stands, whatever was handed over
   // as next.
-  return completed ? finish(Event::kEnded, "") : event;
+  return completed ? finish(Event::kEnded, {}) : event;
 }
 
 ExecutionTracker::Event ExecutionTracker::followMotor(const RobotReadings& readings) {
@@ -160,14 +160,15 @@ ExecutionTracker::Event ExecutionTracker::followMotor(const RobotReadings& readi
 ExecutionTracker::Event ExecutionTracker::followTime(int64_t now) {
   if (!confirmed_) {
     if (now - handed_over_ <= kStartLimit) return Event::kNone;
-    return finish(Event::kNeverStarted, "motor_bridge did not begin the pattern");
+    return finish(Event::kNeverStarted,
+                  {StopReason::kNotBegun, "motor_bridge did not begin the pattern"});
   }
   if (now < ends()) return Event::kNone;
   if (!next_.empty()) {
     advanceTo(next_, ends());
     return Event::kSwitched;
   }
-  return now < ends() + kSettle ? Event::kNone : finish(Event::kEnded, "");
+  return now < ends() + kSettle ? Event::kNone : finish(Event::kEnded, {});
 }
 
 }  // namespace tread

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/execution/stop_reason.hpp"
 #include "common/geometry/se2.hpp"
 #include "common/pattern/pattern.hpp"
 
@@ -31,7 +32,7 @@ struct BridgeReading {
   enum class State { kDisarmed, kArmed, kDriving, kStopping, kFault, kEstopped, kByHand };
   int64_t utime = 0;  ///< [us] when it gave its last command
   State state = State::kDisarmed;
-  std::string reason;
+  Reason reason;
   int64_t run_id = 0;
   int64_t execution_id = 0;  ///< being played; 0 = none
   int command_index = -1;
@@ -43,11 +44,6 @@ struct BridgeReading {
   }
 };
 
-/// Why an execution was aborted whose program the planner has emptied.
-inline constexpr const char* kStoppedByPlanner = "stopped by the planner";
-/// Why a pattern that a person drove by hand was not driven to its end.
-inline constexpr const char* kLeftByHand = "the person drove on in another way";
-
 /// One execution as the motor bridge records it.
 struct ExecutionReading {
   enum class State { kRunning, kCompleted, kAborted };
@@ -55,7 +51,7 @@ struct ExecutionReading {
   int64_t execution_id = 0;
   int64_t started = 0;  ///< [us]
   State state = State::kRunning;
-  std::string reason;  ///< why aborted
+  Reason reason;  ///< why aborted
 };
 
 /// What whoever drives the robot knows about it at one moment.
@@ -115,14 +111,14 @@ class ExecutionTracker {
   int64_t ends() const { return started_ + running_.durationUs(); }
   int64_t runId() const { return run_id_; }
   /// Why the last execution was aborted, in words.
-  const std::string& abortReason() const { return abort_reason_; }
+  const Reason& abortReason() const { return abort_reason_; }
 
  private:
   Event followMotor(const RobotReadings& readings);
   Event followExecutions(const RobotReadings& readings);
   Event followTime(int64_t now);
   void advanceTo(const PlannedExecution& to, int64_t started);
-  Event finish(Event event, const std::string& reason);
+  Event finish(Event event, const Reason& reason);
   bool adopt(int64_t execution_id, int64_t started);
 
   int64_t run_id_;
@@ -134,7 +130,7 @@ class ExecutionTracker {
   int64_t handed_over_ = 0;
   int64_t started_ = 0;
   bool confirmed_ = false;
-  std::string abort_reason_;
+  Reason abort_reason_;
 };
 
 }  // namespace tread

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/execution/stop_reason.hpp"
 #include "common/geometry/track.hpp"
 #include "common/pattern/pattern.hpp"
 
@@ -64,7 +65,7 @@ struct ExecutionCut {
   /// The entry class's command was given before it for so long that the entry is the class's,
   /// whatever twist that makes on this ground.
   bool steady_before = false;
-  std::string outcome_reason;  ///< why it was aborted
+  Reason outcome;  ///< why it was aborted
   /// A command that differed from the pattern's, in words; empty = none seen.
   std::string unexpected_command;
 };

@@ -9,8 +9,10 @@
 #include <tread_before/pattern_set_part_t.hpp>
 #include <tread_before/program_t.hpp>
 
+#include "common/execution/stop_reason.hpp"
 #include "common/messages/blank.hpp"
 #include "common/pattern/command.hpp"
+#include "common/types/renewal.hpp"
 
 namespace tread {
 namespace {
@@ -23,6 +25,10 @@ motor_t renewed(const tread_before::motor_t& old) {
   message.execution_id = old.execution_id;
   message.command_index = old.command_index;
   message.bridge_state = old.bridge_state;
+  // Imported logs say so of stretches that nothing may be learned from.
+  const bool by_operator = old.state_reason == sentenceOf(StopReason::kOperatorDrives);
+  message.state_code =
+      static_cast<int16_t>(by_operator ? StopReason::kOperatorDrives : StopReason::kUnsaid);
   message.state_reason = old.state_reason;
   message.channel_kind[0] = message.channel_kind[1] = old.motor_command_kind;
   message.command[0] = old.command_left;
@@ -113,6 +119,7 @@ void renewOne(LogEvent& event, const Channel<Message>& channel) {
 }  // namespace
 
 void renew(LogEvent& event) {
+  if (renewByNames(event.channel, event.bytes)) return;
   renewOne<tread_before::motor_t>(event, kMotor);
   renewOne<tread_before::program_t>(event, kProgram);
   renewOne<tread_before::pattern_set_part_t>(event, kPatternSet);

@@ -7,8 +7,8 @@
 namespace tread {
 
 /// Writes the bytes of a message anew that was logged while its type had other fields
-/// (lcmtypes/before): MOTOR, PROGRAM and PATTERN_SET with a left and a right command. Others, and
-/// what cannot be decoded, stay as they are.
+/// (lcmtypes/before): by the names of its fields (common/types/renewal.hpp), and MOTOR, PROGRAM and
+/// PATTERN_SET with a left and a right command. What cannot be decoded stays as it is.
 void renew(LogEvent& event);
 
 }  // namespace tread

@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "common/messages/fence_messages.hpp"
 
-#include <cstring>
+#include <algorithm>
 #include <utility>
 
 #include "common/messages/blank.hpp"
@@ -10,47 +10,9 @@
 namespace tread {
 namespace {
 
-constexpr size_t kHashDigits = 8;
-constexpr int64_t kLookEvery = 500'000;  // [us]
-
-/// FNV-1a of kind and corners.
-uint32_t hashOf(const Fence& fence) {
-  uint32_t hash = 2166136261U;
-  const auto mix = [&hash](double number) {
-    number += 0.0;  // -0.0 is 0.0
-    uint64_t bits = 0;
-    std::memcpy(&bits, &number, sizeof bits);
-    for (int shift = 0; shift < 64; shift += 8) {
-      hash ^= static_cast<uint32_t>((bits >> shift) & 0xFFU);
-      hash *= 16777619U;
-    }
-  };
-  mix(fence.keep_out ? 1.0 : 0.0);
-  for (const Eigen::Vector2d& corner : fence.corners) {
-    mix(corner.x());
-    mix(corner.y());
-  }
-  return hash;
-}
-
-std::string counterPrefix(const std::string& name) {
-  return "fence " + name + " ";
-}
+constexpr int64_t kPeriod = 1'000'000;  // [us]
 
 }  // namespace
-
-std::string fenceCounter(const Fence& fence) {
-  std::string counter = counterPrefix(fence.name);
-  const uint32_t hash = hashOf(fence);
-  for (size_t digit = kHashDigits; digit-- > 0;)
-    counter += "0123456789abcdef"[(hash >> (4 * digit)) & 0xFU];
-  return counter;
-}
-
-bool countsFence(const std::string& counter, const std::string& name) {
-  const std::string prefix = counterPrefix(name);
-  return counter.size() == prefix.size() + kHashDigits && counter.rfind(prefix, 0) == 0;
-}
 
 FenceRequest requestFrom(const fence_t& message) {
   FenceRequest request;
@@ -77,33 +39,34 @@ fence_t toMessage(const FenceRequest& request) {
   return message;
 }
 
-FenceExchange::FenceExchange(Bus& bus, std::string process, std::string other)
+std::vector<Fence> fencesFrom(const fences_t& message) {
+  std::vector<Fence> fences;
+  for (const fence_t& fence : message.fences) fences.push_back(requestFrom(fence).fence);
+  return fences;
+}
+
+FenceExchange::FenceExchange(Bus& bus, std::string process, const std::string& other, Taker take)
     : bus_(bus), process_(std::move(process)) {
-  bus.overhear<health_t>(kHealth, [this, other = std::move(other)](const health_t& health) {
-    if (health.process != other || bus_.now() < next_) return;
-    next_ = bus_.now() + kLookEvery;
-    others_counters_.emplace();
-    for (const counter_t& counter : health.counters) others_counters_->insert(counter.counter_name);
+  bus.overhear<fences_t>(kFences, [other, take = std::move(take)](const fences_t& message) {
+    if (message.keeper != other) return;
+    const std::vector<Fence> fences = fencesFrom(message);
+    const auto own = static_cast<size_t>(std::max(0, message.num_own));
+    for (size_t i = own; i < fences.size(); ++i) take({other, false, fences[i]});
   });
 }
 
-void FenceExchange::send(const Fence& fence) {
-  fence_t message = toMessage({process_, false, fence});
+void FenceExchange::step(const FenceBook& book) {
+  if (book.revision() == revision_ && bus_.now() < next_) return;
+  revision_ = book.revision();
+  next_ = bus_.now() + kPeriod;
+  auto message = blank<fences_t>();
   message.utime = bus_.now();
   message.seq = seq_++;
-  bus_.publish(kFence, message);
-}
-
-void FenceExchange::step(const FenceBook& book, HealthReporter& health) {
-  for (size_t i = book.own(); others_counters_ && i < book.fences().size(); ++i)
-    if (others_counters_->count(fenceCounter(book.fences()[i])) == 0) send(book.fences()[i]);
-  others_counters_.reset();
-  if (book.revision() == revision_) return;
-  revision_ = book.revision();
-  for (const std::string& counter : told_) health.removeCounter(counter);
-  told_.clear();
-  for (const Fence& fence : book.fences()) told_.insert(fenceCounter(fence));
-  for (const std::string& counter : told_) health.setCounter(counter, 1);
+  message.keeper = process_;
+  message.num_own = static_cast<int32_t>(book.own());
+  for (const Fence& fence : book.fences()) message.fences.push_back(toMessage({"", false, fence}));
+  message.num_fences = static_cast<int32_t>(message.fences.size());
+  bus_.publish(kFences, message);
 }
 
 }  // namespace tread

@@ -2,11 +2,9 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <optional>
-#include <set>
+#include <functional>
 #include <string>
-
-#include <tread/fence_t.hpp>
+#include <vector>
 
 #include "common/bus/bus.hpp"
 #include "common/fence/fence_book.hpp"
@@ -19,33 +17,27 @@ FenceRequest requestFrom(const fence_t& message);
 /// Without utime and seq.
 fence_t toMessage(const FenceRequest& request);
 
-/// Name of the HEALTH counter of a fence: with a hash of its kind and corners, since several may
-/// bear its name.
-std::string fenceCounter(const Fence& fence);
-/// Whether a HEALTH counter is that of a fence of this name.
-bool countsFence(const std::string& counter, const std::string& name);
+/// The fences of a keeper, its own first.
+std::vector<Fence> fencesFrom(const fences_t& message);
 
-/// Tells in HEALTH which fences are in force, so that tread-fence sees that they were taken, and
-/// brings those of operators to the other process that keeps fences.
-/** There is no counter of what is not in force. Whoever was started again and lost the operators'
- * fences gets them back from the other, whose HEALTH and FENCE it hears. */
+/// Publishes the fences that a process keeps, and takes over what operators have given to the other
+/// keeper: whoever was started again has lost them.
 class FenceExchange {
  public:
-  /// Process names as in HEALTH. The bus must outlive this.
-  FenceExchange(Bus& bus, std::string process, std::string other);
+  using Taker = std::function<void(const FenceRequest&)>;
+
+  /// Process names as in HEALTH; `take` is called with each fence that the other keeper has from an
+  /// operator. The bus must outlive this.
+  FenceExchange(Bus& bus, std::string process, const std::string& other, Taker take);
 
   /// Call it at least twice a second.
-  void step(const FenceBook& book, HealthReporter& health);
+  void step(const FenceBook& book);
 
  private:
-  void send(const Fence& fence);
-
   Bus& bus_;
   std::string process_;
-  std::optional<std::set<std::string>> others_counters_;  ///< of the other's HEALTH, if new
-  int64_t next_ = 0;  ///< [us] until then no HEALTH is looked at
+  int64_t next_ = 0;  ///< [us]
   int64_t revision_ = -1;
-  std::set<std::string> told_;  ///< counters
   int64_t seq_ = 0;
 };
 

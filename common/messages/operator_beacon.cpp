@@ -13,7 +13,6 @@ namespace tread {
 namespace {
 
 constexpr size_t kLongestName = 64;
-const std::string kHeldBy = "held by ";
 constexpr int64_t kLeaves = 1'000'000;      // [us] of silence
 constexpr int64_t kWorthTelling = 100'000;  // [us]
 
@@ -35,18 +34,10 @@ std::optional<OperatorNotice> noticeFrom(const operator_t& message) {
       message.seen_utime, message.stands_for,    message.hand_over_to};
 }
 
-std::string holderCounter(const std::string& holder) {
-  return kHeldBy + holder;
-}
-
 HolderWatch::HolderWatch(Bus& bus) {
-  bus.subscribe<health_t>(kHealth, [this](const health_t& health) {
-    if (health.process != "motor_bridge") return;
-    told_ = health.utime;
-    name_.clear();
-    for (const counter_t& counter : health.counters)
-      if (counter.counter_name.rfind(kHeldBy, 0) == 0)
-        name_ = counter.counter_name.substr(kHeldBy.size());
+  bus.subscribe<motor_t>(kMotor, [this](const motor_t& motor) {
+    told_ = motor.utime;
+    name_ = motor.holder;
   });
 }
 

@@ -17,10 +17,7 @@ namespace tread {
 /// Nothing for a message without a name, or with one that cannot be shown in a line.
 std::optional<OperatorNotice> noticeFrom(const operator_t& message);
 
-/// Name of the motor bridge's HEALTH counter that tells who holds the robot.
-std::string holderCounter(const std::string& holder);
-
-/// Who holds the robot, as the motor bridge tells in HEALTH each second.
+/// Who holds the robot, by MOTOR.
 class HolderWatch {
  public:
   explicit HolderWatch(Bus& bus);

@@ -279,7 +279,7 @@ BridgeReading readingFrom(const motor_t& message) {
   BridgeReading reading;
   reading.utime = message.utime;
   reading.state = stateFrom(message.bridge_state);
-  reading.reason = message.state_reason;
+  reading.reason = {stopReasonFrom(message.state_code), message.state_reason};
   reading.run_id = message.motor_run_id;
   reading.execution_id = message.execution_id;
   reading.command_index = message.command_index;
@@ -303,7 +303,7 @@ std::vector<ExecutionReading> readingsFrom(const execution_t& message) {
       reading.state = ExecutionReading::State::kCompleted;
     if (record.outcome == execution_record_t::OUTCOME_ABORTED)
       reading.state = ExecutionReading::State::kAborted;
-    reading.reason = record.outcome_reason;
+    reading.reason = {stopReasonFrom(record.outcome_code), record.outcome_reason};
     readings.push_back(reading);
   }
   return readings;

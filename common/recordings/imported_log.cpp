@@ -8,6 +8,7 @@
 #include <optional>
 #include <sstream>
 
+#include "common/execution/stop_reason.hpp"
 #include "common/messages/blank.hpp"
 
 namespace tread::recordings {
@@ -159,6 +160,7 @@ class ImportMaker {
       record.ended = planned.end;
       record.outcome = planned.completed ? execution_record_t::OUTCOME_COMPLETED
                                          : execution_record_t::OUTCOME_ABORTED;
+      if (!planned.completed) record.outcome_code = static_cast<int16_t>(StopReason::kUnsaid);
       record.outcome_reason = planned.reason;
       record.commands_played =
           static_cast<int32_t>((planned.end - record.started + kPeriodUs - kSame) / kPeriodUs);
@@ -191,7 +193,9 @@ class ImportMaker {
 
   static void fill(motor_t& motor, const CommandChannels& channels, const DriveSample& sample) {
     motor.bridge_state = sample.automatic ? motor_t::STATE_DRIVING : motor_t::STATE_DISARMED;
-    motor.state_reason = sample.automatic ? "" : "idle or driven by the operator";
+    const auto reason = sample.automatic ? StopReason::kNone : StopReason::kOperatorDrives;
+    motor.state_code = static_cast<int16_t>(reason);
+    motor.state_reason = sentenceOf(reason);
     motor.battery_voltage = static_cast<float>(sample.voltage);
     for (size_t c = 0; c < channels.size(); ++c) {
       if (sample.automatic) motor.channel_kind[c] = static_cast<int16_t>(channels[c].kind);

@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "common/execution/stop_reason.hpp"
 #include "common/geometry/se3.hpp"
 #include "common/messages/ins_messages.hpp"
 
@@ -15,8 +16,6 @@ namespace {
 
 constexpr double kLongestSilence = 0.3;  // [s]
 constexpr double kShortestSpan = 1.0;    // [s]
-/// How tread-import marks what the recording's own commands do not explain.
-constexpr const char* kOperatorDrives = "idle or driven by the operator";
 
 /// Time from one MOTOR message to the next [s], as a rule.
 double usualPeriod(const SortedLog& log) {
@@ -162,7 +161,7 @@ std::optional<TrackCommand> obeyed(const motor_t& motor) {
     case motor_t::STATE_STOPPING:
       return TrackCommand{};
     case motor_t::STATE_DISARMED:
-      if (motor.state_reason == kOperatorDrives) return std::nullopt;
+      if (stopReasonFrom(motor.state_code) == StopReason::kOperatorDrives) return std::nullopt;
       return TrackCommand{};
     default:
       return std::nullopt;

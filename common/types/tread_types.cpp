@@ -8,10 +8,10 @@
 namespace tread {
 
 /// The .lcm files, one after the other; made by the build.
-extern const char* const kTypesText;
+extern const char* const kTypesText[];
 
 const MessageTypes& treadTypes() {
-  static const MessageTypes types = MessageTypes::fromText(kTypesText);
+  static const MessageTypes types = MessageTypes::fromText(kTypesText[0]);
   return types;
 }
 

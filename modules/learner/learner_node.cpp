@@ -370,7 +370,10 @@ void LearnerNode::hear(const motor_t& motor) {
     record.ended = driven.ended;
     record.outcome = driven.completed ? execution_record_t::OUTCOME_COMPLETED
                                       : execution_record_t::OUTCOME_ABORTED;
-    if (!driven.completed) record.outcome_reason = kLeftByHand;
+    if (!driven.completed) {
+      record.outcome_code = static_cast<int16_t>(StopReason::kLeftByHand);
+      record.outcome_reason = sentenceOf(StopReason::kLeftByHand);
+    }
     message.records.push_back(record);
     health_.addToCounter("executions by hand");
   }
@@ -405,6 +408,7 @@ void LearnerNode::handle(const execution_record_t& record) {
     if (known && std::isfinite(measurement.path_length)) grip_.drive(measurement.path_length);
   }
   message.accepted = measurement.fair();
+  message.gate_code = static_cast<int16_t>(measurement.gate);
   message.gate_reason = measurement.reason;
   health_.addToCounter(measurement.fair() ? "learnable"
                                           : std::string("refused: ") + gateName(measurement.gate));
@@ -420,7 +424,8 @@ void LearnerNode::handle(const execution_record_t& record) {
     const Axes& V = correction.note.scaling;
     fill(message.scaling, {V[0], V[1], V[2]});
     if (correction.changed_after) health_.addToCounter("changes noticed while a pattern ran");
-    if (correction.note.no_change) health_.addToCounter("changes after which the ground was the one before");
+    if (correction.note.no_change)
+      health_.addToCounter("changes after which the ground was the one before");
     if (correction.changed) {
       start_problem_.clear();
       adoptVersion();
@@ -439,13 +444,14 @@ ExecutionCut LearnerNode::cutOf(const execution_record_t& record,
   cut.started = record.started;
   cut.ended = record.ended;
   cut.completed = record.outcome == execution_record_t::OUTCOME_COMPLETED;
-  cut.outcome_reason = record.outcome_reason;
+  cut.outcome = {stopReasonFrom(record.outcome_code), record.outcome_reason};
   const PatternSet& set = learner_.set();
   cut.unexpected_command =
       commands_.unexpectedCommand(keyOf(record), pattern, set.content().channels);
   // Where a failsafe stops the robot it may have been held: that is no ground.
   cut.beginning = learner_.learnsParts() && !cut.completed &&
-                  (cut.outcome_reason == kStoppedByPlanner || cut.outcome_reason == kLeftByHand);
+                  (cut.outcome.code == StopReason::kStoppedByPlanner ||
+                   cut.outcome.code == StopReason::kLeftByHand);
   cut.steady_before = hand_.steadyBefore(set.classNamed(pattern.entry_class).steady, record.started,
                                          set.content().period_us);
   return cut;

@@ -100,9 +100,9 @@ int16_t toMessage(State state) {
 }
 
 std::string reasonOf(const FailsafeOutputs& failsafe) {
-  const std::string& standing = failsafe.standing_fault;
-  const bool told = standing.empty() || failsafe.reason.find(standing) != std::string::npos;
-  const std::string reason = told ? failsafe.reason : failsafe.reason + "; now: " + standing;
+  const std::string reason = failsafe.standing_said
+                                 ? failsafe.reason
+                                 : failsafe.reason + "; now: " + failsafe.standing_fault.words;
   return reason.substr(0, kMaxReason);
 }
 
@@ -199,7 +199,8 @@ execution_record_t toMessage(const ExecutionRecord& record) {
   message.commands_played = record.commands_played;
   message.commands_total = record.commands_total;
   message.outcome = static_cast<int16_t>(record.outcome);
-  message.outcome_reason = record.reason.substr(0, kMaxReason);
+  message.outcome_code = static_cast<int16_t>(record.reason.code);
+  message.outcome_reason = record.reason.words.substr(0, kMaxReason);
   return message;
 }
 
@@ -209,6 +210,7 @@ motor_t toMessage(const BridgeOutput& output, const MotorTelemetry& telemetry, s
   message.execution_id = output.execution_id;
   message.command_index = output.command_index;
   message.bridge_state = toMessage(output.failsafe.state);
+  message.state_code = static_cast<int16_t>(output.failsafe.cause.code);
   message.state_reason = reasonOf(output.failsafe);
   for (size_t i = 0; i < output.kinds.size(); ++i)
     message.channel_kind[i] = static_cast<int16_t>(output.kinds[i]);
@@ -229,7 +231,9 @@ MotorBridgeNode::MotorBridgeNode(const MotorBridgeConfig& config, Bus& bus, Link
       bridge_(config.bridge),
       controller_(config.make_controller()),
       health_(bus, "motor_bridge", config.effective),
-      fence_exchange_(bus, "motor_bridge", "planner") {
+      fence_exchange_(bus, "motor_bridge", "planner", [this](const FenceRequest& request) {
+        bridge_.receive(request, bus_.now());
+      }) {
   listen();
 }
 
@@ -272,6 +276,7 @@ void MotorBridgeNode::step(int64_t utime) {
   publishMotor(utime);
   publishExecutions(utime);
   publishStopping(utime);
+  fence_exchange_.step(bridge_.fences());
   reportHealth();
   reportCounters(utime);
   health_.step(utime);
@@ -316,11 +321,13 @@ void MotorBridgeNode::writeLink(const std::string& bytes, int64_t utime) {
 }
 
 void MotorBridgeNode::publishMotor(int64_t utime) {
-  if (utime < next_motor_ && sameToReaders(output_, published_)) return;
+  if (utime < next_motor_ && sameToReaders(output_, published_) && holder_ == bridge_.holder())
+    return;
   motor_t message =
       toMessage(output_, controller_->telemetry(), config_.bridge.gate.slot.channels.size());
   message.utime = utime;
   message.seq = seq_motor_++;
+  message.holder = holder_ = bridge_.holder();
   bus_.publish(kMotor, message);
   published_ = output_;
   next_motor_ = utime + kMotorPeriod;
@@ -353,9 +360,10 @@ void MotorBridgeNode::publishStopping(int64_t utime) {
 void MotorBridgeNode::reportHealth() {
   const FailsafeOutputs& failsafe = output_.failsafe;
   if (!controller_->ready()) {
-    health_.setState(health_t::HEALTH_FAILED, link_.address() + ": " + failsafe.standing_fault);
+    health_.setState(health_t::HEALTH_FAILED,
+                     link_.address() + ": " + failsafe.standing_fault.words);
   } else if (!failsafe.standing_fault.empty()) {
-    health_.setState(health_t::HEALTH_DEGRADED, failsafe.standing_fault);
+    health_.setState(health_t::HEALTH_DEGRADED, failsafe.standing_fault.words);
   } else if (failsafe.state == State::kFault || failsafe.state == State::kEstopped) {
     health_.setState(health_t::HEALTH_DEGRADED, failsafe.reason);
   } else if (const std::string line = controller_->lineProblem(); !line.empty()) {
@@ -368,12 +376,6 @@ void MotorBridgeNode::reportHealth() {
 void MotorBridgeNode::reportCounters(int64_t utime) {
   if (utime < next_counters_) return;
   next_counters_ = utime + kCounterPeriod;
-  fence_exchange_.step(bridge_.fences(), health_);
-  if (holder_told_ != bridge_.holder()) {
-    health_.removeCounter(holderCounter(holder_told_));
-    holder_told_ = bridge_.holder();
-    if (!holder_told_.empty()) health_.setCounter(holderCounter(holder_told_), 1);
-  }
   for (const auto& [name, count] : bridge_.counters()) health_.setCounter(name, count);
   for (const auto& [name, count] : controller_->counters()) health_.setCounter(name, count);
   reportDevice();
@@ -390,7 +392,7 @@ void MotorBridgeNode::reportDevice() {
 }
 
 void MotorBridgeNode::shutdown(int64_t utime) {
-  bridge_.receive(ArmRequest{utime, false, kShutdown, ""}, utime);
+  bridge_.receive(ArmRequest{utime, false, kShutdown, "", StopReason::kBridgeEnds}, utime);
   readLink(utime);
   drive(utime);
   // Whatever is thought of the controller: zero cannot hurt.

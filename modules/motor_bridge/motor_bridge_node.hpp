@@ -88,7 +88,7 @@ class MotorBridgeNode : public Node {
   CommandPeriods periods_;
   HealthReporter health_;
   FenceExchange fence_exchange_;
-  std::string holder_told_;
+  std::string holder_;      ///< as published
   BridgeOutput output_;     ///< of this step
   BridgeOutput published_;  ///< of the last MOTOR
   uint64_t published_revision_ = 0;

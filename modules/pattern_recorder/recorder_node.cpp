@@ -72,7 +72,7 @@ Measurement ExecutionCollector::measure(const execution_record_t& record,
   cut.started = record.started;
   cut.ended = record.ended;
   cut.completed = record.outcome == execution_record_t::OUTCOME_COMPLETED;
-  cut.outcome_reason = record.outcome_reason;
+  cut.outcome = {stopReasonFrom(record.outcome_code), record.outcome_reason};
   cut.unexpected_command = commands_.unexpectedCommand(
       {record.record_run_id, record.record_execution_id}, pattern, set_.content().channels);
   return tread::measure(ins_.history(), cut, pattern, set_.classNamed(pattern.entry_class),

@@ -139,7 +139,8 @@ plan_t toMessage(const PlanReport& report) {
   message.goal_id = report.goal_id;
   message.set_version = report.set_version;
   message.plan_status = static_cast<int16_t>(report.status);
-  message.reason = report.reason;
+  message.reason_code = static_cast<int16_t>(report.reason.code);
+  message.reason = report.reason.words;
   message.time_to_go = report.time_to_go;
   message.expansions = report.expansions;
   message.num_patterns = static_cast<int32_t>(report.steps.size());
@@ -217,7 +218,8 @@ PlannerNode::PlannerNode(const PlannerConfig& config, Bus& bus, Store* store)
       health_(bus, "planner", config.effective),
       robot_(bus, health_, config.operators.lease_us),
       fences_(config.map.fences),
-      fence_exchange_(bus, "planner", "motor_bridge"),
+      fence_exchange_(bus, "planner", "motor_bridge",
+                      [this](const FenceRequest& request) { take(request); }),
       supervisor_(config, bus.bootId()) {
   subscribe();
   recallFences();
@@ -227,7 +229,7 @@ PlannerNode::PlannerNode(const PlannerConfig& config, Bus& bus, Store* store)
 void PlannerNode::subscribe() {
   health_.watchNamesakes();
   bus_.subscribe<map_tile_t>(kMap, [this](const map_tile_t& message) { take(message); });
-  bus_.subscribe<fence_t>(kFence, [this](const fence_t& message) { take(message); });
+  bus_.subscribe<fence_t>(kFence, [this](const fence_t& message) { take(requestFrom(message)); });
   bus_.subscribe<stopping_t>(kStoppingTime, [this](const stopping_t& message) {
     const bool possible = message.stopping_time >= 0.05 && message.stopping_time <= 5.0;
     if (!possible) return health_.addToCounter("STOPPING refused: no such time");
@@ -294,8 +296,7 @@ void PlannerNode::take(const map_tile_t& message) {
   map_taken_ = bus_.now();
 }
 
-void PlannerNode::take(const fence_t& message) {
-  const FenceRequest request = requestFrom(message);
+void PlannerNode::take(const FenceRequest& request) {
   const OperatorLease& lease = robot_.operatorLease();
   const bool holds = lease.valid(bus_.now()) && lease.isHolder(request.by);
   const FenceReceipt receipt = fences_.take(request, holds);
@@ -318,7 +319,8 @@ void PlannerNode::take(const goal_t& message) {
 void PlannerNode::take(const health_t& message) {
   if (message.process != "mapping") return;
   const bool failed = message.health_state == health_t::HEALTH_FAILED;
-  inputs_.map_fault = failed ? "mapping: " + message.health_reason : "";
+  inputs_.map_fault =
+      failed ? Reason(StopReason::kRangeFinder, "mapping: " + message.health_reason) : Reason();
 }
 
 /// Whoever arms again has looked at the robot.
@@ -411,16 +413,17 @@ void PlannerNode::step(int64_t utime) {
   if (robot_.timeJumped(utime) && inputs_.set_received != 0) inputs_.set_received = utime;
   static_cast<RobotReadings&>(inputs_) = robot_.readings(utime);
   watchGoal(utime);
-  inputs_.bar = fences_.bar();
+  inputs_.bar = Reason::of(StopReason::kFencesLost, fences_.bar());
   const int64_t started = bus_.now();
   const Decision decision = supervisor_.step(inputs_, [&](int expansions) {
     return stop_ ? stop_(expansions) : bus_.now() - started > config_.deadline;
   });
   if (!decision.halted.empty() && config_.operators.lease_us > 0)
-    goal_.lose("stopped: " + decision.halted + "; look, then give the goal again");
-  if (!decision.halted.empty() && !inputs_.map_fault.empty()) disarm(inputs_.map_fault);
+    goal_.lose({decision.halted.code,
+                "stopped: " + decision.halted.words + "; look, then give the goal again"});
+  if (!decision.halted.empty() && !inputs_.map_fault.empty()) disarm(inputs_.map_fault.words);
   // The loss itself stops the robot, too.
-  if (!decision.halted.empty() && inputs_.goal) way_back_.giveUp(decision.halted);
+  if (!decision.halted.empty() && inputs_.goal) way_back_.giveUp(decision.halted.words);
   publishProgram(utime, supervisor_.program());
   keepFences(utime);
   publishPlan(utime, decision, bus_.now() - started);
@@ -442,8 +445,11 @@ void PlannerNode::publishPlan(int64_t utime, const Decision& decision, int64_t s
   next_plan_ = utime + kPlanRepeat;
   plan_t message = toMessage(decision.report);
   message.seq = seq_plan_++;
-  if (decision.report.goal_id < 0)
-    message.reason = way_back_.state() + (message.reason.empty() ? "" : "; " + message.reason);
+  if (decision.report.goal_id < 0) {
+    const Reason& back = way_back_.state();
+    if (message.reason.empty()) message.reason_code = static_cast<int16_t>(back.code);
+    message.reason = back.words + (message.reason.empty() ? "" : "; " + message.reason);
+  }
   message.search_time = static_cast<int32_t>(search_time);
   bus_.publish(kPlan, message);
   if (!decision.planned || utime < next_tree_) return;
@@ -463,12 +469,12 @@ void PlannerNode::publishTree(const PlanReport& report) {
 void PlannerNode::publishHealth(int64_t utime, const PlanReport& report) {
   const bool waits = report.status == PlanStatus::kWaiting;
   std::string problem = fences_.bar();
-  if (problem.empty()) problem = waits ? report.reason : supervisor_.setRefusal();
+  if (problem.empty()) problem = waits ? report.reason.words : supervisor_.setRefusal();
   if (problem.empty()) problem = unkept_;
   if (problem.empty()) problem = secondLearner(utime);
-  if (problem.empty()) problem = way_back_.state();
+  if (problem.empty()) problem = way_back_.state().words;
   health_.setState(problem.empty() ? health_t::HEALTH_OK : health_t::HEALTH_DEGRADED, problem);
-  fence_exchange_.step(fences_, health_);
+  fence_exchange_.step(fences_);
   health_.setCounter("pattern set version", report.set_version);
   for (const auto& [name, value] : supervisor_.counters()) health_.setCounter(name, value);
   health_.step(utime);

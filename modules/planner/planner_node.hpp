@@ -48,7 +48,7 @@ class PlannerNode : public Node {
   void recallFences();
   void keepFences(int64_t utime);
   void take(const map_tile_t& message);
-  void take(const fence_t& message);
+  void take(const FenceRequest& request);
   void take(const goal_t& message);
   void take(const health_t& message);
   void take(const pattern_set_part_t& message);

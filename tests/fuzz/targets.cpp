@@ -82,7 +82,7 @@ void message(const uint8_t* bytes, size_t size) {
                                decodeAs<mark_t>,          decodeAs<config_t>,
                                decodeAs<manual_t>,        decodeAs<fence_t>,
                                decodeAs<stopping_t>,      decodeAs<shock_t>,
-                               decodeAs<grip_t>};
+                               decodeAs<grip_t>,          decodeAs<fences_t>};
   // INS and SCAN_MATCHING carry the same one.
   static_assert(std::size(kTypes) + 1 == kChannels.size());
   if (size > 0) kTypes[bytes[0] % std::size(kTypes)](bytes + 1, size - 1);

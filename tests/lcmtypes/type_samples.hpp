@@ -67,6 +67,7 @@ inline execution_record_t sampleOf<execution_record_t>() {
   m.commands_played = 15;
   m.commands_total = 40;
   m.outcome = execution_record_t::OUTCOME_ABORTED;
+  m.outcome_code = 71;
   m.outcome_reason = "lease expired";
   return m;
 }
@@ -163,6 +164,7 @@ inline learning_t sampleOf<learning_t>() {
   m.learning_rule = "single";
   m.accepted = 1;
   m.changed = 1;
+  m.gate_code = 11;
   m.gate_reason = "entry twist";
   m.scored_version = 24;
   m.result_version = 25;
@@ -220,6 +222,8 @@ inline motor_t sampleOf<motor_t>() {
   m.execution_id = 32;
   m.command_index = 33;
   m.bridge_state = motor_t::STATE_DRIVING;
+  m.holder = "ada";
+  m.state_code = 1002;
   m.state_reason = "playing";
   m.channel_kind[0] = m.channel_kind[1] = program_slot_t::KIND_POWER;
   m.command[0] = 0.5F;
@@ -258,6 +262,18 @@ inline fence_t sampleOf<fence_t>() {
   m.fence_kind = fence_t::FENCE_KEEP_OUT;
   m.num_corners = 3;
   m.corners = {{1.0, -2.0}, {3.5, -2.0}, {3.5, 4.0}};
+  return m;
+}
+
+template <>
+inline fences_t sampleOf<fences_t>() {
+  fences_t m{};
+  m.utime = 1'000'025;
+  m.seq = 25;
+  m.keeper = "planner";
+  m.num_own = 1;
+  m.num_fences = 2;
+  m.fences = {sampleOf<fence_t>(), sampleOf<fence_t>()};
   return m;
 }
 
@@ -354,6 +370,7 @@ inline plan_t sampleOf<plan_t>() {
   m.goal_id = 77;
   m.set_version = 8;
   m.plan_status = plan_t::PLAN_BLOCKED;
+  m.reason_code = 161;
   m.reason = "no free pattern";
   m.time_to_go = 12.5;
   m.expansions = 1234;
@@ -438,12 +455,12 @@ void forEachType(Visitor&& visit) {
   const auto visitAll = [&](const auto&... samples) { (visit(samples), ...); };
   visitAll(sampleOf<arm_t>(), sampleOf<config_t>(), sampleOf<counter_t>(), sampleOf<estop_t>(),
            sampleOf<execution_record_t>(), sampleOf<execution_t>(), sampleOf<fence_t>(),
-           sampleOf<goal_t>(), sampleOf<health_t>(), sampleOf<ins_t>(), sampleOf<learner_state_t>(),
-           sampleOf<learning_t>(), sampleOf<map_tile_t>(), sampleOf<mark_t>(), sampleOf<motor_t>(),
-           sampleOf<operator_t>(), sampleOf<manual_t>(), sampleOf<pattern_set_part_t>(),
-           sampleOf<plan_t>(), sampleOf<plan_tree_t>(), sampleOf<program_slot_t>(),
-           sampleOf<program_t>(), sampleOf<scan_t>(), sampleOf<shock_t>(), sampleOf<stopping_t>(),
-           sampleOf<grip_t>());
+           sampleOf<fences_t>(), sampleOf<goal_t>(), sampleOf<health_t>(), sampleOf<ins_t>(),
+           sampleOf<learner_state_t>(), sampleOf<learning_t>(), sampleOf<map_tile_t>(),
+           sampleOf<mark_t>(), sampleOf<motor_t>(), sampleOf<operator_t>(), sampleOf<manual_t>(),
+           sampleOf<pattern_set_part_t>(), sampleOf<plan_t>(), sampleOf<plan_tree_t>(),
+           sampleOf<program_slot_t>(), sampleOf<program_t>(), sampleOf<scan_t>(),
+           sampleOf<shock_t>(), sampleOf<stopping_t>(), sampleOf<grip_t>());
 }
 
 /// Calls `visit` with each typed channel and a sample of its type.
@@ -471,6 +488,7 @@ void forEachChannel(Visitor&& visit) {
   visitOne(kOperator, sampleOf<operator_t>());
   visitOne(kEstop, sampleOf<estop_t>());
   visitOne(kFence, sampleOf<fence_t>());
+  visitOne(kFences, sampleOf<fences_t>());
   visitOne(kMark, sampleOf<mark_t>());
   visitOne(kConfig, sampleOf<config_t>());
   visitOne(kManual, sampleOf<manual_t>());

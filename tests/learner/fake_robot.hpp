@@ -20,7 +20,7 @@ struct Driving {
   int64_t set_version = 0;     ///< named in the records; 0 = the newest heard
   int executions = 1'000'000;  ///< then it stands
   int abort_every = 0;         ///< every so many executions one is aborted at its end; 0 = none
-  std::string abort_reason = "lease expired";
+  Reason abort_reason = StopReason::kProgramLate;
   bool wrong_commands = false;  ///< the motors get other commands than the patterns say
 };
 
@@ -87,7 +87,10 @@ class FakeRobot : public Node {
         driving_.abort_every > 0 && record.record_execution_id % driving_.abort_every == 0;
     record.outcome =
         abort ? execution_record_t::OUTCOME_ABORTED : execution_record_t::OUTCOME_COMPLETED;
-    record.outcome_reason = abort ? driving_.abort_reason : "";
+    if (abort) {
+      record.outcome_code = static_cast<int16_t>(driving_.abort_reason.code);
+      record.outcome_reason = driving_.abort_reason.words;
+    }
     record.ended = ended;
   }
 

@@ -63,21 +63,21 @@ TEST_CASE("an execution counts once, however often it was followed") {
 TEST_CASE("what was followed is forgotten when its execution proves to be no fair one") {
   Driving driving = turning(1);
   driving.abort_every = 1;
-  driving.abort_reason = "the robot is held";
+  driving.abort_reason = StopReason::kStuck;
   Bench bench(driving, "multi_model");
   bench.run(1.4);
   REQUIRE(bench.publishedYaw(kLeft) != shippedYaw());
   bench.run(1.5);
   REQUIRE(bench.learned.size() == 1);
   REQUIRE_FALSE(bench.learned[0].accepted);
-  REQUIRE(bench.learned[0].gate_reason == "aborted: the robot is held");
+  REQUIRE(bench.learned[0].gate_reason == "aborted: stuck or pose frozen");
   REQUIRE(bench.publishedYaw(kLeft) == Approx(shippedYaw()).epsilon(1e-9));
 }
 
 TEST_CASE("an execution that the planner stopped teaches what was driven of it") {
   Driving driving = turning(5);
   driving.abort_every = 1;
-  driving.abort_reason = kStoppedByPlanner;
+  driving.abort_reason = StopReason::kStoppedByPlanner;
   Bench bench(driving, "multi_model");
   bench.run(8.0);
   REQUIRE(bench.learned.size() == 5);

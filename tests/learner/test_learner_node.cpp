@@ -125,7 +125,7 @@ TEST_CASE("refusals are counted in HEALTH with their reasons") {
   REQUIRE(bench.counter("refused: aborted") == 6);
   REQUIRE(bench.counter("executions") ==
           bench.counter("learnable") + bench.counter("refused: aborted"));
-  REQUIRE(bench.learned[2].gate_reason == "aborted: lease expired");
+  REQUIRE(bench.learned[2].gate_reason == "aborted: no good PROGRAM within its lease");
   REQUIRE_FALSE(bench.learned[2].accepted);
 }
 

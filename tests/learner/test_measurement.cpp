@@ -94,7 +94,7 @@ TEST_CASE("yaw is unwrapped along a pattern that turns more than once around") {
 TEST_CASE("an execution that was aborted is refused with its reason") {
   ExecutionCut cut = completed();
   cut.completed = false;
-  cut.outcome_reason = "lease expired";
+  cut.outcome = {StopReason::kProgramLate, "lease expired"};
   const Measurement result = measured({}, cut);
   REQUIRE(result.gate == Gate::kAborted);
   REQUIRE(result.reason == "aborted: lease expired");

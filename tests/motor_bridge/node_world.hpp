@@ -105,6 +105,7 @@ struct NodeWorld {
   motor_t motor{};
   execution_t execution{};
   health_t health{};
+  fences_t fences{};
   config_t config{};
   int64_t motors = 0;
   int64_t executions = 0;
@@ -146,6 +147,9 @@ struct NodeWorld {
       ++executions;
     });
     outside.subscribe<health_t>(kHealth, [this](const health_t& m) { health = m; });
+    outside.subscribe<fences_t>(kFences, [this](const fences_t& m) {
+      if (m.keeper == "motor_bridge") fences = m;
+    });
     outside.subscribe<config_t>(kConfig, [this](const config_t& m) { config = m; });
   }
 

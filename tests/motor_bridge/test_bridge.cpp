@@ -70,7 +70,7 @@ TEST_CASE("a silent planner: zero one step after the lease, then ARM is needed")
   CHECK(world.state() == State::kDisarmed);
   CHECK(world.reason() == "no good PROGRAM within its lease");
   CHECK(world.last().outcome == ExecutionOutcome::kAborted);
-  CHECK(world.last().reason == "no good PROGRAM within its lease");
+  CHECK(world.last().reason.words == "no good PROGRAM within its lease");
   world.planner_alive = true;
   world.run(5'000'000);
   CHECK(world.state() == State::kDisarmed);
@@ -110,7 +110,7 @@ TEST_CASE("an empty running slot stops at once and stays armed") {
   CHECK(timeToZero(world) == BridgeWorld::kStep);
   CHECK(world.state() == State::kStopping);
   CHECK(world.reason() == "stopped by the planner");
-  CHECK(world.last().reason == "stopped by the planner");
+  CHECK(world.last().reason.words == "stopped by the planner");
   CHECK(world.last().outcome == ExecutionOutcome::kAborted);
 }
 

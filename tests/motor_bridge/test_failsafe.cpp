@@ -29,7 +29,7 @@ struct Rig {
     in.now += kCycle;
     out = failsafe.update(in);
     in.arm = in.disarm = false;
-    in.series_end.clear();
+    in.series_end = {};
   }
   void run(int64_t us) {
     for (const int64_t end = in.now + us; in.now < end;) step();
@@ -53,20 +53,21 @@ struct Rig {
 
 /// The inputs that stop, worst first, with the state they lead to.
 struct Cause {
-  std::string FailsafeInputs::*reason;
+  Reason FailsafeInputs::*fault;
   State state;
+  StopReason code;
 };
 const std::vector<Cause> kCauses = {
-    {&FailsafeInputs::link_fault, State::kFault},
-    {&FailsafeInputs::device_fault, State::kFault},
-    {&FailsafeInputs::bridge_fault, State::kFault},
-    {&FailsafeInputs::program_fault, State::kDisarmed},
-    {&FailsafeInputs::operator_fault, State::kDisarmed},
-    {&FailsafeInputs::lease_fault, State::kDisarmed},
-    {&FailsafeInputs::ins_fault, State::kDisarmed},
-    {&FailsafeInputs::tilt_fault, State::kDisarmed},
-    {&FailsafeInputs::fence_fault, State::kDisarmed},
-    {&FailsafeInputs::motion_fault, State::kDisarmed},
+    {&FailsafeInputs::link_fault, State::kFault, StopReason::kControllerLost},
+    {&FailsafeInputs::device_fault, State::kFault, StopReason::kControllerFault},
+    {&FailsafeInputs::bridge_fault, State::kFault, StopReason::kBridgeHeldUp},
+    {&FailsafeInputs::program_fault, State::kDisarmed, StopReason::kBadProgram},
+    {&FailsafeInputs::operator_fault, State::kDisarmed, StopReason::kOperatorLost},
+    {&FailsafeInputs::lease_fault, State::kDisarmed, StopReason::kProgramLate},
+    {&FailsafeInputs::ins_fault, State::kDisarmed, StopReason::kInsStale},
+    {&FailsafeInputs::tilt_fault, State::kDisarmed, StopReason::kTilt},
+    {&FailsafeInputs::fence_fault, State::kDisarmed, StopReason::kFenceNear},
+    {&FailsafeInputs::motion_fault, State::kDisarmed, StopReason::kStuck},
 };
 
 }  // namespace
@@ -108,13 +109,13 @@ TEST_CASE("every cause stops in the very step it is seen, stays stopped and need
   for (const Cause& cause : kCauses) {
     Rig rig;
     rig.drive();
-    rig.in.*cause.reason = "something";
+    rig.in.*cause.fault = {cause.code, "something"};
     rig.step();
     CHECK_FALSE(rig.out.may_drive);
     CHECK(rig.out.state == cause.state);
     CHECK(rig.out.reason == "something");
     rig.in.playing = false;
-    (rig.in.*cause.reason).clear();
+    rig.in.*cause.fault = {};
     rig.in.start_wanted = true;
     rig.run(10'000'000);
     CHECK(rig.out.state == cause.state);
@@ -132,7 +133,7 @@ TEST_CASE("ARM while a fault stands is refused with that fault") {
   for (const Cause& cause : kCauses) {
     Rig rig;
     rig.run(2'000'000);
-    rig.in.*cause.reason = "something";
+    rig.in.*cause.fault = {cause.code, "something"};
     rig.in.arm = true;
     rig.step();
     CHECK(rig.out.state == State::kDisarmed);
@@ -145,7 +146,7 @@ TEST_CASE("the worst cause is the one that is named") {
     Rig rig;
     rig.drive();
     for (size_t i = worst; i < kCauses.size(); ++i)
-      rig.in.*kCauses[i].reason = "cause " + std::to_string(i);
+      rig.in.*kCauses[i].fault = {kCauses[i].code, "cause " + std::to_string(i)};
     rig.step();
     CHECK(rig.out.reason == "cause " + std::to_string(worst));
     CHECK(rig.out.state == kCauses[worst].state);
@@ -157,12 +158,12 @@ TEST_CASE("an E-stop wins over everything, latches, and needs clearing and then 
   rig.drive();
   rig.in.estop = true;
   rig.in.estop_reason = "person in front (operator)";
-  rig.in.link_fault = "gone";
+  rig.in.link_fault = {StopReason::kControllerLost, "gone"};
   rig.step();
   CHECK(rig.out.state == State::kEstopped);
   CHECK(rig.out.reason == "E-stop: person in front (operator)");
   rig.in.playing = false;
-  rig.in.link_fault.clear();
+  rig.in.link_fault = {};
   rig.run(3'000'000);
   rig.in.arm = true;
   rig.step();
@@ -182,7 +183,7 @@ TEST_CASE("an E-stop reaches a bridge that is disarmed or in fault, too") {
     Rig rig;
     if (fault) {
       rig.drive();
-      rig.in.link_fault = "gone";
+      rig.in.link_fault = {StopReason::kControllerLost, "gone"};
       rig.step();
       REQUIRE(rig.out.state == State::kFault);
     }
@@ -197,7 +198,7 @@ TEST_CASE("the normal end of a series stops, stays armed and may go on after one
   rig.drive();
   rig.in.playing = false;
   rig.in.start_wanted = true;
-  rig.in.series_end = "series ended without a next";
+  rig.in.series_end = StopReason::kSeriesEnded;
   rig.step();
   CHECK(rig.out.state == State::kStopping);
   CHECK_FALSE(rig.out.may_drive);
@@ -244,9 +245,10 @@ TEST_CASE("any sequence of inputs keeps the promises (ten hours of random scenar
     const State before = rig.failsafe.state();
     bool good = true;
     for (const Cause& cause : kCauses) {
-      std::string& reason = rig.in.*cause.reason;
-      reason = reason.empty() ? (chance(0.0005) ? "bad" : "") : (chance(0.05) ? "" : "bad");
-      good = good && reason.empty();
+      Reason& fault = rig.in.*cause.fault;
+      const bool bad = fault.empty() ? chance(0.0005) : !chance(0.05);
+      fault = bad ? Reason(cause.code) : Reason();
+      good = good && !bad;
     }
     rig.in.estop = rig.in.estop ? !chance(0.02) : chance(0.0003);
     good = good && !rig.in.estop;
@@ -316,11 +318,11 @@ TEST_CASE("each change of state, of its reason or of a refusal is told, and noth
 TEST_CASE("disarming a robot in fault leaves the fault to be seen, and when it stopped") {
   Rig rig;
   rig.arm();
-  rig.in.link_fault = "the line is down";
+  rig.in.link_fault = {StopReason::kControllerLost, "the line is down"};
   rig.step();
   const int64_t stopped = rig.failsafe.disarmedAt();
   CHECK(stopped == rig.in.now);
-  rig.in.link_fault.clear();
+  rig.in.link_fault = {};
   rig.run(100'000);
   rig.in.disarm = true;
   rig.step();
@@ -336,14 +338,14 @@ TEST_CASE("armed for the hand it says whose, and a series waits a step after it 
   Rig rig;
   rig.in.hand = true;
   rig.in.hand_words = "driven by hand by ada";
-  rig.in.ins_fault = "no INS yet";
+  rig.in.ins_fault = StopReason::kNoIns;
   rig.run(1'100'000);
   rig.in.arm = true;
   rig.in.requested_by = "ada";
   rig.step();
   CHECK(rig.out.state == State::kManual);
   CHECK(rig.out.reason == "driven by hand by ada");
-  rig.in.ins_fault.clear();
+  rig.in.ins_fault = {};
   rig.in.hand = false;
   rig.in.start_wanted = true;
   rig.step();

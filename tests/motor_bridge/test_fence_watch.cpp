@@ -382,7 +382,7 @@ struct FenceBench {
   explicit FenceBench(double room = 5.0) { ins.x = 10.0 - 0.65 - room; }
   std::string fault(int64_t now = kNow) {
     watch.receive(ins);
-    return watch.fault(now);
+    return watch.fault(now).words;
   }
 };
 

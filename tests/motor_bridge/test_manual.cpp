@@ -92,7 +92,7 @@ TEST_CASE("a moved stick takes over within 100 ms of its message, and the progra
   CHECK(world.reason() == "driven by hand by operator");
   CHECK(world.last().execution_id == execution);
   CHECK(world.last().outcome == ExecutionOutcome::kAborted);
-  CHECK(world.last().reason == "driven by hand by operator");
+  CHECK(world.last().reason.words == "driven by hand by operator");
   CHECK(world.out.execution_id == 0);
   CHECK(world.out.run_id == 0);
   CHECK(world.out.command_index == -1);

@@ -66,7 +66,7 @@ struct Drive {
     offset.y += drift.v_y * kInterval;
     offset.yaw += drift.omega * kInterval;
     monitor.receive(measured(v));
-    return monitor.fault(utime_);
+    return monitor.fault(utime_).words;
   }
   InsMotion measured(const Twist2& v) {
     InsMotion ins;

@@ -47,7 +47,7 @@ std::vector<Verdict> verdictsOn(const MotionLimits& limits, const std::vector<Sa
   for (const Sample& sample : samples) {
     monitor.command(sample.command, sample.utime);
     monitor.receive(sample.ins);
-    const std::string words = monitor.fault(sample.utime);
+    const std::string words = monitor.fault(sample.utime).words;
     // The bridge would be disarmed: what follows at once is the same event.
     const bool same = !verdicts.empty() && sample.utime - verdicts.back().utime < 5'000'000;
     if (!words.empty() && words != last && !same) verdicts.push_back({sample.utime, words});

@@ -48,7 +48,7 @@ struct OmniDrive {
     std::string verdict;
     for (int i = 0; i < static_cast<int>(50.0 * seconds + 0.5); ++i) {
       step();
-      if (verdict.empty()) verdict = monitor.fault(utime_);
+      if (verdict.empty()) verdict = monitor.fault(utime_).words;
     }
     return verdict;
   }

@@ -102,7 +102,7 @@ TEST_CASE("the INS limit is three periods, at least 100 ms") {
 
 TEST_CASE("an INS that repeats its last measurement is as good as silent") {
   InsWatch watch({});
-  CHECK(watch.fault(kNow) == "no INS yet");
+  CHECK(watch.fault(kNow).words == "no INS yet");
   for (int64_t t = 0; t <= 200'000; t += 20'000) watch.receive({kNow, true}, kNow + t);
   CHECK(watch.fault(kNow + 100'000).empty());
   CHECK_FALSE(watch.fault(kNow + 100'001).empty());
@@ -160,7 +160,7 @@ TEST_CASE("the smallest utime of all is old, not new: no difference overflows") 
   CHECK(admit(gate, makeProgram(kBeginning, makeSlot(1, 4))) == ProgramRefusal::kTooOld);
   InsWatch watch({});
   watch.receive({kBeginning, true}, kNow);
-  CHECK(watch.fault(kNow) == "no INS yet");
+  CHECK(watch.fault(kNow).words == "no INS yet");
   OperatorRequests requests({});
   CHECK(requests.classify({kBeginning, true, "operator", "go"}, kNow, kBeginning) ==
         OperatorRequests::Effect::kUntimely);
@@ -172,7 +172,7 @@ namespace {
 std::string faultOf(int64_t utime, int64_t now = kNow) {
   InsWatch watch({});
   watch.receive({utime, true}, kNow);
-  return watch.fault(now);
+  return watch.fault(now).words;
 }
 
 }  // namespace
@@ -198,9 +198,9 @@ TEST_CASE("an INS driver that begins to count anew is a fault for 100 ms") {
   watch.receive({kNow + 1, true, {}, 7}, kNow + 1);
   CHECK(watch.fault(kNow + 1).empty());
   watch.receive({kNow + 2, true, {}, 0}, kNow + 2);
-  CHECK(watch.fault(kNow + 2) == "the INS driver has been restarted");
+  CHECK(watch.fault(kNow + 2).words == "the INS driver has been restarted");
   watch.receive({kNow + 90'000, true, {}, 1}, kNow + 90'000);
-  CHECK(watch.fault(kNow + 100'001) == "the INS driver has been restarted");
+  CHECK(watch.fault(kNow + 100'001).words == "the INS driver has been restarted");
   CHECK(watch.fault(kNow + 100'002).empty());
 }
 

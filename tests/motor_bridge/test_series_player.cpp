@@ -73,7 +73,7 @@ TEST_CASE("the log keeps the last eight executions with their times and outcome"
     player.offer(makeProgram(t, makeSlot(id, 4), makeSlot(id + 1, 4)), t);
   }
   player.give();
-  player.abort(kStart + 11 * 200'000 + 70'000, "E-stop");
+  player.abort(kStart + 11 * 200'000 + 70'000, StopReason::kEstopEngaged);
   const auto& records = player.log().records();
   REQUIRE(records.size() == 8);
   CHECK(records.front().execution_id == 5);
@@ -86,7 +86,7 @@ TEST_CASE("the log keeps the last eight executions with their times and outcome"
   CHECK(records.back().end_utime == kStart + 11 * 200'000 + 70'000);
   CHECK(records.back().commands_played == 1);
   CHECK(records.back().commands_total == 4);
-  CHECK(records.back().reason == "E-stop");
+  CHECK(records.back().reason == Reason(StopReason::kEstopEngaged));
 }
 
 TEST_CASE("the pending slot may be replaced and withdrawn until it begins") {
@@ -146,7 +146,7 @@ TEST_CASE("an idle player starts only executions above the last one, once") {
 TEST_CASE(
     "an aborted execution is not played again, in this run and after a visit of another run") {
   SeriesPlayer player = playing();
-  player.abort(kStart + 10'000, "INS is stale");
+  player.abort(kStart + 10'000, StopReason::kInsStale);
   CHECK(player.offer(makeProgram(0, makeSlot(1, 4)), kStart) == Offer::kAlreadyExecuted);
   player.beginRun(2);
   CHECK(player.offer(makeProgram(0, makeSlot(1, 4)), kStart) == Offer::kAccepted);

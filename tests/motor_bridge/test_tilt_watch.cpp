@@ -59,7 +59,7 @@ TEST_CASE(
     CHECK(world.timeToZero() <= 150'000);
     CHECK(world.state() == State::kDisarmed);
     CHECK(world.reason() == reason);
-    CHECK(world.last().reason == reason);
+    CHECK(world.last().reason.words == reason);
   }
 }
 
@@ -167,8 +167,8 @@ TEST_CASE("what is told late stops for as long as what is told at once") {
     tilted.utime = utime;
     watch.receive(tilted, now);
   }
-  CHECK_THAT(watch.fault(now), Contains("rolled"));
-  CHECK_THAT(watch.fault(now + 900'000), Contains("rolled"));
+  CHECK_THAT(watch.fault(now).words, Contains("rolled"));
+  CHECK_THAT(watch.fault(now + 900'000).words, Contains("rolled"));
   CHECK(watch.fault(now + 1'100'000).empty());
 }
 
@@ -186,7 +186,7 @@ TEST_CASE("attitude that falls silent counts as beyond, for programs until it is
   measure(2'000'000);
   CHECK(watch.fault(now + 250'000).empty());
   now += 320'000;
-  CHECK_THAT(watch.fault(now), Contains("INS measures no roll and pitch"));
+  CHECK_THAT(watch.fault(now).words, Contains("INS measures no roll and pitch"));
   CHECK(watch.fault(now + 1'100'000).empty());
   CHECK_FALSE(watch.beyond().empty());
   now += 1'200'000;
@@ -234,7 +234,7 @@ TEST_CASE("silence begins the half second of level measurements anew") {
 TEST_CASE("a robot that tips on says how far") {
   TiltWatch watch(kLimits);
   for (int64_t t = 0; t <= 200'000; t += 20'000) watch.receive({t, 35 * kDeg, 0, 0, 0}, t);
-  CHECK_THAT(watch.beyond(), Contains("rolled 35 deg"));
+  CHECK_THAT(watch.beyond().words, Contains("rolled 35 deg"));
   watch.receive({220'000, 50 * kDeg, 0, 0, 0}, 220'000);
-  CHECK_THAT(watch.beyond(), Contains("rolled 50 deg"));
+  CHECK_THAT(watch.beyond().words, Contains("rolled 50 deg"));
 }

@@ -95,10 +95,10 @@ TEST_CASE(
   Rig rig(walledGoal(true), closeConfig());
   Decision decision = rig.run(3.0);
   CHECK(decision.report.status == PlanStatus::kDriving);
-  CHECK_THAT(decision.report.reason, Catch::Contains("as close as possible"));
+  CHECK_THAT(decision.report.reason.words, Catch::Contains("as close as possible"));
   decision = rig.run(25.0);
   CHECK(decision.report.status == PlanStatus::kUnreachable);
-  CHECK_THAT(decision.report.reason, Catch::Contains("obstacles enclose"));
+  CHECK_THAT(decision.report.reason.words, Catch::Contains("obstacles enclose"));
   CHECK(std::hypot(rig.pose().x - 12.0, rig.pose().y) < 3.2);
   CHECK(std::abs(rig.speed()) < 0.02);
   rig.run(60.0);

@@ -126,9 +126,9 @@ TEST_CASE("An abort empties the program and keeps the reason") {
   ExecutionTracker tracker = begun(samplePatterns());
   PlannerInputs s = at(10 * kSecond + 500'000);
   s.executions = {record(1, 10 * kSecond, Outcome::kAborted)};
-  s.executions.back().reason = "INS is stale";
+  s.executions.back().reason = StopReason::kInsStale;
   CHECK(tracker.follow(s) == Event::kAborted);
-  CHECK(tracker.abortReason() == "INS is stale");
+  CHECK(tracker.abortReason() == Reason(StopReason::kInsStale));
   CHECK(tracker.running().empty());
   CHECK(tracker.next().empty());
 }
@@ -157,7 +157,7 @@ TEST_CASE("A standing bridge in the middle of a pattern means that it was aborte
   s.bridge = BridgeReading{};
   s.bridge->utime = s.now;
   s.bridge->state = BridgeReading::State::kDisarmed;
-  s.bridge->reason = "no good PROGRAM within its lease";
+  s.bridge->reason = {StopReason::kUnsaid, "no good PROGRAM within its lease"};
   CHECK(tracker.follow(s) == Event::kAborted);
 }
 

@@ -78,12 +78,12 @@ TEST_CASE("A goal that fences forbid is refused in words, and it does not move")
   Rig outside(Playground{}, fenced({yard(9.0)}));
   const Decision refused = outside.run(5.0);
   CHECK(refused.report.status == PlanStatus::kUnreachable);
-  CHECK(refused.report.reason == "the goal lies outside of what fence yard allows");
+  CHECK(refused.report.reason.words == "the goal lies outside of what fence yard allows");
   CHECK(outside.pose().x == Approx(0.0).margin(0.01));
   Rig inside(Playground{}, fenced({{"pond", true, {{11, -1}, {13, -1}, {13, 1}, {11, 1}}}}));
-  CHECK(inside.run(5.0).report.reason == "the goal lies outside of what fence pond allows");
+  CHECK(inside.run(5.0).report.reason.words == "the goal lies outside of what fence pond allows");
   Rig near(Playground{}, fenced({yard(12.1)}));
-  CHECK_THAT(near.run(5.0).report.reason,
+  CHECK_THAT(near.run(5.0).report.reason.words,
              Contains("the goal is 0.1 m from fence yard") && Contains("to stop before it"));
 }
 

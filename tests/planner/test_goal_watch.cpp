@@ -45,7 +45,7 @@ TEST_CASE("arming ends the goals that were given before it, and none that is giv
   REQUIRE(watch.goal());
   watch.update(2'050'000, 2'000'000, kEverybody);
   CHECK_FALSE(watch.goal());
-  CHECK(watch.lost() == "the goal was given before the arming: give it again");
+  CHECK(watch.lost().words == "the goal was given before the arming: give it again");
   watch.take(goal(2), 2'100'000);
   watch.update(2'100'000, 2'000'000, kEverybody);
   REQUIRE(watch.goal());

@@ -111,7 +111,7 @@ TEST_CASE("With an exact bound the plan is as cheap as brute force finds it", "[
     const double expected = bruteForce(grid, bench.table, goal, margins.plan);
     PatternSearch search(exact());
     const SearchResult result = search.run(bench.problem({}), after(1'000'000));
-    INFO("seed " << seed << ": " << result.reason);
+    INFO("seed " << seed << ": " << result.reason.words);
     if (std::isinf(expected)) {
       CHECK(result.end != SearchEnd::kGoal);
       continue;

@@ -466,9 +466,8 @@ TEST_CASE("A fence from anybody closes the way, and opens it again for who holds
     const Fence yard_of_6_m{"yard", false, {{-6, -6}, {6, -6}, {6, 6}, {-6, 6}}};
     yard.bus.outside().publish(kFence, toMessage(FenceRequest{by, removes, yard_of_6_m}));
     yard.run(1.2);
-    for (const counter_t& counter : yard.health.counters)
-      if (counter.counter_name == fenceCounter(yard_of_6_m)) return counter.counted;
-    return int64_t{0};
+    const std::vector<Fence> kept = fencesFrom(yard.fences);
+    return std::count(kept.begin(), kept.end(), yard_of_6_m);
   };
   yard.run(1.5);
   yard.sendGoal(10.0);
@@ -503,9 +502,9 @@ TEST_CASE("Operators' fences are kept over a restart of the planner, and removed
   yard.run(5.0);
   CHECK(yard.robot().pose().x < 3.5);
   const auto inForce = [&yard](const std::string& name) {
-    return std::any_of(
-        yard.health.counters.begin(), yard.health.counters.end(),
-        [&name](const counter_t& counter) { return countsFence(counter.counter_name, name); });
+    const std::vector<Fence> kept = fencesFrom(yard.fences);
+    return std::any_of(kept.begin(), kept.end(),
+                       [&name](const Fence& fence) { return fence.name == name; });
   };
   CHECK(inForce("second"));
   CHECK_FALSE(inForce("first"));

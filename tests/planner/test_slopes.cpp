@@ -49,7 +49,7 @@ TEST_CASE("It turns back where the ground falls away, and finds its way around")
       s.pose->position_std = 0.0;
     });
     steepest = std::max(steepest, pit.slopeAt(rig.pose()));
-    told = told || decision.report.reason.find("deg, plans allow 15") != std::string::npos;
+    told = told || decision.report.reason.words.find("deg, plans allow 15") != std::string::npos;
     if (decision.report.status == PlanStatus::kArrived) break;
   }
   CHECK(told);

@@ -69,7 +69,7 @@ TEST_CASE("It does not drive unless the bridge is armed and the operator's permi
   rig.inputs().armed_by_operator = false;
   Decision decision = rig.run(1.0);
   CHECK(decision.report.status == PlanStatus::kWaiting);
-  CHECK(decision.report.reason == "not armed since the planner's start");
+  CHECK(decision.report.reason.words == "not armed since the planner's start");
   CHECK(rig.supervisor().program().running().empty());
   rig.inputs().armed_by_operator = true;
   rig.bridge().setArmed(false);
@@ -88,7 +88,7 @@ TEST_CASE("An INS that falls silent empties the program within 150 ms and a step
   const Decision decision = rig.run(0.1, silent);
   CHECK(rig.supervisor().program().running().empty());
   CHECK(decision.report.status == PlanStatus::kWaiting);
-  CHECK(decision.report.reason.find("INS is") == 0);
+  CHECK(decision.report.reason.words.find("INS is") == 0);
 }
 
 TEST_CASE("A map without new scans: the program is emptied within half a second, and says why") {
@@ -102,7 +102,7 @@ TEST_CASE("A map without new scans: the program is emptied within half a second,
   const Decision decision = rig.run(3.0);
   CHECK(std::abs(rig.speed()) < 0.01);
   CHECK(decision.report.status == PlanStatus::kWaiting);
-  CHECK(decision.report.reason.find("MAP is") == 0);
+  CHECK(decision.report.reason.words.find("MAP is") == 0);
 }
 
 TEST_CASE("Without the learner it drives on for 5 s and then stops with that reason") {
@@ -114,7 +114,7 @@ TEST_CASE("Without the learner it drives on for 5 s and then stops with that rea
   CHECK(rig.speed() > 0.9);
   const Decision decision = rig.run(3.5, tamper);
   CHECK(std::abs(rig.speed()) < 0.01);
-  CHECK(decision.report.reason.find("the learner is lost") == 0);
+  CHECK(decision.report.reason.words.find("the learner is lost") == 0);
 }
 
 TEST_CASE("A wall that appears close ahead while driving: the running pattern is stopped in time") {
@@ -128,7 +128,7 @@ TEST_CASE("A wall that appears close ahead while driving: the running pattern is
   rig.paint(ground);
   const Decision decision = rig.run(0.1);
   CHECK(decision.report.status == PlanStatus::kBlocked);
-  CHECK(decision.report.reason.find("stopped at once: something is in the way") == 0);
+  CHECK(decision.report.reason.words.find("stopped at once: something is in the way") == 0);
   CHECK(rig.supervisor().program().running().empty());
   rig.run(1.0);
   CHECK(rig.pose().x + 0.65 < x);
@@ -198,7 +198,7 @@ TEST_CASE("Before it comes to rest it has said why: at the goal, or what it does
       const ExecutionTracker& program = rig.supervisor().program();
       if (program.running().empty() || decision.report.status != PlanStatus::kDriving) continue;
       if (rig.running().exit_class == "rest") CHECK_FALSE(decision.report.reason.empty());
-      reasons.insert(decision.report.reason);
+      reasons.insert(decision.report.reason.words);
     }
   };
   listen(18.0);
@@ -216,7 +216,7 @@ TEST_CASE("A pattern that the bridge ends early is told with the bridge's reason
   const Decision decision =
       rig.run(0.1, [](PlannerInputs& s) { s.bridge->state = BridgeReading::State::kArmed; });
   CHECK(decision.report.status == PlanStatus::kWaiting);
-  CHECK(decision.report.reason.find("stopped by motor_bridge: ") == 0);
+  CHECK(decision.report.reason.words.find("stopped by motor_bridge: ") == 0);
 }
 
 TEST_CASE("Boxed in it says that it is blocked, and drives when it is let out") {
@@ -290,7 +290,7 @@ TEST_CASE(
   Rig rig;
   const auto by_hand = [](PlannerInputs& s) {
     s.bridge->state = BridgeReading::State::kByHand;
-    s.bridge->reason = "driven by hand by ada";
+    s.bridge->reason = {StopReason::kByHand, "driven by hand by ada"};
     s.bridge->execution_id = 0;
   };
   rig.run(2.0);
@@ -303,7 +303,7 @@ TEST_CASE(
     REQUIRE(decision.halted.empty());
     if (i == 0) continue;
     REQUIRE(decision.report.status == PlanStatus::kWaiting);
-    REQUIRE(decision.report.reason == "driven by hand by ada");
+    REQUIRE(decision.report.reason.words == "driven by hand by ada");
     REQUIRE(decision.report.goal_id == 1);
     REQUIRE(!decision.report.steps.empty());
     REQUIRE(std::isfinite(decision.report.time_to_go));
@@ -331,7 +331,7 @@ TEST_CASE("What a person drives over without INS or map does not end the goal") 
   rig.run(2.0);
   const auto blind = [](PlannerInputs& s) {
     s.bridge->state = BridgeReading::State::kByHand;
-    s.bridge->reason = "driven by hand by ada";
+    s.bridge->reason = {StopReason::kByHand, "driven by hand by ada"};
     s.pose->utime -= 2'000'000;
   };
   for (int i = 0; i < 20; ++i) {

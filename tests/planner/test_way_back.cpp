@@ -77,7 +77,7 @@ TEST_CASE(
   REQUIRE(places.size() >= 4);
   for (size_t i = 1; i < places.size(); ++i) CHECK(places[i] < places[i - 1]);
   CHECK(places.back() == 0.0);
-  CHECK(walk.way_back.state() ==
+  CHECK(walk.way_back.state().words ==
         "the operator is lost, and the return has ended: it is where its way began, and nobody is "
         "heard");
 }
@@ -108,7 +108,7 @@ TEST_CASE("a return that was stopped does not go on by itself, another loss may 
   walk.way_back.giveUp("MAP is 600 ms old");
   walk.stay(60.0);
   CHECK_FALSE(walk.goal);
-  CHECK(walk.way_back.state() ==
+  CHECK(walk.way_back.state().words ==
         "the operator is lost, and the return has ended: MAP is 600 ms old");
   walk.link.lost = false;
   walk.stay(0.5);

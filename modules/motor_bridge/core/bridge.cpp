@@ -41,20 +41,21 @@ Bridge::Bridge(const BridgeConfig& config)
 void Bridge::receive(const Program& program, int64_t now) {
   const ProgramGate::Admission admission = gate_.admit(program, now, !isArmed(failsafe_.state()));
   if (admission.refusal == ProgramRefusal::kBadSlot) {
-    since_.program_fault = std::string("PROGRAM with ") + describe(admission.slot_fault);
+    since_.program_fault = {StopReason::kBadProgram,
+                            std::string("PROGRAM with ") + describe(admission.slot_fault)};
     count(std::string("PROGRAM refused: ") + describe(admission.slot_fault));
     return;
   }
   if (admission.refusal != ProgramRefusal::kNone) {
     if (admission.refusal == ProgramRefusal::kRunChanged)
-      since_.program_fault = describe(admission.refusal);
+      since_.program_fault = {StopReason::kOtherPlanner, describe(admission.refusal)};
     count(std::string("PROGRAM refused: ") + describe(admission.refusal));
     return;
   }
   if (admission.new_run) {
     player_.beginRun(program.run_id);
     // Starts the second of good inputs anew: with two planners alive nobody can arm.
-    since_.program_fault = "another run of the planner";
+    since_.program_fault = StopReason::kOtherPlanner;
     count("planner runs");
   }
   take(program, now);
@@ -182,11 +183,12 @@ BridgeOutput Bridge::step(int64_t now, const DeviceReport& device) {
   return out;
 }
 
-std::string Bridge::stallFault(int64_t now) const {
-  if (last_step_ && now < *last_step_) return "the robot's clock went back";
-  if (!last_step_ || now - *last_step_ <= config_.max_stall_us) return "";
-  return "motor_bridge was held up for " + std::to_string((now - *last_step_) / 1000) +
-         " ms: too much runs on this computer, or it was halted";
+Reason Bridge::stallFault(int64_t now) const {
+  if (last_step_ && now < *last_step_) return StopReason::kClockWentBack;
+  if (!last_step_ || now - *last_step_ <= config_.max_stall_us) return {};
+  return {StopReason::kBridgeHeldUp, "motor_bridge was held up for " +
+                                         std::to_string((now - *last_step_) / 1000) +
+                                         " ms: too much runs on this computer, or it was halted"};
 }
 
 /// Whether the robot may move although its operator has been lost for `silent` [us].
@@ -210,11 +212,13 @@ void Bridge::lookForOperator(int64_t now, FailsafeInputs& in) {
   if (in.leased) return;
   const std::string& who = operator_.holder();
   in.unattended = now - std::max(operator_.lastValid(), moved_at_) > config_.operators.wait_us;
-  in.unleased = who.empty() ? "no operator's program is heard (OPERATOR)" : who + " has let go";
+  in.unleased = who.empty() ? Reason(StopReason::kNoOperator)
+                            : Reason(StopReason::kOperatorLetGo, who + " has let go");
   if (state != OperatorLease::State::kLost) return;
   operator_lost_ = operator_lost_.value_or(now);
-  in.unleased = "the operator is lost: " + who + " has not seen the robot for " +
-                tenths(config_.operators.lease_us);
+  in.unleased = {StopReason::kOperatorLost, "the operator is lost: " + who +
+                                                " has not seen the robot for " +
+                                                tenths(config_.operators.lease_us)};
   in.leased = mayGoOn(now - *operator_lost_);
   if (!in.leased) in.operator_fault = in.unleased;
 }
@@ -228,21 +232,21 @@ void Bridge::lookForHand(int64_t now, FailsafeInputs& in) {
   if (!has) in.hand_bar = manual_.bar();
 }
 
-std::string Bridge::leaseFault(int64_t now) const {
-  if (gate_.leaseValid(now)) return "";
-  return gate_.leaseAge(now) ? "no good PROGRAM within its lease" : "no PROGRAM yet";
+Reason Bridge::leaseFault(int64_t now) const {
+  if (gate_.leaseValid(now)) return {};
+  return gate_.leaseAge(now) ? StopReason::kProgramLate : StopReason::kNoProgram;
 }
 
-std::string Bridge::moveSchedule(int64_t now, bool stalled) {
-  if (!player_.playing() || stalled) return "";
+Reason Bridge::moveSchedule(int64_t now, bool stalled) {
+  if (!player_.playing() || stalled) return {};
   const SeriesPlayer::Advance advance = player_.advance(now);
   counters_["commands skipped"] += advance.skipped;
-  if (advance.ended) return "series ended without a next";
+  if (advance.ended) return StopReason::kSeriesEnded;
   if (since_.planner_stop) {
-    player_.abort(now, kStoppedByPlanner);
-    return kStoppedByPlanner;
+    player_.abort(now, StopReason::kStoppedByPlanner);
+    return StopReason::kStoppedByPlanner;
   }
-  return "";
+  return {};
 }
 
 FailsafeInputs Bridge::look(int64_t now, const DeviceReport& device) {
@@ -252,8 +256,8 @@ FailsafeInputs Bridge::look(int64_t now, const DeviceReport& device) {
   in.series_end = moveSchedule(now, !in.bridge_fault.empty());
   in.estop = requests_.estop();
   in.estop_reason = requests_.estopReason();
-  in.link_fault = device.link_fault;
-  in.device_fault = device.device_fault;
+  in.link_fault = Reason::of(device.link_code, device.link_fault);
+  in.device_fault = Reason::of(device.fault_code, device.device_fault);
   in.program_fault = since_.program_fault;
   lookForOperator(now, in);
   lookForHand(now, in);
@@ -270,13 +274,14 @@ FailsafeInputs Bridge::look(int64_t now, const DeviceReport& device) {
   in.arm = since_.arm && !since_.disarm;
   in.disarm = since_.disarm;
   in.requested_by = since_.request.by;
+  in.disarm_code = since_.request.code;
   in.refusal = since_.refusal;
   return in;
 }
 
 void Bridge::command(int64_t now, BridgeOutput& out) {
   if (!out.failsafe.may_drive) {
-    player_.abort(now, out.failsafe.reason);
+    player_.abort(now, out.failsafe.cause);
     if (out.failsafe.state != State::kManual) return;
     out.command = commandOf(manual_.command(now), config_.manual);
     out.kinds = kindsOf(config_.gate.slot.channels);

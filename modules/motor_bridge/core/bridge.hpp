@@ -84,18 +84,18 @@ class Bridge {
     bool planner_stop = false;
     ArmRequest request;
     std::string refusal;
-    std::string program_fault;
+    Reason program_fault;
   };
 
   void count(const std::string& what) { ++counters_[what]; }
   void take(const Program& program, int64_t now);
   void adoptLatchedStop(int64_t now, const DeviceReport& device);
-  std::string stallFault(int64_t now) const;
-  std::string leaseFault(int64_t now) const;
+  Reason stallFault(int64_t now) const;
+  Reason leaseFault(int64_t now) const;
   bool mayGoOn(int64_t silent) const;
   void lookForOperator(int64_t now, FailsafeInputs& in);
   void lookForHand(int64_t now, FailsafeInputs& in);
-  std::string moveSchedule(int64_t now, bool stalled);
+  Reason moveSchedule(int64_t now, bool stalled);
   FailsafeInputs look(int64_t now, const DeviceReport& device);
   void command(int64_t now, BridgeOutput& out);
   void schedule(int64_t now, BridgeOutput& out);

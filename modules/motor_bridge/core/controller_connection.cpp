@@ -144,8 +144,11 @@ std::string ControllerConnection::lineProblem() const {
 DeviceReport ControllerConnection::report(int64_t now) const {
   DeviceReport report;
   if (ready()) return reported(now);
-  report.link_fault = phase_ == Phase::kStarting ? "controller is being started up"
-                                                 : "controller lost: " + problem_;
+  report.link_fault = "controller lost: " + problem_;
+  if (phase_ == Phase::kStarting) {
+    report.link_code = StopReason::kControllerStarts;
+    report.link_fault = sentenceOf(report.link_code);
+  }
   return report;
 }
 

@@ -12,22 +12,22 @@ constexpr int64_t kRestart = 100'000;  // [us] for which a restart is a fault
 
 struct Fault {
   State state = State::kDisarmed;
-  std::string reason;
+  Reason reason;
 };
 
-/// Worst fault of the inputs, if any: the order of the lines is the ranking.
+/// Worst fault of the inputs, if any: StopReason ranks them.
 std::optional<Fault> worstFault(const FailsafeInputs& in) {
-  if (in.estop) return Fault{State::kEstopped, "E-stop: " + in.estop_reason};
-  const Fault ranked[] = {
-      {State::kFault, in.link_fault},        {State::kFault, in.device_fault},
-      {State::kFault, in.bridge_fault},      {State::kDisarmed, in.program_fault},
-      {State::kDisarmed, in.operator_fault}, {State::kDisarmed, in.lease_fault},
-      {State::kDisarmed, in.ins_fault},      {State::kDisarmed, in.tilt_fault},
-      {State::kDisarmed, in.fence_fault},    {State::kDisarmed, in.motion_fault}};
-  for (const Fault& fault : ranked) {
-    if (!fault.reason.empty()) return fault;
-  }
-  return std::nullopt;
+  if (in.estop)
+    return Fault{State::kEstopped, {StopReason::kEstopEngaged, "E-stop: " + in.estop_reason}};
+  const Reason* worst = nullptr;
+  for (const Reason* fault :
+       {&in.link_fault, &in.device_fault, &in.bridge_fault, &in.program_fault, &in.operator_fault,
+        &in.lease_fault, &in.ins_fault, &in.tilt_fault, &in.fence_fault, &in.motion_fault})
+    if (!fault->empty() && (worst == nullptr || fault->code < worst->code)) worst = fault;
+  if (worst == nullptr) return std::nullopt;
+  const bool of_bridge =
+      worst == &in.link_fault || worst == &in.device_fault || worst == &in.bridge_fault;
+  return Fault{of_bridge ? State::kFault : State::kDisarmed, *worst};
 }
 
 /// Worst fault that stops what is driven now: a person sees where the robot is and what it does. A
@@ -35,9 +35,9 @@ std::optional<Fault> worstFault(const FailsafeInputs& in) {
 std::optional<Fault> worstStop(const FailsafeInputs& in) {
   if (!in.hand) return worstFault(in);
   FailsafeInputs by_hand = in;
-  for (std::string* seen : {&by_hand.program_fault, &by_hand.lease_fault, &by_hand.ins_fault})
-    seen->clear();
-  if (!in.fenced) by_hand.motion_fault.clear();
+  for (Reason* seen : {&by_hand.program_fault, &by_hand.lease_fault, &by_hand.ins_fault})
+    *seen = {};
+  if (!in.fenced) by_hand.motion_fault = {};
   return worstFault(by_hand);
 }
 
@@ -56,14 +56,15 @@ bool InsWatch::receive(const InsNotice& notice, int64_t now) {
   return true;
 }
 
-std::string InsWatch::fault(int64_t now) const {
-  if (!received_at_) return "no INS yet";
-  if (restarted_at_ && now - *restarted_at_ < kRestart) return "the INS driver has been restarted";
+Reason InsWatch::fault(int64_t now) const {
+  if (!received_at_) return StopReason::kNoIns;
+  if (restarted_at_ && now - *restarted_at_ < kRestart) return StopReason::kInsRestarted;
   if (now - *received_at_ > limits_.maxAge())
-    return "INS is stale: nothing new within " + std::to_string(limits_.maxAge() / 1000) + " ms";
+    return {StopReason::kInsStale,
+            "INS is stale: nothing new within " + std::to_string(limits_.maxAge() / 1000) + " ms"};
   if (now - utime_ > limits_.maxAge() + limits_.max_latency_us)
-    return "INS is stale: its newest measurement is too old";
-  return usable_ ? "" : "INS knows no position or no heading";
+    return {StopReason::kInsStale, "INS is stale: its newest measurement is too old"};
+  return usable_ ? Reason() : Reason(StopReason::kInsBlind);
 }
 
 bool OperatorRequests::timely(int64_t utime, int64_t now) {
@@ -96,12 +97,13 @@ bool OperatorRequests::receive(const EstopRequest& request, int64_t now) {
 
 FailsafeOutputs Failsafe::update(const FailsafeInputs& in) {
   const State state_before = state_;
-  const std::string reason_before = reason_;
-  const std::string refusal_before = refusal_;
+  const Reason reason_before = reason_;
+  const Refusal refusal_before = refusal_;
   if (!zero_since_) zero_since_ = disarmed_at_ = in.now;
   watchHealth(in);
   // Cleared is not armed; but people must see that it is cleared.
-  if (state_ == State::kEstopped && !in.estop) enter(State::kDisarmed, "E-stop cleared", in.now);
+  if (state_ == State::kEstopped && !in.estop)
+    enter(State::kDisarmed, StopReason::kEstopCleared, in.now);
   // A fault or a request leaves nothing to decide: the next series waits for the next step, so that
   // at least one zero lies between.
   if (!stopOnFault(in) && !serveRequest(in) && !serveHand(in)) serveSeries(in);
@@ -109,24 +111,38 @@ FailsafeOutputs Failsafe::update(const FailsafeInputs& in) {
   out.state = state_;
   out.may_drive = state_ == State::kDriving;
   out.zero_fast = in.now - *zero_since_ < kFastZero;
-  out.arm_refused = in.arm && !refusal_.empty();
-  out.reason = refusal_.empty() || isArmed(state_) ? reason_ : reason_ + "; " + refusal_;
-  const bool barred =
-      !in.program_bar.empty() && out.reason.find(in.program_bar) == std::string::npos;
-  if (barred) out.reason += "; programs refused: " + in.program_bar;
-  if (out.reason.find(in.hand_bar) == std::string::npos) out.reason += "; " + in.hand_bar;
+  out.arm_refused = in.arm && !refusal_.words.empty();
+  out.cause = reason_;
   if (const std::optional<Fault> fault = worstFault(in)) out.standing_fault = fault->reason;
-  out.changed = state_ != state_before || reason_ != reason_before || refusal_ != refusal_before;
+  out.reason = words(in);
+  out.standing_said = says(out.standing_fault);
+  out.changed =
+      state_ != state_before || reason_ != reason_before || refusal_.words != refusal_before.words;
   return out;
 }
 
-void Failsafe::enter(State state, const std::string& reason, int64_t now) {
+/// Whether words() say it already.
+bool Failsafe::says(const Reason& reason) const {
+  return reason.empty() || reason.code == reason_.code ||
+         (refused() && reason.code == refusal_.why.code);
+}
+
+/// All that people should read of the state: each reason once.
+std::string Failsafe::words(const FailsafeInputs& in) const {
+  std::string all = reason_.words;
+  if (refused()) all += "; " + refusal_.words;
+  if (!says(in.program_bar)) all += "; programs refused: " + in.program_bar.words;
+  if (!in.hand_bar.empty() && !(refused() && refusal_.by_hand)) all += "; " + in.hand_bar;
+  return all;
+}
+
+void Failsafe::enter(State state, const Reason& reason, int64_t now) {
   const bool moved = state_ == State::kDriving || state_ == State::kManual;
   if (moved || !isArmed(state)) zero_since_ = now;
   if (!isArmed(state)) disarmed_at_ = now;
   state_ = state;
   reason_ = reason;
-  refusal_.clear();
+  refusal_ = {};
 }
 
 void Failsafe::watchHealth(const FailsafeInputs& in) {
@@ -142,56 +158,65 @@ bool Failsafe::stopOnFault(const FailsafeInputs& in) {
   if (!fault) return false;
   const bool worse = fault->state == State::kEstopped && state_ != State::kEstopped;
   if (isArmed(state_) || worse) enter(fault->state, fault->reason, in.now);
-  if (in.arm) refusal_ = "ARM refused: " + fault->reason;
-  if (!in.arm && !in.refusal.empty()) refusal_ = in.refusal;
+  if (in.arm) refusal_ = {"ARM refused: " + fault->reason.words, fault->reason, false};
+  if (!in.arm && !in.refusal.empty()) refusal_ = {in.refusal, {}, false};
   return true;
 }
 
-std::string Failsafe::whyNotArm(const FailsafeInputs& in) const {
-  if (!in.leased) return in.unleased;
+Failsafe::Refusal Failsafe::whyNotArm(const FailsafeInputs& in) const {
+  if (!in.leased) return {in.unleased.words, in.unleased, false};
   // Who holds the button means to drive by hand: it must not be armed for programs instead.
-  if (!in.hand_bar.empty()) return in.hand_bar;
+  if (!in.hand_bar.empty()) return {in.hand_bar, {}, true};
   const int64_t healthy = healthy_since_ ? in.now - *healthy_since_ : 0;
-  if (healthy >= kHealthyBeforeArm) return "";
-  return "inputs good for " + std::to_string(healthy / 1000) + " ms, " +
-         std::to_string(kHealthyBeforeArm / 1000) + " are needed";
+  if (healthy >= kHealthyBeforeArm) return {};
+  return {"inputs good for " + std::to_string(healthy / 1000) + " ms, " +
+              std::to_string(kHealthyBeforeArm / 1000) + " are needed",
+          {},
+          false};
 }
 
 bool Failsafe::serveRequest(const FailsafeInputs& in) {
   if (in.disarm) {
-    if (isArmed(state_)) enter(State::kDisarmed, "disarmed by " + in.requested_by, in.now);
+    if (isArmed(state_))
+      enter(State::kDisarmed, {in.disarm_code, "disarmed by " + in.requested_by}, in.now);
     return true;
   }
-  if (!in.refusal.empty() && !in.arm && !isArmed(state_)) refusal_ = in.refusal;
+  if (!in.refusal.empty() && !in.arm && !isArmed(state_)) refusal_ = {in.refusal, {}, false};
   if (!in.arm || isArmed(state_)) return false;
-  const std::string why_not = whyNotArm(in);
-  refusal_ = why_not.empty() ? "" : "ARM refused: " + why_not;
-  if (!refusal_.empty()) return true;
+  refusal_ = whyNotArm(in);
+  if (!refusal_.words.empty()) {
+    refusal_.words = "ARM refused: " + refusal_.words;
+    return true;
+  }
   enter(in.hand ? State::kManual : State::kArmed,
-        in.hand ? in.hand_words : "armed by " + in.requested_by, in.now);
+        in.hand ? Reason(StopReason::kByHand, in.hand_words)
+                : Reason(StopReason::kArmed, "armed by " + in.requested_by),
+        in.now);
   return true;
 }
 
 bool Failsafe::serveHand(const FailsafeInputs& in) {
   if (in.hand && isArmed(state_)) {
-    enter(State::kManual, in.hand_words, in.now);
+    enter(State::kManual, {StopReason::kByHand, in.hand_words}, in.now);
     return true;
   }
   if (state_ != State::kManual) return false;
-  enter(State::kStopping, in.unleased.empty() ? "given back by hand" : in.unleased, in.now);
+  enter(State::kStopping, in.unleased.empty() ? Reason(StopReason::kGivenBack) : in.unleased,
+        in.now);
   return true;
 }
 
 void Failsafe::serveSeries(const FailsafeInputs& in) {
   const bool stands = state_ == State::kArmed || state_ == State::kStopping;
   if (state_ == State::kDriving && !in.playing) {
-    enter(State::kStopping, in.series_end.empty() ? "series ended" : in.series_end, in.now);
+    enter(State::kStopping,
+          in.series_end.empty() ? Reason(StopReason::kProgramEnded) : in.series_end, in.now);
   } else if (state_ == State::kDriving && !in.leased) {
     enter(State::kStopping, in.unleased, in.now);
   } else if (stands && in.unattended) {
     enter(State::kDisarmed, in.unleased, in.now);
   } else if (stands && in.start_wanted && in.leased && in.program_bar.empty()) {
-    enter(State::kDriving, "playing", in.now);
+    enter(State::kDriving, StopReason::kPlaying, in.now);
   } else if (state_ == State::kStopping && in.now - *zero_since_ >= kFastZero) {
     enter(State::kArmed, reason_, in.now);
   }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "common/execution/stop_reason.hpp"
 #include "modules/motor_bridge/core/motion_track.hpp"
 #include "modules/motor_bridge/core/tilt_watch.hpp"
 
@@ -40,8 +41,8 @@ class InsWatch {
 
   /// A message received at now [us]. Returns whether it counts.
   bool receive(const InsNotice& notice, int64_t now);
-  /// What is wrong at now [us], in words; empty = nothing.
-  std::string fault(int64_t now) const;
+  /// What is wrong at now [us]; none = nothing.
+  Reason fault(int64_t now) const;
 
  private:
   InsLimits limits_;
@@ -58,6 +59,7 @@ struct ArmRequest {
   bool armed = false;
   std::string by;
   std::string why;
+  StopReason code = StopReason::kDisarmed;  ///< of a request to disarm
 };
 
 /// An emergency stop or its clearing, as sent.
@@ -110,36 +112,37 @@ inline bool isArmed(State state) {
   return state <= State::kStopping;
 }
 
-/// What the failsafe looks at. Reasons are in words; empty = nothing wrong.
+/// What the failsafe looks at. No reason: nothing is wrong.
 struct FailsafeInputs {
-  int64_t now = 0;             ///< [us]
-  bool estop = false;          ///< an emergency stop is engaged
-  std::string estop_reason;    ///< by whom and why
-  std::string link_fault;      ///< no controller that was started up and answers
-  std::string device_fault;    ///< the controller reports a fault
-  std::string bridge_fault;    ///< the bridge itself was held up
-  std::string program_fault;   ///< a program broke its limits, or the planner changed
-  std::string operator_fault;  ///< the operator is lost
-  std::string lease_fault;     ///< no program within the lease
-  std::string ins_fault;       ///< no usable INS within its limit
-  std::string tilt_fault;      ///< a limit of roll, pitch or their rates was passed
-  std::string fence_fault;     ///< only a zero now keeps the outline within a fence
-  std::string motion_fault;    ///< the robot moves otherwise than its commands explain
-  bool fenced = false;         ///< there are fences to keep
+  int64_t now = 0;            ///< [us]
+  bool estop = false;         ///< an emergency stop is engaged
+  std::string estop_reason;   ///< by whom and why
+  Reason link_fault;          ///< no controller that was started up and answers
+  Reason device_fault;        ///< the controller reports a fault
+  Reason bridge_fault;        ///< the bridge itself was held up
+  Reason program_fault;       ///< a program broke its limits, or the planner changed
+  Reason operator_fault;      ///< the operator is lost
+  Reason lease_fault;         ///< no program within the lease
+  Reason ins_fault;           ///< no usable INS within its limit
+  Reason tilt_fault;          ///< a limit of roll, pitch or their rates was passed
+  Reason fence_fault;         ///< only a zero now keeps the outline within a fence
+  Reason motion_fault;        ///< the robot moves otherwise than its commands explain
+  bool fenced = false;        ///< there are fences to keep
   bool hand = false;          ///< a person takes or keeps the robot, or wants it armed for the hand
   std::string hand_words;     ///< who does, and why it stands, if it does
   std::string hand_bar;       ///< why a hand that holds the button does not take the robot
   bool playing = false;       ///< a series is being played and goes on
   bool start_wanted = false;  ///< a series is offered to a standing robot
-  std::string program_bar;    ///< why no series may start, though a person may drive by hand
-  std::string series_end;     ///< why the series ended, if it did in this step
+  Reason program_bar;         ///< why no series may start, though a person may drive by hand
+  Reason series_end;          ///< why the series ended, if it did in this step
   bool leased = false;        ///< an operator is there; without one nothing moves
-  std::string unleased;       ///< why not
+  Reason unleased;            ///< why not
   bool unattended = false;    ///< no operator was there for longer than an armed robot waits
   bool arm = false;           ///< a new request to arm arrived in this step
   bool disarm = false;        ///< a request to disarm arrived in this step
   std::string requested_by;   ///< who sent the request
-  std::string refusal;        ///< why a request counts for nothing, where people must know it
+  StopReason disarm_code = StopReason::kDisarmed;  ///< of a request to disarm
+  std::string refusal;  ///< why a request counts for nothing, where people must know it
 };
 
 /// What the bridge has to do.
@@ -149,40 +152,51 @@ struct FailsafeOutputs {
   bool zero_fast = true;   ///< zero is to be repeated at the command rate, else at the idle rate
   bool changed = false;    ///< the state or its reason changed in this step
   bool arm_refused = false;
-  std::string reason;          ///< why it is in this state
-  std::string standing_fault;  ///< worst fault of this step; empty = inputs are good
+  Reason cause;               ///< why it is in this state
+  std::string reason;         ///< for people: the same, and what was refused
+  Reason standing_fault;      ///< worst fault of this step; none = inputs are good
+  bool standing_said = true;  ///< `reason` says that fault
 };
 
 /// The ranked state machine that decides whether the motors may turn. Pure: time is an input.
-/** Ranks, worst first: E-stop, link, device, bridge, program, operator, lease, INS, tilt,
-   fence, motion. A series can only start from a state that gave zero in the step before, and only
-   while an operator is there and nothing bars programs. Everything but the normal end of a series
-   needs ARM, and ARM needs an operator and inputs that were good for a second. */
+/** Of faults that stand together the first in StopReason counts. A series can only start from a
+   state that gave zero in the step before, and only while an operator is there and nothing bars
+   programs. Everything but the normal end of a series needs ARM, and ARM needs an operator and
+   inputs that were good for a second. */
 class Failsafe {
  public:
   FailsafeOutputs update(const FailsafeInputs& in);
 
   State state() const { return state_; }
-  const std::string& reason() const { return reason_; }
+  const Reason& reason() const { return reason_; }
   /// When it last left the armed states, or was first updated [us]; a request given before counts
   /// for nothing.
   int64_t disarmedAt() const { return disarmed_at_; }
 
  private:
-  void enter(State state, const std::string& reason, int64_t now);
+  /// Why a request counts for nothing.
+  struct Refusal {
+    std::string words;     ///< empty = none
+    Reason why;            ///< where a fault or the operator is why
+    bool by_hand = false;  ///< a hand holds the button
+  };
+  void enter(State state, const Reason& reason, int64_t now);
+  bool refused() const { return !refusal_.words.empty() && !isArmed(state_); }
+  bool says(const Reason& reason) const;
+  std::string words(const FailsafeInputs& in) const;
   void watchHealth(const FailsafeInputs& in);
   bool stopOnFault(const FailsafeInputs& in);
   bool serveRequest(const FailsafeInputs& in);
   bool serveHand(const FailsafeInputs& in);
   void serveSeries(const FailsafeInputs& in);
-  std::string whyNotArm(const FailsafeInputs& in) const;
+  Refusal whyNotArm(const FailsafeInputs& in) const;
 
   State state_ = State::kDisarmed;
-  std::string reason_ = "not armed yet";
+  Reason reason_ = StopReason::kNotArmedYet;
   std::optional<int64_t> healthy_since_;
   std::optional<int64_t> zero_since_;
   int64_t disarmed_at_ = 0;
-  std::string refusal_;  ///< why the last request to arm was refused
+  Refusal refusal_;  ///< of the last request to arm
 };
 
 }  // namespace tread::motor

@@ -99,42 +99,43 @@ std::vector<Twist2> FenceWatch::twists(int64_t now) const {
   return twists;
 }
 
-std::string FenceWatch::faultOfFence(const Fence& fence, double& best, const Ways& ways) const {
+Reason FenceWatch::faultOfFence(const Fence& fence, double& best, const Ways& ways) const {
   const Pose2 here{ins_.x, ins_.y, ins_.yaw};
   const FootprintSize grown = limits_.outline.widened(positionMargin(ins_.position_std));
   // Nothing that lies farther away needs the closer look, which costs a hundred times as much.
   const bool far = roomAt(fence, here.position()) > reachOf(grown) + ways.farthest;
   const double room = far ? 0.0 : roomAt(fence, here, grown);
   best = room < 0.0 ? std::max(best, room) : -std::numeric_limits<double>::infinity();
-  if (far) return "";
+  if (far) return {};
   double least = std::min(room, 0.0);
   for (const Pose2& pose : ways.poses) least = std::min(least, -depthOver(fence, pose, grown));
   if (room >= 0.0)
-    return least >= 0.0 ? ""
-                        : "fence " + fence.name + ": " + centimetres(room) +
-                              " of room, less than it takes to stop; drive away from it";
+    return least >= 0.0 ? Reason()
+                        : Reason(StopReason::kFenceNear,
+                                 "fence " + fence.name + ": " + centimetres(room) +
+                                     " of room, less than it takes to stop; drive away from it");
   return least >= best - kSlack
-             ? ""
-             : "outside fence " + fence.name + " by " + centimetres(room) + ": only back in";
+             ? Reason()
+             : Reason(StopReason::kFenceNear, "outside fence " + fence.name + " by " +
+                                                  centimetres(room) + ": only back in");
 }
 
-std::string FenceWatch::blindness(int64_t now) {
+Reason FenceWatch::blindness(int64_t now) {
   const bool known = std::isfinite(ins_.x + ins_.y + ins_.yaw) &&
                      1e-6 * static_cast<double>(now - ins_.utime) <= kMostAge;
   if (known) {
     blind_since_.reset();
-    return "";
+    return {};
   }
   blind_since_ = blind_since_.value_or(now);
-  return now - *blind_since_ <= kBlindStands ? "position unknown: fences cannot be kept" : "";
+  return now - *blind_since_ <= kBlindStands ? Reason(StopReason::kFenceBlind) : Reason();
 }
 
-std::string FenceWatch::fault(int64_t now) {
+Reason FenceWatch::fault(int64_t now) {
   const std::vector<Fence>& fences = book_.fences();
-  if (fences.empty()) return "";
-  const std::string bar = book_.bar();
-  if (!bar.empty()) return bar;
-  const std::string blind = blindness(now);
+  if (fences.empty()) return {};
+  if (!book_.bar().empty()) return {StopReason::kFencesLost, book_.bar()};
+  const Reason blind = blindness(now);
   if (!blind.empty() || !std::isfinite(ins_.x + ins_.y + ins_.yaw)) return blind;
   if (best_revision_ != book_.revision() || best_.size() != fences.size()) {
     best_.assign(fences.size(), -std::numeric_limits<double>::infinity());
@@ -150,9 +151,9 @@ std::string FenceWatch::fault(int64_t now) {
   }
   for (const Pose2& pose : ways.poses)
     ways.farthest = std::max(ways.farthest, distanceBetween(here, pose));
-  std::string worst;
+  Reason worst;
   for (size_t i = 0; i < fences.size(); ++i) {
-    const std::string fault = faultOfFence(fences[i], best_[i], ways);
+    const Reason fault = faultOfFence(fences[i], best_[i], ways);
     if (worst.empty()) worst = fault;
   }
   return worst;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/execution/stop_reason.hpp"
 #include "common/fence/fence_book.hpp"
 #include "modules/motor_bridge/core/motion_track.hpp"
 #include "modules/motor_bridge/core/program.hpp"
@@ -45,8 +46,8 @@ class FenceWatch {
   /// [s] learned on the ground that the robot stands on.
   void setStoppingTime(double seconds) { limits_.stopping_time = seconds; }
 
-  /// Which fence a zero now keeps it from crossing at now [us], in words; empty = none.
-  std::string fault(int64_t now);
+  /// Which fence a zero now keeps it from crossing at now [us], none = no fence.
+  Reason fault(int64_t now);
 
  private:
   struct Given {
@@ -61,12 +62,12 @@ class FenceWatch {
   };
 
   /// Told for a second: arming is needed then, and a person who drives on without INS knows it.
-  std::string blindness(int64_t now);
+  Reason blindness(int64_t now);
   /// [m/s] forward and to the left, as measured; else the full speed each way in which the robot
   /// was commanded lately, to the side where it can be.
   std::vector<Eigen::Vector2d> velocities(int64_t now) const;
   std::vector<Twist2> twists(int64_t now) const;
-  std::string faultOfFence(const Fence& fence, double& best, const Ways& ways) const;
+  Reason faultOfFence(const Fence& fence, double& best, const Ways& ways) const;
 
   FenceLimits limits_;
   MotionLimits motion_;

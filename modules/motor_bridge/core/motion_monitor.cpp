@@ -74,8 +74,8 @@ double leastOf(double min, double max) {
 }
 
 /// Commanded and not done: what the motors say names it. `least` [m] of the tracks' way.
-std::string tooLittle(const MotionSums& sums, const MotorTelemetry& motors, double least,
-                      const std::string& what) {
+Reason tooLittle(const MotionSums& sums, const MotorTelemetry& motors, double least,
+                 const std::string& what) {
   const double left = std::abs(motors.measured[0]), right = std::abs(motors.measured[1]);
   const double asked = least / sums.seconds();
   const std::string told =
@@ -83,11 +83,12 @@ std::string tooLittle(const MotionSums& sums, const MotorTelemetry& motors, doub
             {sums.position.norm(), toDegrees(sums.turned), sums.seconds(), least});
   // Of a wheel on rollers no share of the motion is known from these two alone.
   if (what == kTracks && std::min(left, right) > 0.5 * asked)
-    return "tracks spin or pose frozen: " + told + "; look, then ARM";
+    return {StopReason::kStuck, "tracks spin or pose frozen: " + told + "; look, then ARM"};
   if (std::isfinite(motors.current[0]) && std::isfinite(motors.current[1]))
-    return "stuck or pose frozen: " + told +
-           words(" (%0, %0 A); look, then ARM", {motors.current[0], motors.current[1]});
-  return "stuck or pose frozen: " + told + "; look, then ARM";
+    return {StopReason::kStuck,
+            "stuck or pose frozen: " + told +
+                words(" (%0, %0 A); look, then ARM", {motors.current[0], motors.current[1]})};
+  return {StopReason::kStuck, "stuck or pose frozen: " + told + "; look, then ARM"};
 }
 
 /// One window and what it takes to judge it.
@@ -101,8 +102,8 @@ struct Judge {
   double yaw_slack;  ///< [rad] of a heading's
   bool stands;       ///< commanded to zero all the time
 
-  std::string verdict() const {
-    std::string verdict = ownRate();
+  Reason verdict() const {
+    Reason verdict = ownRate();
     if (verdict.empty()) verdict = ownVelocity();
     if (verdict.empty()) verdict = still();
     if (verdict.empty()) verdict = travel();
@@ -115,94 +116,98 @@ struct Judge {
   /// What a wrong time makes of a path that is driven unevenly [rad].
   double lateRate(double path) const { return 2.0 * limits.time_error * path / sums.seconds(); }
 
-  std::string ownRate() const {
-    if (sums.no_rate > 0.2 * sums.seconds()) return "";
+  Reason ownRate() const {
+    if (sums.no_rate > 0.2 * sums.seconds()) return {};
     if (std::abs(sums.turned_with_gyro - sums.gyro) <=
         kYawSlack + lateRate(sums.gyro_path) + kRateError * sums.gyro_path)
-      return "";
-    return words("heading and gyro differ: %0 and %0 deg in %1 s; check the INS, then ARM",
-                 {toDegrees(sums.turned_with_gyro), toDegrees(sums.gyro), sums.seconds()});
+      return {};
+    return {StopReason::kInsDisagrees,
+            words("heading and gyro differ: %0 and %0 deg in %1 s; check the INS, then ARM",
+                  {toDegrees(sums.turned_with_gyro), toDegrees(sums.gyro), sums.seconds()})};
   }
-  std::string ownVelocity() const {
-    if (sums.no_velocity > 0.2 * sums.seconds()) return "";
+  Reason ownVelocity() const {
+    if (sums.no_velocity > 0.2 * sums.seconds()) return {};
     const double off = (sums.position - sums.ins_way).norm();
-    if (off <= slack + kVelocityError * sums.ins_path) return "";
-    return words(
-        "position and INS velocity differ by %2 m in %1 s (%2 m driven); check the "
-        "INS, then ARM",
-        {off, sums.seconds(), sums.ins_path});
+    if (off <= slack + kVelocityError * sums.ins_path) return {};
+    return {StopReason::kInsDisagrees,
+            words("position and INS velocity differ by %2 m in %1 s (%2 m driven); check the "
+                  "INS, then ARM",
+                  {off, sums.seconds(), sums.ins_path})};
   }
   /// Slip makes less of a command, but not nothing.
-  std::string still() const {
+  Reason still() const {
     const bool still = std::max(sums.position.norm(), half.position.norm()) < kStill + wander &&
                        std::max(std::abs(sums.turned), std::abs(half.turned)) < kStill;
     return still && sums.tracks_min > kStillTracks
                ? tooLittle(sums, motors, sums.tracks_min, drivenBy(limits))
-               : "";
+               : Reason();
   }
-  std::string travel() const {
+  Reason travel() const {
     const double off = beyond(sums.forward, sums.travel_min - slack, sums.travel_max + slack);
-    if (off == 0.0) return "";
+    if (off == 0.0) return {};
     if (stands) return uncommanded();
     const double expected = leastOf(sums.travel_min, sums.travel_max);
     if (off * expected < 0.0)
       return half.forward * expected < 0.0 && std::abs(half.forward) > kPositionSlack
                  ? backwards()
                  : tooLittle(sums, motors, std::abs(expected), drivenBy(limits));
-    return words(
-        "travels %2 m in %1 s, commands explain %2 to %2; check INS and tracks, "
-        "then ARM",
-        {sums.forward, sums.seconds(), sums.travel_min, sums.travel_max});
+    return {StopReason::kUnexplainedMotion,
+            words("travels %2 m in %1 s, commands explain %2 to %2; check INS and tracks, "
+                  "then ARM",
+                  {sums.forward, sums.seconds(), sums.travel_min, sums.travel_max})};
   }
-  std::string uncommanded() const {
-    return words(
-        "moves %2 m, %0 deg in %1 s though zero is commanded: slides or rolls, or "
-        "the INS drifts",
-        {sums.position.norm(), toDegrees(sums.turned), sums.seconds()});
+  Reason uncommanded() const {
+    return {StopReason::kUnexplainedMotion,
+            words("moves %2 m, %0 deg in %1 s though zero is commanded: slides or rolls, or "
+                  "the INS drifts",
+                  {sums.position.norm(), toDegrees(sums.turned), sums.seconds()})};
   }
-  std::string backwards() const {
-    return words(
-        "travels %2 m in %1 s where %2 is the least: check heading and motor "
-        "wiring, then ARM",
-        {half.forward, half.seconds(), leastOf(half.travel_min, half.travel_max)});
+  Reason backwards() const {
+    return {StopReason::kUnexplainedMotion,
+            words("travels %2 m in %1 s where %2 is the least: check heading and motor "
+                  "wiring, then ARM",
+                  {half.forward, half.seconds(), leastOf(half.travel_min, half.travel_max)})};
   }
-  std::string turn() const {
+  Reason turn() const {
     const double off = beyond(sums.turned, sums.turn_min - yaw_slack, sums.turn_max + yaw_slack);
-    if (off == 0.0) return "";
+    if (off == 0.0) return {};
     if (stands) return uncommanded();
     const std::string told = words("turns %0 deg in %1 s, commands explain %0 to %0",
                                    {toDegrees(sums.turned), sums.seconds(),
                                     toDegrees(sums.turn_min), toDegrees(sums.turn_max)});
     if (sums.turned * sums.turn < 0.0 && std::abs(sums.turned) > 0.3 * std::abs(sums.turn))
-      return told + ": the wrong way; check heading and tracks";
-    if (limits.isOmni()) return told + ": a wheel dead or blocked?";
+      return {StopReason::kTrackDead, told + ": the wrong way; check heading and tracks"};
+    if (limits.isOmni()) return {StopReason::kTrackDead, told + ": a wheel dead or blocked?"};
     if (std::abs(sums.turned) < std::abs(sums.turn))
-      return told + "; is the heading frozen, a track stuck?";
+      return {StopReason::kStuck, told + "; is the heading frozen, a track stuck?"};
     const bool left = off * (sums.travel < 0.0 ? -1.0 : 1.0) > 0.0;
-    return told + (left ? ": left" : ": right") + " track dead or blocked?";
+    return {StopReason::kTrackDead,
+            told + (left ? ": left" : ": right") + " track dead or blocked?"};
   }
-  std::string sideways() const {
+  Reason sideways() const {
     const double allowed =
         slack + kSideways * std::abs(sums.forward) +
         kSwing * std::abs(sums.turned) * (1.0 + std::max(std::abs(sums.forward), 0.5 * sums.reach));
     const double off = beyond(sums.left, sums.side_min - allowed, sums.side_max + allowed);
-    if (off == 0.0) return "";
+    if (off == 0.0) return {};
     if (stands) return uncommanded();
     if (limits.isOmni()) return besideCommand(off);
-    return words(
-        "moves %2 m sideways in %1 s, %2 explained: slides, or the heading is off; "
-        "check, then ARM",
-        {sums.left, sums.seconds(), allowed});
+    return {StopReason::kUnexplainedMotion,
+            words("moves %2 m sideways in %1 s, %2 explained: slides, or the heading is off; "
+                  "check, then ARM",
+                  {sums.left, sums.seconds(), allowed})};
   }
   /// Of what is commanded to the side, too.
-  std::string besideCommand(double off) const {
+  Reason besideCommand(double off) const {
     const double expected = leastOf(sums.side_min, sums.side_max);
     if (off * expected < 0.0 && sums.left * expected >= 0.0)
       return tooLittle(sums, motors, std::abs(expected), drivenBy(limits));
-    return words(
-        "moves %2 m to the left in %1 s, commands explain %2 to %2; check heading and wheels, "
-        "then ARM",
-        {sums.left, sums.seconds(), sums.side_min, sums.side_max});
+    return {
+        StopReason::kUnexplainedMotion,
+        words(
+            "moves %2 m to the left in %1 s, commands explain %2 to %2; check heading and wheels, "
+            "then ARM",
+            {sums.left, sums.seconds(), sums.side_min, sums.side_max})};
   }
 };
 
@@ -219,9 +224,9 @@ void MotionMonitor::receive(const InsMotion& ins) {
   position_std_ = std::max(position_std, kFade * position_std_);
   if (track_.empty()) return;
   watchTracks(ins.utime);
-  const std::string sure = surelyWrong();
+  const Reason sure = surelyWrong();
   if (!sure.empty()) return tell(sure, ins.utime);
-  std::string suspected = suspicion();
+  Reason suspected = suspicion();
   if (suspected.empty()) suspected = departure();
   if (suspected.empty()) {
     suspected_since_ = -1;
@@ -233,15 +238,15 @@ void MotionMonitor::receive(const InsMotion& ins) {
   }
 }
 
-void MotionMonitor::tell(const std::string& verdict, int64_t utime) {
+void MotionMonitor::tell(const Reason& verdict, int64_t utime) {
   verdict_ = verdict;
   told_ = utime;
   suspected_since_ = -1;
   track_.forget();
 }
 
-std::string MotionMonitor::fault(int64_t now) const {
-  return now - told_ <= kStands ? verdict_ : "";
+Reason MotionMonitor::fault(int64_t now) const {
+  return now - told_ <= kStands ? verdict_ : Reason();
 }
 
 void MotionMonitor::watchTracks(int64_t utime) {
@@ -254,55 +259,58 @@ void MotionMonitor::watchTracks(int64_t utime) {
   }
 }
 
-std::string MotionMonitor::standingWheel(int64_t utime) const {
+Reason MotionMonitor::standingWheel(int64_t utime) const {
   for (size_t i = 0; i < wheel_stands_since_.size(); ++i)
     if (utime - wheel_stands_since_[i] >= kTrackStands)
-      return "wheel " + std::to_string(i + 1) +
-             words(" dead or blocked: %2 m/s where %2 is the least; free or mend it, then ARM",
-                   {motors_.measured[i], track_.least(i)});
-  return "";
+      return {StopReason::kTrackDead,
+              "wheel " + std::to_string(i + 1) +
+                  words(" dead or blocked: %2 m/s where %2 is the least; free or mend it, then ARM",
+                        {motors_.measured[i], track_.least(i)})};
+  return {};
 }
 
-std::string MotionMonitor::standingTrack(int64_t utime) const {
+Reason MotionMonitor::standingTrack(int64_t utime) const {
   if (track_.limits().isOmni()) return standingWheel(utime);
   const bool left = utime - wheel_stands_since_[0] >= kTrackStands;
   const bool right = utime - wheel_stands_since_[1] >= kTrackStands;
-  if (!left && !right) return "";
-  return std::string(left && right ? "both tracks blocked"
-                     : left        ? "left track dead"
-                                   : "right track dead") +
-         words(": %2 and %2 m/s where %2 and %2 are the least; free or mend it, then ARM",
-               {motors_.measured[0], motors_.measured[1], track_.least(0), track_.least(1)});
+  if (!left && !right) return {};
+  return {StopReason::kTrackDead,
+          std::string(left && right ? "both tracks blocked"
+                      : left        ? "left track dead"
+                                    : "right track dead") +
+              words(": %2 and %2 m/s where %2 and %2 are the least; free or mend it, then ARM",
+                    {motors_.measured[0], motors_.measured[1], track_.least(0), track_.least(1)})};
 }
 
-std::string MotionMonitor::surelyWrong() const {
+Reason MotionMonitor::surelyWrong() const {
   const MotionSums same = track_.repeats();
   const double travel = leastOf(same.travel_min, same.travel_max);
   const double turn = leastOf(same.turn_min, same.turn_max);
   const double must = std::max({std::abs(travel), std::abs(turn), same.ins_path, same.gyro_path});
   if (same.seconds() >= kRepeats && must > kRepeatedMotion)
-    return words(
-        "pose frozen: the same for %1 s, at least %2 m, %2 rad expected; check the "
-        "INS, then ARM",
-        {same.seconds(), travel, turn});
+    return {StopReason::kInsFrozen,
+            words("pose frozen: the same for %1 s, at least %2 m, %2 rad expected; check the "
+                  "INS, then ARM",
+                  {same.seconds(), travel, turn})};
   const MotionSums step = track_.step();
   const double late = track_.limits().time_error / step.seconds();
   const double far = kPositionJump + position_std_ + (1.3 + late) * step.reach;
   if (step.position.norm() > far)
-    return words("pose jumps %2 m in %2 s, %2 m explained; check the INS, then ARM",
-                 {step.position.norm(), step.seconds(), far});
+    return {StopReason::kInsJump,
+            words("pose jumps %2 m in %2 s, %2 m explained; check the INS, then ARM",
+                  {step.position.norm(), step.seconds(), far})};
   const double much = kYawJump + late * step.turn_reach;
   if (beyond(step.turned, step.turn_min - much, step.turn_max + much) != 0.0)
-    return words("heading jumps %0 deg in %2 s; check the INS, then ARM",
-                 {toDegrees(step.turned), step.seconds()});
+    return {StopReason::kInsJump, words("heading jumps %0 deg in %2 s; check the INS, then ARM",
+                                        {toDegrees(step.turned), step.seconds()})};
   return standingTrack(track_.utime());
 }
 
-std::string MotionMonitor::suspicion() const {
+Reason MotionMonitor::suspicion() const {
   const double wander = kWander * position_std_;
   for (const double seconds : kWindows) {
     const std::optional<MotionSums> window = track_.window(seconds);
-    if (!window) return "";
+    if (!window) return {};
     const double late = track_.limits().time_error / window->seconds();
     const double creep = track_.zeroFor() > 0.5 ? kCreep : 0.0;
     const MotionSums half = *track_.window(0.5 * seconds);
@@ -314,19 +322,19 @@ std::string MotionMonitor::suspicion() const {
                       kPositionSlack + wander + late * window->reach,
                       kYawSlack + creep + late * window->turn_reach,
                       track_.zeroFor() >= seconds};
-    const std::string verdict = judge.verdict();
+    const Reason verdict = judge.verdict();
     if (!verdict.empty()) return verdict;
   }
-  return "";
+  return {};
 }
 
-std::string MotionMonitor::departure() const {
+Reason MotionMonitor::departure() const {
   using Kind = TrackFault::Kind;
-  if (track_.limits().isOmni()) return "";
+  if (track_.limits().isOmni()) return {};
   const std::optional<MotionSums> window = track_.window(kDepartureWindow);
-  if (!window) return "";
+  if (!window) return {};
   const std::optional<TrackFault> fault = response_.fault(*window);
-  if (!fault) return "";
+  if (!fault) return {};
   // What turns round passes through zero.
   const MotionSums half = *track_.window(0.5 * kDepartureWindow);
   const bool backwards = half.forward * fault->travel < 0.0 && std::abs(half.forward) > kStill;
@@ -338,9 +346,10 @@ std::string MotionMonitor::departure() const {
                            : fault->kind == Kind::kRightDead ? "right track dead"
                            : blocked && backwards            ? "travels the wrong way"
                                                              : "turns the wrong way";
-  return name + words(": %2 m, %0 deg in %1 s, usual %2 m, %0 deg; check tracks and INS, then ARM",
-                      {window->forward, toDegrees(window->turned), window->seconds(), fault->travel,
-                       toDegrees(fault->turn)});
+  return {StopReason::kTrackDead,
+          name + words(": %2 m, %0 deg in %1 s, usual %2 m, %0 deg; check tracks and INS, then ARM",
+                       {window->forward, toDegrees(window->turned), window->seconds(),
+                        fault->travel, toDegrees(fault->turn)})};
 }
 
 void MotionMonitor::learn() {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/execution/stop_reason.hpp"
 #include "modules/motor_bridge/core/motion_response.hpp"
 #include "modules/motor_bridge/core/motion_track.hpp"
 #include "modules/motor_bridge/core/motor_controller.hpp"
@@ -37,21 +38,21 @@ class MotionMonitor {
   /// A measurement; one that is not newer than the last, or has no pose, is passed over.
   void receive(const InsMotion& ins);
 
-  /// What the commands cannot explain at now [us], in one line; empty = nothing.
+  /// What the commands cannot explain at now [us], in one line; none = nothing.
   /** A verdict stands a little longer than its windows need to fill again: what goes on is told
    * without a break. */
-  std::string fault(int64_t now) const;
+  Reason fault(int64_t now) const;
 
  private:
   void watchTracks(int64_t utime);
-  std::string standingTrack(int64_t utime) const;
-  std::string standingWheel(int64_t utime) const;
-  std::string surelyWrong() const;
-  std::string suspicion() const;
+  Reason standingTrack(int64_t utime) const;
+  Reason standingWheel(int64_t utime) const;
+  Reason surelyWrong() const;
+  Reason suspicion() const;
   /// From what the robot lately made of its commands.
-  std::string departure() const;
+  Reason departure() const;
   void learn();
-  void tell(const std::string& verdict, int64_t utime);
+  void tell(const Reason& verdict, int64_t utime);
 
   MotionTrack track_;
   MotionResponse response_;
@@ -61,7 +62,7 @@ class MotionMonitor {
   std::vector<int64_t>
       wheel_stands_since_;        ///< [us] left, right, or each wheel: against its command
   int64_t suspected_since_ = -1;  ///< [us] measurements since then are suspicious; -1 = none
-  std::string verdict_;
+  Reason verdict_;
   int64_t told_ = 0;  ///< [us] time of the measurement that the verdict was given on
 };
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/execution/stop_reason.hpp"
 #include "common/pattern/pattern.hpp"
 
 namespace tread::motor {
@@ -17,7 +18,9 @@ namespace tread::motor {
 struct DeviceReport {
   std::string link_fault;
   std::string device_fault;
-  bool stop_latched = false;  ///< the controller holds an emergency stop
+  bool stop_latched = false;                             ///< the controller holds an emergency stop
+  StopReason link_code = StopReason::kControllerLost;    ///< of link_fault
+  StopReason fault_code = StopReason::kControllerFault;  ///< of device_fault
 };
 
 /// A number for each channel of the commands; NaN = unknown.

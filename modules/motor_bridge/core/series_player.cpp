@@ -21,7 +21,7 @@ void ExecutionLog::countCommand() {
   if (running()) ++records_.back().commands_played;
 }
 
-void ExecutionLog::close(ExecutionOutcome outcome, int64_t end_utime, const std::string& reason) {
+void ExecutionLog::close(ExecutionOutcome outcome, int64_t end_utime, const Reason& reason) {
   if (!running()) return;
   records_.back().outcome = outcome;
   records_.back().end_utime = end_utime;
@@ -99,7 +99,7 @@ SeriesPlayer::Advance SeriesPlayer::advance(int64_t now) {
   while (playing() && now >= endUtime()) {
     advance.skipped += static_cast<int32_t>(current_.series.size()) - given_;
     const int64_t end = endUtime();
-    log_.close(ExecutionOutcome::kCompleted, end, "");
+    log_.close(ExecutionOutcome::kCompleted, end, {});
     const int64_t ended_id = current_.execution_id;
     current_ = ProgramSlot{};
     advance.ended = pending_.empty();
@@ -136,7 +136,7 @@ void SeriesPlayer::begin(const ProgramSlot& slot, int64_t start_utime) {
   log_.begin(run_id_.value_or(0), slot, start_utime);
 }
 
-void SeriesPlayer::abort(int64_t now, const std::string& reason) {
+void SeriesPlayer::abort(int64_t now, const Reason& reason) {
   log_.close(ExecutionOutcome::kAborted, now, reason);
   current_ = ProgramSlot{};
   pending_ = ProgramSlot{};

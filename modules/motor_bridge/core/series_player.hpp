@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "common/execution/stop_reason.hpp"
 #include "modules/motor_bridge/core/program.hpp"
 
 namespace tread::motor {
@@ -26,7 +27,7 @@ struct ExecutionRecord {
   int32_t commands_played = 0;  ///< that were really given to the controller
   int32_t commands_total = 0;
   ExecutionOutcome outcome = ExecutionOutcome::kRunning;
-  std::string reason;  ///< why aborted; empty else
+  Reason reason;  ///< why aborted; none else
 };
 
 /// The last executions, oldest first.
@@ -39,7 +40,7 @@ class ExecutionLog {
   /// One more command of the running execution was given to the controller.
   void countCommand();
   /// The running execution is over. Nothing happens if none is running.
-  void close(ExecutionOutcome outcome, int64_t end_utime, const std::string& reason);
+  void close(ExecutionOutcome outcome, int64_t end_utime, const Reason& reason);
 
   const std::deque<ExecutionRecord>& records() const { return records_; }
   /// Counts up whenever an execution begins or ends.
@@ -105,7 +106,7 @@ class SeriesPlayer {
   /// A series starts only with the step its program arrived in: later it would be an old opinion.
   void dropCandidate() { candidate_ = Program{}; }
   /// Ends the running series at now [us] and forgets what was pending.
-  void abort(int64_t now, const std::string& reason);
+  void abort(int64_t now, const Reason& reason);
   /// Command of the current period, counted as given to the controller; needs playing().
   Command give();
 

@@ -16,8 +16,6 @@ constexpr double kRelief = 0.05;             // [rad, rad/s] below the limit tha
 constexpr int64_t kSilent = 300'000;         // [us] without a measurement
 constexpr int64_t kFaultStands = 1'000'000;  // [us]
 
-const std::string kUnmeasured = "INS measures no roll and pitch: their limits cannot be kept";
-
 std::string whole(double angle) {
   return std::to_string(std::lround(toDegrees(angle)));
 }
@@ -31,25 +29,25 @@ std::array<TiltWatch::Check, 4> TiltWatch::checks(const InsTilt& tilt) const {
            {"pitching", " deg/s", tilt.pitch_rate, limits_->pitch_rate}}};
 }
 
-std::string TiltWatch::worst(const InsTilt& tilt, double relief) const {
-  if (!std::isfinite(tilt.roll) || !std::isfinite(tilt.pitch)) return kUnmeasured;
+Reason TiltWatch::worst(const InsTilt& tilt, double relief) const {
+  if (!std::isfinite(tilt.roll) || !std::isfinite(tilt.pitch)) return StopReason::kTiltUnknown;
   for (const Check& check : checks(tilt)) {
     if (std::abs(check.value) > check.limit - relief)
-      return std::string(check.what) + " " + whole(std::abs(check.value)) + check.unit +
-             ", limit " + whole(check.limit);
+      return {StopReason::kTilt, std::string(check.what) + " " + whole(std::abs(check.value)) +
+                                     check.unit + ", limit " + whole(check.limit)};
   }
-  return "";
+  return {};
 }
 
 void TiltWatch::receive(const InsTilt& tilt, int64_t now) {
   if (!limits_ || (newest_ && tilt.utime <= *newest_)) return;
   newest_ = tilt.utime;
   heard_at_ = now;
-  const std::string worst_now = worst(tilt, beyond_.empty() ? 0.0 : kRelief);
+  const Reason worst_now = worst(tilt, beyond_.empty() ? 0.0 : kRelief);
   if (worst_now.empty()) {
     bad_ = {};
     good_since_ = good_since_.value_or(tilt.utime);
-    if (tilt.utime - *good_since_ >= kWithin) beyond_.clear();
+    if (tilt.utime - *good_since_ >= kWithin) beyond_ = {};
     return;
   }
   good_since_.reset();
@@ -57,26 +55,26 @@ void TiltWatch::receive(const InsTilt& tilt, int64_t now) {
   ++bad_.count;
   if (!beyond_.empty()) {
     // Just below the limit it stays said by how much it was passed.
-    const std::string passed = worst(tilt, 0.0);
+    const Reason passed = worst(tilt, 0.0);
     if (!passed.empty()) beyond_ = passed;
   } else if (bad_.count >= kBumpMeasurements && tilt.utime - *bad_.utime >= kBump) {
     tell(worst_now, now);
   }
 }
 
-void TiltWatch::tell(const std::string& what, int64_t now) {
+void TiltWatch::tell(const Reason& what, int64_t now) {
   beyond_ = what;
   began_ = now;
 }
 
-std::string TiltWatch::fault(int64_t now) {
+Reason TiltWatch::fault(int64_t now) {
   heard_at_ = heard_at_.value_or(now);
   if (limits_ && now - *heard_at_ > kSilent) {
     bad_ = {};
     good_since_.reset();
-    if (beyond_.empty()) tell(kUnmeasured, now);
+    if (beyond_.empty()) tell(StopReason::kTiltUnknown, now);
   }
-  return !beyond_.empty() && now - began_ <= kFaultStands ? beyond_ : "";
+  return !beyond_.empty() && now - began_ <= kFaultStands ? beyond_ : Reason();
 }
 
 }  // namespace tread::motor

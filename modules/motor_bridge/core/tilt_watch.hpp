@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <string>
 
+#include "common/execution/stop_reason.hpp"
 #include "common/vehicle/robot_description.hpp"
 
 namespace tread::motor {
@@ -37,9 +37,9 @@ class TiltWatch {
   /// What stops the robot at now [us]: it has just come beyond a limit. Stands for a second, so
   /// that arming by hand is needed, and is possible, while the robot is still beyond: only a person
   /// drives it out of there. Call it in each step: silence counts as beyond, too.
-  std::string fault(int64_t now);
-  /// Why no program may drive: it is beyond a limit still; empty = within.
-  const std::string& beyond() const { return beyond_; }
+  Reason fault(int64_t now);
+  /// Why no program may drive: it is beyond a limit still; none = within.
+  const Reason& beyond() const { return beyond_; }
 
  private:
   struct Check {
@@ -54,15 +54,15 @@ class TiltWatch {
   };
 
   std::array<Check, 4> checks(const InsTilt& tilt) const;
-  std::string worst(const InsTilt& tilt, double relief) const;
-  void tell(const std::string& what, int64_t now);
+  Reason worst(const InsTilt& tilt, double relief) const;
+  void tell(const Reason& what, int64_t now);
 
   std::optional<TiltLimits> limits_;
   std::optional<int64_t> newest_;    ///< [us]
   std::optional<int64_t> heard_at_;  ///< [us] of a measurement, or of the first step
   Since bad_;
   std::optional<int64_t> good_since_;  ///< [us]
-  std::string beyond_;
+  Reason beyond_;
   int64_t began_ = 0;  ///< [us] when it came beyond
 };
 

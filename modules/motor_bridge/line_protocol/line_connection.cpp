@@ -299,8 +299,9 @@ DeviceReport LineConnection::reported(int64_t now) const {
   } else {
     std::string& words = report.device_fault;
     for (const LineFault& fault : line_.faults) {
-      if ((telemetry_.device_flags & fault.mask) != 0)
-        words += (words.empty() ? "controller: " : ", ") + fault.means;
+      if ((telemetry_.device_flags & fault.mask) == 0) continue;
+      words += (words.empty() ? "controller: " : ", ") + fault.means;
+      if (fault.voltage) report.fault_code = StopReason::kControllerVoltage;
     }
     report.stop_latched = latched_;
   }

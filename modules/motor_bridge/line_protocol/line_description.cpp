@@ -141,6 +141,7 @@ void readTelemetry(ConfigReader& reader, LineDescription& line) {
     fault.mask = static_cast<int32_t>(mask);
     item.text("means", fault.means, true);
     item.flag("latched", fault.latched);
+    item.flag("voltage", fault.voltage);
     line.faults.push_back(fault);
   }
   ConfigReader units = reader.section("units");

@@ -28,6 +28,7 @@ struct LineFault {
   int32_t mask = 0;
   std::string means;     ///< for people
   bool latched = false;  ///< it is the controller's own emergency stop
+  bool voltage = false;  ///< it is the battery's voltage
 };
 
 /// A controller's line protocol as its description (YAML) tells it.

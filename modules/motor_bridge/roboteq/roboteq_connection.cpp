@@ -119,6 +119,8 @@ DeviceReport RoboteqConnection::reported(int64_t now) const {
     report.link_fault = "controller's fault flags are out of date";
   } else {
     report.device_fault = describeFaults(told.fault_flags, told.status_flags);
+    if ((told.fault_flags & (kOvervoltage | kUndervoltage)) != 0)
+      report.fault_code = StopReason::kControllerVoltage;
     for (const std::string& motor : {describeMotorFaults("left", told.motor_flags_left),
                                      describeMotorFaults("right", told.motor_flags_right)})
       if (!motor.empty()) report.device_fault += (report.device_fault.empty() ? "" : "; ") + motor;

@@ -94,6 +94,11 @@ std::string vescFault(int code) {
   return "fault " + std::to_string(code);
 }
 
+bool isVoltageFault(int code) {
+  constexpr int kOvervoltage = 1, kUndervoltage = 2;
+  return code == kOvervoltage || code == kUndervoltage;
+}
+
 std::string vescPacket(std::string_view payload) {
   const auto size = static_cast<uint32_t>(payload.size());
   std::string packet(1, size < 256 ? kShortStart : kLongStart);

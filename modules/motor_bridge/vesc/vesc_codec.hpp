@@ -32,6 +32,8 @@ struct VescReading {
 
 /// Fault codes in words; "fault 77" for one that is not known.
 std::string vescFault(int code);
+/// Whether it is the battery's voltage, too high or too low.
+bool isVoltageFault(int code);
 
 // Over UART: packets.
 

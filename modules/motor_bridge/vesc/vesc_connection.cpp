@@ -41,6 +41,7 @@ DeviceReport VescConnection::reported(int64_t /*now*/) const {
     report.link_fault = "values of VESC " + unheard + " not read yet";
   } else {
     report.device_fault = group_.faults();
+    if (group_.voltageFault()) report.fault_code = StopReason::kControllerVoltage;
   }
   return report;
 }

@@ -259,4 +259,10 @@ std::string VescGroup::faults() const {
   return words;
 }
 
+bool VescGroup::voltageFault() const {
+  return std::any_of(members_.begin(), members_.end(), [](const Member& member) {
+    return isVoltageFault(member.told.fault.value_or(0));
+  });
+}
+
 }  // namespace tread::motor

@@ -68,6 +68,8 @@ class VescGroup {
   MotorTelemetry telemetry() const;
   /// Fault codes in words; empty = none.
   std::string faults() const;
+  /// Whether one of them is the battery's voltage.
+  bool voltageFault() const;
 
  private:
   struct Member {

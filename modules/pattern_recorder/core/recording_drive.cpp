@@ -180,7 +180,7 @@ void RecordingDrive::step(const RobotReadings& readings, const RecordingProgress
   if (!progress.hopeless.empty()) fail(progress.hopeless);
   const ExecutionTracker::Event event = tracker_.follow(readings);
   if (event == ExecutionTracker::Event::kAborted || event == ExecutionTracker::Event::kNeverStarted)
-    say_("stopped: " + tracker_.abortReason());
+    say_("stopped: " + tracker_.abortReason().words);
   if (tracker_.running().empty()) forgetUnplayed(readings);
   left_room_ = false;
   if (state_ == State::kRunning) drive(readings, progress, may_begin);

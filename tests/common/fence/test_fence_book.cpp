@@ -111,71 +111,56 @@ TEST_CASE("so many corners as the motor bridge cannot look at in a step are not 
   CHECK(book.take({"ada", false, square("small", 1)}, true) == FenceReceipt::kAdded);
 }
 
-TEST_CASE("the counter of a fence tells it from others of its name") {
-  const Fence yard = square("yard", 9);
-  Fence other = yard;
-  CHECK(fenceCounter(other) == fenceCounter(yard));
-  other.corners[0].x() = -0.0;
-  CHECK(fenceCounter(other) == fenceCounter(yard));
-  other.keep_out = true;
-  CHECK(fenceCounter(other) != fenceCounter(yard));
-  CHECK(fenceCounter(square("yard", 9.001)) != fenceCounter(yard));
-  CHECK(countsFence(fenceCounter(other), "yard"));
-  CHECK_FALSE(countsFence(fenceCounter(square("yard 2", 9)), "yard"));
-  CHECK_FALSE(countsFence(fenceCounter(square("my yard", 9)), "yard"));
-}
-
-TEST_CASE("HEALTH counts the fences in force and no others, however many have come and gone") {
+TEST_CASE("FENCES says each second and after each change which fences are kept, and no others") {
   struct Teller : Node {
-    explicit Teller(Bus& bus) : exchange(bus, "teller", "none"), health(bus, "teller", "") {}
-    int64_t period() const override { return 1'000'000; }
+    explicit Teller(Bus& bus) : exchange(bus, "teller", "none", [](const FenceRequest&) {}) {}
+    int64_t period() const override { return 100'000; }
     void step(int64_t utime) override {
-      for (int i = 0; i < 20; ++i) {
-        const std::string name = "f" + std::to_string(count++);
-        if (i > 0) book.take(removal("f" + std::to_string(count - 2)), true);
-        book.take({"ada", false, square(name, 9)}, true);
-        exchange.step(book, health);
+      const std::string last = "f" + std::to_string(count);
+      if (utime < 3'000'000) {
+        if (count > 0) book.take(removal(last), true);
+        book.take({"ada", false, square("f" + std::to_string(++count), 9)}, true);
       }
-      health.step(utime);
-      book.take(removal("f" + std::to_string(count - 1)), true);
+      exchange.step(book);
     }
     FenceBook book{{square("site", 50)}};
     FenceExchange exchange;
-    HealthReporter health;
     int count = 0;
   };
   VirtualBus bus{1};
-  std::set<std::string> told;
-  bus.outside().subscribe<health_t>(kHealth, [&](const health_t& message) {
-    told.clear();
-    for (const counter_t& counter : message.counters) told.insert(counter.counter_name);
-  });
+  std::vector<fences_t> told;
+  bus.outside().subscribe<fences_t>(kFences,
+                                    [&](const fences_t& message) { told.push_back(message); });
   bus.addNode("teller", [](Bus& end) { return std::make_unique<Teller>(end); });
-  for (int i = 0; i < 10; ++i) {
-    bus.runUntil(bus.now() + 1'000'000);
-    REQUIRE(told.size() == 2);
-    CHECK(told.count(fenceCounter(square("site", 50))) == 1);
+  bus.runUntil(3'000'000);
+  CHECK(told.size() >= 20);
+  for (size_t i = 0; i < told.size(); ++i) {
+    const std::vector<Fence> fences = fencesFrom(told[i]);
+    CHECK(told[i].keeper == "teller");
+    CHECK(told[i].num_own == 1);
+    REQUIRE(fences.size() == 2);
+    CHECK(fences[0] == square("site", 50));
+    CHECK(fences[1] == square("f" + std::to_string(i + 1), 9));
   }
+  told.clear();
+  bus.runUntil(8'000'000);
+  CHECK(told.size() >= 4);
+  CHECK(told.size() <= 6);
 }
 
 TEST_CASE("who is started again gets the operators' fences back, and what is removed stays away") {
   struct Keeper : Node {
     Keeper(Bus& bus, const std::string& name, const std::string& other)
-        : exchange(bus, name, other), health(bus, name, "") {
+        : exchange(bus, name, other,
+                   [this](const FenceRequest& request) { book.take(request, false); }) {
       bus.subscribe<fence_t>(kFence, [this](const fence_t& message) {
-        ++requests;
         book.take(requestFrom(message), message.fence_by == "ada");
       });
     }
     int64_t period() const override { return 10'000; }
-    void step(int64_t utime) override {
-      exchange.step(book, health);
-      health.step(utime);
-    }
+    void step(int64_t /*utime*/) override { exchange.step(book); }
     FenceBook book{{square("site", 50)}};
     FenceExchange exchange;
-    HealthReporter health;
-    int requests = 0;
   };
   VirtualBus bus{1};
   std::map<std::string, Keeper*> keepers;
@@ -201,8 +186,9 @@ TEST_CASE("who is started again gets the operators' fences back, and what is rem
     bus.restart(name);
     bus.runUntil(bus.now() + 1'200'000);
     CHECK(keepers[name]->book.fences().size() == 3);
+    const int64_t revision = keepers[name]->book.revision();
     bus.runUntil(bus.now() + 3'000'000);
-    CHECK(keepers[name]->requests <= 4);  // and then there is silence
+    CHECK(keepers[name]->book.revision() == revision);
   }
   send(removal("yard"));
   for (const auto& [name, keeper] : keepers) {

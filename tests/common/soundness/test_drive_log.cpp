@@ -88,9 +88,9 @@ TEST_CASE(
     const double time = 0.05 * i;
     log.ins(time, {0.01 * i, 0.0, 0.0}, 0.0);
     if (time < 5.0)
-      log.motor(time, {0.3, 0.3}, motor_t::STATE_DISARMED, "ARM needed");
+      log.motor(time, {0.3, 0.3}, motor_t::STATE_DISARMED, StopReason::kNotArmedYet);
     else if (time < 10.0)
-      log.motor(time, {0.3, 0.3}, motor_t::STATE_DISARMED, "idle or driven by the operator");
+      log.motor(time, {0.3, 0.3}, motor_t::STATE_DISARMED, StopReason::kOperatorDrives);
     else if (time < 15.0)
       log.motor(time, {0.3, 0.3});
     else

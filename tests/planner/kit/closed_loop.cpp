@@ -14,7 +14,7 @@ void ToyBridge::receive(int64_t run_id, const PlannedExecution& running,
                         const PlannedExecution& next, int64_t now) {
   run_id_ = run_id;
   if (running.empty() || !armed_) {
-    if (!current_.empty()) close(ExecutionReading::State::kAborted, "stopped by the planner");
+    if (!current_.empty()) close(ExecutionReading::State::kAborted, StopReason::kStoppedByPlanner);
     current_ = pending_ = {};
     return;
   }
@@ -40,7 +40,7 @@ void ToyBridge::begin(const PlannedExecution& slot, int64_t started) {
   if (executions_.size() > 8) executions_.erase(executions_.begin());
 }
 
-void ToyBridge::close(ExecutionReading::State state, const std::string& reason) {
+void ToyBridge::close(ExecutionReading::State state, const Reason& reason) {
   executions_.back().state = state;
   executions_.back().reason = reason;
 }
@@ -48,7 +48,7 @@ void ToyBridge::close(ExecutionReading::State state, const std::string& reason) 
 Command ToyBridge::step(int64_t now) {
   while (!current_.empty() && now >= started_ + current_.durationUs()) {
     const int64_t end = started_ + current_.durationUs();
-    close(ExecutionReading::State::kCompleted, "");
+    close(ExecutionReading::State::kCompleted, {});
     const PlannedExecution next = pending_;
     current_ = {};
     if (!next.empty()) begin(next, end);
@@ -171,7 +171,7 @@ class Drive {
     outcome_.planner_seconds += took;
     outcome_.worst_step = std::max(outcome_.worst_step, took);
     outcome_.status = decision.report.status;
-    outcome_.reason = decision.report.reason;
+    outcome_.reason = decision.report.reason.words;
     orders_.push_back(
         {now_ + options_.latency, supervisor_.program().running(), supervisor_.program().next()});
     const double clearance = mission_.ground.clearance(options_.config.map.footprint, state_.pose);

@@ -30,7 +30,7 @@ class ToyBridge {
 
  private:
   void begin(const PlannedExecution& slot, int64_t started);
-  void close(ExecutionReading::State outcome, const std::string& reason);
+  void close(ExecutionReading::State outcome, const Reason& reason);
 
   bool armed_ = true;
   int64_t run_id_ = 0;

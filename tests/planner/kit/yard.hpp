@@ -37,6 +37,9 @@ struct Yard {
       ++programs;
       if (message.running.execution_id != 0) run_id = message.run_id;
     });
+    bus.outside().subscribe<fences_t>(kFences, [this](const fences_t& message) {
+      if (message.keeper == "planner") fences = message;
+    });
     bus.outside().subscribe<health_t>(kHealth, [this](const health_t& message) {
       if (message.process == "planner") health = message;
     });
@@ -101,6 +104,7 @@ struct Yard {
   plan_t plan{};
   plan_tree_t tree{};
   health_t health{};
+  fences_t fences{};
   int plans = 0;
   int programs = 0;
   int64_t run_id = 0;

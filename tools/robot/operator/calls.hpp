@@ -107,6 +107,7 @@ struct ArmRequest {
   bool arm = true;           ///< false: disarm
   bool hold = false;         ///< stay once armed: the robot may drive only as long as this runs
   std::string hand_over_to;  ///< name of the operator who takes over; empty = nobody
+  std::string held_words = "armed and held: Ctrl-C disarms";  ///< said while it holds
 };
 
 /// Arms or disarms, and holds the robot for its operator meanwhile.

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "tools/robot/operator/fence_call.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -21,14 +22,14 @@ FenceCall::FenceCall(Bus& bus, const Requester& requester, FenceRequest request,
       request_(std::move(request)),
       patience_(static_cast<int64_t>(patience * 1e6)) {
   request_.by = requester.signature();
-  bus.subscribe<health_t>(kHealth, [this](const health_t& message) {
-    bool in_force = false;
-    for (const counter_t& counter : message.counters)
-      in_force |= request_.removes ? countsFence(counter.counter_name, request_.fence.name)
-                                   : counter.counter_name == fenceCounter(request_.fence);
+  bus.subscribe<fences_t>(kFences, [this](const fences_t& message) {
+    const std::vector<Fence> kept = fencesFrom(message);
+    const bool in_force = std::any_of(kept.begin(), kept.end(), [this](const Fence& fence) {
+      return request_.removes ? fence.name == request_.fence.name : fence == request_.fence;
+    });
     // What was said before the call is no answer.
     if (started_ && message.utime > beacon_.robotTime(*started_))
-      shown_[message.process] = in_force != request_.removes;
+      shown_[message.keeper] = in_force != request_.removes;
   });
 }
 
@@ -59,7 +60,7 @@ std::string FenceCall::describe(int64_t /*utime*/) const {
     if (!shownBy(process)) list += (list.empty() ? "" : " and ") + std::string(process);
   }
   if (!silent.empty())
-    return "no HEALTH came of " + silent + ": running on this LCM URL?" + keyWords(bus_);
+    return "no FENCES came of " + silent + ": running on this LCM URL?" + keyWords(bus_);
   if (missing.empty())
     return request_.removes ? "no " + fence + " is in force any more" : fence + " is in force";
   return fence + (request_.removes ? " is still in force in " : " is not in force in ") + missing +

@@ -13,7 +13,7 @@
 namespace tread::operators {
 
 /// Adds a fence, or removes all of a name, repeated until motor bridge and planner show it in
-/// HEALTH.
+/// FENCES.
 class FenceCall : public Call {
  public:
   /// `patience` [s] for which it is repeated. Signed as the request says, for its operator.

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <tread/motor_t.hpp>
 #include <tread/plan_t.hpp>
@@ -9,7 +10,6 @@
 #include "common/messages/pattern_messages.hpp"
 #include "common/report/text.hpp"
 #include "tools/robot/why/debrief.hpp"
-#include "tools/robot/why/reasons.hpp"
 
 namespace tread::why {
 namespace {
@@ -27,7 +27,7 @@ constexpr double kOnePlace = 0.05;    // [m] noise of an INS that does not move
 struct Signal {
   double time = 0.0;
   const char* channel = "";
-  Topic topic = Topic::kOther;
+  StopReason code = StopReason::kUnsaid;
   std::string reason;
 };
 
@@ -41,16 +41,22 @@ struct Incident {
   /// for.
   bool endsBefore(const Signal& next) const {
     const auto takesPermission = [](const Signal& signal) {
-      return signal.channel == std::string("MOTOR") || signal.topic == Topic::kMap;
+      return signal.channel == std::string("MOTOR") || signal.code == StopReason::kNoMap ||
+             signal.code == StopReason::kMapStale;
     };
     return takesPermission(next) && next.time > time() + kFirst &&
            std::none_of(signals.begin(), signals.end(), takesPermission);
+  }
+  /// What has no code says least.
+  static int rankOf(const Signal& signal) {
+    return signal.code == StopReason::kUnsaid ? std::numeric_limits<int>::max()
+                                              : static_cast<int>(signal.code);
   }
   /// The one nearest to the cause.
   const Signal& main() const {
     const Signal* best = &signals.front();
     for (const Signal& signal : signals)
-      if (signal.time <= time() + kFirst && signal.topic < best->topic) best = &signal;
+      if (signal.time <= time() + kFirst && rankOf(signal) < rankOf(*best)) best = &signal;
     return *best;
   }
 };
@@ -68,8 +74,8 @@ bool stops(int plan_state) {
 std::vector<Signal> signalsOf(const DriveTimeline& drive) {
   std::vector<Signal> signals;
   const auto add = [&](const StateNote& note, const char* channel) {
-    if (!isOrdinary(note.reason))
-      signals.push_back({note.time, channel, topicOf(note.reason), note.reason});
+    if (!isOrdinary(note.reason.code))
+      signals.push_back({note.time, channel, note.reason.code, note.reason.words});
   };
   bool may = false;
   for (const StateNote& note : drive.motors) {
@@ -126,66 +132,100 @@ class CauseSearch {
   }
 
   Finding find() {
-    switch (main_.topic) {
-      case Topic::kEstop:
+    switch (main_.code) {
+      case StopReason::kEstopEngaged:
         estop();
         break;
-      case Topic::kFinder:
+      case StopReason::kRangeFinder:
         say("range_finder", "what the range finder shows was not believed: " + main_.reason);
         if (const HealthNote* const note =
-                drive_.complaintOf("mapping", t_ - kBefore, t_ + kAfterwards, "range finder at "))
+                drive_.complaintOf("mapping", t_ - kBefore, t_ + kAfterwards))
           prove("mapping", *note);
         break;
-      case Topic::kPerson:
+      case StopReason::kDisarmed:
         say("disarmed", main_.reason);
         quote("disarms");
         break;
-      case Topic::kController:
+      case StopReason::kControllerVoltage:
+        say("battery", "the motor controller ran short of voltage: " + main_.reason);
+        break;
+      case StopReason::kControllerLost:
+      case StopReason::kControllerStarts:
+      case StopReason::kControllerFault:
         controller();
         break;
-      case Topic::kBridge:
+      case StopReason::kBridgeHeldUp:
+      case StopReason::kClockWentBack:
+      case StopReason::kMotorStale:
+      case StopReason::kNoMotor:
         if (!processFault("motor_bridge", "MOTOR", 0.2))
           say("motor_bridge_hung", "motor_bridge was held up: " + main_.reason);
         break;
-      case Topic::kOperator:
+      case StopReason::kOperatorLost:
+      case StopReason::kNoOperator:
+      case StopReason::kOperatorLetGo:
+      case StopReason::kGoalAbandoned:
         operatorLost();
         break;
-      case Topic::kProgram:
+      case StopReason::kBadProgram:
+      case StopReason::kOtherPlanner:
+      case StopReason::kNoProgram:
+      case StopReason::kProgramLate:
+      case StopReason::kSeriesEnded:
+      case StopReason::kNothingInTime:
+      case StopReason::kNotBegun:
         if (!processFault("motor_bridge", "MOTOR", 0.2) &&
             !processFault("planner", "PROGRAM", 0.16))
           lost("PROGRAM", "planner", "motor_bridge");
         break;
-      case Topic::kInsStale:
+      case StopReason::kNoIns:
+      case StopReason::kInsRestarted:
+      case StopReason::kInsStale:
         insStale();
         break;
-      case Topic::kInsBlind:
+      case StopReason::kInsBlind:
+      case StopReason::kNoUsableIns:
         insBlind();
         break;
-      case Topic::kTilt:
+      case StopReason::kTilt:
+      case StopReason::kTiltUnknown:
         say("tilt", "it leaned too far: " + main_.reason);
         break;
-      case Topic::kFence:
+      case StopReason::kFenceNear:
+      case StopReason::kFenceBlind:
+      case StopReason::kFencesLost:
         say("fence", "a fence stopped it: " + main_.reason);
         break;
-      case Topic::kMotion:
+      case StopReason::kInsJump:
+      case StopReason::kInsFrozen:
+      case StopReason::kTrackDead:
+      case StopReason::kStuck:
+      case StopReason::kInsDisagrees:
+      case StopReason::kUnexplainedMotion:
         motion();
         proveGap();
         break;
-      case Topic::kMap:
+      case StopReason::kNoMap:
+      case StopReason::kMapStale:
         map();
         break;
-      case Topic::kPatterns:
+      case StopReason::kLearnerLost:
+      case StopReason::kBadPatterns:
+      case StopReason::kPatternGone:
         if (!processFault("learner", "PATTERN_SET", 3.5)) lost("PATTERN_SET", "learner", "planner");
         break;
-      case Topic::kObstacle:
-      case Topic::kPlan:
+      case StopReason::kObstacleAhead:
+      case StopReason::kBoxedIn:
+      case StopReason::kNoWayFound:
+      case StopReason::kGettingOut:
         obstacle();
         proveGap();
         break;
-      case Topic::kGoal:
+      case StopReason::kGoalUnreachable:
+      case StopReason::kGoalEnded:
         say("goal", main_.reason);
         break;
-      case Topic::kOther:
+      default:
         say("other", main_.reason);
     }
     return std::move(finding_);
@@ -228,11 +268,8 @@ class CauseSearch {
   }
 
   void controller() {
-    const bool weak = main_.reason.find("voltage") != std::string::npos;
-    if (weak) return say("battery", "the motor controller ran short of voltage: " + main_.reason);
     say("motor_line", "the motor controller did not answer: " + main_.reason);
-    if (const HealthNote* const note =
-            drive_.complaintOf("motor_bridge", t_, t_ + kAfterwards, "controller"))
+    if (const HealthNote* const note = drive_.complaintOf("motor_bridge", t_, t_ + kAfterwards))
       prove("motor_bridge", *note);
   }
 
@@ -243,8 +280,7 @@ class CauseSearch {
             formatted("nothing from here on for %.1f s", silence->length()));
       return;
     }
-    if (main_.reason.find("has let go") != std::string::npos)
-      return say("operator_left", main_.reason);
+    if (main_.code == StopReason::kOperatorLetGo) return say("operator_left", main_.reason);
     lost("OPERATOR", "the operator's program", "motor_bridge");
   }
 
@@ -292,7 +328,7 @@ class CauseSearch {
     });
   }
   bool deviceComplains(const std::string& process) const {
-    return drive_.complaintOf(process, t_ - 1.0, t_ + kAfterwards, "byte") != nullptr;
+    return drive_.complaintOf(process, t_ - 1.0, t_ + kAfterwards) != nullptr;
   }
 
   /// What was sent and did not come in time: lost, late or broken where the receiver counted that.
@@ -332,10 +368,8 @@ class CauseSearch {
                   main_.channel == std::string("PLAN") ? "planner" : "motor_bridge");
     say("ins_device", formatted("the INS gave nothing usable for %.2f s", silence->length()));
     prove(silence->from, "INS", formatted("nothing from here on for %.2f s", silence->length()));
-    for (const char* words : {"byte", "no position", "no heading"})
-      if (const HealthNote* const note =
-              drive_.complaintOf("ins_driver", t_ - 1.0, t_ + kAfterwards, words))
-        return prove("ins_driver", *note);
+    if (const HealthNote* const note = drive_.complaintOf("ins_driver", t_ - 1.0, t_ + kAfterwards))
+      prove("ins_driver", *note);
   }
 
   void insBlind() {
@@ -354,8 +388,7 @@ class CauseSearch {
       say("ins_no_fix", "the INS lost its position or heading");
     }
     prove(blind->time, "INS", formatted("status %d, no pose", blind->status));
-    if (const HealthNote* const note =
-            drive_.complaintOf("ins_driver", t_ - 1.0, t_ + kAfterwards, "no "))
+    if (const HealthNote* const note = drive_.complaintOf("ins_driver", t_ - 1.0, t_ + kAfterwards))
       prove("ins_driver", *note);
   }
 
@@ -374,21 +407,20 @@ class CauseSearch {
   }
 
   void motion() {
-    const auto says = [&](const char* words) {
-      return main_.reason.find(words) != std::string::npos;
-    };
     for (const InsNote& note : drive_.ins)
       if (note.time > t_ - kBefore && note.time < t_ + 0.5 &&
           (note.status & ins_t::STATUS_JUMP) != 0) {
         prove(note.time, "INS", "STATUS_JUMP");
         return say("ins_jump", "the INS jumped: " + main_.reason);
       }
-    if (says("jumps")) return say("ins_jump", "the INS jumped: " + main_.reason);
+    if (main_.code == StopReason::kInsJump)
+      return say("ins_jump", "the INS jumped: " + main_.reason);
     if (frozen())
       return say("ins_frozen", "the INS repeated one place while the robot moved: " + main_.reason);
-    if (says("track dead") || says("tracks blocked") || says("wrong way"))
+    if (main_.code == StopReason::kTrackDead)
       return say("drive", "the drive failed: " + main_.reason);
-    if (says("frozen")) return say("stuck", "it got stuck: " + main_.reason);
+    if (main_.code == StopReason::kStuck || main_.code == StopReason::kInsFrozen)
+      return say("stuck", "it got stuck: " + main_.reason);
     say("ins_drift", "the pose moved in a way that the commands do not explain: " + main_.reason);
   }
 

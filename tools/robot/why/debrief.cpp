@@ -259,7 +259,7 @@ void addGoals(const DriveTimeline& drive, std::vector<Finding>& findings) {
                                    goal.T_map_goal.x, goal.T_map_goal.y);
       if (last != nullptr) {
         const std::string why =
-            last->reason.empty() ? "it still drove when the log ended" : last->reason;
+            last->reason.words.empty() ? "it still drove when the log ended" : last->reason.words;
         finding.sentence += ": " + why;
         finding.evidence.push_back({last->time, "PLAN", why});
       } else {

@@ -53,8 +53,9 @@ class TimelineReader {
   void hear(const motor_t& motor) {
     std::vector<StateNote>& notes = drive_.motors;
     if (notes.empty() || notes.back().state != motor.bridge_state ||
-        notes.back().reason != motor.state_reason)
-      notes.push_back({now_, motor.bridge_state, motor.state_reason});
+        notes.back().reason.words != motor.state_reason)
+      notes.push_back(
+          {now_, motor.bridge_state, {stopReasonFrom(motor.state_code), motor.state_reason}});
 
     if (std::isfinite(motor.battery_voltage) &&
         (drive_.battery.empty() || now_ - drive_.battery.back().first >= kBatteryStep))
@@ -64,7 +65,9 @@ class TimelineReader {
   void hear(const plan_t& plan) {
     std::vector<StateNote>& notes = drive_.plans;
     // While it drives the reason tells of a stop that is planned.
-    const std::string reason = plan.plan_status == plan_t::PLAN_DRIVING ? "" : plan.reason;
+    Reason reason;
+    if (plan.plan_status != plan_t::PLAN_DRIVING)
+      reason = {stopReasonFrom(plan.reason_code), plan.reason};
     if (notes.empty() || notes.back().state != plan.plan_status || notes.back().reason != reason)
       notes.push_back({now_, plan.plan_status, reason});
   }
@@ -103,7 +106,9 @@ class TimelineReader {
       if (record.outcome == execution_record_t::OUTCOME_RUNNING) continue;
       if (!ended_.insert(keyOf(record)).second) continue;
       if (record.outcome == execution_record_t::OUTCOME_ABORTED)
-        drive_.aborts.push_back({now_, record.record_pattern_id, record.outcome_reason});
+        drive_.aborts.push_back({now_,
+                                 record.record_pattern_id,
+                                 {stopReasonFrom(record.outcome_code), record.outcome_reason}});
       else
         ++drive_.completed;
     }
@@ -231,13 +236,13 @@ const HealthNote* DriveTimeline::healthAt(const std::string& process, double tim
   return after == found->second.begin() ? nullptr : &*std::prev(after);
 }
 
-const HealthNote* DriveTimeline::complaintOf(const std::string& process, double from, double to,
-                                             const std::string& words) const {
+const HealthNote* DriveTimeline::complaintOf(const std::string& process, double from,
+                                             double to) const {
   const auto found = health.find(process);
   if (found == health.end()) return nullptr;
   for (auto note = firstFrom(found->second, from); note != found->second.end() && note->time <= to;
        ++note)
-    if (note->reason.find(words) != std::string::npos) return &*note;
+    if (!note->ok) return &*note;
   return nullptr;
 }
 

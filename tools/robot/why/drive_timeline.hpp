@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/drive/drive_log.hpp"
+#include "common/execution/stop_reason.hpp"
 #include "common/geometry/se2.hpp"
 #include "common/grid/grid.hpp"
 
@@ -31,7 +32,7 @@ struct HealthNote {
 struct StateNote {
   double time = 0.0;
   int state = 0;
-  std::string reason;
+  Reason reason;
 };
 
 /// How an execution ended, as the learner scored it.
@@ -118,9 +119,8 @@ struct DriveTimeline {
   std::optional<double> deathOf(const std::string& process) const;
   /// Its newest note at a time; nullptr before the first.
   const HealthNote* healthAt(const std::string& process, double time) const;
-  /// The first note within these times whose reason holds the words; nullptr if there is none.
-  const HealthNote* complaintOf(const std::string& process, double from, double to,
-                                const std::string& words) const;
+  /// The first note within these times that something is wrong; nullptr if there is none.
+  const HealthNote* complaintOf(const std::string& process, double from, double to) const;
   /// Of the cells near a place that became obstacles within these times, how many, and how many of
   /// these places were free again later.
   struct Ghost {

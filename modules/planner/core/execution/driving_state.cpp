@@ -15,7 +15,7 @@ std::string oldAs(const char* what, int64_t age) {
   return std::string(what) + " is " + std::to_string(age / 1000) + " ms old";
 }
 
-Preconditions waiting(Level level, const std::string& reason) {
+Preconditions waiting(Level level, const Reason& reason) {
   return {level, PlanStatus::kWaiting, reason};
 }
 
@@ -23,14 +23,15 @@ Preconditions waiting(Level level, const std::string& reason) {
 Preconditions checkSensors(const PlannerInputs& s, const MapAndSet& supplies,
                            const AgeLimits& limits) {
   if (!s.bar.empty()) return waiting(Level::kStop, s.bar);
-  if (!s.pose) return waiting(Level::kStop, "no usable INS yet");
+  if (!s.pose) return waiting(Level::kStop, StopReason::kNoUsableIns);
   if (s.now - s.pose->utime > limits.pose)
-    return waiting(Level::kStop, oldAs("INS", s.now - s.pose->utime));
+    return waiting(Level::kStop, {StopReason::kInsStale, oldAs("INS", s.now - s.pose->utime)});
   if (!s.map_fault.empty()) return waiting(Level::kStop, s.map_fault);
-  if (supplies.map_utime == 0) return waiting(Level::kStop, "no MAP yet");
+  if (supplies.map_utime == 0) return waiting(Level::kStop, StopReason::kNoMap);
   if (s.now - supplies.map_utime > limits.map_stop)
-    return waiting(Level::kStop, oldAs("MAP", s.now - supplies.map_utime));
-  if (!supplies.set_defect.empty()) return waiting(Level::kStop, supplies.set_defect);
+    return waiting(Level::kStop, {StopReason::kMapStale, oldAs("MAP", s.now - supplies.map_utime)});
+  if (!supplies.set_defect.empty())
+    return waiting(Level::kStop, {StopReason::kBadPatterns, supplies.set_defect});
   return {};
 }
 
@@ -40,23 +41,27 @@ Preconditions checkSupplies(const PlannerInputs& s, const MapAndSet& supplies,
   const bool at_once = !s.goal_lost.empty() && lost != OperatorLost::kFinish;
   if (!s.goal) return {at_once ? Level::kStop : Level::kFinish, PlanStatus::kIdle, s.goal_lost};
   if (s.now - supplies.map_utime > limits.map_slow)
-    return waiting(Level::kFinish, oldAs("MAP", s.now - supplies.map_utime));
+    return waiting(Level::kFinish,
+                   {StopReason::kMapStale, oldAs("MAP", s.now - supplies.map_utime)});
   if (s.now - s.set_received > limits.pattern_set)
     return waiting(Level::kFinish,
-                   "the learner is lost: " + oldAs("PATTERN_SET", s.now - s.set_received));
+                   {StopReason::kLearnerLost,
+                    "the learner is lost: " + oldAs("PATTERN_SET", s.now - s.set_received)});
   return {};
 }
 
 Preconditions checkPermission(const PlannerInputs& s, const MapAndSet& supplies,
                               const AgeLimits& limits) {
-  if (s.estopped) return {Level::kStop, PlanStatus::kStopped, "E-stop is engaged"};
-  if (!s.bridge) return waiting(Level::kStop, "no MOTOR yet");
+  if (s.estopped) return {Level::kStop, PlanStatus::kStopped, StopReason::kEstopEngaged};
+  if (!s.bridge) return waiting(Level::kStop, StopReason::kNoMotor);
   if (s.now - s.bridge->utime > limits.bridge)
-    return waiting(Level::kStop, oldAs("MOTOR", s.now - s.bridge->utime));
+    return waiting(Level::kStop,
+                   {StopReason::kMotorStale, oldAs("MOTOR", s.now - s.bridge->utime)});
   if (!s.bridge->armed())
-    return {Level::kStop, supplies.was_armed ? PlanStatus::kStopped : PlanStatus::kWaiting,
-            "motor_bridge: " + s.bridge->reason};
-  if (!s.armed_by_operator) return waiting(Level::kStop, "not armed since the planner's start");
+    return {Level::kStop,
+            supplies.was_armed ? PlanStatus::kStopped : PlanStatus::kWaiting,
+            {s.bridge->reason.code, "motor_bridge: " + s.bridge->reason.words}};
+  if (!s.armed_by_operator) return waiting(Level::kStop, StopReason::kNotArmedSince);
   return {};
 }
 
@@ -66,21 +71,25 @@ constexpr double kTurnDoubt = 0.15;
 constexpr double kLeastRatio = 0.6;
 constexpr double kMostRatio = 1.6;
 
-/// Why the running or the next pattern ends at rest, in words; empty if neither does.
-std::string stopAhead(const PlannedExecution& running, const CurrentPlan& plan,
-                      const PatternTable& table) {
+/// Why the running or the next pattern ends at rest; none if neither does.
+Reason stopAhead(const PlannedExecution& running, const CurrentPlan& plan,
+                 const PatternTable& table) {
   size_t after = 0;  // index in the plan of what begins when the vehicle stands
   if (!leadsToRest(running, table)) {
     if (plan.steps.empty() || plan.steps.front().exit_class != table.restClass()) return {};
     after = 1;
   }
   if (after >= plan.steps.size())
-    return plan.end == SearchEnd::kGoal ? "stopping at the goal" : "stopping: the plan ends there";
+    return {StopReason::kPlannedStop, plan.end == SearchEnd::kGoal
+                                          ? "stopping at the goal"
+                                          : "stopping: the plan ends there"};
   const TablePattern& next = *table.find(plan.steps[after].pattern_id);
-  if (next.reverses) return "stopping to back up";
+  if (next.reverses) return {StopReason::kPlannedStop, "stopping to back up"};
   const Pose2& end = next.end().pose;
-  if (std::abs(end.yaw) > std::hypot(end.x, end.y)) return "stopping to turn on the spot";
-  return next.exit == table.restClass() ? "stopping for a small step" : "stopping to set off anew";
+  if (std::abs(end.yaw) > std::hypot(end.x, end.y))
+    return {StopReason::kPlannedStop, "stopping to turn on the spot"};
+  return {StopReason::kPlannedStop, next.exit == table.restClass() ? "stopping for a small step"
+                                                                   : "stopping to set off anew"};
 }
 
 }  // namespace
@@ -224,7 +233,7 @@ SearchResult DrivingState::search(int64_t now, const PlanStep& start, int expans
                                       may_keep_next, grip.deceleration},
                                      expansions, counters);
   if (result.end == SearchEnd::kNothing && grip.gave_way)
-    result.reason +=
+    result.reason.words +=
         ", on ground that stops it with only " + withTenths(grip.deceleration) + " m/s2";
   plan.made = now;
   status.changed = true;
@@ -250,21 +259,22 @@ bool DrivingState::sayUnreachable() {
       map.fencedGoal().empty() ? map.distanceToGoal().problem() : map.fencedGoal();
   if (why.empty()) return false;
   plan.time_to_go = std::numeric_limits<double>::quiet_NaN();
-  status.say(PlanStatus::kUnreachable, why);
+  status.say(PlanStatus::kUnreachable, {StopReason::kGoalUnreachable, why});
   return true;
 }
 
 void DrivingState::sayDriving(int64_t now) {
   const std::string& reason = map.goalSubstitutionReason();
-  status.sayDriving(now, reason.empty() ? stopAhead(tracker.running(), plan, table()) : reason);
+  status.sayDriving(now, reason.empty() ? stopAhead(tracker.running(), plan, table())
+                                        : Reason(StopReason::kCloseAsPossible, reason));
 }
 
-void DrivingState::halt(int64_t now, const std::string& why) {
+void DrivingState::halt(int64_t now, const Reason& why) {
   tracker.stop();
   settle(now);
   status.changed = true;
   ++counters["stopped at once"];
-  status.say(PlanStatus::kBlocked, "stopped at once: " + why);
+  status.say(PlanStatus::kBlocked, {why.code, "stopped at once: " + why.words});
 }
 
 }  // namespace tread::planner

@@ -23,10 +23,10 @@ namespace tread::planner {
 /// Everything the planner knows at one moment, apart from map and patterns.
 struct PlannerInputs : RobotReadings {
   std::optional<Goal> goal;
-  std::string goal_lost;     ///< why the last goal has ended; empty if its operator took it back
-  std::string bar;           ///< why nothing may drive before a person has looked; empty = nothing
+  Reason goal_lost;          ///< why the last goal has ended; none if its operator took it back
+  Reason bar;                ///< why nothing may drive before a person has looked
   int64_t set_received = 0;  ///< [us] when a part of a pattern set came last; 0 = never
-  std::string map_fault;     ///< why mapping does not believe a range finder; empty if it does
+  Reason map_fault;          ///< why mapping does not believe a range finder; none if it does
 };
 
 /// How the planner stands to its goal; the numbers are those of plan_t.
@@ -43,7 +43,7 @@ enum class PlanStatus : int16_t {
 /// What the planner intends, for those who look on.
 struct PlanReport {
   PlanStatus status = PlanStatus::kIdle;
-  std::string reason;
+  Reason reason;
   int64_t utime = 0;  ///< [us] of the pose it is based on
   int64_t goal_id = 0;
   int64_t set_version = 0;
@@ -72,7 +72,7 @@ struct Preconditions {
   };
   Level level = Level::kGo;
   PlanStatus status = PlanStatus::kDriving;  ///< to report if not kGo
-  std::string reason;                        ///< in words, empty if kGo
+  Reason reason;                             ///< none if kGo
 };
 
 /// What map and patterns are like, beside the inputs.
@@ -228,29 +228,29 @@ struct CurrentPlan {
 /// What the planner reports about itself.
 class StatusLine {
  public:
-  void say(PlanStatus status, const std::string& reason) {
+  void say(PlanStatus status, const Reason& reason) {
     changed = changed || status != status_;
     status_ = status;
     reason_ = reason;
   }
   /// Takes precedence over other reasons while driving, until a time [us].
-  void note(const std::string& text, int64_t until) { note_ = Note{text, until}; }
+  void note(const Reason& reason, int64_t until) { note_ = Note{reason, until}; }
   void clearNote() { note_.reset(); }
-  void sayDriving(int64_t now, const std::string& reason) {
-    say(PlanStatus::kDriving, note_ && now < note_->until ? note_->text : reason);
+  void sayDriving(int64_t now, const Reason& reason) {
+    say(PlanStatus::kDriving, note_ && now < note_->until ? note_->reason : reason);
   }
   PlanStatus status() const { return status_; }
-  const std::string& reason() const { return reason_; }
+  const Reason& reason() const { return reason_; }
 
   bool changed = false;  ///< in this step: a new plan, or another status
 
  private:
   struct Note {
-    std::string text;
+    Reason reason;
     int64_t until;  ///< [us]
   };
   PlanStatus status_ = PlanStatus::kIdle;
-  std::string reason_;
+  Reason reason_;
   std::optional<Note> note_;
 };
 
@@ -279,7 +279,7 @@ struct DrivingState {
   bool sayUnreachable();
   void sayDriving(int64_t now);
   /// Empties the program.
-  void halt(int64_t now, const std::string& why);
+  void halt(int64_t now, const Reason& why);
   void settle(int64_t now) {
     mode = DrivingMode::kSettling;
     settling_since = now;

@@ -22,31 +22,33 @@ bool GoalWatch::take(const Goal& goal, int64_t now) {
 }
 
 void GoalWatch::cancel() {
-  end(candidate_, "");
-  end(goal_, "");
+  end(candidate_, {});
+  end(goal_, {});
 }
 
 void GoalWatch::update(int64_t now, std::optional<int64_t> armed_since, const StoodFor& stood_for) {
   if (candidate_) adopt(now, stood_for);
   if (!goal_) return;
   if (armed_since && given_ < *armed_since)
-    return end(goal_, "the goal was given before the arming: give it again");
-  if (!stood_for(goal_->id)) end(goal_, "the operator who gave the goal is gone: give it again");
+    return end(goal_,
+               {StopReason::kGoalEnded, "the goal was given before the arming: give it again"});
+  if (!stood_for(goal_->id))
+    end(goal_,
+        {StopReason::kGoalAbandoned, "the operator who gave the goal is gone: give it again"});
 }
 
 void GoalWatch::adopt(int64_t now, const StoodFor& stood_for) {
   if (stood_for(candidate_->id)) {
-    end(goal_, "");
+    end(goal_, {});
     goal_ = candidate_;
     given_ = candidate_given_;
     candidate_.reset();
   } else if (now - candidate_given_ > kWait) {
-    const std::string why = "no operator who holds the robot stands for the goal";
-    end(candidate_, goal_ ? lost_ : why);
+    end(candidate_, goal_ ? lost_ : Reason(StopReason::kGoalAbandoned));
   }
 }
 
-void GoalWatch::end(std::optional<Goal>& goal, const std::string& why) {
+void GoalWatch::end(std::optional<Goal>& goal, const Reason& why) {
   lost_ = why;
   if (!goal) return;
   ended_.push_back(goal->id);

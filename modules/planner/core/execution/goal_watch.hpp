@@ -25,7 +25,7 @@ class GoalWatch {
   /// The operator takes the goal back.
   void cancel();
   /// The robot has stopped by itself: it does not go on by itself.
-  void lose(const std::string& why) {
+  void lose(const Reason& why) {
     if (goal_) end(goal_, why);
   }
   /// Call in each step. `armed_since` [us]: the operator's permission holds since then.
@@ -33,8 +33,8 @@ class GoalWatch {
 
   /// The goal that counts, if any.
   const std::optional<Goal>& goal() const { return goal_; }
-  /// Why the last goal has ended without being taken back; empty if it has not.
-  const std::string& lost() const { return lost_; }
+  /// Why the last goal has ended without being taken back; none if it has not.
+  const Reason& lost() const { return lost_; }
 
  private:
   static constexpr size_t kRemembered = 16;
@@ -42,14 +42,14 @@ class GoalWatch {
 
   bool hasEnded(int64_t id) const;
   void adopt(int64_t now, const StoodFor& stood_for);
-  void end(std::optional<Goal>& goal, const std::string& why);
+  void end(std::optional<Goal>& goal, const Reason& why);
 
   std::optional<Goal> goal_;
   std::optional<Goal> candidate_;  ///< nobody has stood for it yet
   int64_t given_ = 0;              ///< [us] when the goal came first
   int64_t candidate_given_ = 0;
   std::deque<int64_t> ended_;
-  std::string lost_;
+  Reason lost_;
 };
 
 }  // namespace tread::planner

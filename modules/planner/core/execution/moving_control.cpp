@@ -25,8 +25,7 @@ std::vector<ExpectedPose> coasting(const Pose2& T_map_body, const Twist2& twist,
 }  // namespace
 
 void MovingControl::drive(const PlannerInputs& s, const Preconditions& ready) {
-  if (state_.runningPattern() == nullptr)
-    return state_.halt(s.now, "the running pattern is gone from the set");
+  if (state_.runningPattern() == nullptr) return state_.halt(s.now, StopReason::kPatternGone);
   state_.prediction = predictRunning(s);
   // The rest was planned from another place than the vehicle will come to: plan again now.
   if (state_.plan.based_on && leftCorridor(*state_.plan.based_on, *state_.prediction)) {
@@ -121,8 +120,9 @@ void MovingControl::searchNext(const PlannerInputs& s, const Prediction& running
   if (result.end == SearchEnd::kNothing) {
     const bool stops = stopNext(running);
     ++state_.counters["no plan while driving"];
-    return state_.status.say(PlanStatus::kBlocked,
-                             stops ? "stopping: " + result.reason : result.reason);
+    return state_.status.say(
+        PlanStatus::kBlocked,
+        {result.reason.code, (stops ? "stopping: " : "") + result.reason.words});
   }
   state_.plan.steps = result.steps;
   state_.planner.side().take(result.steps, state_.table());
@@ -198,7 +198,8 @@ void MovingControl::keepClear(const PlannerInputs& s, const Prediction& running)
     return;
   }
   state_.halt(s.now,
-              "something is in the way in " + withTenths(std::max(0.0, *found - age)) + " s");
+              {StopReason::kObstacleAhead,
+               "something is in the way in " + withTenths(std::max(0.0, *found - age)) + " s"});
 }
 
 }  // namespace tread::planner

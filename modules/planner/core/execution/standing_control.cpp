@@ -141,12 +141,13 @@ void StandingControl::stand(const PlannerInputs& s, const Preconditions& ready,
     arrived_ = true;
     ++state_.counters["arrived"];
   }
-  if (arrived_) return state_.status.say(PlanStatus::kArrived, "");
+  if (arrived_) return state_.status.say(PlanStatus::kArrived, {});
   // The map may change: it goes on as soon as there is a way.
   if (!state_.map.goalSubstitutionReason().empty() &&
       isWithin(state_.map.target(), s.pose->T_map_body)) {
     progress.restart(s.now);
-    return state_.status.say(PlanStatus::kUnreachable, state_.map.goalSubstitutionReason());
+    return state_.status.say(PlanStatus::kUnreachable,
+                             {StopReason::kGoalUnreachable, state_.map.goalSubstitutionReason()});
   }
   const int64_t period =
       blocked_since_ ? state_.config.policy.blocked_period : state_.config.policy.plan_period;
@@ -182,7 +183,7 @@ void StandingControl::begin(const PlannerInputs& s, const std::vector<PlanStep>&
   if (state_.plan.steps.empty()) moving_.stopNext(*state_.prediction);
 }
 
-void StandingControl::noPlan(const PlannerInputs& s, const std::string& why) {
+void StandingControl::noPlan(const PlannerInputs& s, const Reason& why) {
   blocked_since_ = blocked_since_.value_or(s.now);
   state_.status.say(PlanStatus::kBlocked, why);
   if (!state_.steep && s.now - *blocked_since_ < state_.config.policy.recovery_wait) return;
@@ -195,7 +196,7 @@ void StandingControl::noPlan(const PlannerInputs& s, const std::string& why) {
 void StandingControl::tryRecovery(const PlannerInputs& s) {
   const std::vector<int> ids =
       recovery_.propose(state_.table(), state_.map.collisionChecker(), s.pose->T_map_body);
-  if (ids.empty()) return state_.status.say(PlanStatus::kBlocked, "boxed in: no move is free");
+  if (ids.empty()) return state_.status.say(PlanStatus::kBlocked, StopReason::kBoxedIn);
   ++state_.counters["recovery moves"];
   joined_ = 0;
   std::vector<PlanStep> steps;
@@ -207,7 +208,7 @@ void StandingControl::tryRecovery(const PlannerInputs& s) {
   }
   blocked_since_.reset();
   begin(s, steps);
-  state_.status.say(PlanStatus::kBlocked, "trying to get out");
+  state_.status.say(PlanStatus::kBlocked, StopReason::kGettingOut);
 }
 
 }  // namespace tread::planner

@@ -116,7 +116,7 @@ class StandingControl {
  private:
   void planStart(const PlannerInputs& s);
   void begin(const PlannerInputs& s, const std::vector<PlanStep>& steps);
-  void noPlan(const PlannerInputs& s, const std::string& why);
+  void noPlan(const PlannerInputs& s, const Reason& why);
   void tryRecovery(const PlannerInputs& s);
 
   DrivingState& state_;

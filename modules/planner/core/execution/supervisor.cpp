@@ -72,7 +72,7 @@ void Supervisor::noteNewSet() {
 Decision Supervisor::step(const PlannerInputs& s, const StopPredicate& stop) {
   state_.planner.setStop(stop);
   state_.status.changed = false;
-  halted_.clear();
+  halted_ = {};
   state_.prediction.reset();
   if (s.pose) {
     standstill_.take(*s.pose);
@@ -113,8 +113,9 @@ void Supervisor::shadow(const PlannerInputs& s, const Preconditions& ready) {
   state_.planner.side().forget();
   const SearchResult result = state_.search(s.now, here, state_.config.policy.driving_expansions);
   state_.plan.steps = result.steps;
-  state_.status.say(PlanStatus::kWaiting,
-                    s.bridge->reason + (result.steps.empty() ? "; no way: " + result.reason : ""));
+  Reason reason = s.bridge->reason;
+  if (result.steps.empty()) reason.words += "; no way: " + result.reason.words;
+  state_.status.say(PlanStatus::kWaiting, reason);
 }
 
 void Supervisor::act(const PlannerInputs& s, const Preconditions& ready) {
@@ -158,7 +159,8 @@ void Supervisor::keepOffSlopes(const PlannerInputs& s) {
   if (!steep) return;
   state_.map.keepOut(*steep);
   ++state_.counters["too steep: keeps off"];
-  if (state_.mode == DrivingMode::kDriving) state_.halt(s.now, slopes_.words());
+  if (state_.mode == DrivingMode::kDriving)
+    state_.halt(s.now, {StopReason::kTilt, slopes_.words()});
 }
 
 void Supervisor::followGoal(const PlannerInputs& s) {
@@ -199,16 +201,18 @@ void Supervisor::followBridge(const PlannerInputs& s) {
       return joinedNext();
     case ExecutionTracker::Event::kEnded:
       ++state_.counters["came to rest"];
-      if (!led_to_rest)
-        state_.status.say(PlanStatus::kWaiting, "stopped: nothing was handed over in time");
+      if (!led_to_rest) state_.status.say(PlanStatus::kWaiting, StopReason::kNothingInTime);
       break;
     case ExecutionTracker::Event::kAborted:
       ++state_.counters["aborted by the bridge"];
-      state_.status.say(PlanStatus::kWaiting, "stopped by motor_bridge: " + tracker.abortReason());
+      state_.status.say(
+          PlanStatus::kWaiting,
+          {tracker.abortReason().code, "stopped by motor_bridge: " + tracker.abortReason().words});
       break;
     case ExecutionTracker::Event::kNeverStarted:
       ++state_.counters["not begun by the bridge"];
-      state_.status.say(PlanStatus::kWaiting, "stopped: " + tracker.abortReason());
+      state_.status.say(PlanStatus::kWaiting,
+                        {tracker.abortReason().code, "stopped: " + tracker.abortReason().words});
       break;
   }
   state_.settle(s.now);
@@ -221,8 +225,10 @@ void Supervisor::watchProgress(const PlannerInputs& s) {
   if (!std::isfinite(distance) || !progress_.stuck(distance, s.now)) return;
   ++state_.counters["no progress: a way given up"];
   const int64_t patience = state_.config.policy.patience / 1'000'000;
-  state_.status.note("no progress for " + std::to_string(patience) + " s: looking for another way",
-                     s.now + kNoteTime);
+  state_.status.note(
+      {StopReason::kLooksForAnotherWay,
+       "no progress for " + std::to_string(patience) + " s: looking for another way"},
+      s.now + kNoteTime);
   state_.map.addDetourAhead(p, state_.config.policy.detours);
 }
 

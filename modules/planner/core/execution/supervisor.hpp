@@ -14,7 +14,7 @@ namespace tread::planner {
 /// What a step decided beside the program.
 struct Decision {
   bool planned = false;  ///< a new plan was made, or something changed that viewers want to know
-  std::string halted;  ///< why it was stopped by its preconditions in this step; empty = it was not
+  Reason halted;  ///< why it was stopped by its preconditions in this step; none = it was not
   PlanReport report;
 };
 
@@ -81,7 +81,7 @@ class Supervisor {
   ProgressMonitor progress_;
   SlopeGuard slopes_;
   std::optional<int64_t> goal_id_;
-  std::string halted_;
+  Reason halted_;
   bool was_armed_ = false;
   bool by_hand_ = false;  ///< a person drives
 };

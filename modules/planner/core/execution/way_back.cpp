@@ -25,7 +25,7 @@ std::optional<Goal> WayBack::update(const LinkReading& link) {
     lost_since_.reset();
     there_since_.reset();
     given_up_ = false;
-    state_.clear();
+    state_ = {};
     remember(link);
     return std::nullopt;
   }
@@ -40,7 +40,7 @@ std::optional<Goal> WayBack::update(const LinkReading& link) {
 void WayBack::giveUp(const std::string& why) {
   if (!lost_since_ || given_up_) return;
   given_up_ = true;
-  state_ = "the operator is lost, and the return has ended: " + why;
+  state_ = {StopReason::kOperatorLost, "the operator is lost, and the return has ended: " + why};
 }
 
 void WayBack::remember(const LinkReading& link) {
@@ -68,7 +68,7 @@ void WayBack::stepBack() {
 }
 
 std::optional<Goal> WayBack::follow(const LinkReading& link) {
-  state_ = "the operator is lost";
+  state_ = StopReason::kOperatorLost;
   if (link.now - *lost_since_ < kPause || !link.T_map_body) return std::nullopt;
   if (places_.empty()) {
     giveUp("the link was never good");
@@ -87,7 +87,7 @@ std::optional<Goal> WayBack::follow(const LinkReading& link) {
     }
     stepBack();
   }
-  state_ = "the operator is lost: returning to where the link was good";
+  state_ = StopReason::kReturns;
   Goal goal;
   goal.id = goal_id_;
   goal.T_map_goal = {places_.back().p_map.x(), places_.back().p_map.y(), 0.0};

@@ -34,9 +34,8 @@ class WayBack {
   std::optional<Goal> update(const LinkReading& link);
   /// The robot stopped on its way back: it stays where it is until an operator has been there.
   void giveUp(const std::string& why);
-  /// In words, e.g. "the operator is lost: returning to where the link was good"; empty if there
-  /// was no loss.
-  const std::string& state() const { return state_; }
+  /// For instance that the operator is lost and the robot returns; none if there was no loss.
+  const Reason& state() const { return state_; }
 
  private:
   /// A place on the way with a good link.
@@ -55,7 +54,7 @@ class WayBack {
   std::optional<int64_t> there_since_;  ///< [us] at the place that it returned to
   bool given_up_ = false;
   int64_t goal_id_ = 0;  ///< counts down: no operator's goal is negative
-  std::string state_;
+  Reason state_;
 };
 
 }  // namespace tread::planner

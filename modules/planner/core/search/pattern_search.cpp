@@ -287,8 +287,8 @@ SearchResult PatternSearch::finish(int leaf, SearchEnd end) {
   SearchResult result;
   result.expansions = expansions_;
   if (leaf < 0) {
-    result.reason = expansions_ <= 1 ? "no pattern is free from here"
-                                     : "no free sequence of patterns brings the goal nearer";
+    result.reason = StopReason::kNoWayFound;
+    if (expansions_ <= 1) result.reason.words = "no pattern is free from here";
     return result;
   }
   result.end = end;

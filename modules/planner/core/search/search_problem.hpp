@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/execution/stop_reason.hpp"
 #include "modules/planner/core/map/collision_checker.hpp"
 #include "modules/planner/core/map/distance_to_goal.hpp"
 #include "modules/planner/core/map/ground_cost.hpp"
@@ -117,7 +118,7 @@ struct SearchResult {
   double distance_to_go = 0.0;  ///< [m] from the end of the plan
   int expansions = 0;
   bool exhausted = false;  ///< the whole space was searched: no better plan at this resolution
-  std::string reason;      ///< why there is nothing, in words
+  Reason reason;           ///< why there is nothing
 };
 
 /// A node of the search tree, for drawing.

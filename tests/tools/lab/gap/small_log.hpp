@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "common/execution/stop_reason.hpp"
 #include "common/log/event_log.hpp"
 #include "common/pattern/pattern.hpp"
 
@@ -33,12 +34,13 @@ class SmallLog {
 
   /// MOTOR: driving this command.
   void motor(double time, TrackCommand command, int16_t state = motor_t::STATE_DRIVING,
-             const std::string& reason = "", TrackCommand speed = {kNaN, kNaN}) {
+             StopReason reason = StopReason::kNone, TrackCommand speed = {kNaN, kNaN}) {
     motor_ = motor_t{};
     motor_.utime = at(time);
     motor_.seq = seq_motor_++;
     motor_.bridge_state = state;
-    motor_.state_reason = reason;
+    motor_.state_code = static_cast<int16_t>(reason);
+    motor_.state_reason = sentenceOf(reason);
     motor_.channel_kind[0] = motor_.channel_kind[1] =
         static_cast<int16_t>(CommandKind::kTrackSpeed);
     motor_.command[0] = static_cast<float>(command.left);

@@ -27,21 +27,21 @@ struct Stand {
     bus.subscribe<fence_t>(kFence, [this](const fence_t& message) { fences.push_back(message); });
     bus.subscribe<goal_t>(kGoal, [this](const goal_t& message) { goals.push_back(message); });
   }
-  void motor(int64_t utime, int16_t state, const std::string& reason = "") {
+  void motor(int64_t utime, int16_t now_in, const std::string& reason = "") {
     motor_t message{};
     message.utime = utime;
-    message.bridge_state = state;
+    message.bridge_state = state = now_in;
     message.state_reason = reason;
+    message.holder = held_by;
     bus.publish(kMotor, message);
   }
   void holder(int64_t utime, const std::string& name) {
-    health_t message{};
+    held_by = name;
+    motor_t message{};
     message.utime = utime;
-    message.process = "motor_bridge";
-    message.num_counters = 1;
-    message.counters.emplace_back();
-    message.counters.back().counter_name = holderCounter(name);
-    bus.publish(kHealth, message);
+    message.bridge_state = state;
+    message.holder = name;
+    bus.publish(kMotor, message);
   }
   void plan(int64_t utime, int64_t goal_id, int16_t status) {
     plan_t message{};
@@ -52,22 +52,20 @@ struct Stand {
   }
 
   Bus& bus;
+  std::string held_by;
+  int16_t state = motor_t::STATE_DISARMED;
   int arms = 0;
   int stops = 0;
   arm_t last_arm{};
   estop_t last_stop{};
   operator_t last_operator{};
-  void health(int64_t utime, const std::string& process, const std::vector<Fence>& in_force) {
-    health_t message{};
+  void keeps(int64_t utime, const std::string& process, const std::vector<Fence>& in_force) {
+    fences_t message{};
     message.utime = utime;
-    message.process = process;
-    for (const Fence& fence : in_force) {
-      message.counters.emplace_back();
-      message.counters.back().counter_name = fenceCounter(fence);
-      message.counters.back().counted = 1;
-    }
-    message.num_counters = static_cast<int32_t>(message.counters.size());
-    bus.publish(kHealth, message);
+    message.keeper = process;
+    for (const Fence& fence : in_force) message.fences.push_back(toMessage({"", false, fence}));
+    message.num_fences = static_cast<int32_t>(message.fences.size());
+    bus.publish(kFences, message);
   }
   std::vector<goal_t> goals;
   std::vector<fence_t> fences;
@@ -339,8 +337,8 @@ TEST_CASE("a fence is repeated until both the bridge and the planner show it") {
     const int64_t begun = scene.bus.now();
     const auto result = scene.run(call, 4.0, [&](int64_t now) {
       scene.stand->motor(now, motor_t::STATE_ARMED);
-      scene.stand->health(now, "motor_bridge", after);
-      scene.stand->health(now, "planner", now - begun > 2'000'000 ? after : before);
+      scene.stand->keeps(now, "motor_bridge", after);
+      scene.stand->keeps(now, "planner", now - begun > 2'000'000 ? after : before);
     });
     CHECK(result == CallResult::kDone);
     CHECK(scene.bus.now() - begun > 2'000'000);
@@ -361,13 +359,13 @@ TEST_CASE("a fence that one of the two does not take is told with its name") {
   FenceCall call(scene.desk, {"me", ""}, {"", false, yard}, 2.0);
   const auto result = scene.run(call, 4.0, [&](int64_t now) {
     scene.stand->motor(now, motor_t::STATE_ARMED);
-    scene.stand->health(now, "motor_bridge", {yard});
-    if (planner_there) scene.stand->health(now, "planner", {});
+    scene.stand->keeps(now, "motor_bridge", {yard});
+    if (planner_there) scene.stand->keeps(now, "planner", {});
   });
   CHECK(result == CallResult::kRefused);
   CHECK_THAT(call.describe(scene.bus.now()),
              Catch::Contains(planner_there ? "fence yard is not in force in planner"
-                                           : "no HEALTH came of planner"));
+                                           : "no FENCES came of planner"));
   CHECK_THROWS_WITH(fenceFrom("a", true, {1, 2, 3}), Catch::Contains("one number is missing"));
   CHECK_THROWS_WITH(fenceFrom("a", true, {1, 2, 3, 4}), Catch::Contains("3 to 64 corners"));
 }
@@ -380,8 +378,8 @@ TEST_CASE("an older fence of the same name is no answer, and keeps the name from
     FenceCall call(scene.desk, {"me", ""}, {"", removes, yard}, 2.0);
     const auto result = scene.run(call, 4.0, [&](int64_t now) {
       scene.stand->motor(now, motor_t::STATE_ARMED);
-      scene.stand->health(now, "motor_bridge", {older});
-      scene.stand->health(now, "planner", {older});
+      scene.stand->keeps(now, "motor_bridge", {older});
+      scene.stand->keeps(now, "planner", {older});
     });
     CHECK(result == CallResult::kRefused);
   }

@@ -9,7 +9,6 @@
 #include "tests/helpers.hpp"
 #include "tests/tools/called_program.hpp"
 #include "tools/robot/why/debrief.hpp"
-#include "tools/robot/why/reasons.hpp"
 
 using namespace tread;
 using namespace tread::why;
@@ -23,7 +22,7 @@ namespace {
 /// second.
 struct InventedDrive {
   double stop = -1.0;
-  std::string reason = "INS is stale: nothing new within 100 ms";
+  Reason reason = {StopReason::kInsStale, "INS is stale: nothing new within 100 ms"};
   double ins_silent_from = 100.0, ins_silent_to = 100.0;
   std::string driver_says;
   std::string margin = "0.2";
@@ -55,14 +54,19 @@ struct InventedDrive {
     auto motor = blank<motor_t>();
     motor.utime = at(time);
     motor.bridge_state = stopped ? motor_t::STATE_DISARMED : motor_t::STATE_DRIVING;
-    motor.state_reason = stopped ? reason : "playing";
+    const Reason why = stopped ? reason : Reason(StopReason::kPlaying);
+    motor.state_code = static_cast<int16_t>(why.code);
+    motor.state_reason = why.words;
     log.add(kMotor, motor);
     auto plan = blank<plan_t>();
     plan.utime = at(time);
     plan.plan_status = stopped       ? plan_t::PLAN_STOPPED
                        : time > 18.0 ? plan_t::PLAN_ARRIVED
                                      : plan_t::PLAN_DRIVING;
-    plan.reason = stopped ? "motor_bridge: " + reason : "";
+    if (stopped) {
+      plan.reason_code = static_cast<int16_t>(reason.code);
+      plan.reason = "motor_bridge: " + reason.words;
+    }
     log.add(kPlan, plan);
     if (std::fmod(time + 1e-9, 1.0) < 0.05) everySecond(log, time);
   }
@@ -151,7 +155,8 @@ TEST_CASE("a silent INS is told apart from messages that get lost, with its evid
 TEST_CASE("what tread-gap watch found before a stop for its motion is evidence of it") {
   InventedDrive drive;
   drive.stop = 8.0;
-  drive.reason = "left track dead: 0.02 m/s where its commands explain 0.6 m/s";
+  drive.reason = {StopReason::kTrackDead,
+                  "left track dead: 0.02 m/s where its commands explain 0.6 m/s"};
   drive.gap = "since 4 s the left drive gives 30 % less than the model says (28 to 32 %): motor";
   const Debrief found = debriefOf(drive);
   REQUIRE(found.worst() != nullptr);
@@ -229,31 +234,4 @@ TEST_CASE("a log that is truncated is debriefed as far as it goes, and one of ot
   const CalledProgram other = called("tread-why " + folder.path("other.lcmlog"));
   CHECK(other.status == 2);
   CHECK(other.isOneLine());
-}
-
-TEST_CASE("every reason that is known stands in the modules, so that a renamed one is noticed") {
-  std::string sources;
-  for (const char* part : {"modules", "common"})
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(
-             std::filesystem::path(TREAD_SOURCE_DIR) / part))
-      if (entry.path().extension() == ".cpp" || entry.path().extension() == ".hpp")
-        sources += tread::testing::contentOf(entry.path());
-  for (const ReasonWords& row : reasonTable()) {
-    CAPTURE(row.words);
-    CHECK(sources.find(row.in_source != nullptr ? row.in_source : row.words) != std::string::npos);
-  }
-}
-
-TEST_CASE("reasons are sorted by what they are about") {
-  CHECK(topicOf("E-stop: a person (bystander)") == Topic::kEstop);
-  CHECK(topicOf("motor_bridge: INS is stale: nothing new within 100 ms") == Topic::kInsStale);
-  CHECK(topicOf("INS is 168 ms old") == Topic::kInsStale);
-  CHECK(topicOf("MAP is 900 ms old") == Topic::kMap);
-  CHECK(topicOf("stopped: mapping: range finder at 0.25, 0.00, 0.50 m: it repeats bit for bit") ==
-        Topic::kFinder);
-  CHECK(topicOf("controller: undervoltage") == Topic::kController);
-  CHECK(topicOf("what nobody has ever said") == Topic::kOther);
-  CHECK(isOrdinary("armed by operator"));
-  CHECK(isOrdinary("disarmed by the end of motor_bridge"));
-  CHECK_FALSE(isOrdinary("disarmed by operator"));
 }
