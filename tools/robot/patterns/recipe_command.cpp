@@ -61,7 +61,8 @@ CLI::App* addRecipe(CLI::App& app) {
       ->check(CLI::Range(8, 500));
   command
       ->add_option("--speeds", wish.speeds,
-                   "forward speeds [m/s], at most four; default: .2, .5 and 1 of the full speed")
+                   "forward speeds [m/s], at most four; default: by their number, .2, .5 and 1 of "
+                   "the full speed")
       ->delimiter(',')
       ->check(CLI::Range(0.02, 20.0));
   command

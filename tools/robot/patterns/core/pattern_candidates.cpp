@@ -23,7 +23,8 @@ constexpr double kEasing = 0.05;      // steps in which a turn is slowed down
 constexpr double kLikeSpeeds = 0.6;   // [1] classes of other directions are joined
 constexpr double kLeastTurn = 0.075;  // [1] of the gap, sideways or rad: less is as good as none
 constexpr double kSame = 1e-9;
-const std::vector<double> kShares{0.2, 0.5, 1.0};  // of the full speed: crawl, slow, full
+// Of the full speed, for few, more and many patterns.
+const std::vector<std::vector<double>> kShares{{1.0}, {0.4, 1.0}, {0.2, 0.5, 1.0}};
 const std::vector<double> kStrengths{0.1, 0.2, 0.35, 0.5, 0.75, 1.0};
 const std::vector<double> kTimes{0.1, 0.15, 0.2, 0.3, 0.4, 0.55, 0.75, 1.0, 1.3, 1.6, 2.0};
 const std::vector<std::string> kNames{"crawl", "slow", "fast"};
@@ -138,9 +139,8 @@ std::vector<double> CandidateFamily::chosenSpeeds() const {
   if (!speeds.empty()) return speeds;
   // From standing through the longest pattern to standing.
   const double full = std::min(top_, wish_.room / (2.0 * hold_ + longest_));
-  for (const double share : kShares) speeds.push_back(share * full);
-  if (wish_.patterns < kForThree) speeds.erase(speeds.begin() + 1);
-  if (wish_.patterns < kForTwo) speeds.erase(speeds.begin());
+  const size_t row = wish_.patterns >= kForThree ? 2 : wish_.patterns >= kForTwo ? 1 : 0;
+  for (const double share : kShares[row]) speeds.push_back(share * full);
   return speeds;
 }
 
@@ -153,8 +153,8 @@ void CandidateFamily::makeClasses() {
   top_ = speeds.back();
   addClass("rest", {}, 0);
   for (size_t i = 0; i < speeds.size(); ++i)
-    addClass(i + 1 == speeds.size() ? "full" : kNames[i], {speeds[i], 0, 0},
-             static_cast<int>(i) + 1);
+    addClass(i + 1 == speeds.size() ? "full" : kNames[speeds.size() == 2 ? 1 : i],
+             {speeds[i], 0, 0}, static_cast<int>(i) + 1);
   const double back = kBackwards * top_;
   const bool creeps = wish_.patterns >= kForThree && speeds.front() < kLikeSpeeds * back;
   if (creeps) addClass("creep_back", {-speeds.front(), 0, 0}, 1);
