@@ -32,7 +32,8 @@ Sliding at(double speed) {
 
 }  // namespace
 
-TEST_CASE("What goes sideways or on where its pattern does not, slides; what is slow does not") {
+TEST_CASE(
+    "What goes sideways or on where its pattern does not, slides, and what is slow does not") {
   const Twist2 straight{1.0, 0.0, 0.0};
   CHECK_FALSE(slides({1.05, 0.03, 0.1}, straight));
   CHECK(slides({1.0, 0.4, 0.1}, straight));

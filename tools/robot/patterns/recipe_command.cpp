@@ -12,7 +12,7 @@
 #include "common/vehicle/model_document.hpp"
 #include "common/vehicle/robot_description.hpp"
 #include "tools/robot/patterns/commands.hpp"
-#include "tools/robot/patterns/core/recipe_design.hpp"
+#include "tools/robot/patterns/recipe_text.hpp"
 
 namespace tread::patterns {
 namespace {

@@ -10,7 +10,7 @@
 #include "common/report/text.hpp"
 #include "modules/pattern_recorder/recorder_node.hpp"
 #include "tools/robot/operator/calls.hpp"
-#include "tools/robot/patterns/core/recipe_design.hpp"
+#include "tools/robot/patterns/recipe_text.hpp"
 
 namespace tread::setup {
 namespace {

@@ -9,8 +9,8 @@
 #include "common/vehicle/kernel.hpp"
 #include "common/vehicle/model_document.hpp"
 #include "tests/tools/robot/patterns/patterns_program.hpp"
-#include "tools/robot/patterns/core/recipe_design.hpp"
 #include "tools/robot/patterns/recipe.hpp"
+#include "tools/robot/patterns/recipe_text.hpp"
 #include "tools/robot/patterns/set_text.hpp"
 
 using namespace tread;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "common/report/text.hpp"
 #include "common/vehicle/kernel.hpp"
 #include "tools/robot/patterns/recipe.hpp"
 
@@ -31,6 +30,12 @@ const std::vector<std::string> kNames{"crawl", "slow", "fast"};
 constexpr int kForThree = 30;  // patterns that are worth three speeds,
 constexpr int kForTwo = 20;    // and two
 
+/// A positive number as people read it.
+std::string hundredths(double value) {
+  const std::string digits = std::to_string(100 + std::lround(100.0 * value) % 100);
+  return std::to_string(std::lround(100.0 * value) / 100) + "." + digits.substr(1);
+}
+
 double rounded(double value) {
   const double thousandths = std::round(1000.0 * value);
   return thousandths == 0.0 ? 0.0 : thousandths / 1000.0;
@@ -45,8 +50,8 @@ CandidateFamily::CandidateFamily(const VehicleModel& model, const RecipeWish& wi
   hold_ = std::max(whole(kLags * lag + model_.commandDelay()), wish_.period);
   longest_ = wish_.seconds > 0.0 ? wish_.seconds : kHolds * hold_;
   if (longest_ < hold_ + 2.0 * wish_.period - kSame)
-    throw std::runtime_error("patterns of " + fixed(longest_, 2) + " s are too short; " +
-                             fixed(hold_ + 2.0 * wish_.period, 2) +
+    throw std::runtime_error("patterns of " + hundredths(longest_) + " s are too short; " +
+                             hundredths(hold_ + 2.0 * wish_.period) +
                              " s are needed by this robot, three lags and a turn");
   top_ = topSpeed();
   makeClasses();
@@ -132,8 +137,8 @@ std::vector<double> CandidateFamily::chosenSpeeds() const {
   std::vector<double> speeds = wish_.speeds;
   std::sort(speeds.begin(), speeds.end());
   if (!speeds.empty() && speeds.back() > top_ + 1e-6)
-    throw std::runtime_error("a speed of " + fixed(speeds.back(), 2) +
-                             " m/s is more than the robot reaches, " + fixed(top_, 2) + " m/s");
+    throw std::runtime_error("a speed of " + hundredths(speeds.back()) +
+                             " m/s is more than the robot reaches, " + hundredths(top_) + " m/s");
   if (speeds.size() > kNames.size() + 1)
     throw std::runtime_error(std::to_string(speeds.size()) + " speeds; at most four are driven");
   if (!speeds.empty()) return speeds;

@@ -11,7 +11,6 @@
 #include <stdexcept>
 
 #include "common/geometry/degrees.hpp"
-#include "common/report/text.hpp"
 
 namespace tread::patterns {
 namespace {
@@ -186,7 +185,7 @@ std::vector<const CandidatePair*> neededPairs(const CandidateFamily& family, boo
 }
 
 std::string sizedName(const std::string& name, double size) {
-  return name + "_" + fixed(std::abs(size), 0);
+  return name + "_" + std::to_string(std::lround(std::abs(size)));
 }
 
 std::string nameOf(const std::vector<DesignedClass>& classes, const Candidate& candidate) {
@@ -225,13 +224,6 @@ DesignedPattern designed(const CandidateFamily& family, const CandidatePair& pai
     pattern.names.push_back(name);
   }
   return pattern;
-}
-
-std::string rowText(const std::vector<double>& row, int last_decimals) {
-  std::string text = "[";
-  for (size_t i = 0; i < row.size(); ++i)
-    text += (i > 0 ? ", " : "") + fixed(row[i], i + 1 == row.size() ? last_decimals : 3);
-  return text + "]";
 }
 
 }  // namespace
@@ -274,37 +266,6 @@ DesignedRecipe designRecipe(const VehicleModel& model, const RecipeWish& wish) {
     if (best == nullptr) return recipe;
     take(*best, false);
   }
-}
-
-std::string recipeText(const DesignedRecipe& recipe, const std::string& comment) {
-  std::string text =
-      comment + "name: " + recipe.name + "\nperiod: " + fixed(recipe.period, 3) + "\nclasses:\n";
-  for (const DesignedClass& motion : recipe.classes)
-    text += "  - {name: " + motion.name + ", steady: " + rowText(motion.row, 3) + "}\n";
-  text += "patterns:\n";
-  for (const DesignedPattern& pattern : recipe.patterns)
-    for (size_t i = 0; i < pattern.made.size(); ++i) {
-      const Candidate& made = pattern.made[i];
-      text += "  - {name: " + pattern.names[i] + ", entry: " + recipe.classes[made.entry].name +
-              ", exit: " + recipe.classes[made.exit].name + ", commands: [";
-      for (size_t k = 0; k < made.rows.size(); ++k)
-        text += (k > 0 ? ", " : "") + rowText(made.rows[k], 2);
-      text += "]}\n";
-    }
-  return text;
-}
-
-std::string gainsTable(const DesignedRecipe& recipe) {
-  std::string text = formatted("%-8s  %-8s  %s\n", "patterns", "dispersion m", "pattern");
-  int count = 0;
-  for (const DesignedPattern& pattern : recipe.patterns) {
-    count += static_cast<int>(pattern.names.size());
-    text += formatted("%8d  %.4f -> %.4f  %s%s%s\n", count, pattern.before, pattern.after,
-                      pattern.names.front().c_str(),
-                      pattern.names.size() > 1 ? (", " + pattern.names.back()).c_str() : "",
-                      pattern.needed ? " (needed)" : "");
-  }
-  return text;
 }
 
 }  // namespace tread::patterns

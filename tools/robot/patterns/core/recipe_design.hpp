@@ -39,10 +39,4 @@ struct DesignedRecipe {
  * Deterministic. Throws std::runtime_error, one line, where the wish cannot be fulfilled. */
 DesignedRecipe designRecipe(const VehicleModel& model, const RecipeWish& wish);
 
-/// The recipe as a file (config/patterns/recipes), `comment` on its first lines.
-std::string recipeText(const DesignedRecipe& recipe, const std::string& comment);
-
-/// What each pattern adds: a table for people.
-std::string gainsTable(const DesignedRecipe& recipe);
-
 }  // namespace tread::patterns
