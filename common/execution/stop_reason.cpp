@@ -60,6 +60,7 @@ constexpr std::array kRows{
     Row{StopReason::kBadPatterns, "no PATTERN_SET yet"},
     Row{StopReason::kPatternGone, "the running pattern is gone from the set"},
     Row{StopReason::kObstacleAhead, "something is in the way"},
+    Row{StopReason::kGroundGivesWay, "the ground gives way"},
     Row{StopReason::kBoxedIn, "boxed in: no move is free"},
     Row{StopReason::kNoWayFound, "no free sequence of patterns brings the goal nearer"},
     Row{StopReason::kGettingOut, "trying to get out"},

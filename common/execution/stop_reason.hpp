@@ -80,6 +80,7 @@ enum class StopReason : int16_t {
 
   // The way.
   kObstacleAhead = 150,
+  kGroundGivesWay = 151,
   kBoxedIn = 160,
   kNoWayFound = 161,
   kGettingOut = 162,

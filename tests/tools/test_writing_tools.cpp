@@ -93,6 +93,7 @@ const std::vector<WritingCommand>& commands() {
       {"tread-gap what-if --model IN --add slip_ratio --out OUT", kModel, "made.html"},
       {"tread-patterns make IN --model " + kTeodor + " -o OUT",
        kConfig + "patterns/recipes/teodor.yaml"},
+      {"tread-patterns recipe " + kConfig + "robots/teodor --model IN -o OUT", kTeodor},
       {"tread-patterns mirror IN -o OUT", kSet},
       {"tread-patterns show IN --picture OUT", kSet},
       {"tread-patterns average IN grass -o OUT", "recorded"},

@@ -17,6 +17,7 @@ struct RecordingStopped : std::runtime_error {
 };
 
 CLI::App* addMake(CLI::App& app);
+CLI::App* addRecipe(CLI::App& app);
 CLI::App* addRecord(CLI::App& app);
 CLI::App* addAverage(CLI::App& app);
 CLI::App* addFromRecordings(CLI::App& app);

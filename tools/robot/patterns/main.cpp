@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
   return tread::runProgram("tread-patterns", [&] {
     CLI::App app{"Makes, records, averages, shows and checks motion patterns."};
     app.require_subcommand(1);
+    tread::patterns::addRecipe(app);
     tread::patterns::addMake(app);
     tread::patterns::addRecord(app);
     tread::patterns::addFromRecordings(app);

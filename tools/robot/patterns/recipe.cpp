@@ -47,11 +47,6 @@ size_t columnsOf(const VehicleModel& model) {
   return model.isOmni() ? 3 : 2;
 }
 
-Command commandOf(const VehicleModel& model, const std::vector<double>& row) {
-  if (model.isOmni()) return wheelCommand(model, {row[0], row[1], row[2]});
-  return {row[0], row[1]};
-}
-
 /// Left and right exchanged.
 Command mirroredBy(const VehicleModel& model, const Command& command) {
   if (!model.isOmni()) return mirroredCommand(command, model.channels());
@@ -237,6 +232,11 @@ std::mt19937_64 randomFor(uint64_t seed, const std::string& surface, int pattern
 }
 
 }  // namespace
+
+Command commandOf(const VehicleModel& model, const std::vector<double>& row) {
+  if (model.isOmni()) return wheelCommand(model, {row[0], row[1], row[2]});
+  return {row[0], row[1]};
+}
 
 PatternSet makeSet(ConfigReader recipe, const VehicleModel& model) {
   PatternSetContent content;

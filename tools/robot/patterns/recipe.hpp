@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "common/config/config_reader.hpp"
 #include "common/pattern/pattern.hpp"
@@ -20,6 +21,10 @@ namespace tread::patterns {
  * file:line for what the recipe gets wrong; among that is a pattern that does not hold its exit
  * class's steady command for three lags (and the delay) at its end. */
 PatternSet makeSet(ConfigReader recipe, const VehicleModel& model);
+
+/// The command that a row of a recipe stands for: left and right, throttle and steering, or of a
+/// holonomic base its twist.
+Command commandOf(const VehicleModel& model, const std::vector<double>& row);
 
 /// How a model's executions are measured.
 struct ModelRecording {

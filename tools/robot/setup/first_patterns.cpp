@@ -6,19 +6,18 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "common/geometry/degrees.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "common/report/text.hpp"
 #include "modules/pattern_recorder/recorder_node.hpp"
 #include "tools/robot/operator/calls.hpp"
+#include "tools/robot/patterns/recipe_text.hpp"
 
 namespace tread::setup {
 namespace {
 
-constexpr double kPeriod = 0.05;  // [s] of a pattern's commands
 constexpr double kShareOfMarking = 0.6;
-constexpr double kReverseShare = 0.6;                // of the cruising command
-constexpr double kTurnLevel = 0.4;                   // beyond the dead power
+constexpr double kRoomInGap = 0.3;                   // [m] beside the footprint
+constexpr int kPatterns = 32;                        // a person waits while they are driven
 constexpr int kExecutions = 4;                       // of each pattern
 constexpr double kRecordingRoom = 4.5;               // [m]
 constexpr int64_t kStep = 50'000;                    // [us]
@@ -28,97 +27,6 @@ constexpr size_t kMostStops = 3;                     // of one drive; the fourth
 constexpr int64_t kMapMade = 3'000'000;              // [us]
 constexpr int64_t kGoalPatience = 180'000'000;       // [us]
 const std::string kOperator = "setup";
-
-double wholePeriods(double seconds) {
-  return kPeriod * std::ceil(seconds / kPeriod - 1e-6);
-}
-
-/// Patterns as text, commanded in shares of the weaker side's speed.
-class Recipe {
- public:
-  explicit Recipe(const RobotFindings& findings) : model_(modelOf(findings).vehicle) {
-    const WiringReport& wiring = findings.wiring;
-    least_ = wiring.fullSpeed();
-    left_ = least_ / wiring.full_left.value;
-    right_ = least_ / wiring.full_right.value;
-    dead_ = wiring.dead_power.value;
-    hold_ = wholePeriods(3.0 * model_.settlingLag() + model_.commandDelay());
-    // From standstill through the longest curve to standstill, at full speed.
-    const double longest = least_ * (3.0 * hold_ + 1.5);
-    cruise_ = std::min(1.0, kShareOfMarking * findings.marking_range / longest);
-    text_ = "# Made by tread-setup-robot from what it measured.\nname: " + model_.name +
-            "\nperiod: 0.05\nclasses:\n" + classText("rest", 0.0) + classText("cruise", cruise_) +
-            classText("reverse", -kReverseShare * cruise_) + "patterns:\n";
-  }
-
-  std::string text() {
-    const double back = -kReverseShare * cruise_;
-    pattern("straight", "cruise", "cruise", {{1, 1, std::max(1.0, hold_)}});
-    curve("left", "right", 0.8, 1.0);
-    curve("hard_left", "hard_right", 0.55, 1.0);
-    curve("nudge_left", "nudge_right", 0.9, 0.4);
-    pattern("short_straight", "cruise", "cruise", {{1, 1, hold_}});
-    pattern("start", "rest", "cruise", {{0.6, 0.6, 0.2}, {1, 1, hold_ + 0.1}});
-    pattern("stop", "cruise", "rest", {{0, 0, hold_ + 0.2}});
-    pattern("step_forward", "rest", "rest", {{0.6, 0.6, 0.5}, {0, 0, hold_}});
-    pattern("step_back", "rest", "rest", {{-0.6, -0.6, 0.9}, {0, 0, hold_}});
-    turn(15);
-    turn(45);
-    turn(90);
-    const double reverse = back / cruise_;
-    pattern("reverse_start", "rest", "reverse", {{reverse, reverse, hold_ + 0.1}});
-    pattern("reverse", "reverse", "reverse", {{reverse, reverse, std::max(1.0, hold_)}});
-    pattern("reverse_stop", "reverse", "rest", {{0, 0, hold_ + 0.1}});
-    return text_;
-  }
-
- private:
-  struct Held {
-    double left, right, seconds;  // shares of the cruising speed
-  };
-
-  /// The command that makes a share of the weaker side's full speed.
-  double command(double share, double side) const {
-    if (share == 0.0) return 0.0;
-    const double speed = std::abs(share) * side * (1.0 - dead_) + dead_;
-    return std::copysign(std::round(1000.0 * std::min(1.0, speed)) / 1000.0, share);
-  }
-  std::string pair(double left, double right) const {
-    return fixed(command(left, left_), 3) + ", " + fixed(command(right, right_), 3);
-  }
-  std::string classText(const std::string& name, double share) const {
-    return "  - name: " + name + "\n    steady: [" + pair(share, share) + "]\n";
-  }
-  void pattern(const std::string& name, const std::string& entry, const std::string& exit,
-               const std::vector<Held>& commands) {
-    text_ +=
-        "  - name: " + name + "\n    entry: " + entry + "\n    exit: " + exit + "\n    commands: [";
-    for (size_t i = 0; i < commands.size(); ++i)
-      text_ += (i > 0 ? ", [" : "[") +
-               pair(cruise_ * commands[i].left, cruise_ * commands[i].right) + ", " +
-               fixed(wholePeriods(commands[i].seconds), 2) + "]";
-    text_ += "]\n";
-  }
-  void curve(const std::string& left, const std::string& right, double inner, double seconds) {
-    pattern(left, "cruise", "cruise", {{inner, 1, seconds}, {1, 1, hold_}});
-    pattern(right, "cruise", "cruise", {{1, inner, seconds}, {1, 1, hold_}});
-  }
-  void turn(double degrees) {
-    const double level = std::min(1.0, kTurnLevel / cruise_);
-    const double rate = 2.0 * cruise_ * level * least_ / model_.gauge;
-    const double seconds = std::max(kPeriod, toRadians(degrees) / rate);
-    const std::string angle = fixed(degrees, 0);
-    pattern("turn_left_" + angle, "rest", "rest", {{-level, level, seconds}, {0, 0, hold_}});
-    pattern("turn_right_" + angle, "rest", "rest", {{level, -level, seconds}, {0, 0, hold_}});
-  }
-
-  VehicleModel model_;
-  double left_ = 1.0, right_ = 1.0, dead_ = 0.0;
-  double least_ = 0.0;   // [m/s] full speed of the weaker side
-  double hold_ = 0.0;    // [s]
-  double cruise_ = 1.0;  // share of the weaker side's full speed
-  std::string text_;
-};
 
 /// Arms for the setup; throws std::runtime_error where the bridge does not. The call listens to the
 /// bus: keep it as long as that is handled.
@@ -151,7 +59,16 @@ Pose2 presentPose(RunningRobot& robot, Latest<ins_t>& ins) {
 }  // namespace
 
 std::string recipeFor(const RobotFindings& findings) {
-  return findings.robot.drive.isCar() ? carRecipeFor(findings) : Recipe(findings).text();
+  const ModelDocument model = modelOf(findings);
+  patterns::RecipeWish wish;
+  wish.name = model.vehicle.name;
+  wish.max_command = findings.robot.drive.max_command;
+  wish.max_steering = findings.robot.drive.max_steering;
+  wish.patterns = kPatterns;
+  wish.gap = 2.0 * findings.robot.footprint.half_width + kRoomInGap;
+  wish.room = kShareOfMarking * findings.marking_range;
+  return patterns::recipeText(patterns::designRecipe(model.vehicle, wish),
+                              "# Made by tread-setup-robot from what it measured.\n");
 }
 
 RecordedPatterns recordPatterns(Site& site, Interview& person, const std::string& folder,

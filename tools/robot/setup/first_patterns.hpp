@@ -13,12 +13,10 @@
 
 namespace tread::setup {
 
-/// Recipe of a robot's first patterns (config/patterns/recipes), from its speed, lag and width.
-/** A weaker side is commanded more, so that straight is straight. No faster than that the longest
- * way from standstill to standstill is within 0.6 of `marking_range` [m]. */
+/// Recipe of a robot's first patterns (config/patterns/recipes), designed for what was measured.
+/** No faster than that the way from standstill to standstill is within 0.6 of `marking_range` [m].
+ */
 std::string recipeFor(const RobotFindings& findings);
-/// The same for a car: curves to and fro, and steps at full steering.
-std::string carRecipeFor(const RobotFindings& findings);
 
 /// What came of driving the patterns.
 struct RecordedPatterns {

@@ -215,6 +215,7 @@ class CauseSearch {
         if (!processFault("learner", "PATTERN_SET", 3.5)) lost("PATTERN_SET", "learner", "planner");
         break;
       case StopReason::kObstacleAhead:
+      case StopReason::kGroundGivesWay:
       case StopReason::kBoxedIn:
       case StopReason::kNoWayFound:
       case StopReason::kGettingOut:

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "modules/planner/core/execution/slide.hpp"
+
 namespace tread::planner {
 namespace {
 
@@ -32,6 +34,7 @@ void MovingControl::drive(const PlannerInputs& s, const Preconditions& ready) {
     state_.plan.expire();
     ++state_.counters["left the predicted corridor"];
   }
+  if (answerSlide(s, *state_.prediction)) return;
   planNext(s, ready, *state_.prediction);
   keepClear(s, *state_.prediction);
 }
@@ -175,6 +178,39 @@ bool MovingControl::stoppingIsBetter(const PlannerInputs& s,
   };
   return worst(coasting(s.pose->T_map_body, *s.pose->twist, 0.0, coastTime(*s.pose->twist))) >=
          worst(poses);
+}
+
+/// In the first moment on ground that gives way, before the learner says so. True if another answer
+/// than what is under way was given.
+bool MovingControl::answerSlide(const PlannerInputs& s, const Prediction& running) {
+  if (state_.grip.gave_way || !s.pose->twist || !state_.tracker.confirmed()) return false;
+  constexpr double kUnknown = 1.0;  // [m/s2] as the learner's, before anything is known
+  const TablePattern& pattern = *state_.runningPattern();
+  const double period = state_.table().set().periodSeconds();
+  const double time = static_cast<double>(s.pose->utime - state_.tracker.started()) * kMicro;
+  SlideChoices choices;
+  choices.rest = askedFrom(*pattern.pattern, period, time);
+  const Twist2& v = *s.pose->twist;
+  if (choices.rest.empty() || !slides(v, choices.rest.front().v_body)) return false;
+  if (!state_.tracker.next().empty())
+    choices.next = state_.table().find(state_.tracker.next().pattern_id);
+  if (!frozen(s)) choices.followers = state_.table().from(pattern.exit);
+  const Pose2& here = s.pose->T_map_body;
+  const Sliding vehicle{here, Pose2{0.0, 0.0, here.yaw} * Eigen::Vector2d(v.v_x, v.v_y),
+                        std::min(kUnknown, state_.grip.deceleration)};
+  const SlideAnswer answer = answerToSlide(state_.map.collisionChecker(), vehicle, choices, period);
+  if (answer.kind == SlideAnswer::Kind::kGoOn) return false;
+  if (answer.kind == SlideAnswer::Kind::kStop) {
+    state_.halt(s.now, StopReason::kGroundGivesWay);
+    return true;
+  }
+  // No plan that leads on, which a later search would keep.
+  state_.plan.end = SearchEnd::kNothing;
+  state_.plan.steps = {stepAfter(endOf(running), *answer.follower)};
+  state_.plan.made = s.now;
+  state_.tracker.setNext(state_.table().set(), answer.follower->id());
+  ++state_.counters["steered because a stop would have slid on"];
+  return true;
 }
 
 /// [s] that a vehicle goes on at its twist after a stop.

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+
+#include "tools/robot/patterns/core/recipe_design.hpp"
+
+namespace tread::patterns {
+
+/// The recipe as a file (config/patterns/recipes), `comment` on its first lines.
+std::string recipeText(const DesignedRecipe& recipe, const std::string& comment);
+
+/// What each pattern adds: a table for people.
+std::string gainsTable(const DesignedRecipe& recipe);
+
+}  // namespace tread::patterns
