@@ -7,6 +7,7 @@
 
 #include <tread_before/motor_t.hpp>
 #include <tread_before/pattern_set_part_t.hpp>
+#include <tread_before/plan_t.hpp>
 #include <tread_before/program_t.hpp>
 
 #include "common/messages/blank.hpp"
@@ -104,6 +105,25 @@ pattern_set_part_t renewed(const tread_before::pattern_set_part_t& old) {
   return message;
 }
 
+plan_t renewed(const tread_before::plan_t& old) {
+  auto message = blank<plan_t>();
+  message.utime = old.utime;
+  message.seq = old.seq;
+  message.goal_id = old.goal_id;
+  message.set_version = old.set_version;
+  message.plan_status = old.plan_status;
+  message.reason = old.reason;
+  message.time_to_go = old.time_to_go;
+  message.expansions = old.expansions;
+  message.search_time = old.search_time;
+  message.num_patterns = old.num_patterns;
+  message.execution_id = old.execution_id;
+  message.pattern_id = old.pattern_id;
+  message.pose = old.pose;
+  message.covariance = old.covariance;
+  return message;
+}
+
 template <class Old, class Message>
 void renewOne(LogEvent& event, const Channel<Message>& channel) {
   Old old{};
@@ -114,6 +134,7 @@ void renewOne(LogEvent& event, const Channel<Message>& channel) {
 
 void renew(LogEvent& event) {
   renewOne<tread_before::motor_t>(event, kMotor);
+  renewOne<tread_before::plan_t>(event, kPlan);
   renewOne<tread_before::program_t>(event, kProgram);
   renewOne<tread_before::pattern_set_part_t>(event, kPatternSet);
 }

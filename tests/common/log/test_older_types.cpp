@@ -13,6 +13,7 @@
 #include <catch2/catch.hpp>
 
 #include <tread_before/motor_t.hpp>
+#include <tread_before/plan_t.hpp>
 
 #include "common/drive/drive_log.hpp"
 #include "common/log/older_types.hpp"
@@ -88,6 +89,33 @@ TEST_CASE("the programs of an older log order what the patterns of its sets comm
     }
   }
   CHECK(compared > 5);
+}
+
+TEST_CASE("a plan from before plans had a risk is read as one of unknown risk") {
+  tread_before::plan_t old{};
+  old.utime = 7;
+  old.plan_status = plan_t::PLAN_DRIVING;
+  old.reason = "stopping to turn on the spot";
+  old.time_to_go = 12.5;
+  old.num_patterns = 1;
+  old.execution_id = {3};
+  old.pattern_id = {4};
+  old.pose = {{1.0, 2.0, 0.5}};
+  old.covariance = {{0.1, 0.0, 0.0, 0.2, 0.0, 0.3}};
+  LogEvent event{0, "PLAN", encoded(old), false};
+  renew(event);
+  plan_t plan{};
+  REQUIRE(decode(event, kPlan, plan));
+  CHECK(plan.utime == 7);
+  CHECK(plan.plan_status == plan_t::PLAN_DRIVING);
+  CHECK(plan.reason == old.reason);
+  CHECK(plan.time_to_go == 12.5);
+  CHECK(plan.execution_id == old.execution_id);
+  CHECK(plan.pattern_id == old.pattern_id);
+  CHECK(plan.pose == old.pose);
+  CHECK(plan.covariance == old.covariance);
+  CHECK(std::isnan(plan.risk));
+  CHECK(std::isnan(plan.risk_per_metre));
 }
 
 TEST_CASE("only whole messages of their own channel are taken for older ones") {
