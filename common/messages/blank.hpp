@@ -69,7 +69,7 @@ inline void markUnknown(pattern_set_part_t& m) {
   setAllUnknown(m.entry_twist, m.exit_twist, m.end_covariance);
 }
 inline void markUnknown(plan_t& m) {
-  setUnknown(m.time_to_go);
+  setAllUnknown(m.time_to_go, m.risk, m.risk_per_metre);
 }
 inline void markUnknown(program_t& m) {
   m.newest_input_seq = -1;

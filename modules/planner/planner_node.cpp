@@ -56,7 +56,7 @@ void readField(ConfigReader reader, DistanceFieldConfig& field) {
 }
 
 void readSearch(ConfigReader reader, SearchConfig& search) {
-  reader.number("horizon", search.horizon, {1.0, 60.0}, "s");
+  reader.number("horizon", search.horizon, {0.0, 60.0}, "s, 0 = six patterns");
   reader.number("reverse_penalty", search.reverse_penalty, {0.0, 20.0}, "1");
   reader.number("near_penalty", search.near_penalty, {0.0, 20.0}, "1");
   reader.number("shock_weight", search.shock.weight, {0.0, 100.0}, "s, 0 = off");
@@ -142,6 +142,8 @@ plan_t toMessage(const PlanReport& report) {
   message.reason_code = static_cast<int16_t>(report.reason.code);
   message.reason = report.reason.words;
   message.time_to_go = report.time_to_go;
+  message.risk = report.risk.touch;
+  message.risk_per_metre = report.risk.per_metre;
   message.expansions = report.expansions;
   message.num_patterns = static_cast<int32_t>(report.steps.size());
   message.execution_id = report.execution_ids;

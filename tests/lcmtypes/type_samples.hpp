@@ -373,6 +373,8 @@ inline plan_t sampleOf<plan_t>() {
   m.reason_code = 161;
   m.reason = "no free pattern";
   m.time_to_go = 12.5;
+  m.risk = 0.002;
+  m.risk_per_metre = 0.0005;
   m.expansions = 1234;
   m.search_time = 25'000;
   m.num_patterns = 2;

@@ -22,6 +22,7 @@ struct Drive {
     PlannerConfig config = usualPlanner();
     config.search.heuristic_weight = 1.2;
     config.search.turn_weight = 0.4;
+    config.search.horizon = 9.0;
     return config;
   }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "common/pattern/pattern_file.hpp"
 #include "modules/planner/core/execution/driving_state.hpp"
 #include "modules/planner/core/map/collision_checker.hpp"
 #include "modules/planner/core/search/pattern_table.hpp"
@@ -56,6 +57,17 @@ TEST_CASE("The table knows the class of standing, what begins where, and what st
   CHECK(table.stopsFrom(cruise).front()->pattern->name == "stop");
   CHECK(table.bestSpeed() == Approx(1.1).epsilon(0.01));
   CHECK(table.defect().empty());
+}
+
+TEST_CASE("How far ahead is planned follows from how long the set's patterns are") {
+  const auto usual = [](const std::string& file) {
+    const PatternSet set = readPatternFile(std::string(TREAD_SOURCE_DIR) + file);
+    return PatternTable(set, usualSweep(), {}).usualDuration();
+  };
+  CHECK(usual("/config/patterns/teodor.yaml") == Approx(1.5));
+  CHECK(usual("/tests/data/robots/jackal/patterns.yaml") == Approx(0.7));
+  // Where all begin and end at rest all are counted.
+  CHECK(PatternTable(latticePatterns(), usualSweep(), {}).usualDuration() == Approx(1.0));
 }
 
 TEST_CASE("A set without a way to stop is refused in words") {

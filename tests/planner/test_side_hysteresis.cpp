@@ -85,6 +85,7 @@ SideChanges driveAtBoulder(double gain, uint64_t seed) {
   options.errors.pose_noise = 0.06;
   options.config.side_hysteresis.gain = gain;
   options.config.search.switch_penalty = 0.0;
+  options.config.search.horizon = 9.0;  // so far ahead that plans pass the boulder
   double side = 0.0;
   options.on_decision = [&](double, const Decision& decision) {
     // Where the plan passes the boulder.

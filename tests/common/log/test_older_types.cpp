@@ -7,6 +7,8 @@
 // the learner, MOTOR, EXECUTION, INS, each tenth PROGRAM, PATTERN_SET, LEARNER_STATE, LEARNING,
 // ARM.
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <string>
 
@@ -17,6 +19,7 @@
 #include "common/drive/drive_log.hpp"
 #include "common/log/older_types.hpp"
 #include "common/messages/pattern_messages.hpp"
+#include "common/types/message_json.hpp"
 
 namespace tread {
 namespace {
@@ -88,6 +91,32 @@ TEST_CASE("the programs of an older log order what the patterns of its sets comm
     }
   }
   CHECK(compared > 5);
+}
+
+TEST_CASE("a message whose type had fewer fields keeps them, and the new ones are unknown") {
+  std::ifstream file(std::string(TREAD_SOURCE_DIR) + "/lcmtypes/before/2026-11-28/plan_t.lcm");
+  const MessageTypes types = MessageTypes::fromText(
+      std::string(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()));
+  const std::string json = R"({"utime": 7, "seq": 3, "goal_id": -1, "set_version": 12,
+      "plan_status": 1, "reason": "stopping to turn on the spot", "time_to_go": 12.5,
+      "expansions": 5, "search_time": 0, "num_patterns": 1, "execution_id": [3],
+      "pattern_id": [4], "pose": [1.0, 2.0, 0.5], "covariance": [0.1, 0, 0, 0.2, 0, "NaN"]})";
+  LogEvent event{0, "PLAN", bytesOf(types, *types.find("plan_t"), json), false};
+  renew(event);
+  plan_t plan{};
+  REQUIRE(decode(event, kPlan, plan));
+  CHECK(plan.utime == 7);
+  CHECK(plan.goal_id == -1);
+  CHECK(plan.plan_status == plan_t::PLAN_DRIVING);
+  CHECK(plan.reason == "stopping to turn on the spot");
+  CHECK(plan.time_to_go == 12.5);
+  CHECK(plan.execution_id == std::vector<int64_t>{3});
+  CHECK(plan.pose == std::vector<std::vector<double>>{{1.0, 2.0, 0.5}});
+  CHECK(plan.covariance[0][3] == 0.2);
+  CHECK(std::isnan(plan.covariance[0][5]));
+  CHECK(plan.reason_code == -1);
+  CHECK(std::isnan(plan.risk));
+  CHECK(std::isnan(plan.risk_per_metre));
 }
 
 TEST_CASE("only whole messages of their own channel are taken for older ones") {

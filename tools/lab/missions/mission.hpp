@@ -127,9 +127,10 @@ struct Disarming {
 /// What the plans of a mission promised, as means of those that were searched for and lead on.
 struct PlanFigures {
   int count = 0;
-  double next = 0.0;       ///< [m] sum of the standard deviations of the next pattern's end
-  double end = 0.0;        ///< [m] the same of the plan's end
-  int64_t expansions = 0;  ///< of all of them
+  double next = 0.0;            ///< [m] sum of the standard deviations of the next pattern's end
+  double end = 0.0;             ///< [m] the same of the plan's end
+  std::vector<int> expansions;  ///< of each search, also of those that found nothing
+  double touches = 0.0;         ///< [1] number of contacts that their risk is, over the way driven
 };
 
 /// What happened in one mission: one entry of the report, hence so many fields.

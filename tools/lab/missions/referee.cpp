@@ -153,7 +153,9 @@ void Referee::hear(const plan_t& message) {
 
 /// The first pattern of a plan is the one that runs.
 void Referee::notePlan(const plan_t& message) {
-  if (message.expansions == 0 || message.num_patterns < 2) return;
+  if (message.expansions == 0) return;
+  result_.plans.expansions.push_back(message.expansions);
+  if (message.num_patterns < 2) return;
   const auto sigma = [](const std::vector<double>& c) {
     const double half = 0.5 * (c[0] - c[3]);
     return std::sqrt(std::max(0.0, 0.5 * (c[0] + c[3]) + std::hypot(half, c[1])));
@@ -162,7 +164,6 @@ void Referee::notePlan(const plan_t& message) {
   ++result_.plans.count;
   result_.plans.next += sigma(covariances[1]);
   result_.plans.end += sigma(covariances.back());
-  result_.plans.expansions += message.expansions;
 }
 
 bool Referee::isFree(const Pose2& T_map_start,
@@ -247,7 +248,9 @@ void Referee::step() {
 void Referee::noteMotion() {
   const Pose2& T_map_body = system_.robot().truth().T_map_body;
   const Pose2 step = between(last_pose_, T_map_body);
-  result_.distance += std::hypot(step.x, step.y);
+  const double way = std::hypot(step.x, step.y);
+  result_.distance += way;
+  if (std::isfinite(plan_.risk_per_metre)) result_.plans.touches += way * plan_.risk_per_metre;
   last_pose_ = T_map_body;
   if (result_.track.empty() || result_.time - result_.track.back().time > 0.2)
     result_.track.push_back({result_.time, T_map_body});

@@ -3,6 +3,7 @@
 #include "tools/lab/missions/world_report.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <ostream>
@@ -16,6 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kSameMetric = 0.01;
+constexpr std::array<double, 3> kQuantiles = {.5, .9, .99};
 constexpr double kNormal95 = 1.959963984540054;
 
 constexpr const char* kOmniscient = "omniscient";
@@ -35,7 +37,8 @@ Json worldJson(const MissionResult& result) {
           {"time_s", result.clock},
           {"metric", navigationMetric(result)},
           {"metres", result.distance},
-          {"least_clearance_m", orNull(result.least_clearance)}};
+          {"least_clearance_m", orNull(result.least_clearance)},
+          {"promised_contacts", result.plans.touches}};
 }
 
 Json summaryJson(const MissionBatch& batch) {
@@ -52,7 +55,12 @@ Json summaryJson(const MissionBatch& batch) {
           {"stops", summary.stops},
           {"stood_s", summary.stood},
           {"next_sigma_m", orNull(summary.next_sigma)},
-          {"end_sigma_m", orNull(summary.end_sigma)}};
+          {"end_sigma_m", orNull(summary.end_sigma)},
+          {"promised_contacts", summary.touches},
+          {"expansions",
+           {{"50", summary.expansions[0]},
+            {"90", summary.expansions[1]},
+            {"99", summary.expansions[2]}}}};
 }
 
 Json timedJson(const MissionBatch& batch) {
@@ -116,7 +124,14 @@ TimedSummary timedSummaryOf(const std::vector<MissionResult>& results) {
     plans.count += result.plans.count;
     plans.next += result.plans.next;
     plans.end += result.plans.end;
+    plans.expansions.insert(plans.expansions.end(), result.plans.expansions.begin(),
+                            result.plans.expansions.end());
+    summary.touches += share * result.plans.touches;
   }
+  std::sort(plans.expansions.begin(), plans.expansions.end());
+  for (size_t i = 0; i < summary.expansions.size() && !plans.expansions.empty(); ++i)
+    summary.expansions[i] = plans.expansions[static_cast<size_t>(
+        kQuantiles[i] * static_cast<double>(plans.expansions.size() - 1))];
   std::sort(clearances.begin(), clearances.end());
   const double none = std::numeric_limits<double>::quiet_NaN();
   summary.time = arrived > 0 ? summary.time / arrived : none;

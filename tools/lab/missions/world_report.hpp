@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <array>
 #include <iosfwd>
 #include <optional>
 #include <string>
@@ -37,6 +38,8 @@ struct TimedSummary {
   /// [m] mean standard deviations that the plans promised, of the end of the next pattern and of
   /// the whole plan; NaN without any.
   double next_sigma = 0.0, end_sigma = 0.0;
+  double touches = 0.0;  ///< contacts a run that the plans' risk is, over the ways driven
+  std::array<int, 3> expansions{};  ///< of a search: median, 90 and 99 %
 };
 TimedSummary timedSummaryOf(const std::vector<MissionResult>& results);
 

@@ -253,6 +253,11 @@ std::string differenceOf(const plan_t& log, const plan_t& replay) {
     compare.numbers(at + " covariance", log.covariance[i], replay.covariance[i]);
   }
   compare.field("time to go [s]", &M::time_to_go);
+  // Plans of older logs have none.
+  if (std::isfinite(log.risk)) {
+    compare.field("risk", &M::risk);
+    compare.field("risk per metre", &M::risk_per_metre);
+  }
   return compare.found("PLAN on INS of " + std::to_string(log.utime) + " us");
 }
 

@@ -227,17 +227,23 @@ const TablePattern* DrivingState::runningPattern() const {
   return same ? newest : nullptr;
 }
 
-SearchResult DrivingState::search(int64_t now, const PlanStep& start, int expansions) {
+double DrivingState::coastTime(const Twist2& twist) const {
+  return std::max(config.policy.coast_time, grip.slidingTime(std::hypot(twist.v_x, twist.v_y)));
+}
+
+PlannedWay DrivingState::search(int64_t now, const PlanStep& start, int expansions) {
   const bool may_keep_next = runningPattern() != nullptr;
-  SearchResult result = planner.plan({set.table(), map, groundCost(), start, plan.steps, plan.end,
-                                      may_keep_next, grip.deceleration},
-                                     expansions, counters);
+  const double reaction = kReactionDelay + coastTime(table().motionClass(start.exit_class).twist);
+  PlannedWay result = planner.plan({set.table(), map, groundCost(), start, plan.steps, plan.end,
+                                    may_keep_next, grip.deceleration, reaction},
+                                   expansions, counters);
   if (result.end == SearchEnd::kNothing && grip.gave_way)
     result.reason.words +=
         ", on ground that stops it with only " + withTenths(grip.deceleration) + " m/s2";
   plan.made = now;
   status.changed = true;
   plan.expansions = result.expansions;
+  plan.risk = result.risk;
   plan.end = result.end;
   plan.time_to_go = result.end == SearchEnd::kNothing ? std::numeric_limits<double>::quiet_NaN()
                                                       : result.time_to_go;

@@ -48,6 +48,7 @@ struct PlanReport {
   int64_t goal_id = 0;
   int64_t set_version = 0;
   double time_to_go = 0.0;  ///< [s]; NaN unknown
+  PlanRisk risk;            ///< of the steps that have not begun
   int expansions = 0;
   std::vector<int64_t> execution_ids;  ///< as many as steps; 0 = not yet given to the bridge
   std::vector<PlanStep> steps;
@@ -208,11 +209,15 @@ class ActiveSet {
   std::string refusal_;
 };
 
+/// [s] a PROGRAM, its way to the motors, and the next measurement.
+inline constexpr double kReactionDelay = 0.2;
+
 /// The plan that is followed, from the end of the running pattern on.
 struct CurrentPlan {
   std::vector<PlanStep> steps;
   SearchEnd end = SearchEnd::kNothing;
   double time_to_go = 0.0;             ///< [s]; NaN unknown
+  PlanRisk risk;                       ///< of the steps when it was made
   int expansions = 0;                  ///< of the last search
   std::optional<int64_t> made;         ///< [us] when it was searched for; nothing = search again
   std::optional<Prediction> based_on;  ///< of the running pattern when it was made
@@ -272,7 +277,9 @@ struct DrivingState {
   /// The running pattern with its newest prediction; nullptr if it is not in the set.
   const TablePattern* runningPattern() const;
   /// Plans from `start`, and notes what came of it.
-  SearchResult search(int64_t now, const PlanStep& start, int expansions);
+  PlannedWay search(int64_t now, const PlanStep& start, int expansions);
+  /// [s] that a vehicle goes on at its twist after a stop.
+  double coastTime(const Twist2& twist) const;
   /// The prices of the ground for the set in use; nullptr where shock costs nothing.
   const GroundCost* groundCost();
   /// Says so if the goal is unreachable on the known map.

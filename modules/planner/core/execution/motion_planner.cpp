@@ -256,7 +256,14 @@ bool SideHysteresis::isWorth(const SearchResult& fresh, const SearchResult& alon
   return fresh.cost + fresh.expected + config_.gain < along_branch.cost + along_branch.expected;
 }
 
-SearchResult MotionPlanner::plan(const PlanRequest& request, int expansions, Counters& counters) {
+PlannedWay MotionPlanner::plan(const PlanRequest& request, int expansions, Counters& counters) {
+  PlannedWay way{search(request, expansions, counters), {}};
+  way.risk = riskOf(
+      {request.map.collisionChecker(), *request.table, request.start, way.steps, request.reaction});
+  return way;
+}
+
+SearchResult MotionPlanner::search(const PlanRequest& request, int expansions, Counters& counters) {
   SearchProblem problem;
   problem.T_map_start = request.start.T_map_end;
   problem.start_class = request.start.exit_class;

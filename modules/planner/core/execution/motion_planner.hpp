@@ -15,6 +15,7 @@
 #include "modules/planner/core/map/distance_to_goal.hpp"
 #include "modules/planner/core/search/pattern_search.hpp"
 #include "modules/planner/core/search/pattern_table.hpp"
+#include "modules/planner/core/search/plan_risk.hpp"
 
 namespace tread::planner {
 
@@ -174,6 +175,12 @@ struct PlanRequest {
   SearchEnd last_end;                       ///< of the search for it
   bool may_keep_next;                       ///< a pattern runs: its queued successor may be kept
   double deceleration = kNoLimit;           ///< [m/s2] that the ground gives
+  double reaction = 0.0;                    ///< [s] see RiskQuestion
+};
+
+/// A plan, and how likely it touches something.
+struct PlannedWay : SearchResult {
+  PlanRisk risk;
 };
 
 /// Searches for plans, and keeps to the side that the last plan turned to.
@@ -186,7 +193,7 @@ class MotionPlanner {
 
   /// May end searches before the expansions do.
   void setStop(const StopPredicate& stop) { stop_ = stop; }
-  SearchResult plan(const PlanRequest& request, int expansions, Counters& counters);
+  PlannedWay plan(const PlanRequest& request, int expansions, Counters& counters);
 
   SideHysteresis& side() { return side_; }
   const PatternSearch& search() const { return search_; }
@@ -197,6 +204,7 @@ class MotionPlanner {
   void setReplaced() { cycles_with_old_set_ = 0; }
 
  private:
+  SearchResult search(const PlanRequest& request, int expansions, Counters& counters);
   SearchResult alongBranch(const SearchProblem& problem, const StopPredicate& stop,
                            SearchResult& fresh);
   SearchResult keepPlan(SearchProblem& problem, SearchResult fresh, const StopPredicate& stop,

@@ -84,7 +84,7 @@ std::vector<ExpectedPose> MovingControl::posesAfter(const Prediction& running) c
   }
   // Nothing follows: the series ends, and the vehicle coasts.
   const Twist2& twist = state_.table().motionClass(state_.runningPattern()->exit).twist;
-  return coasting(running.T_map_end, twist, running.time_left, coastTime(twist));
+  return coasting(running.T_map_end, twist, running.time_left, state_.coastTime(twist));
 }
 
 bool MovingControl::nextCollides(const Prediction& running) const {
@@ -153,6 +153,7 @@ bool MovingControl::stopNext(const Prediction& running) {
   }
   // A stop is no plan that leads on, which a later search would keep.
   state_.plan.end = SearchEnd::kNothing;
+  state_.plan.risk = {};
   state_.plan.steps.clear();
   if (best == nullptr) {
     state_.tracker.clearNext();
@@ -176,8 +177,8 @@ bool MovingControl::stoppingIsBetter(const PlannerInputs& s,
       level = std::min(level, around.freeLevel(at.T_map_body, level));
     return level;
   };
-  return worst(coasting(s.pose->T_map_body, *s.pose->twist, 0.0, coastTime(*s.pose->twist))) >=
-         worst(poses);
+  return worst(coasting(s.pose->T_map_body, *s.pose->twist, 0.0,
+                        state_.coastTime(*s.pose->twist))) >= worst(poses);
 }
 
 /// In the first moment on ground that gives way, before the learner says so. True if another answer
@@ -213,17 +214,10 @@ bool MovingControl::answerSlide(const PlannerInputs& s, const Prediction& runnin
   return true;
 }
 
-/// [s] that a vehicle goes on at its twist after a stop.
-double MovingControl::coastTime(const Twist2& twist) const {
-  return std::max(state_.config.policy.coast_time,
-                  state_.grip.slidingTime(std::hypot(twist.v_x, twist.v_y)));
-}
-
 void MovingControl::keepClear(const PlannerInputs& s, const Prediction& running) {
   const double age = static_cast<double>(s.now - s.pose->utime) * kMicro;
-  constexpr double kDelay = 0.2;  // [s] a PROGRAM, its way to the motors, and the next measurement
   double lead = static_cast<double>(state_.config.policy.stop_lead) * kMicro;
-  if (s.pose->twist) lead = std::max(lead, coastTime(*s.pose->twist) + kDelay);
+  if (s.pose->twist) lead = std::max(lead, state_.coastTime(*s.pose->twist) + kReactionDelay);
   std::vector<ExpectedPose> poses = running.ahead;
   const std::vector<ExpectedPose> after = posesAfter(running);
   poses.insert(poses.end(), after.begin(), after.end());

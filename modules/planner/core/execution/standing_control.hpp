@@ -31,7 +31,6 @@ class MovingControl {
   PlanStep endOf(const Prediction& running) const;
   void searchNext(const PlannerInputs& s, const Prediction& running);
   void keepClear(const PlannerInputs& s, const Prediction& running);
-  double coastTime(const Twist2& twist) const;
   bool answerSlide(const PlannerInputs& s, const Prediction& running);
   bool stoppingIsBetter(const PlannerInputs& s, const std::vector<ExpectedPose>& poses) const;
   std::vector<ExpectedPose> posesAfter(const Prediction& running) const;

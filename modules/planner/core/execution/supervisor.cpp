@@ -245,6 +245,7 @@ PlanReport Supervisor::report(const PlannerInputs& s) const {
   report.time_to_go = state_.mode == DrivingMode::kDriving || by_hand_
                           ? plan.time_to_go
                           : std::numeric_limits<double>::quiet_NaN();
+  report.risk = plan.steps.empty() ? PlanRisk() : plan.risk;
   report.expansions = state_.status.changed ? plan.expansions : 0;
   double time = 0.0;
   if (!running.empty() && state_.prediction) {

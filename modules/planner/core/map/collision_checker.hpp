@@ -73,6 +73,8 @@ class CollisionChecker {
   static constexpr int kLevels = 8;
   /// [m] of the smallest disc around the body's origin that contains the bare footprint.
   double circumscribedRadius() const { return levels_.front().circumscribed(); }
+  /// Without margin.
+  const FootprintSize& footprint() const { return levels_.front().size(); }
   double marginOf(int level) const { return level_margins_[static_cast<size_t>(level)]; }
   /// Level for a pose of this uncertainty; kPlan or above.
   /** What counts is the footprint's corner, which a turn moves, too. */

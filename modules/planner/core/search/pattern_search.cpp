@@ -14,6 +14,8 @@ constexpr int kAskEvery = 16;
 constexpr float kLookAhead = 2.0F;
 /// Patterns so short that they do not leave a cell in so many repetitions lead nowhere.
 constexpr int kMostRepeats = 32;
+/// A robot chooses so many patterns in the time of a horizon.
+constexpr double kPatternsAhead = 6.0;
 /// What is cheaper by less than this share is not cheaper.
 constexpr float kSame = 1e-6F;
 /// Share of the cost that counts against a leaf when the search is cut off.
@@ -61,6 +63,8 @@ void PatternSearch::begin(const SearchProblem& problem) {
   nodes_.clear();
   leaf_to_root_.clear();
   expansions_ = 0;
+  horizon_ =
+      config_.horizon > 0.0 ? config_.horizon : kPatternsAhead * problem.patterns->usualDuration();
   plan_ = Plan();
   costs_ = CostModel(config_, problem);
   checker_ = NodeChecker(config_, problem);
@@ -174,7 +178,7 @@ bool PatternSearch::visit(int index) {
     keepBest(index, SearchEnd::kHorizon);
     return true;
   }
-  if (node.time < kLookAhead * static_cast<float>(config_.horizon)) expand(index);
+  if (node.time < kLookAhead * static_cast<float>(horizon_)) expand(index);
   return false;
 }
 
@@ -278,7 +282,7 @@ bool PatternSearch::isFarEnough(const Node& node) const {
   const Eigen::Vector2d p(node.x, node.y);
   if (problem_->distance_to_goal->untilUnknown(p) < config_.frontier) return true;
   const auto time = static_cast<double>(node.time);
-  if (time < config_.horizon) return false;
+  if (time < horizon_) return false;
   const double gained_way = distance_at_start_ - problem_->distance_to_goal->length(p);
   return gained_way >= config_.least_rate * costs_.bestSpeed() * time;
 }

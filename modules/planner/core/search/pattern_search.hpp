@@ -120,6 +120,7 @@ class PatternSearch {
   std::vector<int> leaf_to_root_;
   mutable std::vector<int> branch_;
   int expansions_ = 0;
+  double horizon_ = 0.0;  // [s]
   double distance_at_start_ = 0.0;
   float inflated_at_start_ = 0.0F;
 };

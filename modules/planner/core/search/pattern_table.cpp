@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/planner/core/search/pattern_table.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace tread::planner {
@@ -118,7 +119,23 @@ bool PatternTable::isTooFast(const TablePattern& pattern, double top_speed) cons
   return speed(pattern.entry) <= top_speed && fast;
 }
 
+double PatternTable::medianDuration() const {
+  std::vector<double> joining;
+  std::vector<double> all;
+  for (const TablePattern& pattern : patterns_) {
+    all.push_back(pattern.duration);
+    if (pattern.entry != rest_class_ && pattern.exit != rest_class_)
+      joining.push_back(pattern.duration);
+  }
+  std::vector<double>& counted = joining.empty() ? all : joining;
+  if (counted.empty()) return 0.0;
+  const auto middle = counted.begin() + static_cast<std::ptrdiff_t>(counted.size() / 2);
+  std::nth_element(counted.begin(), middle, counted.end());
+  return *middle;
+}
+
 void PatternTable::index(size_t classes, double top_speed) {
+  usual_duration_ = medianDuration();
   std::vector<const TablePattern*> all;
   from_.resize(classes);
   stops_.resize(classes);

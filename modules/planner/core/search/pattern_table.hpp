@@ -220,6 +220,8 @@ class PatternTable {
   int classIndex(const std::string& name) const;
   /// Greatest path length over duration of a pattern within the top speed [m/s].
   double bestSpeed() const { return best_speed_; }
+  /// [s] median of the patterns that join others at both ends; of all if none does.
+  double usualDuration() const { return usual_duration_; }
   /// leastCostsOf() all patterns.
   const std::array<LeastCost, 2>& leastCosts() const { return least_costs_; }
   /// Why nobody can drive with this set, in words; empty if one can.
@@ -230,6 +232,7 @@ class PatternTable {
                        const DefaultSigma& sigma) const;
   int findRestClass() const;
   bool isTooFast(const TablePattern& pattern, double top_speed) const;
+  double medianDuration() const;
   void index(size_t classes, double top_speed);
 
   std::optional<PatternSet> set_;
@@ -238,6 +241,7 @@ class PatternTable {
   std::vector<std::vector<const TablePattern*>> stops_;
   int rest_class_ = -1;
   double best_speed_ = 0.0;
+  double usual_duration_ = 0.0;
   std::array<LeastCost, 2> least_costs_;
 };
 

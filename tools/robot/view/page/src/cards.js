@@ -6,6 +6,7 @@ import { surfaceName } from "./charts.js";
 
 const escape = (text) => String(text).replace(/[&<>"]/g, (letter) => `&#${letter.charCodeAt(0)};`);
 const fixed = (value, digits, unit = "") => (known(value) ? `${number(value).toFixed(digits)}${unit}` : "&ndash;");
+const percent = (share) => `${(100 * number(share)).toPrecision(2)} %`;
 const degrees = (radians) => (number(radians) * 180) / Math.PI;
 
 function put(id, html) {
@@ -53,6 +54,10 @@ export function showRobot(state, clock) {
   if (plan && plan.message.goal_id !== 0 && goal && pose) {
     const distance = Math.hypot(number(goal.goal_pose[0]) - pose.x, number(goal.goal_pose[1]) - pose.y);
     rows.push(["goal", `${fixed(distance, 1)} m away, ${fixed(plan.message.time_to_go, 0)} s to go`]);
+  }
+  if (plan && known(plan.message.risk)) {
+    const perMetre = known(plan.message.risk_per_metre) ? `, ${percent(plan.message.risk_per_metre)} a metre` : "";
+    rows.push(["risk", `${percent(plan.message.risk)} that the plan touches something${perMetre}`]);
   }
   if (run) rows.push(["pattern", escape(run.name)]);
   put("robot", `<dl>${rows.map(([name, value]) => `<dt>${name}</dt><dd>${value}</dd>`).join("")}</dl>`);
