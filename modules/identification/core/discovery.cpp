@@ -437,9 +437,11 @@ struct UnseenErrors {
 UnseenErrors errorsOnTest(const GapTask& task, const Observations& test,
                           const ModelDocument& after) {
   UnseenErrors unseen;
-  unseen.gap.before = summaryOf(endErrors(test, task.model));
+  const std::vector<ExecutionError> old = endErrors(test, task.model);
+  unseen.gap.before = summaryOf(old);
   unseen.parts.push_back({&test, after, endErrors(test, after), task.train.size()});
   unseen.gap.after = summaryOf(unseen.parts.back().errors);
+  unseen.gap.by_chance = chanceOfMedians(old, unseen.parts.back().errors);
   return unseen;
 }
 
@@ -451,7 +453,8 @@ UnseenErrors errorsOnHalves(const ModelDocument& before, const Fitter& fitter,
   UnseenErrors unseen;
   bool& nested = unseen.gap.structure_nested;
   nested = data.measuredBlocks() >= 2 * kLeastHalf && !result.record.cut_short;
-  unseen.gap.before = summaryOf(endErrors(data, before));
+  const std::vector<ExecutionError> old = endErrors(data, before);
+  unseen.gap.before = summaryOf(old);
   std::vector<std::vector<TermChannel>> channels;
   for (const UnnamedFinding& term : unnamed)
     channels.push_back({termOfPath(result.state.model, term.name + ".0")->channel});
@@ -475,6 +478,7 @@ UnseenErrors errorsOnHalves(const ModelDocument& before, const Fitter& fitter,
     outside.insert(outside.end(), errors.begin(), errors.end());
   }
   unseen.gap.after = summaryOf(outside);
+  unseen.gap.by_chance = chanceOfMedians(old, outside);
   return unseen;
 }
 

@@ -84,15 +84,20 @@ std::string floorWords(const Gap& gap) {
          joined(better) + ".";
 }
 
+constexpr double kBeyondChance = 2.0;  // standard errors
+
 /// A median before and after.
 struct Change {
   const char* what;
   double before;
   double after;
+  double by_chance;  ///< standard error of the difference
   std::string (*said)(double);
 
-  bool isWorse() const { return after > (1.0 + kNegligible) * before; }
-  bool isBetter() const { return after < before; }
+  bool isWorse() const {
+    return after > (1.0 + kNegligible) * before && after - before > kBeyondChance * by_chance;
+  }
+  bool isBetter() const { return before - after > kBeyondChance * by_chance; }
 };
 
 }  // namespace
@@ -289,8 +294,9 @@ std::string gainOf(const Gap& gap) {
 
 std::string worseOf(const Gap& gap) {
   const Change changes[] = {
-      {"position", gap.before.position.median, gap.after.position.median, saidDistance},
-      {"heading", gap.before.yaw.median, gap.after.yaw.median, saidAngle}};
+      {"position", gap.before.position.median, gap.after.position.median, gap.by_chance.position,
+       saidDistance},
+      {"heading", gap.before.yaw.median, gap.after.yaw.median, gap.by_chance.yaw, saidAngle}};
   std::vector<std::string> worse;
   std::string better;
   for (const Change& change : changes) {
