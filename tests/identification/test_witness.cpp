@@ -8,25 +8,11 @@
 
 using namespace tread;
 using namespace tread::gap;
+using samples::encodersOf;
 using samples::Rig;
 using samples::Values;
 
 namespace {
-
-/// What encoders say twenty times a second of a drive whose tracks do what a model does.
-std::vector<EncoderSample> encodersOf(const ModelDocument& tracks, const Drive& drive,
-                                      double late = 0.0) {
-  std::vector<EncoderSample> encoders;
-  VehicleKernel kernel(tracks.vehicle, EntryState{});
-  const std::vector<CommandSample>& commands = drive.segments.front().commands;
-  for (size_t i = 0; i < commands.size(); ++i) {
-    // Wheels turn faster than the ground passes, by the slip that the factor stands for.
-    const TrackCommand speed = kernel.trackSpeeds();
-    encoders.push_back({commands[i].time + late, {1.1 * speed.left, 1.1 * speed.right}});
-    kernel.step(commands[i].command, 0.05);
-  }
-  return encoders;
-}
 
 /// What wheels whose tracks are those of `tracks` say of the effects hidden in a drive, in order.
 std::vector<std::optional<WheelWitness>> witnessesOf(const Values& hidden, const Values& tracks,

@@ -249,7 +249,8 @@ std::vector<std::string> waysToTell(const FoundEffect& effect) {
   const std::vector<std::string> rivals = rivalsOf(effect);
   std::vector<std::string> ways;
   for (const ConfoundedGroup* group : confoundedGroupsOf(effect.name))
-    if (std::any_of(group->members.begin(), group->members.end(),
+    if (!(group->together && !ways.empty()) &&
+        std::any_of(group->members.begin(), group->members.end(),
                     [&](const std::string& member) { return contains(rivals, member); }))
       ways.push_back(group->separates);
   if (ways.empty()) ways.push_back(effectNamed(effect.name).separates);
