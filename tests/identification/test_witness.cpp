@@ -129,3 +129,14 @@ TEST_CASE("encoders that are late themselves do not make a short latency of the 
       identifiedModel(rig.fitter, syntheticVehicle(), {}, result).effects.front();
   CHECK(effect.group == std::vector<std::string>{"ins_latency"});
 }
+
+TEST_CASE("of two effects that resemble each other wheels say one thing, or nothing") {
+  // A drive turns to one side by an asymmetry, of which the wheels show all, and is pulled besides.
+  const Values both{{"track_asymmetry.share", 0.05}, {"yaw_pull.pull", 0.05}};
+  for (const auto& said : witnessesOf(both, {{"track_asymmetry.share", 0.05}})) CHECK_FALSE(said);
+  // Where all is in the wheels there is no contradiction.
+  const auto alone =
+      witnessOf({{"track_asymmetry.share", 0.05}}, {{"track_asymmetry.share", 0.05}});
+  REQUIRE(alone);
+  CHECK(alone->saysDrive());
+}
