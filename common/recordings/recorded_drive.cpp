@@ -57,14 +57,28 @@ TrackCommand trackSpeeds(const CsvTable& table, size_t row, double radius, const
   return {radius * table.number(row, left), radius * table.number(row, right)};
 }
 
+/// The first row of [first, last), whose times grow, that is not before a time.
+size_t rowFrom(const CsvTable& table, size_t first, size_t last, double time) {
+  while (first < last) {
+    const size_t middle = first + (last - first) / 2;
+    if (table.number(middle, "t_s") < time)
+      first = middle + 1;
+    else
+      last = middle;
+  }
+  return first;
+}
+
 /// The gyro's reading at a fix, for poses that are late and a gyro that is on time: the one nearest
 /// to a time among the rows [first, last), within one period; else NaN.
 double gyroAt(const CsvTable& table, size_t first, size_t last, double time, const char* gyro,
               double sign) {
   double nearest = 1.01 * kPeriod;
   double reading = kUnknown;
-  for (size_t row = first; row < last; ++row) {
-    const double distance = std::abs(table.number(row, "t_s") - time);
+  for (size_t row = rowFrom(table, first, last, time - 2.0 * kPeriod); row < last; ++row) {
+    const double after = table.number(row, "t_s") - time;
+    if (after >= 2.0 * kPeriod) break;
+    const double distance = std::abs(after);
     if (distance >= nearest) continue;
     nearest = distance;
     reading = sign * table.number(row, gyro);

@@ -257,6 +257,17 @@ std::vector<ConfoundedGroup> groupsOfPoorDrives() {
        "turns of one yaw rate at one speed",
        "one yaw rate residual cannot tell which of them it is",
        "Turns on the spot at three rates and arcs at three speeds."},
+      {"late_position",
+       {"body_inertia", "ins_latency", "centrifugal_drift", "heading_latency"},
+       "",
+       "a position that is late by itself (INS latency t, heading latency -t) is what a body gives "
+       "that takes up its speed late and drifts outwards in curves, to first order of the time",
+       "Stop from full speed straight ahead and on the spot: a body slides on and comes to rest "
+       "gradually, a late position comes to rest as the drive does, but later.",
+       false,
+       nullptr,
+       "",
+       true},
       {"forwards_only",
        {"track_asymmetry", "yaw_pull", "yaw_rate_offset", "gyro_bias"},
        "forward driving at one speed",

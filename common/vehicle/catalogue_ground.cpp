@@ -253,7 +253,9 @@ std::vector<Effect> speedLossEffects() {
        "Gentle turns: a deadband of the motors changes their yaw rate, rolling resistance does "
        "not.",
        "Raise the command slowly and compare the speed of the tracks with that of the vehicle.",
-       {strength("speed", "m/s", 0.0, 0.5, 0.05, &V::rolling_resistance, {0.03, 0.08, 0.15})}},
+       {strength("speed", "m/s", 0.0, 0.5, 0.05, &V::rolling_resistance, {0.03, 0.08, 0.15})},
+       "",
+       inWheels({"motor_deadband"})},
   };
 }
 

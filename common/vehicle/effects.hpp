@@ -188,6 +188,9 @@ struct ConfoundedGroup {
   /// A measurement effect is a member only where this share is above one half.
   double MeasurementModel::*share = nullptr;
   std::string share_words{};  ///< of the measurement effect with that share, for reports
+  /// Its vehicle effects all together do what its measurement effects do together: where both
+  /// explain a drive equally well, a search takes the vehicle's and names the INS's beside them.
+  bool together = false;
 };
 
 /// All groups: first those that no drive tells apart, then those of poor drives.

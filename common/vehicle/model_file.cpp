@@ -277,18 +277,16 @@ std::string unitOf(const EffectParameter& parameter, double value) {
          parameter.natural_unit;
 }
 
-bool isDefault(const ModelDocument& document, const Effect& effect) {
-  static const ModelDocument nominal{};
-  for (const EffectParameter& parameter : effect.parameters)
-    if (valueOf(document, parameter) != valueOf(nominal, parameter)) return false;
-  return true;
+/// Whether an effect does nothing: shapes such as the time of a change are no effect by themselves.
+bool isOff(const ModelDocument& document, const Effect& effect) {
+  return !isOn(effect, document.vehicle.effects, document.measurement);
 }
 
 void writeEffects(std::ostringstream& out, const ModelDocument& document, EffectKind kind,
                   const std::string& key) {
   bool any = false;
   for (const Effect& effect : effectCatalogue()) {
-    if (effect.kind() != kind || isDefault(document, effect)) continue;
+    if (effect.kind() != kind || isOff(document, effect)) continue;
     if (!any) out << key << ":\n";
     any = true;
     out << "  " << effect.name << ":  # " << effect.sentence << '\n';
@@ -303,7 +301,7 @@ void writeEffects(std::ostringstream& out, const ModelDocument& document, Effect
 void writeCatalogue(std::ostringstream& out, const ModelDocument& document) {
   bool any = false;
   for (const Effect& effect : effectCatalogue()) {
-    if (effect.law == nullptr || isDefault(document, effect)) continue;
+    if (effect.law == nullptr || isOff(document, effect)) continue;
     if (!any) out << "catalogue:  # effects below that the catalogue had from files\n";
     any = true;
     std::istringstream lines(formatEffect(entryOf(effect)));

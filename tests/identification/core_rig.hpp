@@ -25,6 +25,21 @@ inline ModelDocument vehicleWith(const Values& changed) {
   return model;
 }
 
+/// What encoders say twenty times a second of a drive whose tracks do what a model does.
+inline std::vector<EncoderSample> encodersOf(const ModelDocument& tracks, const Drive& drive,
+                                             double late = 0.0) {
+  std::vector<EncoderSample> encoders;
+  VehicleKernel kernel(tracks.vehicle, EntryState{});
+  const std::vector<CommandSample>& commands = drive.segments.front().commands;
+  for (size_t i = 0; i < commands.size(); ++i) {
+    // Wheels turn faster than the ground passes, by the slip that the factor stands for.
+    const TrackCommand speed = kernel.trackSpeeds();
+    encoders.push_back({commands[i].time + late, {1.1 * speed.left, 1.1 * speed.right}});
+    kernel.step(commands[i].command, 0.05);
+  }
+  return encoders;
+}
+
 /// Rows of one synthetic drive, to which a stage of the workflow is put alone.
 struct Rig {
   Rig(const Values& hidden, double seconds, uint64_t seed, const SyntheticNoise& noise = {})

@@ -55,6 +55,26 @@ TEST_CASE("a summary is the median and the root mean square of the errors that c
   CHECK(none.position.rms == 0.0);
 }
 
+TEST_CASE("medians of two models scatter by the blocks in which they differ, in pairs") {
+  std::vector<ExecutionError> one;
+  std::vector<ExecutionError> alike;
+  std::vector<ExecutionError> other;
+  for (int block = 0; block < 20; ++block)
+    for (int i = 0; i < 5; ++i) {
+      one.push_back(errorWith(1.0 + 0.1 * (block % 7) + 0.01 * i, 0.1));
+      one.back().block = block;
+      alike.push_back(one.back());
+      alike.back().position += 0.5;
+      other.push_back(one.back());
+      other.back().position += block % 2 == 0 ? 0.5 : -0.5;
+    }
+  const MedianChance same_everywhere = chanceOfMedians(one, alike);
+  CHECK(same_everywhere.position == Approx(0.0).margin(1e-12));
+  CHECK(same_everywhere.yaw == 0.0);
+  CHECK(chanceOfMedians(one, other).position > 0.1);
+  CHECK(chanceOfMedians({}, {}).position == 0.0);
+}
+
 TEST_CASE("the model that made a drive ends where the drive ends, another one does not") {
   SyntheticNoise noise;
   noise.gyro = noise.fix = noise.heading = noise.ground = 0.0;

@@ -35,6 +35,34 @@ TEST_CASE("the moment of a change is found from seconds away, and its interval h
   CHECK(high - low < 20.0);
 }
 
+TEST_CASE("a change lies between the last execution without it and the first one with it") {
+  Drive drive = syntheticDrive(
+      samples::vehicleWith({{"terrain_change.width_1", 0.3}, {"terrain_change.time_1", 133.0}}),
+      240.0, 1);
+  // Nothing was measured from 120 s to 140 s.
+  auto& ins = drive.segments.front().ins;
+  ins.erase(std::remove_if(
+                ins.begin(), ins.end(),
+                [](const InsSample& sample) { return sample.time > 120.0 && sample.time < 140.0; }),
+            ins.end());
+  const std::vector<Drive> drives{drive};
+  const Observations data(drives, {});
+  const Fitter fitter(data);
+  const std::string path = "terrain_change.time_1";
+  ModelDocument model = syntheticVehicle();
+  *findParameter(model, path) = 110.0;
+  FitState state = fitter.start(model, {});
+  fitter.add(state, freeParameter(model, "terrain_change.width_1"), 0.2);
+  fitter.fitRoughly(state);
+  refineChangePoint(fitter, state, path);
+  fitter.fit(state);
+  const auto [low, high] = changePointInterval(fitter, state, path, 10.0);
+  CHECK(low <= 121.0);
+  CHECK(low > 100.0);
+  CHECK(high >= 139.0);
+  CHECK(high < 160.0);
+}
+
 TEST_CASE("a model without a change has no moments, and one with two has both") {
   ModelDocument model = syntheticVehicle();
   CHECK(changePointsOn(model).empty());

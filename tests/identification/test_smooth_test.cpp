@@ -56,6 +56,26 @@ TEST_CASE("a wave over a condition, which no variable follows, is found and name
       REQUIRE(fitted[static_cast<Eigen::Index>(i)] == 0.0);
 }
 
+TEST_CASE("a condition that is constant or was not measured is never named") {
+  const Rig rig({}, 400.0, 3);
+  Eigen::VectorXd residuals = blockNoise(rig.data, 3, 0.1);
+  std::vector<Variable> inputs = inputsOf(rig.data, syntheticVehicle());
+  // What is left is proportional to the speed: functions of a constant are that, too.
+  for (size_t i = 0; i < rig.data.all().size(); ++i)
+    if (rig.data.all()[i].channel == Channel::kAlong)
+      residuals[static_cast<Eigen::Index>(i)] += inputs[0].values[static_cast<Eigen::Index>(i)];
+  for (Variable& input : inputs)
+    if (input.name == "voltage drop" || input.name == "pitch" || input.name == "roll")
+      input.values.setConstant(0.3);
+  for (uint64_t seed = 1; seed <= 5; ++seed)
+    for (const SmoothRest& rest :
+         smoothRests(rig.fitter, rig.stateOf(residuals, 1.0), inputs, {}, 0.005, seed)) {
+      CHECK(rest.variable != "voltage drop");
+      CHECK(rest.variable != "pitch");
+      CHECK(rest.variable != "roll");
+    }
+}
+
 TEST_CASE("the adequacy test tells of a function without a variable by its condition") {
   const Rig rig({}, 400.0, 3);
   const Adequacy adequacy =

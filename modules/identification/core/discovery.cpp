@@ -9,10 +9,9 @@
 #include <stdexcept>
 #include <tuple>
 
-#include <Eigen/Eigenvalues>
-
 #include "common/soundness/core/log_validation.hpp"
 #include "modules/identification/core/end_errors.hpp"
+#include "modules/identification/core/moved_terms.hpp"
 #include "modules/identification/core/rest.hpp"
 #include "modules/identification/core/unnamed.hpp"
 #include "modules/identification/core/witness.hpp"
@@ -22,14 +21,12 @@ namespace tread::gap {
 namespace {
 
 constexpr double kChangeNats = 10.0;  // 2 nats times what correlated ground takes off
-constexpr double kMoved = 0.01;       // chance that any given term is said to have changed wrongly
 constexpr double kInvisible = 2.0;    // times its typical size: not excited
 /// Share of a found size that its 95 % interval has at least to either side. No vehicle is made of
 /// the catalogue's equations, and no drive shows by how much their sizes are off for that: 1 to 5 %
 /// in the blind study, of effects that are only like them.
 constexpr double kForm = 0.05;
-constexpr double kTermChanged = 0.7;     // of the largest value of an unnamed term
-constexpr double kLeastTogether = 1e-3;  // of a variance, in any combination of terms
+constexpr double kTermChanged = 0.7;  // of the largest value of an unnamed term
 
 /// `half` of the 95 % interval.
 ParameterEstimate estimateOf(const std::string& path, const ModelDocument& before,
@@ -53,20 +50,6 @@ double halfInterval(const FitState& state, size_t index, double half) {
   return half < visible ? half : std::numeric_limits<double>::infinity();
 }
 
-/// Whether a term of the model has changed, or a number of which it says how sure it is.
-bool hasMoved(const ParameterEstimate& estimate, double most_by_chance, bool calibrate) {
-  const bool number = estimate.parameter.find('.') == std::string::npos;
-  if (number && calibrate) return false;
-  return std::abs(estimate.value - estimate.before) > most_by_chance;
-}
-
-/// Whether a free parameter is of the rest or of an unnamed term: none that a person knows by name,
-/// and none that is said to have moved.
-bool isNameless(const FitState& state, size_t index) {
-  const std::string& path = state.free[index].path;
-  return restTermOf(path) || termOfPath(state.model, path) != nullptr;
-}
-
 /// Whether a value of an unnamed term that the model has is another one now, beyond chance and by
 /// kTermChanged of the term's largest value.
 /** Such a term is only like what it stands for: on another drive its values are others by more than
@@ -75,35 +58,6 @@ bool hasTermMoved(const UnnamedTerm& term, const ParameterEstimate& estimate,
                   double most_by_chance) {
   const double change = std::abs(estimate.value - estimate.before);
   return change > most_by_chance && change > kTermChanged * largestValue(term);
-}
-
-/// Terms that move further than chance together though each alone may: a delay and a lag may both
-/// be vague where their sum is well known. Of each such combination the term that makes most of it.
-/** Where a rest is known, which makes each vaguer. */
-std::vector<char> movedTogether(const FitState& state, const Eigen::MatrixXd& moves, double most) {
-  std::vector<char> moved(state.free.size(), 0);
-  std::vector<Eigen::Index> held;
-  for (size_t i = 0; i < state.free.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    if (std::isfinite(state.free[i].deviation) && !isNameless(state, i) &&
-        std::isfinite(moves(at, at)) && moves(at, at) > 0.0)
-      held.push_back(at);
-  }
-  if (held.empty() || !state.model.rest || state.model.rest->empty()) return moved;
-  const Eigen::MatrixXd covariance = moves(held, held);
-  const Eigen::VectorXd unit = covariance.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::VectorXd off = unit.cwiseProduct(Eigen::VectorXd(offExpected(state)(held)));
-  const Eigen::MatrixXd correlation = unit.asDiagonal() * covariance * unit.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
-  for (Eigen::Index k = 0; k < off.size(); ++k) {
-    const Eigen::VectorXd parts = eigen.eigenvectors().col(k).cwiseProduct(off);
-    const double variance = std::max(kLeastTogether, eigen.eigenvalues()[k]);
-    if (std::abs(parts.sum()) <= most * std::sqrt(variance)) continue;
-    Eigen::Index largest = 0;
-    parts.cwiseAbs().maxCoeff(&largest);
-    moved[static_cast<size_t>(held[static_cast<size_t>(largest)])] = 1;
-  }
-  return moved;
 }
 
 FoundEffect foundEffect(const std::string& name, const FoundTerms& result,
@@ -122,7 +76,8 @@ FoundEffect foundEffect(const std::string& name, const FoundTerms& result,
   std::vector<std::string> group = confoundedEffects(name, result.state.model.measurement);
   for (const std::string& pair : evidence.replaced) group.push_back(pair);
   for (const std::string& other : group)
-    if (!contains(settings.rejected, other)) effect.group.push_back(other);
+    if (!contains(settings.rejected, other) && !contains(evidence.told_from, other))
+      effect.group.push_back(other);
   // What came in beside it later does not stand in its place.
   for (const RunnerUp& other : evidence.runner_ups)
     if (!contains(result.effects, other.effect) && !contains(result.released, other.effect))
@@ -283,14 +238,7 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
   const Eigen::MatrixXd covariance = parameterCovariance(fitter, state);
   const double freedom = data.measuredBlocks() - 1;
   const double quantile = studentQuantile(freedom);
-  size_t given = 0;
-  for (size_t i = 0; i < state.free.size(); ++i)
-    given += !contains(result.effects, effectOf(state.free[i].path)) &&
-             (!isNameless(state, i) || termOfPath(before, state.free[i].path) != nullptr);
-  const double most = studentQuantile(
-      freedom, normalQuantileOf(kMoved / static_cast<double>(std::max<size_t>(1, given))));
-  const Eigen::MatrixXd moves = moveCovariance(fitter, state);
-  const std::vector<char> moved_together = movedTogether(state, moves, most);
+  const Moves moves = movesOf(fitter, before, result);
   IdentifiedModel identified;
   std::map<std::string, std::vector<ParameterEstimate>> of_effect;
   for (size_t i = 0; i < state.free.size(); ++i) {
@@ -299,7 +247,7 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
       const UnnamedTerm* const had = termOfPath(before, state.free[i].path);
       if (had != nullptr && !settings.calibrate && !contains(identified.moved_terms, had->name) &&
           hasTermMoved(*had, estimateOf(state.free[i].path, before, state.model, 0.0),
-                       most * std::sqrt(moves(at, at))))
+                       moves.byChance(i)))
         identified.moved_terms.push_back(had->name);
       continue;
     }
@@ -315,8 +263,8 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
     if (found) {
       of_effect[effect].push_back(estimate);
     } else {
-      estimate.moved = hasMoved(estimate, most * std::sqrt(moves(at, at)), settings.calibrate) ||
-                       moved_together[i];
+      estimate.moved =
+          hasMoved(estimate, moves.byChance(i), settings.calibrate) || moves.together[i];
       identified.calibrated.push_back(estimate);
     }
   }
@@ -437,9 +385,11 @@ struct UnseenErrors {
 UnseenErrors errorsOnTest(const GapTask& task, const Observations& test,
                           const ModelDocument& after) {
   UnseenErrors unseen;
-  unseen.gap.before = summaryOf(endErrors(test, task.model));
+  const std::vector<ExecutionError> old = endErrors(test, task.model);
+  unseen.gap.before = summaryOf(old);
   unseen.parts.push_back({&test, after, endErrors(test, after), task.train.size()});
   unseen.gap.after = summaryOf(unseen.parts.back().errors);
+  unseen.gap.by_chance = chanceOfMedians(old, unseen.parts.back().errors);
   return unseen;
 }
 
@@ -451,7 +401,8 @@ UnseenErrors errorsOnHalves(const ModelDocument& before, const Fitter& fitter,
   UnseenErrors unseen;
   bool& nested = unseen.gap.structure_nested;
   nested = data.measuredBlocks() >= 2 * kLeastHalf && !result.record.cut_short;
-  unseen.gap.before = summaryOf(endErrors(data, before));
+  const std::vector<ExecutionError> old = endErrors(data, before);
+  unseen.gap.before = summaryOf(old);
   std::vector<std::vector<TermChannel>> channels;
   for (const UnnamedFinding& term : unnamed)
     channels.push_back({termOfPath(result.state.model, term.name + ".0")->channel});
@@ -475,6 +426,7 @@ UnseenErrors errorsOnHalves(const ModelDocument& before, const Fitter& fitter,
     outside.insert(outside.end(), errors.begin(), errors.end());
   }
   unseen.gap.after = summaryOf(outside);
+  unseen.gap.by_chance = chanceOfMedians(old, outside);
   return unseen;
 }
 

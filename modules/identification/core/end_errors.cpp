@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
+#include <random>
 
 #include "common/soundness/core/log_validation.hpp"
 
@@ -43,6 +46,44 @@ ErrorFigure figureOf(std::vector<double> errors) {
   figure.median =
       errors.size() % 2 == 1 ? errors[middle] : (errors[middle - 1] + errors[middle]) / 2.0;
   return figure;
+}
+
+constexpr int kMedianDraws = 200;
+
+/// Errors by block: position and yaw.
+struct BlockErrors {
+  std::vector<double> position;
+  std::vector<double> yaw;
+};
+
+std::map<int, BlockErrors> byBlock(const std::vector<ExecutionError>& errors) {
+  std::map<int, BlockErrors> blocks;
+  for (const ExecutionError& error : errors) {
+    blocks[error.block].position.push_back(error.position);
+    blocks[error.block].yaw.push_back(error.yaw);
+  }
+  return blocks;
+}
+
+/// Median over some blocks, which may be among them several times.
+double medianOver(const std::map<int, BlockErrors>& blocks, const std::vector<int>& drawn,
+                  std::vector<double> BlockErrors::*of) {
+  std::vector<double> errors;
+  for (const int block : drawn) {
+    const auto found = blocks.find(block);
+    if (found == blocks.end()) continue;
+    const std::vector<double>& more = found->second.*of;
+    errors.insert(errors.end(), more.begin(), more.end());
+  }
+  return figureOf(std::move(errors)).median;
+}
+
+double deviationOf(const std::vector<double>& values) {
+  const auto count = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+  double square = 0.0;
+  for (const double value : values) square += (value - mean) * (value - mean);
+  return std::sqrt(square / (count - 1.0));
 }
 
 constexpr size_t kTypical = 6;
@@ -175,6 +216,27 @@ EndErrors summaryOf(const std::vector<ExecutionError>& errors) {
     yaw.push_back(error.yaw);
   }
   return {figureOf(std::move(position)), figureOf(std::move(yaw)), errors.size()};
+}
+
+MedianChance chanceOfMedians(const std::vector<ExecutionError>& one,
+                             const std::vector<ExecutionError>& other) {
+  const std::map<int, BlockErrors> ones = byBlock(one);
+  const std::map<int, BlockErrors> others = byBlock(other);
+  if (ones.size() < 2) return {};
+  std::vector<int> blocks;
+  for (const auto& [block, errors] : ones) blocks.push_back(block);
+  std::mt19937_64 random(1);
+  std::vector<double> position;
+  std::vector<double> yaw;
+  std::vector<int> drawn(blocks.size());
+  for (int draw = 0; draw < kMedianDraws; ++draw) {
+    for (int& block : drawn) block = blocks[random() % blocks.size()];
+    position.push_back(medianOver(others, drawn, &BlockErrors::position) -
+                       medianOver(ones, drawn, &BlockErrors::position));
+    yaw.push_back(medianOver(others, drawn, &BlockErrors::yaw) -
+                  medianOver(ones, drawn, &BlockErrors::yaw));
+  }
+  return {deviationOf(position), deviationOf(yaw)};
 }
 
 EndErrors apart(const Observations& data, const ModelDocument& one, const ModelDocument& other) {

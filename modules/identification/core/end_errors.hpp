@@ -44,6 +44,10 @@ std::optional<ExecutionError> errorOf(
 /// Median and root mean square.
 EndErrors summaryOf(const std::vector<ExecutionError>& errors);
 
+/// Bootstrap over blocks, in pairs: what is hard to predict is so for both models. Deterministic.
+MedianChance chanceOfMedians(const std::vector<ExecutionError>& one,
+                             const std::vector<ExecutionError>& other);
+
 /// How far apart two models predict the ends of the same executions, scaled to the horizon; the
 /// measurement plays no part.
 EndErrors apart(const Observations& data, const ModelDocument& one, const ModelDocument& other);

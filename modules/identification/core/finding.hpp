@@ -134,6 +134,13 @@ struct EndErrors {
   size_t executions = 0;
 };
 
+/// By how much the medians of two models over the same executions differ by chance: standard
+/// errors.
+struct MedianChance {
+  double position = 0.0;  ///< [m]
+  double yaw = 0.0;       ///< [rad]
+};
+
 /// One execution predicted by two models, for pictures; poses relative to its beginning.
 struct Overlay {
   size_t drive = 0;
@@ -165,6 +172,7 @@ struct Gap {
   EndErrors apart;                 ///< of the two models from one another
   std::optional<EndErrors> floor;  ///< dead reckoning with encoders and gyro, where those exist
   bool structure_nested = true;    ///< the effects, too, were chosen without these executions
+  MedianChance by_chance{};        ///< of the medians' change from before to after
 };
 
 /// One cell of the residual atlas.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 
 #include <Eigen/Cholesky>
@@ -383,6 +384,83 @@ void refineChangePoint(const Fitter& fitter, FitState& state, const std::string&
   fitter.renewJacobian(state);
 }
 
+namespace {
+
+constexpr double kForever = 1e9;  // [s], later than any drive
+constexpr double kSays = 3.0;     // [nats] with which one execution says whether a change was there
+constexpr double kSayTogether = 20.0;  // the same of several, whose noise is correlated
+
+/// Losses of all rows with a change at some time.
+Eigen::VectorXd lossesWith(const Fitter& fitter, const FitState& state, const std::string& path,
+                           double time) {
+  ModelDocument model = state.model;
+  *findParameter(model, path) = time;
+  const Eigen::VectorXd residuals = fitter.data().residuals(fitter.predict(model));
+  Eigen::VectorXd losses = Eigen::VectorXd::Zero(residuals.size());
+  for (Eigen::Index i = 0; i < residuals.size(); ++i)
+    if (fitter.mask()[static_cast<size_t>(i)])
+      losses[i] = gap::lossOf(residuals[i], state.scales[i]);
+  return losses;
+}
+
+/// The execution of a drive in which a time lies; none between them.
+const Execution* executionAt(const Drive& drive, double time) {
+  const auto after = std::upper_bound(
+      drive.executions.begin(), drive.executions.end(), time,
+      [](double moment, const Execution& execution) { return moment < execution.begin; });
+  if (after == drive.executions.begin() || std::prev(after)->end < time) return nullptr;
+  return &*std::prev(after);
+}
+
+/// What one execution says of a change: it was there (positive), or not [nats].
+struct Vote {
+  double begin = 0.0;  ///< [s] of the execution
+  double end = 0.0;
+  double nats = 0.0;
+};
+
+/// Those of all executions, in order of time.
+std::vector<Vote> votesOn(const Fitter& fitter, const FitState& state, const std::string& path) {
+  const Eigen::VectorXd gained =
+      lossesWith(fitter, state, path, kForever) - lossesWith(fitter, state, path, 0.0);
+  std::map<std::pair<double, double>, double> votes;
+  for (size_t i = 0; i < fitter.data().all().size(); ++i) {
+    const Observation& row = fitter.data().all()[i];
+    const Execution* const execution =
+        executionAt(fitter.data().drives()[row.drive], 0.5 * (row.begin + row.end));
+    if (execution != nullptr)
+      votes[{execution->begin, execution->end}] += gained[static_cast<Eigen::Index>(i)];
+  }
+  std::vector<Vote> in_order;
+  for (const auto& [times, nats] : votes) in_order.push_back({times.first, times.second, nats});
+  return in_order;
+}
+
+/// The end of the last execution before a time that says the change was not there yet, or up to
+/// which all together do; `otherwise` if none does.
+double lastWithout(const std::vector<Vote>& votes, double time, double otherwise) {
+  double together = 0.0;
+  for (auto vote = votes.rbegin(); vote != votes.rend(); ++vote) {
+    if (vote->end > time) continue;
+    together += vote->nats;
+    if (vote->nats < -kSays || together < -kSayTogether) return std::min(otherwise, vote->end);
+  }
+  return otherwise;
+}
+
+/// The begin of the first execution after a time that says it was there.
+double firstWith(const std::vector<Vote>& votes, double time, double otherwise) {
+  double together = 0.0;
+  for (const Vote& vote : votes) {
+    if (vote.begin < time) continue;
+    together += vote.nats;
+    if (vote.nats > kSays || together > kSayTogether) return std::max(otherwise, vote.begin);
+  }
+  return otherwise;
+}
+
+}  // namespace
+
 std::pair<double, double> changePointInterval(const Fitter& fitter, const FitState& state,
                                               const std::string& path, double allowed) {
   const double time = *findParameter(state.model, path);
@@ -402,7 +480,9 @@ std::pair<double, double> changePointInterval(const Fitter& fitter, const FitSta
     }
     return outside;
   };
-  return {std::max(0.0, time - reach(-1.0)), time + reach(1.0)};
+  const std::vector<Vote> votes = votesOn(fitter, state, path);
+  return {lastWithout(votes, time, std::max(0.0, time - reach(-1.0))),
+          firstWith(votes, time, time + reach(1.0))};
 }
 
 }  // namespace tread::gap

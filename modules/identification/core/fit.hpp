@@ -163,7 +163,10 @@ std::vector<std::string> changePointsOn(const ModelDocument& model);
  * followed downhill: halving steps down to a quarter of a second. */
 void refineChangePoint(const Fitter& fitter, FitState& state, const std::string& path);
 
-/// Times between which the loss stays within `allowed` nats of the state's [s].
+/// Times between which the loss stays within `allowed` nats of the state's [s], and at least from
+/// the last execution that speaks against the change to the first that speaks for it.
+/** All else is held, so that the loss alone would be too sure; between these executions nothing in
+ * the drive says when it was. */
 std::pair<double, double> changePointInterval(const Fitter& fitter, const FitState& state,
                                               const std::string& path, double allowed);
 

@@ -152,8 +152,12 @@ bool wasNamed(const FoundTerms& result, const std::string& effect) {
   return known != result.evidence.end() && known->second.p_value;
 }
 
-/// What has passed the test once stays with a little less evidence.
+/// What has passed the test once stays with a little less evidence; so does what the wheels show,
+/// in the place of an effect that has passed it.
 bool isNearly(const FoundTerms& result, const std::string& effect, const Removal& removed) {
+  const auto known = result.evidence.find(effect);
+  if (known != result.evidence.end() && known->second.by_wheels)
+    return removed.gain.value > kNearlySure * removed.gain.error;
   return wasNamed(result, effect) && removed.evidence >= kNearly &&
          removed.gain.value > kNearlySure * removed.gain.error && removed.gain.value > kNearlyNats;
 }

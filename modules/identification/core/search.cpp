@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/soundness/core/log_validation.hpp"
+#include "modules/identification/core/moved_terms.hpp"
 #include "modules/identification/core/rest.hpp"
 #include "modules/identification/core/unnamed.hpp"
 
@@ -331,7 +332,8 @@ class EffectSelection {
     if (chooseLags(search)) pruneEffects(search, needed);
     const size_t before = result_.record.steps.size();
     replacePairs(search);
-    if (result_.record.steps.size() > before) pruneEffects(search, needed);
+    if (putVehicleFirst(search) || result_.record.steps.size() > before)
+      pruneEffects(search, needed);
     for (const std::string& effect : result_.effects) {
       EffectEvidence& of = result_.evidence[effect];
       const double known = of.p_value.value_or(1.0);
@@ -387,8 +389,10 @@ std::vector<FreeParameter> givenParameters(const ModelDocument& model, bool cali
   return free;
 }
 
-FoundTerms search(const Fitter& fitter, const ModelDocument& model, const SearchSettings& settings,
-                  SearchMemory& memory, const Progress& say) {
+namespace {
+
+FoundTerms searchTwice(const Fitter& fitter, const ModelDocument& model,
+                       const SearchSettings& settings, SearchMemory& memory, const Progress& say) {
   FoundTerms found = EffectSelection(fitter, settings, memory, say).run(model);
   if (found.released.empty() || found.record.cut_short) return found;
   // To take a given term for wrong is easy: it bends to much. Fewer effects may do, with all that
@@ -410,6 +414,16 @@ FoundTerms search(const Fitter& fitter, const ModelDocument& model, const Search
   judged.scales = found.state.scales;
   const Gain behind = gainOf(fitter, heldOutLoss(fitter, judged), heldOutLoss(fitter, found.state));
   return behind.value < behind.error ? other : found;
+}
+
+}  // namespace
+
+FoundTerms search(const Fitter& fitter, const ModelDocument& model, const SearchSettings& settings,
+                  SearchMemory& memory, const Progress& say) {
+  FoundTerms found = searchTwice(fitter, model, settings, memory, say);
+  reestimateMoved({fitter, settings, say, found}, model);
+  noteToldFrom({fitter, settings, say, found});
+  return found;
 }
 
 FitState refitted(const Fitter& fitter, const FoundTerms& result) {

@@ -23,6 +23,9 @@ struct EffectEvidence {
   Gain gain;                      ///< what it brings when all others are there
   std::vector<RunnerUp> runner_ups;
   std::vector<std::string> replaced;  ///< the two effects in whose place it is
+  /// Effects that it is confounded with and that the model has, which do not explain this drive.
+  std::vector<std::string> told_from;
+  bool by_wheels = false;  ///< in the place of one that tests named, because the wheels show it
 };
 
 /// What a search ends with.
@@ -108,6 +111,24 @@ void pruneEffects(const SearchState& search, const Needed& needed);
  * is slip and track width together. Only effects whose signature the found ones can imitate are
  * tried; the pair goes if it is not better on blocks left out by more than a standard error. */
 void replacePairs(const SearchState& search);
+
+/// Puts effects of the vehicle in the place of those of the INS that do the same together, unless
+/// they explain less: a search that goes step by step takes whichever comes first. True if it did.
+bool putVehicleFirst(const SearchState& search);
+
+/// A given term that moved and is free of what was known of it, with how well that was known.
+struct MovedTerm {
+  std::string path;
+  double deviation = 0.0;
+};
+
+/// Puts one effect in the place of two changes, of which one at least is a term that moved, where
+/// it explains as much; takes that term from the list. True if it did.
+bool replaceMoved(const SearchState& search, std::vector<MovedTerm>& moved);
+
+/// Notes of effects that were found which of those that they are confounded with cannot stand in
+/// their place: the model has these, and they explain less, whatever size they are given.
+void noteToldFrom(const SearchState& search);
 
 /// Whether an effect is a lag between a command and what the INS says of it.
 inline bool isLag(const Effect& effect) {

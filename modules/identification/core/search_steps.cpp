@@ -4,6 +4,7 @@
 // the place of two, and the proof on driving that sizes were not fitted to.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <set>
 
@@ -129,6 +130,7 @@ struct Exchange {
   std::string b;
   FitState state;
   Gain pair_gain;
+  bool by_wheels = false;
 };
 
 /// Keeps the exchange of two effects for a single one if it is bearable and the best so far.
@@ -158,6 +160,62 @@ void tryExchange(const SearchState& search, const Single& imitated_one, const st
   best = Exchange{single.effect, a, b, std::move(tried), pair_gain};
 }
 
+/// Whether a fit took one of these effects to the end of its plausible range.
+bool anyOnBound(const FitState& state, const std::vector<std::string>& effects) {
+  return std::any_of(state.free.begin(), state.free.end(), [&](const FreeParameter& parameter) {
+    return contains(effects, effectOf(parameter.path)) && onBound(state.model, parameter);
+  });
+}
+
+/// Switches the effect of a candidate on, at its size in first order, and fits.
+void takeCandidate(const Fitter& fitter, FitState& state, const Candidate& candidate) {
+  const ScoreTest test(fitter, state, directionsOf(fitter, state, {candidate}));
+  addCandidate(fitter, state, candidate, test.size(0));
+  fitter.fitRoughly(state);
+}
+
+/// Whether a state explains as much as that of a result: by what it fits, and on blocks left out.
+bool isLevel(const Fitter& fitter, const FitState& tried, const FitState& now) {
+  if (tried.loss - now.loss > 2.0 * kBearableNats) return false;
+  const Gain behind = gainOf(fitter, heldOutLoss(fitter, tried), heldOutLoss(fitter, now));
+  return behind.value <= std::min(behind.error, kBearableNats);
+}
+
+/// Members of a group of one kind.
+std::vector<std::string> membersOf(const ConfoundedGroup& group, EffectKind kind) {
+  std::vector<std::string> members;
+  for (const std::string& member : group.members)
+    if (const Effect* effect = findEffect(member); effect != nullptr && effect->kind() == kind)
+      members.push_back(member);
+  return members;
+}
+
+/// Whether a search has chosen these effects by itself, all of them.
+bool isAllFound(const SearchState& search, const std::vector<std::string>& effects) {
+  return std::all_of(effects.begin(), effects.end(), [&search](const std::string& effect) {
+    return contains(search.result.effects, effect) && !search.isAccepted(effect);
+  });
+}
+
+/// The state with the vehicle's members of a group in the place of the INS's; nothing where a
+/// person has rejected one, or its size is not plausible.
+std::optional<FitState> withVehicleInstead(const SearchState& search,
+                                           const std::vector<std::string>& instrument,
+                                           const std::vector<std::string>& vehicle) {
+  const Fitter& fitter = search.fitter;
+  FitState tried = switchedOff(fitter, search.result.state, instrument);
+  for (const std::string& effect : vehicle) {
+    if (isOn(effectNamed(effect), tried.model)) continue;
+    if (contains(search.settings.rejected, effect)) return std::nullopt;
+    const auto candidates = candidatesOf(effect, tried, excitationOf(fitter.data(), tried.model));
+    if (candidates.empty()) return std::nullopt;
+    takeCandidate(fitter, tried, candidates.front());
+  }
+  fitter.fit(tried);
+  if (anyOnBound(tried, vehicle)) return std::nullopt;
+  return tried;
+}
+
 /// Whether the wheels show most of an effect that is none of theirs.
 bool isInWheels(const SearchState& search, const std::string& effect) {
   if (effectNamed(effect).search.in_wheels.empty()) return false;
@@ -173,17 +231,27 @@ struct Substitute {
   bool shown_by_wheels = false;  ///< it need not be better
 };
 
+/// What an effect under the wheels is where they show it, as candidates.
+void addShownByWheels(const SearchState& search, const std::string& other,
+                      std::vector<Substitute>& all) {
+  const FitState& state = search.result.state;
+  if (!isInWheels(search, other)) return;
+  for (const std::string& name : effectNamed(other).search.in_wheels) {
+    if (contains(search.settings.rejected, name) || isOn(effectNamed(name), state.model)) continue;
+    for (Candidate& candidate : candidatesOf(name, state, excitationOf(search.data(), state.model)))
+      all.push_back({std::move(candidate), other, true});
+  }
+}
+
 std::vector<Substitute> substitutes(const SearchState& search) {
   std::vector<Substitute> all;
   const std::vector<Single> singles = imitated(search);
   for (const std::string& other : search.result.effects) {
     if (search.isAccepted(other)) continue;
-    const bool shown = isInWheels(search, other);
-    for (const Single& single : singles) {
-      const Effect& effect = effectNamed(single.candidate.effect);
-      const bool is_theirs = shown && contains(effectNamed(other).search.in_wheels, effect.name);
-      if (is_theirs || effect.search.in_place) all.push_back({single.candidate, other, is_theirs});
-    }
+    addShownByWheels(search, other, all);
+    for (const Single& single : singles)
+      if (effectNamed(single.candidate.effect).search.in_place)
+        all.push_back({single.candidate, other});
   }
   return all;
 }
@@ -213,7 +281,8 @@ std::optional<Exchange> betterOne(const SearchState& search) {
     fitter.fitRoughly(tried);
     if (best && tried.loss >= best->state.loss) continue;
     if (isBetter(search, tried, loss, one.shown_by_wheels))
-      best = Exchange{one.candidate.effect, one.other, "", std::move(tried), {}};
+      best =
+          Exchange{one.candidate.effect, one.other, "", std::move(tried), {}, one.shown_by_wheels};
   }
   return best;
 }
@@ -329,11 +398,142 @@ void replacePairs(const SearchState& search) {
       evidence.replaced = replaced;
     else
       evidence.p_value = search.result.evidence[exchange.a].p_value;
+    evidence.by_wheels = exchange.by_wheels;
     search.result.state = exchange.state;
   };
   // Each exchange takes an effect away, or puts one that nothing else replaces in its place.
   while (const auto exchange = bestExchange(search)) exchangeFor(*exchange);
   while (const auto exchange = betterOne(search)) exchangeFor(*exchange);
+}
+
+bool putVehicleFirst(const SearchState& search) {
+  bool any = false;
+  for (const ConfoundedGroup& group : confoundedGroups()) {
+    const std::vector<std::string> instrument = membersOf(group, EffectKind::kMeasurement);
+    if (!group.together || !isAllFound(search, instrument) || search.isCutShort()) continue;
+    const std::vector<std::string> vehicle = membersOf(group, EffectKind::kVehicle);
+    std::optional<FitState> tried = withVehicleInstead(search, instrument, vehicle);
+    if (!tried || !isLevel(search.fitter, *tried, search.result.state)) continue;
+    FoundTerms& result = search.result;
+    for (size_t i = 0; i < vehicle.size(); ++i) {
+      if (isOn(effectNamed(vehicle[i]), result.state.model)) continue;
+      result.effects.push_back(vehicle[i]);
+      result.evidence[vehicle[i]].p_value = 1.0;  // chosen, not tested yet: pruning does that
+      result.evidence[vehicle[i]].replaced = {instrument[std::min(i, instrument.size() - 1)]};
+      const std::string remark = "the vehicle before the INS: in the place of " +
+                                 result.evidence[vehicle[i]].replaced.front();
+      result.record.steps.push_back({vehicle[i], false, 0.0, 1.0, 0.0, 0.0, {}, remark});
+      search.say("  = " + vehicle[i] + ": " + remark);
+    }
+    for (const std::string& gone : instrument)
+      result.effects.erase(std::find(result.effects.begin(), result.effects.end(), gone));
+    result.state = std::move(*tried);
+    any = true;
+  }
+  return any;
+}
+
+namespace {
+
+/// Holds a term that moved by what was known of it.
+void holdAgain(FitState& state, const MovedTerm& term) {
+  for (FreeParameter& parameter : state.free)
+    if (parameter.path == term.path) {
+      parameter.deviation = term.deviation;
+      *findParameter(state.model, term.path) = parameter.expected;
+    }
+}
+
+/// What one effect may stand for: a term that moved, and another one or an effect that was found.
+struct TwoChanges {
+  size_t moved = 0;
+  std::optional<size_t> also_moved{};
+  std::string effect{};
+};
+
+std::vector<TwoChanges> pairsOfChanges(const SearchState& search,
+                                       const std::vector<MovedTerm>& moved) {
+  std::vector<TwoChanges> pairs;
+  for (size_t i = 0; i < moved.size(); ++i) {
+    for (size_t k = i + 1; k < moved.size(); ++k) pairs.push_back({i, k});
+    for (const std::string& effect : search.result.effects)
+      if (!search.isAccepted(effect)) pairs.push_back({i, std::nullopt, effect});
+  }
+  return pairs;
+}
+
+/// The state with one effect in the place of two changes.
+FitState inPlaceOf(const SearchState& search, const TwoChanges& pair,
+                   const std::vector<MovedTerm>& moved, const Candidate& candidate) {
+  const Fitter& fitter = search.fitter;
+  FitState tried = search.result.state;
+  holdAgain(tried, moved[pair.moved]);
+  if (pair.also_moved) holdAgain(tried, moved[*pair.also_moved]);
+  tried = pair.effect.empty() ? tried : switchedOff(fitter, tried, {pair.effect});
+  tried.predicted = fitter.predict(tried.model);
+  takeCandidate(fitter, tried, candidate);
+  return tried;
+}
+
+}  // namespace
+
+bool replaceMoved(const SearchState& search, std::vector<MovedTerm>& moved) {
+  FoundTerms& result = search.result;
+  std::optional<FitState> best;
+  std::string single;
+  TwoChanges gone;
+  for (const TwoChanges& pair : pairsOfChanges(search, moved))
+    for (const Single& one : imitated(search)) {
+      if (search.isCutShort()) break;
+      FitState tried = inPlaceOf(search, pair, moved, one.candidate);
+      if (anyOnBound(tried, {one.candidate.effect}) || (best && tried.loss >= best->loss) ||
+          !isLevel(search.fitter, tried, result.state))
+        continue;
+      best = std::move(tried);
+      single = one.candidate.effect;
+      gone = pair;
+    }
+  if (!best) return false;
+  const std::string other = gone.also_moved ? moved[*gone.also_moved].path : gone.effect;
+  const std::string remark =
+      "in the place of " + other + " and a change of " + moved[gone.moved].path;
+  result.record.steps.push_back({single, false, 0.0, 1.0, 0.0, 0.0, {}, remark});
+  search.say("  = " + single + " " + remark);
+  auto& effects = result.effects;
+  effects.erase(std::remove(effects.begin(), effects.end(), gone.effect), effects.end());
+  effects.push_back(single);
+  EffectEvidence& evidence = result.evidence[single];
+  evidence.p_value = gone.effect.empty() ? 0.0 : result.evidence[gone.effect].p_value;
+  search.fitter.fit(*best);
+  result.state = std::move(*best);
+  if (gone.also_moved) moved.erase(moved.begin() + static_cast<std::ptrdiff_t>(*gone.also_moved));
+  moved.erase(moved.begin() + static_cast<std::ptrdiff_t>(gone.moved));
+  return true;
+}
+
+namespace {
+
+/// Whether a term that the model has would explain as much as an effect that was found.
+bool mayStandFor(const SearchState& search, const std::string& given, const std::string& found) {
+  FitState tried = switchedOff(search.fitter, search.result.state, {found});
+  for (FreeParameter& parameter : tried.free)
+    if (effectOf(parameter.path) == given)
+      parameter.deviation = std::numeric_limits<double>::infinity();
+  search.fitter.fit(tried);
+  return !anyOnBound(tried, {given}) && isLevel(search.fitter, tried, search.result.state);
+}
+
+}  // namespace
+
+void noteToldFrom(const SearchState& search) {
+  FoundTerms& result = search.result;
+  for (const std::string& found : result.effects) {
+    if (search.isAccepted(found)) continue;
+    for (const std::string& other : confoundedEffects(found, result.state.model.measurement))
+      if (!contains(result.effects, other) && isOn(effectNamed(other), result.state.model) &&
+          !search.isCutShort() && !mayStandFor(search, other, found))
+        result.evidence[found].told_from.push_back(other);
+  }
 }
 
 Eigen::MatrixXd missedOnOtherHalves(const Fitter& fitter, const FitState& state,

@@ -238,13 +238,21 @@ std::vector<Eigen::Index> featuresWhere(const std::vector<Feature>& features, Ho
   return chosen;
 }
 
+/// Whether an input differs from row to row: one that is constant or was not measured does not.
+bool varies(const Inputs& inputs, size_t input) {
+  const auto first = std::find(inputs.source.begin(), inputs.source.end(), input);
+  return !inputs.values.col(std::distance(inputs.source.begin(), first)).isZero(0.0);
+}
+
 /// The input that says most: by itself, and beyond what all others say.
 /** Inputs go together, so that without one the others stand in for it: what it says alone counts,
- * too (of a Shapley value the first and the last place). */
+ * too (of a Shapley value the first and the last place). Functions of one that does not vary are
+ * the amplitudes alone, and say nothing of it. */
 size_t mostTelling(const Pulls& pulls, const std::vector<Feature>& features, const Inputs& inputs) {
   size_t most = 0;
   double largest = -std::numeric_limits<double>::infinity();
   for (size_t input = 0; input <= inputs.source.back(); ++input) {
+    if (!varies(inputs, input)) continue;
     const auto alone = featuresWhere(
         features, [&](const Feature& feature) { return feature.usesOnly(inputs, input); });
     const auto others = featuresWhere(

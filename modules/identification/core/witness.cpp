@@ -17,6 +17,7 @@ namespace {
 constexpr double kUnlike = 0.2;     // of the effect, in directions that are no scale of the motion
 constexpr double kShown = 0.7;      // of the effect, not in the motion to the side
 constexpr double kSharp = 0.25;     // standard error of a share that says anything
+constexpr double kAlike = 0.8;      // correlation from which two effects are told together
 constexpr int kRounds = 60;         // until scales and shares agree
 constexpr size_t kLeastRows = 100;  // with wheel speeds
 
@@ -117,6 +118,38 @@ double unlikeScale(const Grams& grams, Eigen::Index effect) {
   return all > 0.0 ? own / all : 0.0;
 }
 
+/// How much alike two effects are in what wheels could show: the correlation of their directions.
+double likeness(const Grams& grams, Eigen::Index a, Eigen::Index b) {
+  double both = 0.0;
+  double first = 0.0;
+  double second = 0.0;
+  for (const Eigen::MatrixXd& of : grams) {
+    both += of(a, b);
+    first += of(a, a);
+    second += of(b, b);
+  }
+  return first > 0.0 && second > 0.0 ? std::abs(both) / std::sqrt(first * second) : 0.0;
+}
+
+/// Whether two witnesses say the same of where their effects are.
+bool sayTheSame(const WheelWitness& one, const WheelWitness& other) {
+  return (one.saysDrive() && other.saysDrive()) || (one.saysGround() && other.saysGround());
+}
+
+/// Which of the shares are of an effect that resembles another one with another answer: how both
+/// share what the wheels show is more than they tell.
+std::vector<char> contradicted(const Grams& grams, const std::vector<WheelWitness>& witnesses) {
+  std::vector<char> marked(witnesses.size(), 0);
+  for (size_t i = 0; i < witnesses.size(); ++i)
+    for (size_t k = i + 1; k < witnesses.size(); ++k) {
+      const auto at = static_cast<Eigen::Index>(2 + i);
+      const auto beside = static_cast<Eigen::Index>(2 + k);
+      if (likeness(grams, at, beside) > kAlike && !sayTheSame(witnesses[i], witnesses[k]))
+        marked[i] = marked[k] = 1;
+    }
+  return marked;
+}
+
 /// How much of an effect is not in the motion to the side.
 double showsIn(const Fitter& fitter, const FitState& state, const Eigen::VectorXd& without) {
   double shown = 0.0;
@@ -171,15 +204,20 @@ std::map<std::string, WheelWitness> wheelWitnesses(const Fitter& fitter, const F
   const BlockGrams blocks = gramsOf(fitter, state, without, rows);
   if (asked.empty() || rows < kLeastRows || blocks.size() < 2) return {};
   const BlockEstimate shares = estimateOver(blocks, sharesOf);
+  std::vector<WheelWitness> all;
+  for (size_t i = 0; i < asked.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const double half = shares.quantile * shares.errors[at];
+    all.push_back({shares.values[at], shares.values[at] - half, shares.values[at] + half,
+                   asked[i].size() > 1});
+  }
+  const std::vector<char> unsure = contradicted(shares.all, all);
   std::map<std::string, WheelWitness> witnesses;
   for (size_t i = 0; i < asked.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    const double error = shares.errors[at];
-    if (!(error < kSharp) || unlikeScale(shares.all, 2 + at) < kUnlike) continue;
-    const double half = shares.quantile * error;
-    for (const std::string& effect : asked[i])
-      witnesses[effect] = {shares.values[at], shares.values[at] - half, shares.values[at] + half,
-                           asked[i].size() > 1};
+    if (!(shares.errors[at] < kSharp) || unlikeScale(shares.all, 2 + at) < kUnlike || unsure[i])
+      continue;
+    for (const std::string& effect : asked[i]) witnesses[effect] = all[i];
   }
   return witnesses;
 }

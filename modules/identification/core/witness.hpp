@@ -14,12 +14,13 @@ namespace tread::gap {
 /// How much of each effect the wheel speeds show, which no fit has used; with 95 % intervals over
 /// blocks.
 /** What the wheels show is in the drive, what they do not show is under it or in the INS. The
- * shares of all effects are estimated together. The wheels' radius and the track that counts are
- * unknown, so that their speeds are compared up to one factor for driving and one for turning; of
- * an effect that is such a factor (slip, track width) they say nothing. Encoders that are late
- * themselves, by a tenth of a second or two, show a lag as longer than it is. Nothing where no
- * drive has encoders, of effects of the INS and of motion to the side, and where the answer would
- * be vague. `state`: of the whole model, with current prediction. */
+ * shares of all effects are estimated together; where two resemble each other and have other
+ * answers, wheels say nothing of either. The wheels' radius and the track that counts are unknown,
+ * so that their speeds are compared up to one factor for driving and one for turning; of an effect
+ * that is such a factor (slip, track width) they say nothing. Encoders that are late themselves, by
+ * a tenth of a second or two, show a lag as longer than it is. Nothing where no drive has encoders,
+ * of effects of the INS and of motion to the side, and where the answer would be vague. `state`: of
+ * the whole model, with current prediction. */
 std::map<std::string, WheelWitness> wheelWitnesses(const Fitter& fitter, const FitState& state,
                                                    const std::vector<std::string>& effects);
 

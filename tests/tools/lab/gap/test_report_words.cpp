@@ -147,9 +147,14 @@ TEST_CASE("what got worse on unseen driving is named") {
   CHECK(has(worseOf(gap), "0.700 m now) and heading (median 20.5 deg before, 28.6 deg now)."));
   Finding finding = samples::finding(GapVerdict::kFound);
   finding.gap = gap;
+  // What chance moves a median by is no worsening.
+  gap.by_chance = {0.04, 0.01};
+  CHECK(has(worseOf(gap), "it has not seen: heading (median"));
+  gap.by_chance.yaw = 0.08;
+  CHECK(worseOf(gap) == "");
   const std::vector<std::string> lines = closingLines(finding);
-  CHECK(std::count(lines.begin(), lines.end(), "  " + worseOf(gap)) == 1);
-  CHECK(has(report(finding), worseOf(gap)));
+  CHECK(std::count(lines.begin(), lines.end(), "  " + worseOf(*finding.gap)) == 1);
+  CHECK(has(report(finding), worseOf(*finding.gap)));
 }
 
 TEST_CASE("what find prints at its end begins with the verdict and tells what remains") {

@@ -84,15 +84,20 @@ std::string floorWords(const Gap& gap) {
          joined(better) + ".";
 }
 
+constexpr double kBeyondChance = 2.0;  // standard errors
+
 /// A median before and after.
 struct Change {
   const char* what;
   double before;
   double after;
+  double by_chance;  ///< standard error of the difference
   std::string (*said)(double);
 
-  bool isWorse() const { return after > (1.0 + kNegligible) * before; }
-  bool isBetter() const { return after < before; }
+  bool isWorse() const {
+    return after > (1.0 + kNegligible) * before && after - before > kBeyondChance * by_chance;
+  }
+  bool isBetter() const { return before - after > kBeyondChance * by_chance; }
 };
 
 }  // namespace
@@ -244,7 +249,8 @@ std::vector<std::string> waysToTell(const FoundEffect& effect) {
   const std::vector<std::string> rivals = rivalsOf(effect);
   std::vector<std::string> ways;
   for (const ConfoundedGroup* group : confoundedGroupsOf(effect.name))
-    if (std::any_of(group->members.begin(), group->members.end(),
+    if (!(group->together && !ways.empty()) &&
+        std::any_of(group->members.begin(), group->members.end(),
                     [&](const std::string& member) { return contains(rivals, member); }))
       ways.push_back(group->separates);
   if (ways.empty()) ways.push_back(effectNamed(effect.name).separates);
@@ -289,8 +295,9 @@ std::string gainOf(const Gap& gap) {
 
 std::string worseOf(const Gap& gap) {
   const Change changes[] = {
-      {"position", gap.before.position.median, gap.after.position.median, saidDistance},
-      {"heading", gap.before.yaw.median, gap.after.yaw.median, saidAngle}};
+      {"position", gap.before.position.median, gap.after.position.median, gap.by_chance.position,
+       saidDistance},
+      {"heading", gap.before.yaw.median, gap.after.yaw.median, gap.by_chance.yaw, saidAngle}};
   std::vector<std::string> worse;
   std::string better;
   for (const Change& change : changes) {
