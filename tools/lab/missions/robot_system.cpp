@@ -116,6 +116,15 @@ NodeFault readNodeFault(ConfigReader& reader) {
   return fault;
 }
 
+void requireEmulated(const std::string& device, const std::string& folder) {
+  const std::vector<std::string> known = sim::emulatedDevices().devices;
+  if (std::find(known.begin(), known.end(), device) != known.end()) return;
+  std::string names;
+  for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
+  throw ConfigError(folder + "/lidar_driver.yaml: no range finder '" + device +
+                    "' can be simulated; give one of " + names);
+}
+
 }  // namespace
 
 /// The driver's session, with its scans changed on their way to the bus.
@@ -166,6 +175,7 @@ RobotConfig readRobot(const std::string& folder, const std::vector<std::string>&
   if (kindsOf(given) != kindsOf(taken))
     throw ConfigError(folder + "/learner.yaml: its patterns command " + describe(given) +
                       ", the robot takes " + describe(taken) + "; give a set of the same vehicle");
+  requireEmulated(config.lidar_driver.device.name, folder);
   config.timing = usualTiming();
   return config;
 }
