@@ -107,6 +107,13 @@ bool DescriptorLink::reopen(int64_t utime) {
   return false;
 }
 
+void DescriptorLink::close() {
+  if (!isOpen()) return;
+  ::close(fd_);
+  fd_ = -1;
+  problem_.clear();
+}
+
 bool DescriptorLink::attempt() {
   std::string reason;
   const int fd = openDevice(reason);

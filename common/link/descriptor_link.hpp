@@ -61,6 +61,7 @@ class DescriptorLink : public Link {
   bool write(const uint8_t* bytes, size_t size) override;
   bool isOpen() const override { return fd_ >= 0; }
   bool reopen(int64_t utime) override;
+  void close() override;
   int descriptor() const override { return fd_; }
   const std::string& address() const override { return address_; }
   std::string problem() const override { return isOpen() ? std::string() : problem_; }

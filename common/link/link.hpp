@@ -46,11 +46,13 @@ class Link {
   /// Tries to open a closed link; attempts are spaced by a back-off of 100 ms growing to 1 s. True
   /// if open now.
   virtual bool reopen(int64_t utime) = 0;
+  /// Closes an open link, as where a device needs a new connection; reopen() opens it again.
+  virtual void close() = 0;
   /// Descriptor to poll, or -1.
   virtual int descriptor() const { return -1; }
   /// Address as configured, for messages.
   virtual const std::string& address() const = 0;
-  /// Why it is closed, in one line; empty when open.
+  /// Why it is closed, in one line; empty when open, or closed by close().
   virtual std::string problem() const = 0;
 };
 

@@ -146,6 +146,12 @@ class PipeEnd final : public Link {
     if (cable_->connected) seen_ = cable_->connections;
     return isOpen();
   }
+  /// Both ends are closed, as those of a connection, and bytes under way are gone.
+  void close() override {
+    if (!isOpen()) return;
+    setConnected(false);
+    setConnected(true);
+  }
   const std::string& address() const override { return address_; }
   std::string problem() const override {
     if (isOpen()) return {};

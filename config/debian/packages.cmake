@@ -97,9 +97,8 @@ set(CPACK_DEBIAN_LAB_DESCRIPTION "what an engineer needs beside tread
 Finds and names the gap between a vehicle's model and its measured drives,
 replays logs through the robot's processes, drives missions in virtual time
 and compares rules of learning.")
-# supervisor starts the processes of a launch file again; ip sets LCM's route. lcm-spy's needs are many and only for
-# tread-spy.
-set(CPACK_DEBIAN_ROBOT_PACKAGE_DEPENDS "supervisor, iproute2")
+# ip sets LCM's route. lcm-spy's needs are many and only for tread-spy.
+set(CPACK_DEBIAN_ROBOT_PACKAGE_DEPENDS "iproute2")
 set(CPACK_DEBIAN_ROBOT_PACKAGE_SUGGESTS "liblcm-bin, liblcm-java, libjchart2d-java, default-jre")
 # For who links its cores.
 set(CPACK_DEBIAN_LAB_PACKAGE_SUGGESTS "g++, cmake, libeigen3-dev, libmrpt-poses-dev")

@@ -38,27 +38,34 @@ LidarDriverConfig readLidarDriverConfig(ConfigReader& reader) {
   return config;
 }
 
-LidarDriverNode::LidarDriverNode(const LidarDriverConfig& config, Bus& bus, ScanSource& source,
-                                 Say say)
+LidarDriverNode::LidarDriverNode(const LidarDriverConfig& config, Bus& bus, Link& line,
+                                 Link* ground_line, Say say)
     : config_(config),
       bus_(bus),
-      source_(source),
       say_(std::move(say)),
-      health_(bus, "lidar_driver", config.effective),
-      finders_{{config.address, config.mounting, ScanCheck(config.limits), bus.now()}} {
-  if (config.ground_mounting)
-    finders_.push_back(
-        {config.ground_address, *config.ground_mounting, ScanCheck(config.limits), bus.now()});
+      health_(bus, "lidar_driver", config.effective) {
+  const auto add = [&](const std::string& address, const Mounting& mounting, Link& link) {
+    finders_.push_back({address, mounting, ScanConnection(link, config.device.make()),
+                        ScanCheck(config.limits), bus.now()});
+  };
+  add(config.address, config.mounting, line);
+  if (config.ground_mounting) add(config.ground_address, *config.ground_mounting, *ground_line);
   health_.watchNamesakes();
-  const std::string shortcomings = source.shortcomings();
+  // Both are of one kind.
+  const std::string shortcomings = finders_.front().connection.shortcomings();
   if (shortcomings.empty()) return;
   health_.setCounter("not promised by " + shortcomings, 1);
   if (say_) say_("not promised by " + shortcomings);
 }
 
 void LidarDriverNode::step(int64_t utime) {
-  for (const RangeScan& raw : source_.take(utime)) {
-    Finder& finder = raw.ground ? finders_.back() : finders_.front();
+  for (Finder& finder : finders_) take(finder, utime);
+  reportHealth(utime);
+  health_.step(utime);
+}
+
+void LidarDriverNode::take(Finder& finder, int64_t utime) {
+  for (const RangeScan& raw : finder.connection.take(utime)) {
     const auto scan = finder.check.accept(raw);
     if (scan) {
       finder.last_scan = utime;
@@ -70,8 +77,6 @@ void LidarDriverNode::step(int64_t utime) {
       finder.reasons.note(Rank::kRefused, refusal, utime);
     }
   }
-  reportHealth(utime);
-  health_.step(utime);
 }
 
 void LidarDriverNode::publish(const RangeScan& scan, const Mounting& mounting) {
@@ -106,7 +111,11 @@ void LidarDriverNode::reportHealth(int64_t utime) {
   sayOnce(problem);
   if (utime < next_counters_) return;
   next_counters_ = utime + kCounterPeriodUs;
-  for (const auto& [name, number] : source_.counters()) health_.setCounter(name, number);
+  for (const Finder& finder : finders_) {
+    const char* const prefix = &finder == &finders_.front() ? "" : "ground: ";
+    for (const auto& [name, number] : finder.connection.counters())
+      health_.setCounter(prefix + name, number);
+  }
 }
 
 /// The line of a problem grows older by the second: it is said when it begins, when its reason
@@ -122,7 +131,7 @@ void LidarDriverNode::sayOnce(const Reason& problem) {
 Reason LidarDriverNode::silenceOf(const Finder& finder, int64_t utime) const {
   const double silent = static_cast<double>(utime - finder.last_scan) * 1e-6;
   if (silent < config_.silence) return {};
-  Reason reason = source_.reason(utime, &finder != &finders_.front());
+  Reason reason = finder.connection.reason(utime);
   const Reason refused = finder.reasons.best(utime);
   if (refused.rank > reason.rank) reason = refused;
   if (reason.rank == Rank::kNone) reason = {Rank::kSilent, "is the device powered and scanning?"};

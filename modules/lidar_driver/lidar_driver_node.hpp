@@ -9,7 +9,7 @@
 #include "common/bus/bus.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/vehicle/robot_description.hpp"
-#include "modules/lidar_driver/core/range_scan.hpp"
+#include "modules/lidar_driver/scan_connection.hpp"
 #include "modules/lidar_driver/scan_devices.hpp"
 
 namespace tread::lidar {
@@ -30,13 +30,15 @@ struct LidarDriverConfig {
 /// Reads the configuration; throws ConfigError with file:line.
 LidarDriverConfig readLidarDriverConfig(ConfigReader& reader);
 
-/// Publishes SCAN from a source of scans, and HEALTH with every refusal and its reason.
+/// Publishes SCAN from one or two range finders, and HEALTH with every refusal and its reason.
 /** What the device cannot promise is a counter in HEALTH and, once, a line for `say`; so is each
  * change between scanning and not, and each reason that tells more than the one before. */
 class LidarDriverNode : public Node {
  public:
   using Say = std::function<void(const std::string& line)>;
-  LidarDriverNode(const LidarDriverConfig& config, Bus& bus, ScanSource& source, Say say = {});
+  /// `ground_line`: of the range finder that looks at the ground, where the configuration has one.
+  LidarDriverNode(const LidarDriverConfig& config, Bus& bus, Link& line,
+                  Link* ground_line = nullptr, Say say = {});
 
   int64_t period() const override { return 5'000; }
   void step(int64_t utime) override;
@@ -46,11 +48,13 @@ class LidarDriverNode : public Node {
   struct Finder {
     std::string address;
     Mounting mounting;
+    ScanConnection connection;
     ScanCheck check;
     int64_t last_scan;  ///< [us] when the last good one came
     Reasons reasons{};  ///< why scans of the device were refused since then
   };
 
+  void take(Finder& finder, int64_t utime);
   void publish(const RangeScan& scan, const Mounting& mounting);
   void reportHealth(int64_t utime);
   void sayOnce(const Reason& problem);
@@ -58,7 +62,6 @@ class LidarDriverNode : public Node {
 
   LidarDriverConfig config_;
   Bus& bus_;
-  ScanSource& source_;
   Say say_;
   Reason said_;  ///< the problem that was said last; kNone: it scans
   HealthReporter health_;

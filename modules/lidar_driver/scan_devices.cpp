@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "modules/lidar_driver/carmen/carmen_player.hpp"
+#include "modules/lidar_driver/hokuyo/scip_session.hpp"
 #include "modules/lidar_driver/rplidar/rplidar_session.hpp"
 #include "modules/lidar_driver/sick_cola/cola_session.hpp"
 #include "modules/lidar_driver/sick_lms2xx/lms_session.hpp"
@@ -35,12 +36,14 @@ void carmen(ConfigReader& section, double /*latency*/, DeviceChoice& choice) {
   choice.make = [config] { return std::make_unique<CarmenPlayer>(config); };
 }
 
-/// A new range finder is one line here and a folder of its own. One through a library has no
-/// session: main.cpp makes it.
+/// A new range finder is one line here and a folder of its own.
 const std::map<std::string, DeviceKind>& kinds() {
   static const std::map<std::string, DeviceKind> kKinds{
       {"carmen", {{Kind::kFile}, "file:drive.log", carmen}},
-      {"hokuyo", {{Kind::kTcp}, "tcp:host:port", [](ConfigReader&, double, DeviceChoice&) {}}},
+      {"hokuyo",
+       {{Kind::kTcp, Kind::kTty},
+        "tcp:192.168.0.10:10940 or tty:/dev/ttyACM0",
+        session<ScipConfig, ScipSession, readScipConfig>}},
       {"rplidar",
        {{Kind::kTty, Kind::kTcp},
         "tty:/dev/ttyUSB0?baud=115200",

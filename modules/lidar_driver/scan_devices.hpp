@@ -14,13 +14,13 @@
 
 namespace tread::lidar {
 
-/// Makes a device's session; empty for a device that is reached through a library.
+/// Makes a device's session.
 using MakeScanDevice = std::function<std::unique_ptr<ScanDevice>()>;
 
 /// What the configuration's key `device` may name, with what that one's reader wants to know.
 struct DeviceChoice {
   std::string name = "hokuyo";  ///< the key's value
-  MakeScanDevice make;          ///< empty: through a library, see main.cpp
+  MakeScanDevice make;
 };
 
 /// Reads the key `device` and the section of that name; `latency` [s] is the driver's.

@@ -34,7 +34,7 @@ SimulatorConfig readSimulatorConfig(ConfigReader& reader);
 struct DeviceLines {
   Link& ins;
   Link& motor;
-  Link* laser = nullptr;         ///< SCIP bytes; null where scans are taken with takeScans()
+  Link* laser = nullptr;         ///< null where nobody reads its scans
   Link* ground_laser = nullptr;  ///< the same
 };
 

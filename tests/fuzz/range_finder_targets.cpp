@@ -5,10 +5,12 @@
 
 #include "common/capture/pcap_stream.hpp"
 #include "modules/lidar_driver/carmen/carmen_player.hpp"
+#include "modules/lidar_driver/hokuyo/scip_session.hpp"
 #include "modules/lidar_driver/rplidar/rplidar_session.hpp"
 #include "modules/lidar_driver/sick_cola/cola_session.hpp"
 #include "modules/lidar_driver/sick_lms2xx/lms_session.hpp"
 #include "modules/lidar_driver/velodyne/velodyne_session.hpp"
+#include "modules/simulator/emulators/hokuyo/scip_emulator.hpp"
 #include "modules/simulator/emulators/rplidar/rplidar_emulator.hpp"
 #include "modules/simulator/emulators/sick_cola/cola_emulator.hpp"
 #include "modules/simulator/emulators/sick_lms2xx/lms_emulator.hpp"
@@ -68,6 +70,28 @@ void colaCommand(const uint8_t* bytes, size_t size) {
   scan.ranges.assign(541, 2.0F);
   emulator.add(scan);
   emulator.transmit(1'100'000);
+}
+
+/// The first byte chooses the place in an answer to PP, or in the stream, where the rest goes in.
+void hokuyo(const uint8_t* bytes, size_t size) {
+  if (size == 0) return;
+  lidar::ScipSession session({bytes[0] % 2 == 0, 0.0});
+  sim::ScipEmulator emulator(sim::scipSettingsOf(sim::LaserParameters{}), 1);
+  int64_t now = 10'000'000;
+  session.open(now);
+  for (int i = 0; i < 8; ++i, now += 100'000) {
+    emulator.receive(session.poll(now), now);
+    std::string answer = emulator.transmit(now);
+    if (bytes[0] >= 128 && answer.compare(0, 2, "PP") == 0)
+      answer = "PP\n00P\n" + textOf(bytes + 1, size - 1) + "\n\n";
+    session.receive(answer, now);
+  }
+  inPieces(bytes + 1, size - 1, now, [&](const std::string& piece, int64_t time) {
+    session.receive(piece, time);
+    requireScans(session, time);
+    emulator.receive(session.poll(time), time);
+    session.receive(emulator.transmit(time), time);
+  });
 }
 
 /// A scanner that is started up by its emulator; then both get the bytes.
@@ -132,6 +156,7 @@ void addRangeFinderTargets(std::map<std::string, Target>& targets) {
   targets["carmen_player"] = carmenPlayer;
   targets["cola"] = cola;
   targets["cola_command"] = colaCommand;
+  targets["hokuyo"] = hokuyo;
   targets["lms"] = scanner<lidar::LmsSession, sim::LmsEmulator>;
   targets["rplidar"] = scanner<lidar::RplidarSession, sim::RplidarEmulator>;
   targets["velodyne"] = velodyne;

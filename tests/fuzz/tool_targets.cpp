@@ -226,50 +226,16 @@ void queries(const uint8_t* bytes, size_t size) {
   });
 }
 
-/// Through to what supervisord is told.
+/// Through to the words that start its processes.
 void launchFile(const uint8_t* bytes, size_t size) {
   const launch::LaunchSettings settings{"/robot/launch.yaml", "/run/robot", "/bin", "", {}};
   const MemoryFile file(bytes, size);
   refusing([&] { launch::readLaunchName(file.path()); });
   configuration(bytes, size, [&](ConfigReader& reader) {
     const launch::LaunchFile read = launch::readLaunchFile(reader, settings);
-    std::vector<launch::SupervisedProcess> processes;
     for (const launch::LaunchProcess& process : read.processes)
-      processes.push_back(
-          {process, launch::startCommand(process, process.program, read.lcm_url, read.key)});
-    try {
-      launch::supervisorConfig(read.name, processes, false);
-    } catch (const std::invalid_argument& refusal) {
-      require(refusal.what()[0] != '\0');
-    }
+      require(!launch::startCommand(process, process.program, read.lcm_url, read.key).empty());
   });
-}
-
-/// A line of its configuration as supervisord takes it apart: comments, percent signs, then the
-/// words as a shell would.
-std::vector<std::string> supervisorWords(const std::string& line) {
-  std::vector<std::string> words{""};
-  bool open = false;
-  char quote = 0;
-  for (size_t i = 0; i < line.size(); ++i) {
-    require((line[i] != ';' && line[i] != '#') || i == 0 || line[i - 1] != ' ');
-    if (line[i] == '%') require(line[++i] == '%');
-    if (quote != 0) {
-      quote = line[i] == quote ? 0 : quote;
-      if (quote != 0) words.back() += line[i];
-    } else if (line[i] == ' ') {
-      if (open) words.emplace_back();
-      open = false;
-      continue;
-    } else if (line[i] == '\'' || line[i] == '"') {
-      quote = line[i];
-    } else {
-      words.back() += line[i] == '\\' ? line[++i] : line[i];
-    }
-    open = true;
-  }
-  require(quote == 0 && line.back() != ' ');
-  return words;
 }
 
 /// The path of a run folder: refused, or the same path in every process.
@@ -281,25 +247,21 @@ void runPath(const uint8_t* bytes, size_t size) {
   if (!launch::checkFolder(folder).empty()) return;
   const std::string device = folder.path + "/devices/ins";
   const std::string set = "address=tty:" + device + "?baud=460800";
-  require(supervisorWords(launch::supervisorCommand({"program", "--set", set})) ==
-          std::vector<std::string>{"program", "--set", set});
   ConfigReader reader = ConfigReader::fromText("address: none", "driver", {set});
   std::string address;
   reader.text("address", address);
   require(parseLinkAddress(address).path == device);
 }
 
-/// Lines of supervisord's log, signs of life of processes, and what `ip route` answers.
-void supervisorLog(const uint8_t* bytes, size_t size) {
+/// Signs of life of a process that runs, and what `ip route` answers.
+void lifeSigns(const uint8_t* bytes, size_t size) {
   launch::routeDevice(textOf(bytes, size));
   launch::LaunchProcess planner;
   planner.name = "planner";
-  launch::LaunchProgress progress("robot", 1);
   launch::Liveness liveness({planner});
+  liveness.started("planner", 1234);
   std::istringstream lines(textOf(bytes, size));
   for (std::string line; std::getline(lines, line);) {
-    progress.lineFor(line, 1.0);
-    liveness.readLog(line);
     liveness.hear(1234, line);
     liveness.pass(0.7);
   }
@@ -404,7 +366,7 @@ void addToolTargets(std::map<std::string, Target>& all) {
       {"ros2_map", ros2Map},
       {"sbpl_map", sbplMap},
       {"session_table", sessionTable},
-      {"supervisor_log", supervisorLog},
+      {"life_signs", lifeSigns},
       {"surface_file", surfaceFile},
       {"transition_world", transitionWorld},
   });

@@ -115,6 +115,7 @@ class HeldUpLink : public Link {
   bool write(const uint8_t* bytes, size_t size) override { return link_.write(bytes, size); }
   bool isOpen() const override { return link_.isOpen(); }
   bool reopen(int64_t utime) override { return link_.reopen(utime); }
+  void close() override { link_.close(); }
   const std::string& address() const override { return link_.address(); }
   std::string problem() const override { return link_.problem(); }
 

@@ -28,7 +28,6 @@ class ScipServer {
     kSilent,   ///< accepts and says nothing
     kGarbage,  ///< random bytes between the scans
     kCloses,   ///< accepts and closes at once
-    kOnce,     ///< good to the first who comes, closes at once on all others
     kRefuses,  ///< answers each command with an error, as of SCIP 1.1
     kLazy      ///< answers the first two who come, scans only for those after them
   };
@@ -74,9 +73,7 @@ class ScipServer {
       ++connections_;
       const int on = 1;
       setsockopt(client, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-      const bool closes =
-          manner_ == Manner::kCloses || (manner_ == Manner::kOnce && connections_ > 1);
-      if (!closes) talk(client);
+      if (manner_ != Manner::kCloses) talk(client);
       close(client);
     }
   }
@@ -117,6 +114,7 @@ class ScipServer {
   /// 3 m to the right, 5 m to the left, nothing straight ahead.
   static sim::LaserScan scan() {
     sim::LaserScan scan;
+    scan.utime = hostNow();
     scan.ranges.assign(541, 3.0f);
     for (size_t i = 260; i < 281; ++i) scan.ranges[i] = std::numeric_limits<float>::infinity();
     for (size_t i = 281; i < 541; ++i) scan.ranges[i] = 5.0f;

@@ -15,15 +15,45 @@ namespace {
 /// As if it stood beside the shipped files.
 const std::string kHere = TREAD_SOURCE_DIR "/config/robots/teodor/lidar.yaml";
 
-/// Gives what a test puts in.
-class ScriptedSource : public ScanSource {
- public:
-  std::vector<RangeScan> take(int64_t /*utime*/) override { return std::move(next); }
-  Reason reason(int64_t, bool ground) const override {
-    return trouble.empty() || ground ? Reason{} : Reason{Rank::kSilent, trouble};
-  }
+/// What a test has its range finder measure, and why it measures nothing.
+struct Script {
   std::vector<RangeScan> next;
   std::string trouble;
+};
+
+/// Gives what a script says.
+class ScriptedDevice : public ScanDevice {
+ public:
+  explicit ScriptedDevice(Script& script) : script_(script) {}
+  void open(int64_t) override {}
+  void close() override {}
+  void receive(std::string_view, int64_t) override {}
+  std::string poll(int64_t now) override {
+    if (!script_.trouble.empty()) reasons().note(Rank::kSilent, script_.trouble, now);
+    return {};
+  }
+  std::vector<RangeScan> take(int64_t) override { return std::exchange(script_.next, {}); }
+  std::string shortcomings() const override { return {}; }
+
+ private:
+  Script& script_;
+};
+
+/// A robot's range finders, the second one at the ground, at the ends of lines that are up.
+/// Outlives the bus.
+struct Finders {
+  void join(VirtualBus& bus) {
+    config.device.make = [this, made = 0]() mutable {
+      return std::make_unique<ScriptedDevice>(made++ == 0 ? around : ground);
+    };
+    bus.addNode("lidar_driver", [this](Bus& end) {
+      return std::make_unique<LidarDriverNode>(config, end, *line.first, ground_line.first.get());
+    });
+  }
+  LidarDriverConfig config;
+  Script around, ground;
+  std::pair<std::unique_ptr<Link>, std::unique_ptr<Link>> line = makePipe(),
+                                                          ground_line = makePipe();
 };
 
 RangeScan scanAt(int64_t utime) {
@@ -38,18 +68,17 @@ RangeScan scanAt(int64_t utime) {
 }  // namespace
 
 TEST_CASE("lidar_driver publishes good scans with the sensor's pose and counts the refused") {
+  Finders finders;
   VirtualBus bus(1);
-  ScriptedSource source;
-  LidarDriverConfig config;
+  LidarDriverConfig& config = finders.config;
   config.mounting = {{0.25, 0.0, 0.5}, {M_PI / 2, 0.0, 0.0}};
   std::vector<scan_t> scans;
   bus.outside().subscribe<scan_t>(kScan, [&](const scan_t& scan) { scans.push_back(scan); });
-  bus.addNode("lidar_driver",
-              [&](Bus& end) { return std::make_unique<LidarDriverNode>(config, end, source); });
+  finders.join(bus);
   const int64_t start = bus.now();
   for (int i = 1; i <= 20; ++i) {
-    source.next = {scanAt(start + i * 100'000 - 80'000)};
-    if (i == 10) source.next.push_back(source.next.back());
+    finders.around.next = {scanAt(start + i * 100'000 - 80'000)};
+    if (i == 10) finders.around.next.push_back(finders.around.next.back());
     bus.runUntil(start + i * 100'000);
   }
   REQUIRE(scans.size() == 20);
@@ -61,37 +90,34 @@ TEST_CASE("lidar_driver publishes good scans with the sensor's pose and counts t
 }
 
 TEST_CASE("a silent range finder is told in one line and forgotten when it speaks again") {
+  Finders finders;
   VirtualBus bus(1);
-  ScriptedSource source;
-  source.trouble = "cannot connect: connection refused";
+  finders.around.trouble = "cannot connect: connection refused";
   std::vector<health_t> health;
   bus.outside().subscribe<health_t>(kHealth, [&](const health_t& m) { health.push_back(m); });
-  bus.addNode("lidar_driver", [&](Bus& end) {
-    return std::make_unique<LidarDriverNode>(LidarDriverConfig{}, end, source);
-  });
+  finders.join(bus);
   const int64_t start = bus.now();
   bus.runUntil(start + 3'100'000);
   REQUIRE(health.back().health_state == health_t::HEALTH_FAILED);
   REQUIRE(health.back().health_reason ==
           "tcp:192.168.0.10:10940: no scan for 3 s; cannot connect: connection refused");
-  source.next = {scanAt(bus.now())};
+  finders.around.next = {scanAt(bus.now())};
   bus.runUntil(bus.now() + 900'000);
-  source.next = {scanAt(bus.now())};
+  finders.around.next = {scanAt(bus.now())};
   bus.runUntil(bus.now() + 200'000);
   REQUIRE(health.back().health_state == health_t::HEALTH_OK);
 }
 
 TEST_CASE("a range finder whose every scan is refused is not well, and the reason is told") {
+  Finders finders;
   VirtualBus bus(1);
-  ScriptedSource source;
-  LidarDriverConfig config;
+  LidarDriverConfig& config = finders.config;
   config.limits.max_beams = 50;
   std::vector<health_t> health;
   bus.outside().subscribe<health_t>(kHealth, [&](const health_t& m) { health.push_back(m); });
-  bus.addNode("lidar_driver",
-              [&](Bus& end) { return std::make_unique<LidarDriverNode>(config, end, source); });
+  finders.join(bus);
   for (int i = 1; i <= 25; ++i) {
-    source.next = {scanAt(bus.now())};
+    finders.around.next = {scanAt(bus.now())};
     bus.runUntil(bus.now() + 100'000);
   }
   REQUIRE(health.back().health_state == health_t::HEALTH_FAILED);
@@ -113,9 +139,9 @@ TEST_CASE("a mistyped key of lidar_driver's configuration is one line with file 
 
 TEST_CASE(
     "a second range finder at the ground has its own pose, its own clock and its own health") {
+  Finders finders;
   VirtualBus bus(1);
-  ScriptedSource source;
-  LidarDriverConfig config;
+  LidarDriverConfig& config = finders.config;
   config.mounting = {{0.25, 0.0, 0.5}, {0.0, 0.0, 0.0}};
   config.ground_mounting = Mounting{{0.25, 0.0, 0.9}, {0.0, 0.2, 0.0}};
   config.ground_address = "tcp:192.168.0.11:10940";
@@ -123,15 +149,13 @@ TEST_CASE(
   health_t health{};
   bus.outside().subscribe<scan_t>(kScan, [&](const scan_t& scan) { scans.push_back(scan); });
   bus.outside().subscribe<health_t>(kHealth, [&](const health_t& m) { health = m; });
-  bus.addNode("lidar_driver",
-              [&](Bus& end) { return std::make_unique<LidarDriverNode>(config, end, source); });
+  finders.join(bus);
   const int64_t start = bus.now();
   for (int i = 1; i <= 30; ++i) {
-    source.next = {scanAt(start + i * 100'000 - 80'000)};
+    finders.around.next = {scanAt(start + i * 100'000 - 80'000)};
     if (i <= 15) {
       // Finished later, though it began before the other one.
-      source.next.push_back(scanAt(start + i * 100'000 - 90'000));
-      source.next.back().ground = true;
+      finders.ground.next = {scanAt(start + i * 100'000 - 90'000)};
     }
     bus.runUntil(start + i * 100'000);
   }
@@ -145,24 +169,23 @@ TEST_CASE(
 }
 
 TEST_CASE("a slice of points is published as points, those beyond the limits as no measurement") {
+  Finders finders;
   VirtualBus bus(1);
-  ScriptedSource source;
-  LidarDriverConfig config;
+  LidarDriverConfig& config = finders.config;
   config.limits = {0.5, 30.0, 4000, 3};
   std::vector<scan_t> scans;
   bus.outside().subscribe<scan_t>(kScan, [&](const scan_t& scan) { scans.push_back(scan); });
-  bus.addNode("lidar_driver",
-              [&](Bus& end) { return std::make_unique<LidarDriverNode>(config, end, source); });
+  finders.join(bus);
   RangeScan slice;
   slice.utime = bus.now() + 10'000;
   slice.duration_us = 25'000;
   slice.range_max = 130.0;
   slice.points = {{3.0F, 1.0F, -0.5F}, {0.1F, 0.1F, 0.1F}, {40.0F, 0.0F, 0.0F}};
-  source.next = {slice};
+  finders.around.next = {slice};
   bus.runUntil(bus.now() + 100'000);
   slice.utime += 60'000;
   slice.points.resize(kMostPoints + 1);
-  source.next = {slice};
+  finders.around.next = {slice};
   bus.runUntil(bus.now() + 100'000);
   REQUIRE(scans.size() == 1);
   REQUIRE(scans[0].num_points == 3);

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "modules/lidar_driver/core/range_scan.hpp"
-#include "modules/lidar_driver/hokuyo/hokuyo_source.hpp"
+#include "modules/lidar_driver/core/reasons.hpp"
 
 using namespace tread::lidar;
 
@@ -43,26 +43,6 @@ RangeScan goodScan(int64_t utime) {
 }
 
 }  // namespace
-
-TEST_CASE("angles of a SCIP device come from its own parameters and honour the front step") {
-  // UTM-30LX: 1081 steps of 0.25 degrees, 540 forward.
-  const ScipGeometry utm{0, 1080, 540, 1440};
-  REQUIRE_FALSE(utm.problem());
-  REQUIRE(utm.angleFirst() == Approx(-135.0 * M_PI / 180.0));
-  REQUIRE(utm.angleFirst() + 1080 * utm.angleStep() == Approx(135.0 * M_PI / 180.0));
-  REQUIRE(utm.shareOfTurn() == Approx(0.75));
-  // URG-04LX: not symmetric about its front.
-  const ScipGeometry urg{44, 725, 384, 1024};
-  REQUIRE(urg.angleFirst() == Approx((44 - 384) * 2 * M_PI / 1024));
-}
-
-TEST_CASE("a device with invalid parameters is refused in one line") {
-  REQUIRE(ScipGeometry{0, 1080, 540, 0}.problem());
-  REQUIRE(ScipGeometry{}.problem()->find("does not tell its parameters") != std::string::npos);
-  REQUIRE(ScipGeometry{10, 10, 0, 1440}.problem());
-  REQUIRE(ScipGeometry{0, 1440, 540, 1440}.problem());
-  REQUIRE(ScipGeometry{0, 1080, 1440, 1440}.problem());
-}
 
 TEST_CASE("a beam is a range, nothing hit, or no measurement") {
   ScanCheck check({0.1, 20.0, 4000, 1});

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "modules/lidar_driver/link_source.hpp"
+#include "modules/lidar_driver/scan_connection.hpp"
 #include "modules/lidar_driver/scan_devices.hpp"
 #include "modules/lidar_driver/sick_cola/cola_session.hpp"
 #include "modules/simulator/emulators/sick_cola/cola_emulator.hpp"
@@ -183,9 +183,7 @@ TEST_CASE(
 TEST_CASE("over a link a device is started up after each reconnect") {
   auto [near, far] = makePipe();
   Link* pipe = far.get();
-  auto end = std::make_shared<std::unique_ptr<Link>>(std::move(near));
-  LinkSource source([end] { return std::move(*end); },
-                    std::make_unique<ColaSession>(Bench::configOf(ColaDialect::kB)));
+  ScanConnection source(*near, std::make_unique<ColaSession>(Bench::configOf(ColaDialect::kB)));
   sim::ColaEmulator device{sim::LaserParameters{}};
   int64_t now = 1'000'000;
   const auto scansIn = [&](int milliseconds) {
@@ -208,7 +206,7 @@ TEST_CASE("over a link a device is started up after each reconnect") {
   CHECK(scansIn(1000) >= 17);
   setPipeConnected(*pipe, false);
   CHECK(scansIn(1000) == 0);
-  CHECK(source.reason(now, false).words.find("unplugged") != std::string::npos);
+  CHECK(source.reason(now).words.find("unplugged") != std::string::npos);
   setPipeConnected(*pipe, true);
   CHECK(scansIn(1000) >= 17);
   CHECK(source.counters().at("connections") == 2);

@@ -10,7 +10,7 @@
 #include <fstream>
 #include <random>
 
-#include "modules/lidar_driver/link_source.hpp"
+#include "modules/lidar_driver/scan_connection.hpp"
 #include "modules/lidar_driver/velodyne/velodyne_session.hpp"
 #include "modules/simulator/emulators/velodyne/velodyne_emulator.hpp"
 #include "tests/common/capture/capture_file.hpp"
@@ -274,13 +274,13 @@ TEST_CASE("packets of another sensor are named with what is read, also after the
     }
     const std::string path = "velodyne_" + std::to_string(getpid()) + ".pcap";
     std::ofstream(path, std::ios::binary) << captureOf(packets);
-    LinkSource source([&] { return makeLink("file:" + path); },
-                      std::make_unique<VelodyneSession>(VelodyneConfig{}));
+    const std::unique_ptr<Link> file = makeLink("file:" + path);
+    ScanConnection source(*file, std::make_unique<VelodyneSession>(VelodyneConfig{}));
     int64_t now = 5'000'000;
     for (; now < 20'000'000; now += 5'000) REQUIRE(source.take(now).empty());
     std::remove(path.c_str());
     CAPTURE(other.name);
-    const Reason reason = source.reason(now, false);
+    const Reason reason = source.reason(now);
     CHECK(reason.rank == Rank::kRefused);
     CHECK(reason.words == "refused: packets of another product, " + std::string(other.name) +
                               " (20); this driver reads VLP-16, Puck LITE and Puck Hi-Res, in "

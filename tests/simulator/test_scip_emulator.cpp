@@ -183,7 +183,7 @@ TEST_CASE("the device's parameters are those of the simulated laser") {
   CHECK(settings.last_step == 540);
   CHECK(settings.front_step == 270);
   CHECK(settings.range_max_mm == 30000);
-  CHECK(settings.turns_per_minute == 600);
+  CHECK(settings.turns_per_minute == 2400);
 }
 
 }  // namespace tread::sim

@@ -4,12 +4,9 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "modules/lidar_driver/core/reasons.hpp"
 
 namespace tread::lidar {
 
@@ -27,7 +24,6 @@ struct RangeScan {
   std::vector<float> ranges;  ///< [m]; none in a slice
   /// Of a slice [m]: forward, left, up, in equal steps of time; NaN where nothing came back.
   std::vector<std::array<float, 3>> points;
-  bool ground = false;  ///< of the range finder that looks at the ground ahead
 };
 
 /// What the check lets through.
@@ -56,27 +52,6 @@ class ScanCheck {
   ScanLimits limits_;
   int64_t last_utime_ = INT64_MIN;
   std::string refusal_;
-};
-
-/// Where scans come from: a device's library on the robot, the simulated laser in virtual time.
-/** The library insists on a socket and a clock of its own, so that this is the interface behind it.
- */
-class ScanSource {
- public:
-  virtual ~ScanSource() = default;
-  /// Scans that were completed since the last call, oldest first. Never blocks.
-  virtual std::vector<RangeScan> take(int64_t utime) = 0;
-  /// Why no scan comes of the device that looks around, or of the one that looks at the ground.
-  virtual Reason reason(int64_t utime, bool ground) const = 0;
-  /// What the device cannot promise, in one line: its clock, checksums, field of view.
-  virtual std::string shortcomings() const { return {}; }
-  /// What was counted, by its name in words.
-  virtual std::map<std::string, int64_t> counters() const { return {}; }
-  /// Seconds since the device's library last came back; 0 for sources that cannot hang.
-  virtual double stuckFor() const { return 0.0; }
-  /// Ends the device's own thread. False if it hangs for good: then the process must end without
-  /// the destructors of static objects, which that thread may use.
-  virtual bool end() { return true; }
 };
 
 }  // namespace tread::lidar

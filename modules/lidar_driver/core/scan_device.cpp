@@ -56,14 +56,19 @@ void StartedDevice::answered(int64_t now) {
   last_scan_ = now;
 }
 
-void StartedDevice::refused(const std::string& words, int64_t now) {
+void StartedDevice::setRequest(const std::string& step, std::string bytes) {
+  for (StartUpStep& candidate : steps_)
+    if (candidate.name == step) candidate.bytes = std::move(bytes);
+}
+
+void StartedDevice::refused(const std::string& words, int64_t now, const std::string& remedy) {
   const std::string what = "refused by the device: " + words;
   if (awaited().optional) {
     count(what);
     return answered(now);
   }
   // It is asked again after the patience: at once would be without end.
-  refuse(what, now);
+  refuse(what, now, remedy);
 }
 
 std::string StartedDevice::poll(int64_t now) {

@@ -9,10 +9,11 @@
 #include <vector>
 
 #include "modules/lidar_driver/core/range_scan.hpp"
+#include "modules/lidar_driver/core/reasons.hpp"
 
 namespace tread::lidar {
 
-/// A range finder at the end of a byte stream: the door for devices that need no library.
+/// A range finder at the end of a byte stream: the door for all kinds.
 /** Pure: bytes and time [us] are arguments; times of all calls must not go back. */
 class ScanDevice {
  public:
@@ -25,6 +26,8 @@ class ScanDevice {
   virtual void receive(std::string_view bytes, int64_t now) = 0;
   /// Bytes that the device is to get now.
   virtual std::string poll(int64_t now) = 0;
+  /// Bytes that end its scanning, for when nobody reads it any longer.
+  virtual std::string farewell() const { return {}; }
   /// Scans that were completed since the last call, oldest first.
   virtual std::vector<RangeScan> take(int64_t now) = 0;
   /// Why no good scan comes.
@@ -92,7 +95,9 @@ class StartedDevice : public ScanDevice {
   const StartUpStep& awaited() const;
   bool streaming() const { return step_ == steps_.size(); }
   void answered(int64_t now);
-  void refused(const std::string& words, int64_t now);
+  void refused(const std::string& words, int64_t now, const std::string& remedy = {});
+  /// Of a step whose request depends on an answer before it.
+  void setRequest(const std::string& step, std::string bytes);
   void deliver(RangeScan scan, int64_t now);
   /// Starts it up anew for this reason.
   void restart(const std::string& reason, int64_t now);

@@ -31,8 +31,6 @@ constexpr uint64_t kInsStream = 10;  // of random numbers, beside those of the r
 constexpr uint64_t kLaserStream = 11;
 constexpr uint64_t kMotorStream = 12;
 constexpr uint64_t kGroundLaserStream = 13;
-/// Scans kept for a reader that does not come; older ones are dropped.
-constexpr size_t kMostScans = 20;
 
 /// Positive where the motor drives, negative where it brakes.
 double drivingCurrent(const TrackDrive& track) {
@@ -148,11 +146,8 @@ void SimulatedDevices::advanceTo(int64_t utime) {
     measureDrive();
   }
   for (const InsSample& sample : robot_.takeInsSamples()) ins_->add(sample);
-  for (LaserScan& scan : robot_.takeScans()) {
+  for (const LaserScan& scan : robot_.takeScans())
     (scan.ground ? *ground_laser_ : *laser_).add(scan);
-    scans_.push_back(std::move(scan));
-  }
-  if (scans_.size() > kMostScans) scans_.erase(scans_.begin(), scans_.end() - kMostScans);
 }
 
 MotorValues SimulatedDevices::power(int64_t utime) {
@@ -207,10 +202,6 @@ void SimulatedDevices::measureDrive() {
     std::swap(seen.track_speed[0], seen.track_speed[1]);
   }
   motor_->measure(seen);
-}
-
-std::vector<LaserScan> SimulatedDevices::takeScans() {
-  return std::exchange(scans_, {});
 }
 
 }  // namespace tread::sim

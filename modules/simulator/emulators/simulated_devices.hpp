@@ -45,9 +45,6 @@ class SimulatedDevices {
   /// power, or a share of the speed that it holds at full command.
   MotorValues power(int64_t utime);
 
-  /// Laser scans finished since the last call: the interface behind the range finder's library.
-  std::vector<LaserScan> takeScans();
-
   const SimulatedRobot& robot() const { return robot_; }
   InsEmulator& ins() { return *ins_; }
   MotorEmulator& motor() { return *motor_; }
@@ -66,7 +63,6 @@ class SimulatedDevices {
   std::unique_ptr<MotorEmulator> motor_;
   std::unique_ptr<LaserEmulator> laser_;
   std::unique_ptr<LaserEmulator> ground_laser_;
-  std::vector<LaserScan> scans_;
 };
 
 }  // namespace tread::sim

@@ -116,37 +116,40 @@ NodeFault readNodeFault(ConfigReader& reader) {
   return fault;
 }
 
+void requireEmulated(const std::string& device, const std::string& folder) {
+  const std::vector<std::string> known = sim::emulatedDevices().devices;
+  if (std::find(known.begin(), known.end(), device) != known.end()) return;
+  std::string names;
+  for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
+  throw ConfigError(folder + "/lidar_driver.yaml: no range finder '" + device +
+                    "' can be simulated; give one of " + names);
+}
+
 }  // namespace
 
-/// What stands behind the range finder's library in virtual time.
-class RobotSystem::SimulatedScans : public lidar::ScanSource {
+/// The driver's session, with its scans changed on their way to the bus.
+class RobotSystem::DisturbedDevice : public lidar::ScanDevice {
  public:
-  SimulatedScans(sim::SimulatedDevices& devices,
-                 const std::function<void(lidar::RangeScan&)>& disturb)
-      : devices_(devices), disturb_(disturb) {}
+  DisturbedDevice(std::unique_ptr<lidar::ScanDevice> device,
+                  const std::function<void(lidar::RangeScan&)>& disturb)
+      : device_(std::move(device)), disturb_(disturb) {}
 
-  std::vector<lidar::RangeScan> take(int64_t /*utime*/) override {
-    std::vector<lidar::RangeScan> scans;
-    const sim::LaserParameters& laser = devices_.robot().settings().laser;
-    for (sim::LaserScan& measured : devices_.takeScans()) {
-      lidar::RangeScan scan;
-      scan.utime = measured.utime;
-      scan.duration_us = measured.sweep_us;
-      scan.angle_first = measured.angle_min;
-      scan.angle_step = measured.angle_step;
-      scan.range_min = laser.range_min;
-      scan.range_max = laser.range_max;
-      scan.ranges = std::move(measured.ranges);
-      scan.ground = measured.ground;
-      if (disturb_) disturb_(scan);
-      scans.push_back(std::move(scan));
-    }
+  void open(int64_t now) override { device_->open(now); }
+  void close() override { device_->close(); }
+  void receive(std::string_view bytes, int64_t now) override { device_->receive(bytes, now); }
+  std::string poll(int64_t now) override { return device_->poll(now); }
+  std::vector<lidar::RangeScan> take(int64_t now) override {
+    std::vector<lidar::RangeScan> scans = device_->take(now);
+    if (disturb_)
+      for (lidar::RangeScan& scan : scans) disturb_(scan);
     return scans;
   }
-  lidar::Reason reason(int64_t, bool) const override { return {}; }
+  bool lost() const override { return device_->lost(); }
+  bool hungry() const override { return device_->hungry(); }
+  std::string shortcomings() const override { return device_->shortcomings(); }
 
  private:
-  sim::SimulatedDevices& devices_;
+  std::unique_ptr<lidar::ScanDevice> device_;
   const std::function<void(lidar::RangeScan&)>& disturb_;
 };
 
@@ -172,6 +175,7 @@ RobotConfig readRobot(const std::string& folder, const std::vector<std::string>&
   if (kindsOf(given) != kindsOf(taken))
     throw ConfigError(folder + "/learner.yaml: its patterns command " + describe(given) +
                       ", the robot takes " + describe(taken) + "; give a set of the same vehicle");
+  requireEmulated(config.lidar_driver.device.name, folder);
   config.timing = usualTiming();
   return config;
 }
@@ -190,10 +194,13 @@ RobotSystem::RobotSystem(const RobotConfig& config, const sim::WorldDescription&
   if (!rule.empty()) config_.learner.rule.rule = rule;
   std::tie(ins_line_, ins_device_) = makePipe();
   std::tie(motor_line_, motor_device_) = makePipe();
+  std::tie(laser_line_, laser_device_) = makePipe();
+  std::tie(ground_line_, ground_device_) = makePipe();
   sim::SimulatorSettings settings;
   settings.robot = config.simulated;
   settings.source = config.ins_driver.source;
   settings.controller = config.motor_bridge.controller;
+  settings.device = config.lidar_driver.device.name;
   settings.robot.start = T_map_start;
   settings.robot.start_utime = bus_->now();
   settings.robot.seed = seed;
@@ -202,10 +209,13 @@ RobotSystem::RobotSystem(const RobotConfig& config, const sim::WorldDescription&
     config_.scan_matching->matcher.start = T_map_start;
   devices_ = std::make_unique<sim::SimulatedDevices>(std::make_shared<const sim::World>(world),
                                                      settings, std::move(parts));
-  scans_ = std::make_unique<SimulatedScans>(*devices_, disturb_scan_);
+  config_.lidar_driver.device.make = [this, make = config.lidar_driver.device.make] {
+    return std::make_unique<DisturbedDevice>(make(), disturb_scan_);
+  };
   bus_->addNode("simulator", [this](Bus& bus) {
-    return std::make_unique<sim::SimulatorNode>(*devices_, bus,
-                                                sim::DeviceLines{*ins_device_, *motor_device_});
+    return std::make_unique<sim::SimulatorNode>(
+        *devices_, bus,
+        sim::DeviceLines{*ins_device_, *motor_device_, laser_device_.get(), ground_device_.get()});
   });
   addRobotNodes();
 }
@@ -222,7 +232,8 @@ void RobotSystem::addRobotNodes() {
       return std::make_unique<ins::InsDriverNode>(config_.ins_driver, bus, *ins_line_, ins_store_);
     });
   add("lidar_driver", [this](Bus& bus) {
-    return std::make_unique<lidar::LidarDriverNode>(config_.lidar_driver, bus, *scans_);
+    return std::make_unique<lidar::LidarDriverNode>(config_.lidar_driver, bus, *laser_line_,
+                                                    ground_line_.get());
   });
   if (config_.scan_matching)
     add("scan_matching", [this](Bus& bus) {

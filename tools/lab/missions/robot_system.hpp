@@ -123,10 +123,9 @@ void enterWorld(RobotConfig& robot, const std::string& kind);
 FaultPlan readFaultFile(const std::string& path);
 
 /// The whole robot and its world on a virtual bus: real nodes, real device bytes, real messages.
-/** Device lines are in-memory pipes between drivers and emulators; the laser's scans enter behind
- * the range finder's library (lidar::ScanSource). Links, stores and the simulated robot outlive a
- * node that is killed. A fault of messages to every receiver affects only the robot's processes;
- * observers outside receive every message unharmed. */
+/** Device lines are in-memory pipes between drivers and emulators. Links, stores and the simulated
+ * robot outlive a node that is killed. A fault of messages to every receiver affects only the
+ * robot's processes; observers outside receive every message unharmed. */
 class RobotSystem {
  public:
   /// `rule`: of learning; empty = the configuration's. `known`: all true patterns take the
@@ -142,7 +141,7 @@ class RobotSystem {
   sim::SimulatedDevices& devices() { return *devices_; }
   /// Cuts or mends a device's line: "ins" or "motor".
   void connect(const std::string& device, bool connected);
-  /// Changes each scan on its way to the range finder's driver.
+  /// Changes each scan that the range finder's driver has read.
   void disturbScans(std::function<void(lidar::RangeScan&)> disturb) {
     disturb_scan_ = std::move(disturb);
   }
@@ -152,18 +151,19 @@ class RobotSystem {
   const mapping::OccupancyMapConfig& map() const { return config_.mapping.map; }
 
  private:
-  class SimulatedScans;
+  class DisturbedDevice;
   void addRobotNodes();
   std::unique_ptr<Node> makeLearner(Bus& bus);
   void add(const std::string& name, VirtualBus::Factory factory);
 
   RobotConfig config_;
   Knowledge known_;
-  std::unique_ptr<Link> ins_line_, ins_device_;      ///< both ends of the INS line
-  std::unique_ptr<Link> motor_line_, motor_device_;  ///< both ends of the motor controller's line
+  std::unique_ptr<Link> ins_line_, ins_device_;        ///< both ends of the INS line
+  std::unique_ptr<Link> motor_line_, motor_device_;    ///< both ends of the motor controller's line
+  std::unique_ptr<Link> laser_line_, laser_device_;    ///< both ends of the range finder's line
+  std::unique_ptr<Link> ground_line_, ground_device_;  ///< the same of the one at the ground
   std::unique_ptr<sim::SimulatedDevices> devices_;
   std::function<void(lidar::RangeScan&)> disturb_scan_;
-  std::unique_ptr<SimulatedScans> scans_;
   MemoryStore ins_store_;
   MemoryStore learner_store_;
   std::unique_ptr<VirtualBus> bus_;  ///< last: its nodes refer to the rest

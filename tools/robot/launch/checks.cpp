@@ -229,7 +229,7 @@ std::vector<HostFinding> checkFolder(const FolderFacts& facts) {
     findings.push_back({true,
                         "the path " + facts.path + " is " +
                             std::to_string(facts.longest_socket - kMaxSocketPath) +
-                            " bytes too long for the supervisor's socket in it",
+                            " bytes too long for the socket in it",
                         "use a shorter folder with --run"});
   if (!facts.no_folder.empty()) {
     findings.push_back({true, facts.no_folder + " is a file or a link to nothing, not a folder",

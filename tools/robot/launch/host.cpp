@@ -347,7 +347,7 @@ void findForeign(const std::string& folder, FolderFacts& facts) {
 FolderFacts folderFacts(const RunPaths& paths) {
   FolderFacts facts;
   facts.path = paths.folder;
-  facts.longest_socket = paths.socket.size();
+  facts.longest_socket = paths.life.size();
   // A folder that is not there yet counts as writable if its nearest parent is.
   fs::path nearest = paths.folder;
   std::error_code none;
@@ -384,8 +384,6 @@ std::vector<HostFinding> checkHost(const LaunchFile& launch, const LaunchSetting
     findings.insert(findings.end(), more.begin(), more.end());
   };
   add(checkFolder(folderFacts(RunPaths(settings.run))));
-  if (findProgram("supervisord", "").empty())
-    findings.push_back(missingTool("supervisord", "supervisor"));
   if (findProgram("setpriv", "").empty()) findings.push_back(missingTool("setpriv", "util-linux"));
   add(checkKey(launch));
   if (const auto address = parseLcmUrl(launch.lcm_url)) {

@@ -43,7 +43,7 @@ void takeNamedKey(LaunchFile& launch);
 /// gets it; empty where the launch has none. Throws as readKey() does.
 std::string provideKey(const LaunchFile& launch);
 
-/// The lock of a run folder: held by tread-launch and by the supervisor that it starts.
+/// The lock of a run folder: held by tread-launch and by its supervisor.
 /** Two locks on one file. The one of flock(2) is passed on to the supervisor and is free only when
  * both have gone, also by SIGKILL; the one of fcntl(2) is tread-launch's own and tells its pid. */
 class RunLock {
@@ -64,13 +64,21 @@ class RunLock {
   int descriptor_ = -1;
 };
 
-/// Runs supervisord on the written configuration until it ends; tells on standard output what
-/// happens. Returns the exit code of tread-launch.
-/** Where `watch` is set, processes that hang are aborted, and told there and in the file
- * paths.hung. SIGINT, SIGTERM and SIGHUP stop everything in order. If the supervisor dies, its
- * processes become our children (PR_SET_CHILD_SUBREAPER): they are asked to end, and killed after
- * the longest stop_time. If we die, the supervisor gets SIGTERM and stops everything in order. */
-int supervise(const LaunchFile& launch, const RunPaths& paths, const RunLock& lock, bool watch);
+/// A process with the words that start it.
+struct SupervisedProcess {
+  LaunchProcess process;
+  std::vector<std::string> command;
+};
+
+/// Runs the processes until they are stopped; tells on standard output what happens. Returns the
+/// exit code of tread-launch.
+/** They are children of a supervisor, a process of its own (ProcessKeeper). Where `watch` is set,
+ * processes that hang are aborted, and told there and in the file paths.hung. SIGINT, SIGTERM and
+ * SIGHUP stop everything in order. If the supervisor dies, its processes become our children
+ * (PR_SET_CHILD_SUBREAPER): they are asked to end, and killed after the longest stop_time. If we
+ * die, the supervisor gets SIGTERM and stops everything in order. */
+int supervise(const std::string& name, const std::vector<SupervisedProcess>& processes,
+              const RunPaths& paths, const RunLock& lock, bool watch);
 
 /// Asks the tread-launch that runs in this folder to stop, and waits for it.
 int stopRun(const std::string& name, const RunPaths& paths);

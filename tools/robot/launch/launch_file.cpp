@@ -165,7 +165,7 @@ LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings) 
   reader.text("pre_drive", launch.pre_drive);
   launch.pre_drive = replaced(reader, "pre_drive", launch.pre_drive, placeholders);
   if (!launch.pre_drive.empty()) launch.pre_drive = absolutePath(launch.pre_drive, folder);
-  std::set<std::string> names{"supervisord"};  // whose log is beside theirs
+  std::set<std::string> names{"supervisor"};  // whose log is beside theirs
   for (ConfigReader& item : reader.sections("processes", true)) {
     launch.processes.push_back(readProcess(item, placeholders, folder));
     if (!names.insert(launch.processes.back().name).second)
@@ -175,6 +175,16 @@ LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings) 
   reader.finish();
   return launch;
 }
+
+RunPaths::RunPaths(const std::string& run)
+    : folder(run),
+      lock(run + "/lock"),
+      life(run + "/life.sock"),
+      hung(run + "/hung"),
+      status(run + "/status"),
+      pid(run + "/supervisor.pid"),
+      logs(run + "/log"),
+      supervisor_log(run + "/log/supervisor.log") {}
 
 std::vector<std::string> startCommand(const LaunchProcess& process, const std::string& program,
                                       const std::string& lcm_url, const std::string& key) {

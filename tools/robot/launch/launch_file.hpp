@@ -4,8 +4,6 @@
 
 #include <cstdint>
 #include <map>
-#include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -76,59 +74,15 @@ struct RunPaths {
 
   std::string folder;
   std::string lock;    ///< held while something runs here
-  std::string config;  ///< for supervisord
-  std::string socket;  ///< for supervisorctl
   std::string life;    ///< socket for signs of life
   std::string hung;    ///< which processes have hung since the start, one a line; may be absent
-  std::string pid;     ///< of supervisord
+  std::string status;  ///< how the processes are, one a line; there while something runs here
+  std::string pid;     ///< of the supervisor
   std::string logs;    ///< folder with one NAME.log a process
   std::string supervisor_log;
 };
 
-/// A unix socket's path may have 107 bytes; supervisord binds one with its pid behind it first.
-constexpr size_t kMaxSocketPath = 107 - 8;
-
-/// A process with the words that start it.
-struct SupervisedProcess {
-  LaunchProcess process;
-  std::vector<std::string> command;
-};
-
-/// The configuration of Debian's supervisor for one run; `as_root` if root runs it.
-/** Both supervisord and supervisorctl must work in the run folder. */
-std::string supervisorConfig(const std::string& name,
-                             const std::vector<SupervisedProcess>& processes, bool as_root);
-
-/// Words as one line that supervisor takes apart into the same words.
-std::string supervisorCommand(const std::vector<std::string>& words);
-
-/// A process that supervisord has started.
-struct Spawned {
-  std::string process;
-  int pid;
-};
-/// What a line of supervisord's log (version 4.2) says: that one was started, or has ended.
-std::optional<Spawned> spawnedIn(const std::string& log_line);
-std::optional<std::string> endedIn(const std::string& log_line);
-
-/// Turns supervisord's log (version 4.2) into a few lines for people: that all processes run, which
-/// one ended and how, that it runs again.
-class LaunchProgress {
- public:
-  LaunchProgress(std::string name, size_t processes);
-  /// What to print for a line of the log, if anything; `seconds` since the start.
-  std::optional<std::string> lineFor(const std::string& log_line, double seconds);
-  /// Whether a line of the log says that a process ended by itself.
-  static bool isEnd(const std::string& log_line);
-
- private:
-  std::optional<std::string> running(const std::string& process, double seconds);
-  std::optional<std::string> ended(const std::string& process, const std::string& how);
-
-  std::string name_;
-  size_t processes_;
-  std::set<std::string> ran_;        ///< have run at least once
-  std::map<std::string, int> ends_;  ///< how often in a row; absent = runs
-};
+/// A unix socket's path may have so many bytes.
+constexpr size_t kMaxSocketPath = 107;
 
 }  // namespace tread::launch

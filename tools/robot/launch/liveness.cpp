@@ -20,12 +20,8 @@ Liveness::Liveness(const std::vector<LaunchProcess>& processes) {
     if (!process.external) processes_[process.name] = process;
 }
 
-void Liveness::readLog(const std::string& log_line) {
-  if (const auto spawned = spawnedIn(log_line)) {
-    if (processes_.count(spawned->process) > 0) running_[spawned->process] = {spawned->pid};
-  } else if (const auto process = endedIn(log_line)) {
-    running_.erase(*process);
-  }
+void Liveness::started(const std::string& process, int pid) {
+  if (processes_.count(process) > 0) running_[process] = {pid};
 }
 
 void Liveness::hear(int pid, const std::string& lines) {

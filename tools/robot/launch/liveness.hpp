@@ -18,8 +18,8 @@ class Liveness {
   /// External processes give no signs and are not watched.
   explicit Liveness(const std::vector<LaunchProcess>& processes);
 
-  /// A line of supervisord's log: a process runs now, or does no more.
-  void readLog(const std::string& log_line);
+  void started(const std::string& process, int pid);
+  void ended(const std::string& process) { running_.erase(process); }
   /// What the process of this pid has said.
   void hear(int pid, const std::string& lines);
 

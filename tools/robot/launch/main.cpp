@@ -167,12 +167,10 @@ int start(const LaunchFile& launch, const Options& options) {
   std::optional<TcpRelay> relay;
   if (const auto address = parseLcmUrl(launch.lcm_url); address && address->provider == "tcpq")
     relay.emplace(address->port);
-  writeText(paths.config,
-            supervisorConfig(launch.name, withCommands(launch, settings), geteuid() == 0));
   std::cout << launch.name << ": starting " << launch.processes.size() << " processes; logs in "
             << paths.logs << std::endl;
   const Announcement announcement({launch.name, launch.lcm_url, launch.key});
-  return supervise(launch, paths, lock, !options.no_watchdog);
+  return supervise(launch.name, withCommands(launch, settings), paths, lock, !options.no_watchdog);
 }
 
 int only(const LaunchFile& launch, const Options& options) {
@@ -253,14 +251,15 @@ int timing(const LaunchFile& launch, const Options& options) {
 int status(const LaunchFile& launch, const RunPaths& paths) {
   if (!RunLock::isHeld(paths.lock)) {
     std::cout << launch.name << ": nothing runs in " << paths.folder << std::endl;
-    return 3;  // as systemctl and supervisorctl do
+    return 3;  // as systemctl does
   }
   for (const auto& [process, trouble] : troubles(launch))
     std::cout << process << trouble << std::endl;
-  std::ifstream hung(paths.hung);
-  for (std::string line; std::getline(hung, line);) std::cout << line << std::endl;
-  std::filesystem::current_path(paths.folder);
-  become({"supervisorctl", "--configuration", paths.config, "status"});
+  for (const std::string& path : {paths.hung, paths.status}) {
+    std::ifstream file(path);
+    for (std::string line; std::getline(file, line);) std::cout << line << std::endl;
+  }
+  return 0;
 }
 
 int run(int argc, char** argv) {

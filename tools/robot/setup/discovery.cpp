@@ -238,7 +238,7 @@ class Search {
   }
 
   bool askFinders(const std::string& address) {
-    for (const char* kind : {"velodyne", "sick_cola", "rplidar", "sick_lms2xx"}) {
+    for (const char* kind : {"velodyne", "sick_cola", "hokuyo", "rplidar", "sick_lms2xx"}) {
       try {
         lidar::checkDeviceAddress(kind, address);
       } catch (const std::invalid_argument&) {
@@ -246,35 +246,7 @@ class Search {
       }
       if (askFinder(kind, address)) return true;
     }
-    return askHokuyo(address);
-  }
-
-  /// Its scans come through a library that insists on its own process; what it is it says in text
-  /// (SCIP 2.0, PP).
-  bool askHokuyo(const std::string& address) {
-    try {
-      lidar::checkDeviceAddress("hokuyo", address);
-    } catch (const std::invalid_argument&) {
-      return false;
-    }
-    const auto link = opened(address);
-    if (!link) return false;
-    send(*link, "QT\nPP\n");
-    const std::string key = "\nDMAX:";  // greatest range [mm]
-    std::string told;
-    size_t at = std::string::npos;
-    for (const int64_t end = site_.now() + kAnswer; site_.now() < end; site_.pass(kLookEvery)) {
-      told += received(*link);
-      at = told.find(key);
-      if (at != std::string::npos && told.find('\n', at + 1) != std::string::npos) break;
-    }
-    if (at == std::string::npos) return false;
-    const double range = 1e-3 * std::strtod(told.c_str() + at + key.size(), nullptr);
-    if (!(range >= 0.5)) return false;
-    findings_.range_finder = {"hokuyo", address, "", 0.0};
-    findings_.range = std::min(range, 300.0);
-    person_.say("range finder: hokuyo on " + address + ", sees to " + fixed(range, 0) + " m");
-    return true;
+    return false;
   }
 
   bool askFinder(const std::string& kind, const std::string& address) {
@@ -297,6 +269,7 @@ class Search {
         told = shareThatTells(scan);
       }
     }
+    send(*link, device->farewell());
     if (scans < 2) return false;
     findings_.range_finder = {kind, address, "", 0.0};
     findings_.range = std::clamp(range, 0.5, 300.0);

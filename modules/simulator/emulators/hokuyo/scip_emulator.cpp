@@ -12,6 +12,7 @@ namespace {
 constexpr size_t kLineLength = 64;      // of measured values, without sum
 constexpr size_t kLongestCommand = 80;  // what is longer is forgotten
 constexpr uint32_t kNothingHit = 65533;
+constexpr uint32_t kMostOfTwo = 4095;  // of two characters
 constexpr uint32_t kNoMeasurement = 1;
 
 std::optional<int> digits(const std::string& text, size_t from, size_t count) {
@@ -56,12 +57,13 @@ ScipSettings scipSettingsOf(const LaserParameters& laser) {
   settings.front_step = (laser.beams - 1) / 2;
   const double step = laser.field_of_view / (laser.beams - 1);
   settings.steps_per_turn = static_cast<int>(std::lround(2.0 * kPi / step));
-  settings.turns_per_minute = static_cast<int>(60'000'000 / laser.period_us);
+  const double turn = static_cast<double>(laser.sweep_us) * 2.0 * kPi / laser.field_of_view;
+  settings.turns_per_minute = static_cast<int>(std::lround(6e7 / turn));
   return settings;
 }
 
 ScipEmulator::ScipEmulator(const ScipSettings& settings, uint64_t seed)
-    : settings_(settings), random_(seed) {}
+    : settings_(settings), random_(seed), scip1_(settings.scip1) {}
 
 void ScipEmulator::receive(std::string_view bytes, int64_t /*utime*/) {
   if (faults_.silent) return;
@@ -92,14 +94,28 @@ void ScipEmulator::answer(const std::string& line, const std::string& status,
   out_ += "\n";
 }
 
+/// SCIP 1.1: one character of status, without a sum; of its commands only the way out.
+bool ScipEmulator::runInScip1(const std::string& line) {
+  if (!scip1_) return false;
+  scip1_ = line != "SCIP2.0";
+  out_ += line + (scip1_ ? "\nE\n\n" : "\n0\n\n");
+  return true;
+}
+
 void ScipEmulator::runLine(const std::string& line) {
+  if (runInScip1(line)) return;
   // A note after ';' belongs to the echo, not to the command.
   const std::string command = line.substr(0, line.find(';'));
   const std::string name = command.substr(0, 2);
-  if (name == "MD") return startMeasuring(line);
+  if (name == "MD" || name == "MS") return startMeasuring(line);
+  if (name == "II")
+    return answer(line, "00",
+                  {"MODL:" + settings_.model, std::string("LASR:") + (laser_on_ ? "ON" : "OFF"),
+                   faults_.ill ? "STAT:Malfunction 005" : "STAT:Sensor works well."});
   if (name == "PP") return answer(line, "00", parameterLines());
   if (name == "VV") return answer(line, "00", versionLines());
   if (name == "BM") {
+    if (faults_.ill) return answer(line, "01");
     const bool was_on = std::exchange(laser_on_, true);
     return answer(line, was_on ? "02" : "00");
   }
@@ -146,6 +162,7 @@ std::string ScipEmulator::parseRequest(const std::string& line, Request& request
   if (!count) return "07";
   request = {command.substr(0, 13),
              line.substr(command.size()),
+             command[1] == 'S' ? 2 : 3,
              *first,
              *last,
              std::max(1, *cluster),
@@ -177,12 +194,25 @@ void ScipEmulator::add(const LaserScan& scan) {
   if (faults_.garbage) {
     for (uint64_t i = random_() % 30; i > 0; --i) out_ += static_cast<char>(random_() % 256);
   }
-  std::string out = request.command + twoDigits(request.count) + request.note + "\n99b\n";
+  const std::string echo = request.command + twoDigits(request.count) + request.note + "\n";
+  std::string out = echo + "99b\n";
   const size_t values = out.size();
   appendScan(out, scan, request);
-  if (faults_.bad_sums) out[values + random_() % (out.size() - values)] ^= 0x05;
-  out_ += out;
+  spoil(out, values);
+  out_ += faults_.trouble ? echo + "50U\n\n" : out;
   if (!request.endless && request.count == 0) streaming_.reset();
+}
+
+/// `values`: where they begin.
+void ScipEmulator::spoil(std::string& scan, size_t values) {
+  const bool draws = faults_.bad_sums || faults_.dropped_byte;
+  const size_t at = draws ? values + random_() % (scan.size() - values) : values;
+  if (faults_.bad_sums) scan[at] ^= 0x05;
+  if (faults_.dropped_byte) scan.erase(at, 1);
+  if (faults_.half_scan) scan.erase(scan.size() / 2);
+  if (!faults_.repeats) return first_scan_.clear();
+  if (first_scan_.empty()) first_scan_ = scan;
+  scan = first_scan_;
 }
 
 void ScipEmulator::appendScan(std::string& out, const LaserScan& scan,
@@ -213,7 +243,8 @@ std::string ScipEmulator::rangesOf(const LaserScan& scan, const Request& request
         nearest = std::min(nearest, static_cast<uint32_t>(std::lround(1000.0 * range)));
       }
     }
-    text += scipEncode(nearest, 3);
+    if (request.characters == 2) nearest = std::min(nearest, kMostOfTwo);
+    text += scipEncode(nearest, request.characters);
   }
   return text;
 }

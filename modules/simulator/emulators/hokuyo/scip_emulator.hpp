@@ -16,13 +16,14 @@ namespace tread::sim {
 struct ScipSettings {
   std::string model = "UTM-30LX-EW (emulated)";
   std::string serial_number = "T0000001";
-  int range_min_mm = 100;      ///< DMIN
-  int range_max_mm = 15000;    ///< DMAX
-  int steps_per_turn = 720;    ///< ARES
-  int first_step = 0;          ///< AMIN
-  int last_step = 540;         ///< AMAX
-  int front_step = 270;        ///< AFRT
-  int turns_per_minute = 600;  ///< SCAN
+  int range_min_mm = 100;       ///< DMIN
+  int range_max_mm = 15000;     ///< DMAX
+  int steps_per_turn = 720;     ///< ARES
+  int first_step = 0;           ///< AMIN
+  int last_step = 540;          ///< AMAX
+  int front_step = 270;         ///< AFRT
+  int turns_per_minute = 2400;  ///< SCAN: of its mirror, also where it leaves turns out
+  bool scip1 = false;           ///< speaks SCIP 1.1 until it is switched to 2.0
 };
 
 /// Settings that fit a simulated laser.
@@ -30,16 +31,21 @@ ScipSettings scipSettingsOf(const LaserParameters& laser);
 
 /// What is wrong with the device or its line.
 struct ScipFaults {
-  bool silent = false;    ///< hears and says nothing
-  bool garbage = false;   ///< random bytes between scans
-  bool bad_sums = false;  ///< one byte of each scan is another: its sum does not fit
+  bool silent = false;        ///< hears and says nothing
+  bool garbage = false;       ///< random bytes between scans
+  bool bad_sums = false;      ///< one byte of each scan is another: its sum does not fit
+  bool dropped_byte = false;  ///< one byte of each scan is missing
+  bool half_scan = false;     ///< the second half of each scan is missing
+  bool repeats = false;       ///< the first scan again, with its time
+  bool ill = false;           ///< its laser does not come on
+  bool trouble = false;       ///< a status in the place of each scan
 };
 
 /// A laser range finder that speaks SCIP 2.0, byte by byte; good behind TCP or a serial line.
-/** Commands end with LF or CR: QT RS BM HS SS PP VV MD and SCIP2.0. An answer is the
+/** Commands end with LF or CR: QT RS BM HS SS PP VV II MD MS and SCIP2.0. An answer is the
    command's echo, a status with its sum, lines each with a sum, and an empty line. Ranges are three
-   characters (18 bits, mm); 65533 stands for nothing hit, 1 for no measurement. MD switches the
-   laser on. */
+   characters (18 bits, mm), after MS two; 65533 (4095) stands for nothing hit, 1 for no
+   measurement. MD and MS switch the laser on. */
 class ScipEmulator final : public LaserEmulator {
  public:
   ScipEmulator(const ScipSettings& settings, uint64_t seed);
@@ -52,10 +58,11 @@ class ScipEmulator final : public LaserEmulator {
   void setFaults(const ScipFaults& faults) { faults_ = faults; }
 
  private:
-  /// A measurement request: MD with its fields.
+  /// A measurement request: MD or MS with its fields.
   struct Request {
     std::string command;  ///< as received, without the count
     std::string note;     ///< text after ';'
+    int characters = 3;   ///< a range
     int first = 0;
     int last = 0;
     int cluster = 1;
@@ -67,7 +74,9 @@ class ScipEmulator final : public LaserEmulator {
   void runLine(const std::string& line);
   void answer(const std::string& line, const std::string& status,
               const std::vector<std::string>& lines = {});
+  bool runInScip1(const std::string& line);
   void startMeasuring(const std::string& line);
+  void spoil(std::string& scan, size_t values);
   std::string parseRequest(const std::string& line, Request& request) const;
   std::string rangesOf(const LaserScan& scan, const Request& request) const;
   void appendScan(std::string& out, const LaserScan& scan, const Request& request) const;
@@ -80,6 +89,8 @@ class ScipEmulator final : public LaserEmulator {
   std::string line_;
   std::string out_;
   bool laser_on_ = false;
+  bool scip1_;
+  std::string first_scan_;  ///< while it repeats
   std::optional<Request> streaming_;
   int skipped_ = 0;
 };

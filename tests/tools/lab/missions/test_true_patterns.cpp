@@ -177,4 +177,7 @@ TEST_CASE("what is set on the command line stands in the place of the robot's fi
                     Catch::Contains("--set planer.margins.growth=0") && Catch::Contains("planner"));
   CHECK_THROWS_WITH(readRobot(folder, {"planner"}), Catch::Contains("PROCESS.KEY=VALUE"));
   CHECK_THROWS_WITH(readRobot(folder, {"planner.margins.growth=-1"}), Catch::Contains("growth"));
+  CHECK_THROWS_WITH(readRobot(folder, {"lidar_driver.device=carmen"}),
+                    Catch::Contains("lidar_driver.yaml") &&
+                        Catch::Contains("no range finder 'carmen' can be simulated"));
 }

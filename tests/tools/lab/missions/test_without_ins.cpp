@@ -97,12 +97,13 @@ TEST_CASE("without scan matching the same silence stops the robot") {
 }
 
 TEST_CASE("a robot without an INS drives missions by its range finder alone") {
-  Drive drive(readRobot(kRobot), 14);
+  Drive drive(readRobot(kRobot), 309);
   drive.runToEnd();
   const MissionResult result = drive.watch.result();
   INFO(result.reason);
   CHECK(result.outcome == MissionOutcome::kArrived);
   CHECK(drive.worst < 0.5);
+  CHECK(drive.error <= 2.0 * drive.told);
 }
 
 // Not part of the tests: the figures of RESULTS.md.

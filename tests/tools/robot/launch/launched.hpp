@@ -109,7 +109,7 @@ class Launched {
     return 0;
   }
   int supervisor() const {
-    const std::string text = contentOf(run() / "supervisord.pid");
+    const std::string text = contentOf(run() / "supervisor.pid");
     return text.empty() ? 0 : std::stoi(text);
   }
 

@@ -113,7 +113,7 @@ TEST_CASE("mistakes in a launch file are named with file and line") {
              StartsWith("r.yaml:3:") && Contains("has a meaning already"));
   CHECK_THAT(mistake("name: r\nprocesses:\n  - {name: p, program: x, external: true, config: y}\n"),
              StartsWith("r.yaml:3:") && Contains("an external one takes it in arguments"));
-  CHECK_THAT(mistake("name: r\nprocesses:\n  - {name: supervisord, program: x}\n"),
+  CHECK_THAT(mistake("name: r\nprocesses:\n  - {name: supervisor, program: x}\n"),
              Contains("is taken"));
 }
 

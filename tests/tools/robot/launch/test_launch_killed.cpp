@@ -19,7 +19,7 @@ TEST_CASE("a killed supervisor leaves no process behind, not even one that does 
   CHECK(launch.exitCode() == 1);
   CHECK(launched.pids().empty());
   CHECK(launched.says("trial: the supervisor was killed by signal 9, so everything is stopped"));
-  CHECK_THAT(contentOf(launched.run() / "log/supervisord.log"), !Contains("stopped:"));
+  CHECK_THAT(contentOf(launched.run() / "log/supervisor.log"), !Contains("stopped:"));
 }
 
 TEST_CASE("a killed tread-launch takes its supervisor and all processes with it") {

@@ -113,7 +113,7 @@ TEST_CASE("a port that is in use is named with its remedy before anything is sta
 }
 
 TEST_CASE("the simulated robot starts, records, and leaves no process when its supervisor dies") {
-  // What supervisord expands, what ends its words, and what begins its comments.
+  // What shells and configuration files would expand.
   const Place place("100% \"odd\" %(here)s it's;");
   const fs::path run = place.folder / "run";
   const fs::path output = place.folder / "output.txt";
@@ -136,7 +136,7 @@ TEST_CASE("the simulated robot starts, records, and leaves no process when its s
   fs::remove(output);
   Process launch("tread-launch", place.simulated(), output);
   REQUIRE(says("simulated: all 8 processes run after"));
-  kill(std::stoi(contentOf(run / "supervisord.pid")), SIGKILL);
+  kill(std::stoi(contentOf(run / "supervisor.pid")), SIGKILL);
   CHECK(launch.waitFor(20));
   CHECK(workersIn(run).empty());
   CHECK(fs::exists(run / "log/robot.lcmlog.1"));

@@ -46,10 +46,10 @@ TEST_CASE("processes start, one that is killed comes back, and all are gone afte
   CHECK(launch.exitCode() == 0);
   CHECK(launched.says("trial: stopped after"));
   CHECK(launched.pids().empty());
-  CHECK_FALSE(std::filesystem::exists(launched.run() / "supervisor.sock"));
+  CHECK_FALSE(std::filesystem::exists(launched.run() / "life.sock"));
   // They were asked, not killed, the last one first.
   CHECK_THAT(contentOf(launched.run() / "log/p0.log"), Contains("ends by signal 2"));
-  const std::string log = contentOf(launched.run() / "log/supervisord.log");
+  const std::string log = contentOf(launched.run() / "log/supervisor.log");
   CHECK(log.find("stopped: p1 (exit status 0)") < log.find("stopped: p0 (exit status 0)"));
 }
 

@@ -28,26 +28,11 @@ using Lines = std::vector<std::string>;
 
 }  // namespace
 
-TEST_CASE("the supervisor's log says which process runs as which pid, and which has ended") {
-  const auto spawned =
-      spawnedIn("2026-11-24 01:00:00,123 INFO spawned: 'motor-bridge' with pid 4711");
-  REQUIRE(spawned);
-  CHECK(spawned->process == "motor-bridge");
-  CHECK(spawned->pid == 4711);
-  CHECK(endedIn("2026-11-24 01:00:00,123 INFO exited: a-b (exit status 1; not expected)") == "a-b");
-  CHECK(endedIn("2026-11-24 01:00:00,123 INFO stopped: a-b (exit status 0)") == "a-b");
-  for (const char* line : {"INFO supervisord started with pid 12", "INFO success: a entered", "",
-                           "INFO spawned: 'a' with pid many"}) {
-    CHECK_FALSE(spawnedIn(line));
-    CHECK_FALSE(endedIn(line));
-  }
-}
-
 TEST_CASE(
     "a process that has beaten is aborted after its watchdog, killed 1 s later, then watched "
     "anew") {
   Liveness liveness({named("planner"), named("logger")});
-  liveness.readLog("INFO spawned: 'planner' with pid 7");
+  liveness.started("planner", 7);
   liveness.hear(7, "READY=1\nWATCHDOG=1");
   CHECK(told(liveness, 1.5).empty());
   liveness.hear(7, kBeat);
@@ -56,9 +41,9 @@ TEST_CASE(
   CHECK(told(liveness, 0.4) == Lines{"planner hangs: no sign of life for 2.0 s; it is aborted"});
   CHECK(told(liveness, 0.7).empty());
   CHECK(told(liveness, 0.4) == Lines{"planner does not end and is killed"});
-  liveness.readLog("INFO exited: planner (terminated by SIGKILL; not expected)");
+  liveness.ended("planner");
   CHECK(told(liveness, 100.0).empty());
-  liveness.readLog("INFO spawned: 'planner' with pid 9");
+  liveness.started("planner", 9);
   liveness.hear(9, kBeat);
   CHECK(told(liveness, 1.8).empty());
   CHECK(told(liveness, 0.4).size() == 1);
@@ -66,11 +51,11 @@ TEST_CASE(
 
 TEST_CASE("at its start a process has its start time, at its end its stop time") {
   Liveness liveness({named("planner")});
-  liveness.readLog("INFO spawned: 'planner' with pid 7");
+  liveness.started("planner", 7);
   liveness.hear(7, "STATUS=OK");
   CHECK(told(liveness, 29.5).empty());
   CHECK(told(liveness, 1.0) == Lines{"planner has not become ready within 30.0 s; it is aborted"});
-  liveness.readLog("INFO spawned: 'planner' with pid 8");
+  liveness.started("planner", 8);
   liveness.hear(8, kBeat);
   liveness.hear(8, "STOPPING=1");
   CHECK(told(liveness, 4.5).empty());
@@ -83,8 +68,8 @@ TEST_CASE("who is not watched, and what is not ours, may be silent for ever") {
   LaunchProcess external = named("external");
   external.external = true;
   Liveness liveness({unwatched, external});
-  liveness.readLog("INFO spawned: 'unwatched' with pid 7");
-  liveness.readLog("INFO spawned: 'external' with pid 8");
+  liveness.started("unwatched", 7);
+  liveness.started("external", 8);
   liveness.hear(7, kBeat);
   CHECK(told(liveness, 1000.0).empty());
 }

@@ -46,9 +46,9 @@ class LaunchedRobot {
   bool says(const std::string& text, double seconds) {
     return run->until(seconds, [&] { return contentOf(output()).find(text) != std::string::npos; });
   }
-  /// By supervisord's log: the last one that was started under this name.
+  /// By the supervisor's log: the last one that was started under this name.
   int pidOf(const std::string& process) const {
-    const std::string log = contentOf(folder() + "/log/supervisord.log");
+    const std::string log = contentOf(folder() + "/log/supervisor.log");
     const std::string mark = "spawned: '" + process + "' with pid ";
     const size_t at = log.rfind(mark);
     return at == std::string::npos ? 0 : std::stoi(log.substr(at + mark.size()));

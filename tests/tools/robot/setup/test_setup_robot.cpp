@@ -265,19 +265,21 @@ TEST_CASE("a range finder that sees nothing around it is told at once, not at th
   }
 }
 
-TEST_CASE("a Hokuyo is found by what it says of itself") {
-  const char* const port = "tcp:192.168.0.10:10940";
-  HiddenMachine hidden = machine("roboteq", "grass", 3);
-  hidden.settings.device = "hokuyo";
-  hidden.laser_port = port;
-  VirtualSite site(hidden);
-  VirtualPerson person(site, kAnswers);
-  RobotFindings findings = described();
-  discover(site, person, findings);
-  CAPTURE(port, person.heard());
-  CHECK(findings.range_finder.kind == "hokuyo");
-  CHECK(findings.range_finder.address.rfind(port, 0) == 0);
-  CHECK(findings.range == Approx(20.0).margin(0.1));
+TEST_CASE("a Hokuyo is found by its scans, on the network and on a serial line") {
+  for (const char* port : {"tcp:192.168.0.10:10940", "tty:/dev/ttyACM1"}) {
+    HiddenMachine hidden = machine("roboteq", "grass", 3);
+    hidden.settings.device = "hokuyo";
+    hidden.laser_port = port;
+    VirtualSite site(hidden);
+    VirtualPerson person(site, kAnswers);
+    RobotFindings findings = described();
+    discover(site, person, findings);
+    CAPTURE(port, person.heard());
+    CHECK(findings.range_finder.kind == "hokuyo");
+    CHECK(findings.range_finder.address.rfind(port, 0) == 0);
+    CHECK(findings.range == Approx(20.0).margin(0.1));
+    CHECK(findings.beams_that_tell > kLeastTelling);
+  }
 }
 
 TEST_CASE("a Sabertooth that never answers, an INS turned by a quarter: to the first goal") {

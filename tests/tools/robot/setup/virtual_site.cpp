@@ -8,7 +8,6 @@
 #include "modules/ins_driver/ins_driver_node.hpp"
 #include "modules/learner/learner_node.hpp"
 #include "modules/lidar_driver/lidar_driver_node.hpp"
-#include "modules/lidar_driver/link_source.hpp"
 #include "modules/mapping/mapping_node.hpp"
 #include "modules/motor_bridge/motor_bridge_node.hpp"
 #include "modules/planner/planner_node.hpp"
@@ -86,6 +85,9 @@ class VirtualSite::PortLink : public Link {
   }
   bool isOpen() const override { return line_ == nullptr || line_->isOpen(); }
   bool reopen(int64_t utime) override { return line_ == nullptr || line_->reopen(utime); }
+  void close() override {
+    if (line_ != nullptr) line_->close();
+  }
   const std::string& address() const override { return address_; }
   std::string problem() const override { return line_ == nullptr ? "" : line_->problem(); }
 
@@ -122,10 +124,9 @@ class VirtualSite::Running : public RunningRobot {
  private:
   void addAll() {
     const auto lidar = readProcess(folder_, "lidar_driver", lidar::readLidarDriverConfig);
-    scans_ = std::make_unique<lidar::LinkSource>(
-        [this, address = lidar.address] { return site_.open(address); }, lidar.device.make());
+    laser_ = site_.open(lidar.address);
     add("lidar_driver", {200, 300}, [this, lidar](Bus& bus) {
-      return std::make_unique<lidar::LidarDriverNode>(lidar, bus, *scans_);
+      return std::make_unique<lidar::LidarDriverNode>(lidar, bus, *laser_);
     });
     const auto mapping = readProcess(folder_, "mapping", mapping::readMappingConfig);
     add("mapping", {8'000, 1'700},
@@ -145,8 +146,7 @@ class VirtualSite::Running : public RunningRobot {
 
   VirtualSite& site_;
   std::string folder_;
-  std::unique_ptr<Link> ins_, motor_;
-  std::unique_ptr<lidar::LinkSource> scans_;
+  std::unique_ptr<Link> ins_, motor_, laser_;
 };
 
 VirtualSite::VirtualSite(const HiddenMachine& machine)

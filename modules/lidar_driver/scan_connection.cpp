@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/lidar_driver/link_source.hpp"
+#include "modules/lidar_driver/scan_connection.hpp"
 
 #include <array>
 
@@ -9,38 +9,47 @@ namespace {
 
 /// A device that floods us is cut off here until the next step.
 constexpr size_t kMaxBytesPerStep = 65536;
+/// [us] from a connection that brought no scan to the next: a peer may close each one at once.
+constexpr int64_t kPause = 500'000;
 
 }  // namespace
 
-std::vector<RangeScan> LinkSource::take(int64_t utime) {
+ScanConnection::~ScanConnection() {
+  if (!device_ || !was_open_ || !link_->isOpen()) return;
+  const std::string bytes = device_->farewell();
+  link_->write(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size());
+}
+
+std::vector<RangeScan> ScanConnection::take(int64_t utime) {
   if (keepOpen(utime)) {
     read(utime);
     const std::string request = device_->poll(utime);
     link_->write(reinterpret_cast<const uint8_t*>(request.data()), request.size());
   }
-  return device_->take(utime);
+  std::vector<RangeScan> scans = device_->take(utime);
+  scanned_ = scanned_ || !scans.empty();
+  return scans;
 }
 
-bool LinkSource::keepOpen(int64_t utime) {
-  if (device_->lost()) {
-    // Links have no close: one that is made anew begins with a new connection.
+bool ScanConnection::keepOpen(int64_t utime) {
+  if (device_->lost()) link_->close();
+  if (was_open_ && !link_->isOpen()) {
     device_->close();
     was_open_ = false;
-    link_.reset();
-    link_ = make_link_();
+    open_from_ = utime + (scanned_ ? 0 : kPause);
   }
-  const bool open = link_->isOpen() || link_->reopen(utime);
-  if (was_open_ && !open) device_->close();
-  if (!was_open_ && open) {
+  if (!link_->isOpen() && (utime < open_from_ || !link_->reopen(utime))) return false;
+  if (!was_open_) {
     ++connections_;
+    scanned_ = false;
     device_->open(utime);
   }
-  was_open_ = open;
-  if (open) last_open_ = utime;
-  return open;
+  was_open_ = true;
+  last_open_ = utime;
+  return true;
 }
 
-void LinkSource::read(int64_t utime) {
+void ScanConnection::read(int64_t utime) {
   std::array<uint8_t, 4096> buffer;
   for (size_t total = 0; total < kMaxBytesPerStep && device_->hungry();) {
     const auto size = link_->read(buffer.data(), buffer.size());
@@ -51,14 +60,14 @@ void LinkSource::read(int64_t utime) {
 }
 
 /// Whoever asks has the address already.
-std::string LinkSource::linkProblem() const {
+std::string ScanConnection::linkProblem() const {
   const std::string problem = link_->problem();
   const std::string address = link_->address() + ": ";
   return problem.compare(0, address.size(), address) == 0 ? problem.substr(address.size())
                                                           : problem;
 }
 
-Reason LinkSource::reason(int64_t utime, bool /*ground*/) const {
+Reason ScanConnection::reason(int64_t utime) const {
   // What a file held does not grow old: nothing more comes of it.
   const bool file = link_->address().rfind("file:", 0) == 0;
   Reason reason = device_->reason(file && !was_open_ ? last_open_ : utime);
@@ -69,7 +78,7 @@ Reason LinkSource::reason(int64_t utime, bool /*ground*/) const {
   return reason;
 }
 
-std::map<std::string, int64_t> LinkSource::counters() const {
+std::map<std::string, int64_t> ScanConnection::counters() const {
   std::map<std::string, int64_t> counters = device_->counters();
   counters["connections"] = connections_;
   return counters;
