@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kLeastSlide = 0.25;  // [m/s] as the learner's
 constexpr double kSlideShare = 0.15;  // [1] of the speed
-constexpr double kStep = 0.1;         // [s]
+constexpr double kSlideStep = 0.1;         // [s]
 constexpr double kStands = 0.05;      // [m/s]
 constexpr double kBetter = 0.1;       // [m/s] less is no better
 
@@ -40,8 +40,8 @@ bool slides(const Twist2& measured, const Twist2& asked) {
 std::vector<AskedMotion> askedFrom(const MotionPattern& pattern, double period, double time) {
   std::vector<AskedMotion> asked;
   const double end = period * static_cast<double>(pattern.trajectory.size());
-  for (double t = std::max(0.0, time); t < end - 1e-6; t += kStep) {
-    const double seconds = std::min(kStep, end - t);
+  for (double t = std::max(0.0, time); t < end - 1e-6; t += kSlideStep) {
+    const double seconds = std::min(kSlideStep, end - t);
     const Pose2 from = poseAlong(pattern.trajectory, period, t);
     const Pose2 to = poseAlong(pattern.trajectory, period, t + seconds);
     asked.push_back({twistTo(between(from, to), seconds), seconds});
@@ -54,7 +54,7 @@ double impactSpeed(const CollisionChecker& around, Sliding vehicle,
   for (const AskedMotion& motion : asked)
     if (!slideOn(around, motion.v_body, vehicle, motion.seconds)) return vehicle.v_map.norm();
   while (vehicle.v_map.norm() > kStands)
-    if (!slideOn(around, {}, vehicle, kStep)) return vehicle.v_map.norm();
+    if (!slideOn(around, {}, vehicle, kSlideStep)) return vehicle.v_map.norm();
   return 0.0;
 }
 
