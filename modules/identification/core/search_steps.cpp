@@ -482,8 +482,11 @@ bool replaceMoved(const SearchState& search, std::vector<MovedTerm>& moved) {
   std::optional<FitState> best;
   std::string single;
   TwoChanges gone;
-  for (const TwoChanges& pair : pairsOfChanges(search, moved))
-    for (const Single& one : imitated(search)) {
+  const std::vector<TwoChanges> pairs = pairsOfChanges(search, moved);
+  if (pairs.empty()) return false;
+  const std::vector<Single> singles = imitated(search);
+  for (const TwoChanges& pair : pairs)
+    for (const Single& one : singles) {
       if (search.isCutShort()) break;
       FitState tried = inPlaceOf(search, pair, moved, one.candidate);
       if (anyOnBound(tried, {one.candidate.effect}) || (best && tried.loss >= best->loss) ||
