@@ -139,7 +139,8 @@ void Bus::noteReceipt(const ChannelSpec& spec, int64_t utime, int64_t seq) {
   }
   // Differences are taken so that the numbers of a broken message cannot overflow.
   if (spec.max_age_ms > 0 && utime < now() - spec.max_age_ms * int64_t{1000}) ++statistics_.late;
-  // Several publishers share HEALTH, CONFIG, ESTOP, FENCE and MARK, so a gap says nothing there.
+  // Several publishers share HEALTH, CONFIG, ESTOP, FENCE, FENCES and MARK, so a gap says nothing
+  // there.
   const bool one_publisher = std::string(spec.publisher).find("every") == std::string::npos &&
                              std::string(spec.publisher) != "anyone";
   if (one_publisher && seq >= 0 && seq <= kLargestSeq) noteLoss(spec, utime, seq);

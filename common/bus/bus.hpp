@@ -286,7 +286,6 @@ class HealthReporter {
   /// Sets a named counter, for instance {"refused: wrong checksum", 3}.
   void setCounter(const std::string& name, int64_t value);
   void addToCounter(const std::string& name, int64_t increment = 1);
-  /// For counters of what comes and goes: HEALTH has its size.
   /// Call in each step.
   void step(int64_t utime);
 

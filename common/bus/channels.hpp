@@ -76,7 +76,7 @@ inline constexpr Channel<manual_t> kManual{{"MANUAL", "manual_t", "tread-drive",
 inline constexpr Channel<estop_t> kEstop{{"ESTOP", "estop_t", "anyone", 0, 0, 1000}};
 inline constexpr Channel<fence_t> kFence{{"FENCE", "fence_t", "anyone", 0, 0, 1500}};
 inline constexpr Channel<fences_t> kFences{
-    {"FENCES", "fences_t", "planner, motor_bridge", 1, 3000, 15000}};
+    {"FENCES", "fences_t", "every keeper of fences", 1, 3000, 15000}};
 inline constexpr Channel<mark_t> kMark{{"MARK", "mark_t", "anyone", 0, 0, 1000}};
 inline constexpr Channel<config_t> kConfig{{"CONFIG", "config_t", "every process", 0.1, 0, 60000}};
 

@@ -111,4 +111,10 @@ StopReason stopReasonFrom(int16_t number) {
   return rowOf(reason) == nullptr ? StopReason::kUnsaid : reason;
 }
 
+StopReason stopReasonOf(const std::string& words) {
+  for (const Row& row : kRows)
+    if (row.reason != StopReason::kUnsaid && words == row.sentence) return row.reason;
+  return StopReason::kUnsaid;
+}
+
 }  // namespace tread

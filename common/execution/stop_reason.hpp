@@ -113,6 +113,10 @@ const char* sentenceOf(StopReason reason);
 /// The reason with a number from a message; kUnsaid for one that this version does not know.
 StopReason stopReasonFrom(int16_t number);
 
+/// The reason of which these words are the whole sentence; kNone without words, else kUnsaid.
+/** Only for logs of before the codes: nothing else decides by words. */
+StopReason stopReasonOf(const std::string& words);
+
 /// Whether nothing is wrong: a stop that was planned, a state at the start.
 inline bool isOrdinary(StopReason reason) {
   return reason == StopReason::kNone || reason >= StopReason::kNotArmedYet;

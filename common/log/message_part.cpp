@@ -29,13 +29,14 @@ uint64_t partOf(const LogEvent& event) {
     return static_cast<uint64_t>(part.part);
   };
   const auto ofFence = [&](const fence_t& fence) { return hash(fence.fence_name); };
+  const auto ofKeeper = [&](const fences_t& fences) { return hash(fences.keeper); };
   const auto ofHealth = [&](const health_t& health) { return hash(health.process); };
   const auto ofConfig = [&](const config_t& config) { return hash(config.config_process); };
   uint64_t part = 0;
-  const bool has_parts = isOn(event, kMap, ofTile, part) || isOn(event, kPatternSet, ofSet, part) ||
-                         isOn(event, kFence, ofFence, part) ||
-                         isOn(event, kHealth, ofHealth, part) ||
-                         isOn(event, kConfig, ofConfig, part);
+  const bool has_parts =
+      isOn(event, kMap, ofTile, part) || isOn(event, kPatternSet, ofSet, part) ||
+      isOn(event, kFence, ofFence, part) || isOn(event, kFences, ofKeeper, part) ||
+      isOn(event, kHealth, ofHealth, part) || isOn(event, kConfig, ofConfig, part);
   return has_parts ? part : 0;
 }
 

@@ -25,10 +25,7 @@ motor_t renewed(const tread_before::motor_t& old) {
   message.execution_id = old.execution_id;
   message.command_index = old.command_index;
   message.bridge_state = old.bridge_state;
-  // Imported logs say so of stretches that nothing may be learned from.
-  const bool by_operator = old.state_reason == sentenceOf(StopReason::kOperatorDrives);
-  message.state_code =
-      static_cast<int16_t>(by_operator ? StopReason::kOperatorDrives : StopReason::kUnsaid);
+  message.state_code = static_cast<int16_t>(stopReasonOf(old.state_reason));
   message.state_reason = old.state_reason;
   message.channel_kind[0] = message.channel_kind[1] = old.motor_command_kind;
   message.command[0] = old.command_left;

@@ -47,8 +47,8 @@ std::vector<Fence> fencesFrom(const fences_t& message) {
 
 FenceExchange::FenceExchange(Bus& bus, std::string process, const std::string& other, Taker take)
     : bus_(bus), process_(std::move(process)) {
-  bus.overhear<fences_t>(kFences, [other, take = std::move(take)](const fences_t& message) {
-    if (message.keeper != other) return;
+  bus.overhear<fences_t>(kFences, [this, other, take = std::move(take)](const fences_t& message) {
+    if (message.keeper != other || bus_.now() - removed_at_ < kForget) return;
     const std::vector<Fence> fences = fencesFrom(message);
     const auto own = static_cast<size_t>(std::max(0, message.num_own));
     for (size_t i = own; i < fences.size(); ++i) take({other, false, fences[i]});
@@ -57,6 +57,8 @@ FenceExchange::FenceExchange(Bus& bus, std::string process, const std::string& o
 
 void FenceExchange::step(const FenceBook& book) {
   if (book.revision() == revision_ && bus_.now() < next_) return;
+  if (book.fences().size() < kept_) removed_at_ = bus_.now();
+  kept_ = book.fences().size();
   revision_ = book.revision();
   next_ = bus_.now() + kPeriod;
   auto message = blank<fences_t>();

@@ -34,10 +34,15 @@ class FenceExchange {
   void step(const FenceBook& book);
 
  private:
+  /// [us] after a removal the other may not have heard of it yet.
+  static constexpr int64_t kForget = 1'000'000;
+
   Bus& bus_;
   std::string process_;
   int64_t next_ = 0;  ///< [us]
   int64_t revision_ = -1;
+  size_t kept_ = 0;
+  int64_t removed_at_ = -kForget;  ///< [us]
   int64_t seq_ = 0;
 };
 

@@ -3,9 +3,12 @@
 #include "common/types/renewal.hpp"
 
 #include <algorithm>
+#include <cstdlib>
+#include <stdexcept>
 
 #include <nlohmann/json.hpp>
 
+#include "common/execution/stop_reason.hpp"
 #include "common/types/message_json.hpp"
 
 namespace tread {
@@ -16,6 +19,8 @@ extern const char* const kTypesBefore[];
 namespace {
 
 using Json = nlohmann::json;
+
+const std::string kCode = "_code";
 
 const std::vector<MessageTypes>& typesBefore() {
   static const std::vector<MessageTypes> types = [] {
@@ -31,20 +36,14 @@ bool endsWith(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/// Of a field that a message does not have; arrays of no fixed length are new with their length 0.
-Json unknownOf(const MessageField& field) {
-  if (!field.lengths.empty()) return Json::array();
-  if (field.type == "string") return "";
-  if (field.type == "boolean") return false;
-  if (field.type == "float" || field.type == "double") return "NaN";
-  return endsWith(field.name, "_code") ? -1 : 0;
-}
+Json unknownOf(const MessageField& field, const Json& message);
 
+/// A message of a type with what is known of it.
 void fillMissing(Json& message, const MessageType& type) {
   for (const MessageField& field : type.fields) {
     const auto member = message.find(field.name);
     if (member == message.end()) {
-      message[field.name] = unknownOf(field);
+      message[field.name] = unknownOf(field, message);
       continue;
     }
     const MessageType* const inner = treadTypes().find(field.type);
@@ -53,6 +52,40 @@ void fillMissing(Json& message, const MessageType& type) {
     if (member->is_array())
       for (Json& each : *member) fillMissing(each, *inner);
   }
+}
+
+/// The words that stand beside a code: state_code has state_reason, reason_code has reason.
+StopReason codeBeside(const std::string& field, const Json& message) {
+  const std::string stem = field.substr(0, field.size() - kCode.size());
+  for (const std::string& name : {stem + "_reason", stem}) {
+    const auto words = message.find(name);
+    if (words != message.end() && words->is_string())
+      return stopReasonOf(words->get<std::string>());
+  }
+  return StopReason::kUnsaid;
+}
+
+/// Of a field that a message does not have. An array whose length is a field is new with it: empty.
+Json unknownOf(const MessageField& field, const Json& message) {
+  if (field.type == "byte" && !field.lengths.empty()) return "";
+  Json value = 0;
+  if (const MessageType* const inner = treadTypes().find(field.type)) {
+    value = Json::object();
+    fillMissing(value, *inner);
+  } else if (field.type == "string") {
+    value = "";
+  } else if (field.type == "boolean") {
+    value = false;
+  } else if (field.type == "float" || field.type == "double") {
+    value = "NaN";
+  } else if (endsWith(field.name, kCode)) {
+    value = static_cast<int>(codeBeside(field.name, message));
+  }
+  if (field.lengths.empty()) return value;
+  size_t count = 1;
+  for (const std::string& length : field.lengths)
+    count *= static_cast<size_t>(std::max(0, std::atoi(length.c_str())));  // 0 for a field's name
+  return Json(count, value);
 }
 
 }  // namespace
@@ -66,7 +99,11 @@ bool renewByNames(const std::string& channel, std::vector<uint8_t>& bytes) {
     if (!text) return false;
     Json message = Json::parse(*text);
     fillMissing(message, *type);
-    bytes = bytesOf(treadTypes(), *type, message.dump());
+    try {
+      bytes = bytesOf(treadTypes(), *type, message.dump());
+    } catch (const std::invalid_argument&) {
+      return false;  // as any bytes that are no message
+    }
     return true;
   }
   return false;

@@ -128,6 +128,7 @@ ScipSession::ScipSession(const ScipConfig& config)
 void ScipSession::forget() {
   buffer_.clear();
   clock_.forget();
+  state_.clear();
   last_milliseconds_.reset();
 }
 
@@ -170,6 +171,9 @@ void ScipSession::takeBlock(std::string_view block, int64_t now) {
   const std::string expected = echo();
   if (expected.empty() || !ends(*(status - 1), expected))
     return count("answers that nobody asked for");
+  // What stands before the echo is not the scan's: it may have come long before.
+  const bool alone = status == lines.begin() + 1 && lines.front() == expected;
+  if (streaming() && !alone) began_ = now;
   if (streaming())
     takeScan(answer, now);
   else

@@ -123,8 +123,7 @@ FailsafeOutputs Failsafe::update(const FailsafeInputs& in) {
 
 /// Whether words() say it already.
 bool Failsafe::says(const Reason& reason) const {
-  return reason.empty() || reason.code == reason_.code ||
-         (refused() && reason.code == refusal_.why.code);
+  return reason.empty() || reason == reason_ || (refused() && reason == refusal_.why);
 }
 
 /// All that people should read of the state: each reason once.

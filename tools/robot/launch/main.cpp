@@ -162,6 +162,9 @@ int start(const LaunchFile& launch, const Options& options) {
   const RunPaths paths(settings.run);
   std::filesystem::create_directories(paths.logs);
   const RunLock lock(paths.lock);
+  // A run that lost its power has left them.
+  std::error_code none;
+  for (const std::string& old : {paths.status, paths.pid}) std::filesystem::remove(old, none);
   if (const std::string line = provideKey(launch); !line.empty()) std::cout << line << std::endl;
   if (!preDrivePasses(launch, options)) return 1;
   std::optional<TcpRelay> relay;

@@ -17,6 +17,7 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -64,9 +65,28 @@ bool isHalted(pid_t pid) {
   return stat[name_end + 2] == 'T' || stat[name_end + 2] == 't';
 }
 
+/// A line for the terminal, if it takes one: who watches the robot never waits for who reads.
+void say(int terminal, const std::string& line) {
+  pollfd ready{terminal, POLLOUT, 0};
+  if (poll(&ready, 1, 0) != 1 || (ready.revents & POLLOUT) == 0) return;
+  const std::string text = line + "\n";
+  [[maybe_unused]] const ssize_t written = ::write(terminal, text.data(), text.size());
+}
+
 /// Lines are added at its end, also after it was emptied.
 int openedLog(const std::string& path) {
   return ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0644);
+}
+
+/// A file that is worth nothing after a loss of power: nobody waits for the disk. Where it cannot
+/// be written, there is none: an old one would lie.
+void replaceQuickly(const std::string& path, const std::string& text) {
+  const std::string next = path + ".next";
+  const int file = ::open(next.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  const ssize_t written = file < 0 ? -1 : ::write(file, text.data(), text.size());
+  if (file >= 0) ::close(file);
+  const bool whole = written == static_cast<ssize_t>(text.size());
+  if (!whole || std::rename(next.c_str(), path.c_str()) != 0) ::unlink(path.c_str());
 }
 
 /// A log that has grown too large is copied and emptied: who writes to it has it open.
@@ -75,8 +95,12 @@ void trim(const std::string& path) {
   const uintmax_t size = std::filesystem::file_size(path, none);
   if (none || size < kLargestLog) return;
   const auto old = [&](int number) { return path + "." + std::to_string(number); };
+  const std::string copy = path + ".next";
+  std::error_code failed;
+  std::filesystem::copy_file(path, copy, std::filesystem::copy_options::overwrite_existing, failed);
+  if (failed) return static_cast<void>(std::filesystem::remove(copy, none));
   for (int i = kOldLogs; i > 1; --i) std::filesystem::rename(old(i - 1), old(i), none);
-  std::filesystem::copy_file(path, old(1), std::filesystem::copy_options::overwrite_existing, none);
+  std::filesystem::rename(copy, old(1), none);
   std::filesystem::resize_file(path, 0, none);
 }
 
@@ -135,13 +159,13 @@ Keeper::Keeper(const KeptProcesses& kept)
 void Keeper::run() {
   while (!table_.done()) {
     for (const ProcessTable::Task& task : table_.due(secondsNow())) carryOut(task);
-    tell();
     if (sigtimedwait(&waited_, nullptr, &kLookEvery) == SIGTERM) {
       stopping_ = true;
       table_.stop();
     }
     reap();
     if (life_) watch();
+    tell();  // last: a slow disk must not keep a stop waiting
   }
   tell();
 }
@@ -183,7 +207,9 @@ void Keeper::become(size_t process) const {
     setenv("NOTIFY_SOCKET", kept_.paths.life.c_str(), 1);
   else
     unsetenv("NOTIFY_SOCKET");
-  std::signal(SIGPIPE, SIG_DFL);
+  // A shell in the background may have had them ignored; SIGHUP is nohup's.
+  for (const int number : {SIGPIPE, SIGINT, SIGTERM, SIGQUIT, SIGCHLD})
+    std::signal(number, SIG_DFL);
   sigprocmask(SIG_SETMASK, &kept_.mask, nullptr);
   becomeProgram(kept_.processes[process].command);
   std::perror(kept_.processes[process].command.front().c_str());
@@ -201,11 +227,11 @@ void Keeper::tell() {
   std::string lines;
   for (const ProcessTable::Event& event : table_.takeEvents()) {
     lines += utcNow() + " " + event.log + "\n";
-    if (!event.told.empty()) std::cout << event.told << std::endl;
+    if (!event.told.empty()) say(STDOUT_FILENO, event.told);
   }
   if (!lines.empty()) {
     [[maybe_unused]] const ssize_t written = ::write(log_, lines.data(), lines.size());
-    write(kept_.paths.status, table_.status());
+    replaceQuickly(kept_.paths.status, table_.status());
   }
   if (secondsNow() < trimmed_ + kTrimEvery) return;
   trimmed_ = secondsNow();
@@ -223,7 +249,7 @@ void Keeper::watch() {
 }
 
 void Keeper::end(const Liveness::Hung& hung) {
-  std::cout << kept_.launch << ": " << hung.line << std::endl;
+  say(STDOUT_FILENO, kept_.launch + ": " + hung.line);
   // A halted one would have to go on to take SIGABRT, and while one of its threads does, another
   // may still send a command that it had at hand when it was halted.
   kill(hung.pid, hung.kill || isHalted(hung.pid) ? SIGKILL : SIGABRT);
@@ -246,14 +272,15 @@ void Keeper::write(const std::string& path, const std::string& text) const {
   try {
     writeText(path, text);
   } catch (const WriteError& error) {
-    std::cerr << kept_.launch << ": " << error.what() << std::endl;
+    say(STDERR_FILENO, kept_.launch + ": " + error.what());
   }
 }
 
 }  // namespace
 
 void becomeKeeper(const KeptProcesses& kept, const RunLock& lock, pid_t parent) {
-  setpgid(0, 0);  // Ctrl-C reaches the parent alone
+  setpgid(0, 0);                  // Ctrl-C reaches the parent alone
+  std::signal(SIGTTOU, SIG_IGN);  // what writes to the terminal from behind may be halted for it
   prctl(PR_SET_CHILD_SUBREAPER, 0);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent || chdir(kept.paths.folder.c_str()) != 0) _exit(1);

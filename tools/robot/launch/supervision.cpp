@@ -131,12 +131,12 @@ void Run::wait() {
 }
 
 void Run::stop() {
+  kill(supervisor_, SIGTERM);  // before a terminal that nobody reads may hold us up
   if (!stopping_) {
-    std::cout << name_ << ": stopping" << std::endl;
     stop_ = Clock::now();
+    std::cout << name_ << ": stopping" << std::endl;
   }
   stopping_ = true;
-  kill(supervisor_, SIGTERM);
 }
 
 void Run::reap() {

@@ -34,11 +34,13 @@ uint64_t senderOf(const std::string& channel, const std::vector<uint8_t>& bytes)
   health_t health;
   config_t config;
   operator_t person;
+  fences_t fences;
   if (decode(event, kHealth, health))
     return std::hash<std::string>()(health.process) ^ static_cast<uint64_t>(health.boot_id);
   if (decode(event, kConfig, config))
     return std::hash<std::string>()(config.config_process) ^
            static_cast<uint64_t>(config.config_boot_id);
+  if (decode(event, kFences, fences)) return std::hash<std::string>()(fences.keeper);
   if (decode(event, kOperator, person)) return static_cast<uint64_t>(person.station);
   return 0;
 }

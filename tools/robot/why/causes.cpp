@@ -74,7 +74,8 @@ bool stops(int plan_state) {
 std::vector<Signal> signalsOf(const DriveTimeline& drive) {
   std::vector<Signal> signals;
   const auto add = [&](const StateNote& note, const char* channel) {
-    if (!isOrdinary(note.reason.code))
+    const bool says_nothing = note.reason.code == StopReason::kUnsaid && note.reason.words.empty();
+    if (!isOrdinary(note.reason.code) && !says_nothing)
       signals.push_back({note.time, channel, note.reason.code, note.reason.words});
   };
   bool may = false;
@@ -320,7 +321,8 @@ class CauseSearch {
       if (around && (period > kHealthLate || at_end)) return true;
     }
     // A short one may lie between two of them: what else says the process?
-    return silence.length() < 1.0 && !dueWithin(notes, silence) && !deviceComplains(process);
+    return silence.length() < 1.0 && !dueWithin(notes, silence) &&
+           !deviceComplains(process, silence);
   }
   static bool dueWithin(const std::vector<HealthNote>& notes,
                         const DriveTimeline::Silence& silence) {
@@ -328,8 +330,10 @@ class CauseSearch {
       return note.time > silence.from + 0.02 && note.time < silence.to - 0.02;
     });
   }
-  bool deviceComplains(const std::string& process) const {
-    return drive_.complaintOf(process, t_ - 1.0, t_ + kAfterwards) != nullptr;
+  /// A driver that says what is wrong with its device lives.
+  bool deviceComplains(const std::string& process, const DriveTimeline::Silence& silence) const {
+    const bool of_device = process == "ins_driver" || process == "lidar_driver";
+    return of_device && drive_.complaintOf(process, t_ - 1.0, silence.to + 1.0) != nullptr;
   }
 
   /// What was sent and did not come in time: lost, late or broken where the receiver counted that.

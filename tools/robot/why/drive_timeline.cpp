@@ -52,10 +52,9 @@ class TimelineReader {
 
   void hear(const motor_t& motor) {
     std::vector<StateNote>& notes = drive_.motors;
-    if (notes.empty() || notes.back().state != motor.bridge_state ||
-        notes.back().reason.words != motor.state_reason)
-      notes.push_back(
-          {now_, motor.bridge_state, {stopReasonFrom(motor.state_code), motor.state_reason}});
+    const Reason reason(stopReasonFrom(motor.state_code), motor.state_reason);
+    if (notes.empty() || notes.back().state != motor.bridge_state || notes.back().reason != reason)
+      notes.push_back({now_, motor.bridge_state, reason});
 
     if (std::isfinite(motor.battery_voltage) &&
         (drive_.battery.empty() || now_ - drive_.battery.back().first >= kBatteryStep))

@@ -265,7 +265,7 @@ bool DrivingState::sayUnreachable() {
       map.fencedGoal().empty() ? map.distanceToGoal().problem() : map.fencedGoal();
   if (why.empty()) return false;
   plan.time_to_go = std::numeric_limits<double>::quiet_NaN();
-  status.say(PlanStatus::kUnreachable, {StopReason::kGoalUnreachable, why});
+  status.say(PlanStatus::kUnreachable, {map.whyUnreachable(), why});
   return true;
 }
 

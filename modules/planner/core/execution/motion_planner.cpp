@@ -163,6 +163,7 @@ void PlanningMap::updateDistance(const Pose2& T_map_body, const Goal& goal, int6
   if (same && !goal_substitution_reason_.empty()) before = target_.T_map_goal.position();
   target_ = goal;
   goal_substitution_reason_.clear();
+  goal_enclosed_ = false;
   if (config_.come_close && distance_to_goal_.unreachable()) substituteGoal(p, before);
 }
 
@@ -172,6 +173,7 @@ void PlanningMap::substituteGoal(const Eigen::Vector2d& p_vehicle,
   const std::optional<Eigen::Vector2d> nearest =
       distance_to_goal_.nearestWithinReach(p_vehicle, p_goal, before);
   if (!nearest) return;
+  goal_enclosed_ = distance_to_goal_.enclosed();
   goal_substitution_reason_ = "as close as possible, " + withTenths((*nearest - p_goal).norm()) +
                               " m: " + distance_to_goal_.problem();
   target_.T_map_goal = {nearest->x(), nearest->y(), target_.T_map_goal.yaw};

@@ -69,6 +69,13 @@ class PlanningMap {
   void setPositionStd(double std);
   /// Why fences forbid a goal, in words; empty if they do not. Needs updateDistance().
   const std::string& fencedGoal() const { return fenced_goal_; }
+  /// What a goal that cannot be reached is to be called: obstacles may go, or never have been
+  /// there.
+  StopReason whyUnreachable() const {
+    const bool enclosed = goal_enclosed_ || distance_to_goal_.enclosed();
+    return fenced_goal_.empty() && enclosed ? StopReason::kNoWayFound
+                                            : StopReason::kGoalUnreachable;
+  }
 
   /// Updates the collision checker if the map changed or the vehicle moved on. Needs a map.
   /** Unknown ground under the vehicle becomes free: it stands there. */
@@ -119,6 +126,7 @@ class PlanningMap {
   std::optional<Goal> field_goal_;
   Goal target_;
   std::string goal_substitution_reason_;
+  bool goal_enclosed_ = false;  ///< obstacles are why another goal took its place
   int64_t field_revision_ = -1;
   Eigen::Vector2d p_field_{0.0, 0.0};
   int64_t field_time_ = 0;

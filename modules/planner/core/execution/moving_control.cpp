@@ -34,7 +34,7 @@ void MovingControl::drive(const PlannerInputs& s, const Preconditions& ready) {
     state_.plan.expire();
     ++state_.counters["left the predicted corridor"];
   }
-  if (answerSlide(s, *state_.prediction)) return;
+  if (answerSlide(s, ready, *state_.prediction)) return;
   planNext(s, ready, *state_.prediction);
   keepClear(s, *state_.prediction);
 }
@@ -183,7 +183,8 @@ bool MovingControl::stoppingIsBetter(const PlannerInputs& s,
 
 /// In the first moment on ground that gives way, before the learner says so. True if another answer
 /// than what is under way was given.
-bool MovingControl::answerSlide(const PlannerInputs& s, const Prediction& running) {
+bool MovingControl::answerSlide(const PlannerInputs& s, const Preconditions& ready,
+                                const Prediction& running) {
   if (state_.grip.gave_way || !s.pose->twist || !state_.tracker.confirmed()) return false;
   constexpr double kUnknown = 1.0;  // [m/s2] as the learner's, before anything is known
   const TablePattern& pattern = *state_.runningPattern();
@@ -195,7 +196,10 @@ bool MovingControl::answerSlide(const PlannerInputs& s, const Prediction& runnin
   if (choices.rest.empty() || !slides(v, choices.rest.front().v_body)) return false;
   if (!state_.tracker.next().empty())
     choices.next = state_.table().find(state_.tracker.next().pattern_id);
-  if (!frozen(s)) choices.followers = state_.table().from(pattern.exit);
+  if (!frozen(s))
+    choices.followers = ready.level == Preconditions::Level::kGo
+                            ? state_.table().from(pattern.exit)
+                            : state_.table().stopsFrom(pattern.exit);
   const Pose2& here = s.pose->T_map_body;
   const Sliding vehicle{here, Pose2{0.0, 0.0, here.yaw} * Eigen::Vector2d(v.v_x, v.v_y),
                         std::min(kUnknown, state_.grip.deceleration)};
@@ -209,6 +213,8 @@ bool MovingControl::answerSlide(const PlannerInputs& s, const Prediction& runnin
   state_.plan.end = SearchEnd::kNothing;
   state_.plan.steps = {stepAfter(endOf(running), *answer.follower)};
   state_.plan.made = s.now;
+  state_.plan.risk = {};
+  state_.plan.time_to_go = std::numeric_limits<double>::quiet_NaN();
   state_.tracker.setNext(state_.table().set(), answer.follower->id());
   ++state_.counters["steered because a stop would have slid on"];
   return true;

@@ -147,7 +147,7 @@ void StandingControl::stand(const PlannerInputs& s, const Preconditions& ready,
       isWithin(state_.map.target(), s.pose->T_map_body)) {
     progress.restart(s.now);
     return state_.status.say(PlanStatus::kUnreachable,
-                             {StopReason::kGoalUnreachable, state_.map.goalSubstitutionReason()});
+                             {state_.map.whyUnreachable(), state_.map.goalSubstitutionReason()});
   }
   const int64_t period =
       blocked_since_ ? state_.config.policy.blocked_period : state_.config.policy.plan_period;

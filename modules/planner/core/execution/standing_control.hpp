@@ -31,7 +31,7 @@ class MovingControl {
   PlanStep endOf(const Prediction& running) const;
   void searchNext(const PlannerInputs& s, const Prediction& running);
   void keepClear(const PlannerInputs& s, const Prediction& running);
-  bool answerSlide(const PlannerInputs& s, const Prediction& running);
+  bool answerSlide(const PlannerInputs& s, const Preconditions& ready, const Prediction& running);
   bool stoppingIsBetter(const PlannerInputs& s, const std::vector<ExpectedPose>& poses) const;
   std::vector<ExpectedPose> posesAfter(const Prediction& running) const;
   std::optional<double> conflict(const Pose2& here, const std::vector<ExpectedPose>& poses) const;

@@ -118,6 +118,7 @@ void DistanceToGoal::compute(const ClearanceSource& map, const Goal& goal,
                              const Eigen::Vector2d& p_vehicle, const std::vector<Detour>& detours,
                              const DistanceFieldConfig& config, const Interruption& interruption) {
   problem_.clear();
+  enclosed_ = false;
   const Eigen::Vector2d p_goal = goal.T_map_goal.position();
   if (!((p_goal - p_vehicle).norm() <= config.max_distance)) {
     *this = DistanceToGoal();
@@ -139,6 +140,7 @@ void DistanceToGoal::compute(const ClearanceSource& map, const Goal& goal,
     if (all_seen || longest >= config.max_area - cells_.size) break;
   }
   problem_ = "obstacles enclose the goal or the vehicle";
+  enclosed_ = true;
 }
 
 void DistanceToGoal::layOut(const RimmedCells& cells) {

@@ -176,6 +176,8 @@ class DistanceToGoal {
   /// empty if there is one.
   const std::string& problem() const { return problem_; }
   bool unreachable() const { return !problem_.empty(); }
+  /// Whether obstacles are why.
+  bool enclosed() const { return enclosed_; }
   /// Where there is no way to the goal: the point nearest to it among those that the vehicle can
   /// get to. Nothing if the vehicle stands on blocked ground, or nothing was computed.
   /** `before`, what was chosen the last time, is kept where nothing else is nearer by kMuchNearer:
@@ -215,6 +217,7 @@ class DistanceToGoal {
   float cut_ = 0.0F;  // beyond this nothing was filled in
   bool cut_short_ = false;
   std::string problem_;
+  bool enclosed_ = false;
   int filled_ = 0;
 };
 

@@ -16,6 +16,7 @@ constexpr float kLookAhead = 2.0F;
 constexpr int kMostRepeats = 32;
 /// A robot chooses so many patterns in the time of a horizon.
 constexpr double kPatternsAhead = 6.0;
+constexpr double kLeastHorizon = 1.0;  // [s]
 /// What is cheaper by less than this share is not cheaper.
 constexpr float kSame = 1e-6F;
 /// Share of the cost that counts against a leaf when the search is cut off.
@@ -63,8 +64,9 @@ void PatternSearch::begin(const SearchProblem& problem) {
   nodes_.clear();
   leaf_to_root_.clear();
   expansions_ = 0;
-  horizon_ =
-      config_.horizon > 0.0 ? config_.horizon : kPatternsAhead * problem.patterns->usualDuration();
+  horizon_ = config_.horizon > 0.0
+                 ? config_.horizon
+                 : std::max(kLeastHorizon, kPatternsAhead * problem.patterns->usualDuration());
   plan_ = Plan();
   costs_ = CostModel(config_, problem);
   checker_ = NodeChecker(config_, problem);

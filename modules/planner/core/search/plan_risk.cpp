@@ -47,8 +47,12 @@ class PoseRisk {
     if (around_.field().quick(pose_.x, pose_.y) > reach) return;
     const CellIndex first = grid.indexOf({pose_.x - reach, pose_.y - reach});
     const CellIndex last = grid.indexOf({pose_.x + reach, pose_.y + reach});
-    for (int y = first.y; y <= last.y; ++y)
-      for (int x = first.x; x <= last.x; ++x)
+    // Beyond the grid nothing is known, however far the vehicle may be off.
+    const CellIndex lower = grid.lower();
+    for (int y = std::max(first.y, lower.y); y <= std::min(last.y, lower.y + grid.height() - 1);
+         ++y)
+      for (int x = std::max(first.x, lower.x); x <= std::min(last.x, lower.x + grid.width() - 1);
+           ++x)
         if (grid.at({x, y}) == kObstacle) raiseBy(grid.centre({x, y}), sides);
   }
 

@@ -220,7 +220,8 @@ DesignedPattern designed(const CandidateFamily& family, const CandidatePair& pai
   for (const Candidate& candidate : pair) {
     const std::string plain = nameOf(family.classes(), candidate);
     std::string name = plain;
-    for (char more = 'b'; !names.insert(name).second; ++more) name = plain + "_" + more;
+    for (int more = 2; !names.insert(name).second; ++more)
+      name = plain + "_" + std::to_string(more);
     pattern.names.push_back(name);
   }
   return pattern;

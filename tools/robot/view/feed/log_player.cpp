@@ -14,7 +14,7 @@ constexpr int64_t kLongestAge = 120'000'000;
 
 bool lasts(const std::string& channel) {
   return channel == kConfig.name || channel == kPatternSet.name || channel == kFence.name ||
-         channel == kGoal.name;
+         channel == kFences.name || channel == kGoal.name;
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 import { FoxgloveClient } from "@foxglove/ws-protocol";
 
 const TOPICS = ["INS", "MOTOR", "PLAN", "PLAN_TREE", "MAP", "SCAN", "LEARNING", "HEALTH", "PATTERN_SET", "GOAL", "PROGRAM",
-  "CONFIG", "FENCE", "view/history", "view/player"];
+  "CONFIG", "FENCE", "FENCES", "view/history", "view/player"];
 const RETRY = 1000; // [ms]
 
 export class Connection {

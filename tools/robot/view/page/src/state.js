@@ -34,6 +34,7 @@ export class State {
     this.outlineKnown = false;
     this.run = null; // the running pattern: { execution, pattern, start }
     this.fences = new Map();
+    this.keepers = new Map();
   }
 
   get live() {
@@ -57,7 +58,8 @@ export class State {
     else if (topic === "MAP") keep(this.tiles, `${message.tile_x},${message.tile_y}`, { time, tile: message, image: null }, MOST.tiles);
     else if (topic === "PATTERN_SET") this.takePattern(message, time);
     else if (topic === "CONFIG") this.takeConfig(message);
-        else if (topic === "FENCE") this.takeFence(message, time);
+    else if (topic === "FENCE") this.takeFence(message, time);
+    else if (topic === "FENCES") keep(this.keepers, message.keeper, { fences: message.fences, time }, MOST.processes);
     else this.latest.set(topic, entry);
     if (topic === "PROGRAM") this.takeProgram(message, time);
   }
@@ -93,12 +95,15 @@ export class State {
     this.outlineKnown = true;
   }
 
-    takeFence(fence, time) {
+  takeFence(fence, time) {
     keep(this.fences, fence.fence_name, { ...fence, time }, MOST.fences);
   }
 
   // Those that stand at the time of what is shown.
   standingFences() {
+    // What a process says that it keeps is newer than who asked for it.
+    const kept = [...this.keepers.values()].filter((keeper) => keeper.time <= this.now()).flatMap((keeper) => keeper.fences);
+    if (kept.length > 0 || this.keepers.size > 0) return [...new Map(kept.map((fence) => [JSON.stringify([fence.fence_name, fence.corners]), fence])).values()];
     return [...this.fences.values()].filter((fence) => fence.fence_kind !== 0 && fence.time <= this.now());
   }
 
