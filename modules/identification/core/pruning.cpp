@@ -172,30 +172,35 @@ bool isBesideLag(const FoundTerms& result, const std::string& effect) {
   });
 }
 
-/// Why an effect should go; empty if it should stay.
-std::string reasonAgainst(const SearchState& search, const std::string& effect,
-                          const Removal& removed) {
+/// Why an effect should go; no words if it should stay.
+struct Against {
+  std::string words;
+  bool negligible = false;  ///< it is real, but too small to count
+};
+
+Against reasonAgainst(const SearchState& search, const std::string& effect,
+                      const Removal& removed) {
   // Residuals far beyond the scales pull no more: a large effect shows in its gain.
   if (removed.evidence < 1.0 && !isBeyondDoubt(removed) &&
       !isNearly(search.result, effect, removed))
-    return "chance explains it beside the others";
-  if (removed.gain.value <= 0.0) return "does not help on blocks left out";
+    return {"chance explains it beside the others", false};
+  if (removed.gain.value <= 0.0) return {"does not help on blocks left out", false};
   const double least = isBesideLag(search.result, effect) ? 0.0 : search.settings.least_gain;
   if (least > 0.0 && improvement(search.fitter, removed.state, search.result.state, effect) < least)
-    return "real, but negligible: changes the end error by less than 1 %";
-  return "";
+    return {"real, but negligible: changes the end error by less than 1 %", true};
+  return {};
 }
 
 void remove(const SearchState& search, const std::string effect, Removal& removed,
-            const std::string& why) {
+            const Against& why) {
   SearchRecord& record = search.result.record;
   // Mere nuisance terms go without a word.
   const bool was_added = wasNamed(search.result, effect);
-  if (why.compare(0, 4, "real") == 0) record.negligible.push_back(effect);
+  if (why.negligible) record.negligible.push_back(effect);
   if (was_added) {
     record.steps.push_back(
-        {effect, true, removed.score, 1.0, removed.gain.value, removed.gain.error, {}, why});
-    search.say("  - " + effect + ": " + why);
+        {effect, true, removed.score, 1.0, removed.gain.value, removed.gain.error, {}, why.words});
+    search.say("  - " + effect + ": " + why.words);
   }
   search.result.state = std::move(removed.state);
   auto& effects = search.result.effects;
@@ -208,7 +213,7 @@ bool removeAtBound(const SearchState& search, const Needed& needed, const Eigen:
     if (search.isAccepted(effect) || !isAtBound(search.result.state, effect)) continue;
     Removal removed = removal(search.fitter, search.result.state, loss, effect, needed);
     search.result.record.at_bound.push_back(effect);
-    remove(search, effect, removed, "runs to the end of its plausible range");
+    remove(search, effect, removed, {"runs to the end of its plausible range", false});
     return true;
   }
   return false;
@@ -229,8 +234,8 @@ bool removeOne(const SearchState& search, const Needed& needed_of_all) {
     const bool sure = straight && removed.evidence >= 1.0 && isBeyondDoubt(removed);
     if (!sure) removed = removal(fitter, result.state, loss, effect, needed);
     const bool stays = sure || search.isAccepted(effect);
-    const std::string why = stays ? "" : reasonAgainst(search, effect, removed);
-    if (why.empty()) {
+    const Against why = stays ? Against() : reasonAgainst(search, effect, removed);
+    if (why.words.empty()) {
       EffectEvidence& known = result.evidence[effect];
       known.score = removed.score;
       known.evidence = removed.evidence;

@@ -137,7 +137,7 @@ CallResult ArmCall::step(int64_t utime) {
 }
 
 std::string ArmCall::notice() const {
-  if (armed_) return request_.held_words;
+  if (armed_) return "armed and held: Ctrl-C disarms";
   return waits_ ? heldBy(otherHolder(), beacon_.name()) + ": waiting" : "";
 }
 

@@ -29,6 +29,8 @@ class Call {
   virtual CallResult step(int64_t utime) = 0;
   /// What to tell the operator now; the outcome in words once the call has ended.
   virtual std::string describe(int64_t utime) const = 0;
+  /// Whether it holds what it has armed.
+  virtual bool holds() const { return false; }
   /// Something that the operator is told while the call goes on, when it changes; empty = nothing.
   virtual std::string notice() const { return ""; }
   /// The operator has lost patience: takes back what must not go on.
@@ -107,7 +109,6 @@ struct ArmRequest {
   bool arm = true;           ///< false: disarm
   bool hold = false;         ///< stay once armed: the robot may drive only as long as this runs
   std::string hand_over_to;  ///< name of the operator who takes over; empty = nobody
-  std::string held_words = "armed and held: Ctrl-C disarms";  ///< said while it holds
 };
 
 /// Arms or disarms, and holds the robot for its operator meanwhile.
@@ -118,6 +119,7 @@ class ArmCall : public PermissionCall {
   CallResult step(int64_t utime) override;
   std::string describe(int64_t utime) const override;
   std::string notice() const override;
+  bool holds() const override { return armed_ && otherHolder().empty(); }
   /// A robot that is held is disarmed.
   void cancel(int64_t utime) override;
   void letGo(int64_t utime) override { beacon_.letGo(utime); }

@@ -102,7 +102,7 @@ std::string OperatorConsole::take(const std::string& text, uint64_t page, int64_
     if (op == "arm") {
       if (!runs(kArming))
         start(kArming,
-              std::make_unique<ArmCall>(bus_, requester_, ArmRequest{true, true, "", "armed, and held by this page"}, kPatience),
+              std::make_unique<ArmCall>(bus_, requester_, ArmRequest{true, true, ""}, kPatience),
               true);
     } else if (op == "goal") {
       const GoalRequest request = goalFrom(json);
@@ -145,7 +145,7 @@ bool OperatorConsole::takeStop(const std::string& op, int64_t utime) {
     letGo(utime, "disarmed");
     if (!runs(kDisarming))
       start(kDisarming,
-            std::make_unique<ArmCall>(bus_, requester_, ArmRequest{false, false, "", ""}, kPatience),
+            std::make_unique<ArmCall>(bus_, requester_, ArmRequest{false, false, ""}, kPatience),
             false);
   } else {
     return false;
@@ -176,7 +176,10 @@ void OperatorConsole::step(int64_t utime) {
   for (Running& running : calls_) {
     if (running.ended) continue;
     const CallResult result = running.call->step(utime);
-    running.words = running.call->describe(utime);
+    // What a call in a terminal says of its keys is nothing for a page.
+    running.words = result == CallResult::kPending && running.call->holds()
+                        ? "armed, and held by this page"
+                        : running.call->describe(utime);
     if (result == CallResult::kPending) continue;
     if (result == CallResult::kRefused) running.call->cancel(utime);
     end(running, utime, "");
