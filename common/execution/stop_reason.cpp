@@ -14,7 +14,7 @@ struct Row {
 };
 
 constexpr std::array kRows{
-    Row{StopReason::kUnsaid, "the log is of an older version: it has reasons in words only"},
+    Row{StopReason::kUnsaid, "the message is older than the codes of reasons"},
     Row{StopReason::kNone, ""},
     Row{StopReason::kEstopEngaged, "E-stop is engaged"},
     Row{StopReason::kRangeFinder, "mapping does not believe a range finder"},

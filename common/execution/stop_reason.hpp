@@ -14,12 +14,12 @@ namespace tread {
  * numbers travel in MOTOR, PLAN and EXECUTION: a new reason takes a free one between its
  * neighbours, and none is used twice. */
 enum class StopReason : int16_t {
-  kUnsaid = -1,  ///< a log of before the codes: only words
+  kUnsaid = -1,  ///< a message that is older than the codes, whose words say more
   kNone = 0,     ///< there is no reason
 
-  // A person.
+  // A person, and mapping, which disarms the robot where a range finder lies.
   kEstopEngaged = 10,
-  kRangeFinder = 20,  ///< mapping does not believe a range finder
+  kRangeFinder = 20,
   kDisarmed = 30,
 
   // The motor controller, and motor_bridge itself.
@@ -87,7 +87,7 @@ enum class StopReason : int16_t {
   kGoalUnreachable = 170,
   kGoalEnded = 171,
 
-  // Nothing is wrong: states at the start, and stops that were planned. Below here all is ordinary.
+  // Nothing is wrong: states at the start, and stops that were planned (isOrdinary()).
   kNotArmedYet = 1000,
   kArmed = 1001,
   kPlaying = 1002,
@@ -107,14 +107,14 @@ enum class StopReason : int16_t {
   kReturns = 1016,
 };
 
-/// The sentence for people; details follow it, or stand in its place, in the messages.
+/// The sentence for people. A message may add details to it, or have a more exact one.
 const char* sentenceOf(StopReason reason);
 
 /// The reason with a number from a message; kUnsaid for one that this version does not know.
 StopReason stopReasonFrom(int16_t number);
 
-/// The reason of which these words are the whole sentence; kNone without words, else kUnsaid.
-/** Only for logs of before the codes: nothing else decides by words. */
+/// The reason whose sentence these words are; kNone without words, kUnsaid for any others.
+/** For messages that are older than the codes: nothing else decides by words. */
 StopReason stopReasonOf(const std::string& words);
 
 /// Whether nothing is wrong: a stop that was planned, a state at the start.
@@ -128,7 +128,7 @@ struct Reason {
   std::string words;
 
   Reason() = default;
-  Reason(StopReason why) : code(why), words(sentenceOf(why)) {}  // NOLINT: a reason is one
+  Reason(StopReason why) : code(why), words(sentenceOf(why)) {}  // NOLINT: meant to convert
   Reason(StopReason why, std::string in_words) : code(why), words(std::move(in_words)) {}
 
   /// The reason if there are words, else none.

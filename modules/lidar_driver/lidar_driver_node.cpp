@@ -103,7 +103,7 @@ void LidarDriverNode::publish(const RangeScan& scan, const Mounting& mounting) {
 }
 
 void LidarDriverNode::reportHealth(int64_t utime) {
-  Reason problem;
+  NotedReason problem;
   for (const Finder& finder : finders_)
     if (problem.rank == Rank::kNone) problem = silenceOf(finder, utime);
   health_.setState(problem.rank == Rank::kNone ? health_t::HEALTH_OK : health_t::HEALTH_FAILED,
@@ -120,7 +120,7 @@ void LidarDriverNode::reportHealth(int64_t utime) {
 
 /// The line of a problem grows older by the second: it is said when it begins, when its reason
 /// tells more than before, and when it ends.
-void LidarDriverNode::sayOnce(const Reason& problem) {
+void LidarDriverNode::sayOnce(const NotedReason& problem) {
   const bool ended = problem.rank == Rank::kNone && said_.rank != Rank::kNone;
   if (!ended && problem.rank <= said_.rank) return;
   if (say_) say_(ended ? "scans again after: " + said_.words : problem.words);
@@ -128,11 +128,11 @@ void LidarDriverNode::sayOnce(const Reason& problem) {
 }
 
 /// Why nothing comes from a range finder, in one line; kNone if it does.
-Reason LidarDriverNode::silenceOf(const Finder& finder, int64_t utime) const {
+NotedReason LidarDriverNode::silenceOf(const Finder& finder, int64_t utime) const {
   const double silent = static_cast<double>(utime - finder.last_scan) * 1e-6;
   if (silent < config_.silence) return {};
-  Reason reason = finder.connection.reason(utime);
-  const Reason refused = finder.reasons.best(utime);
+  NotedReason reason = finder.connection.reason(utime);
+  const NotedReason refused = finder.reasons.best(utime);
   if (refused.rank > reason.rank) reason = refused;
   if (reason.rank == Rank::kNone) reason = {Rank::kSilent, "is the device powered and scanning?"};
   std::ostringstream line;

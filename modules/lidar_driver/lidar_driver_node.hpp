@@ -57,13 +57,13 @@ class LidarDriverNode : public Node {
   void take(Finder& finder, int64_t utime);
   void publish(const RangeScan& scan, const Mounting& mounting);
   void reportHealth(int64_t utime);
-  void sayOnce(const Reason& problem);
-  Reason silenceOf(const Finder& finder, int64_t utime) const;
+  void sayOnce(const NotedReason& problem);
+  NotedReason silenceOf(const Finder& finder, int64_t utime) const;
 
   LidarDriverConfig config_;
   Bus& bus_;
   Say say_;
-  Reason said_;  ///< the problem that was said last; kNone: it scans
+  NotedReason said_;  ///< the problem that was said last; kNone: it scans
   HealthReporter health_;
   std::vector<Finder> finders_;  ///< the second one looks at the ground, if there is one
   int64_t seq_ = 0;

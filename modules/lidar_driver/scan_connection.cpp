@@ -67,10 +67,10 @@ std::string ScanConnection::linkProblem() const {
                                                           : problem;
 }
 
-Reason ScanConnection::reason(int64_t utime) const {
+NotedReason ScanConnection::reason(int64_t utime) const {
   // What a file held does not grow old: nothing more comes of it.
   const bool file = link_->address().rfind("file:", 0) == 0;
-  Reason reason = device_->reason(file && !was_open_ ? last_open_ : utime);
+  NotedReason reason = device_->reason(file && !was_open_ ? last_open_ : utime);
   const std::string problem = was_open_ ? "" : linkProblem();
   if (problem.empty()) return reason;
   if (reason.rank <= Rank::kSilent) return {Rank::kSilent, problem};

@@ -26,7 +26,7 @@ class ScanConnection {
   /// Scans that were completed since the last call, oldest first. Never blocks.
   std::vector<RangeScan> take(int64_t utime);
   /// Why no scan comes.
-  Reason reason(int64_t utime) const;
+  NotedReason reason(int64_t utime) const;
   std::string shortcomings() const { return device_->shortcomings(); }
   /// What was counted, by its name in words.
   std::map<std::string, int64_t> counters() const;

@@ -10,6 +10,7 @@
 #include "modules/lidar_driver/scan_connection.hpp"
 #include "modules/simulator/emulators/hokuyo/scip_emulator.hpp"
 #include "tests/helpers.hpp"
+#include "tests/lidar_driver/device_line.hpp"
 
 using namespace tread;
 using namespace tread::lidar;
@@ -17,12 +18,11 @@ using namespace tread::testing;
 
 namespace {
 
-/// The emulated range finder and the driver's session, each millisecond, with a scan each 100 ms.
-struct ScipLine {
+struct ScipLine : testkit::DeviceLine<ScipSession, sim::ScipEmulator, sim::LaserScan> {
   explicit ScipLine(const sim::ScipSettings& settings = {}, bool short_ranges = false)
-      : session({short_ranges, 0.0}), device(settings, 1) {
-    session.open(now);
-  }
+      : DeviceLine(
+            ScipSession({short_ranges, 0.0}), [](int64_t finished) { return sweep(finished); },
+            settings, 1) {}
 
   /// 2 m to the right, 3 m to the left, nothing straight ahead, no measurement beside it.
   static sim::LaserScan sweep(int64_t finished, int beams = 541) {
@@ -34,27 +34,7 @@ struct ScipLine {
     scan.ranges[static_cast<size_t>(beams / 2 + 1)] = NAN;
     return scan;
   }
-  std::vector<RangeScan> run(int milliseconds) {
-    std::vector<RangeScan> scans;
-    for (int i = 0; i < milliseconds; ++i) {
-      now += 1000;
-      if (now % 100'000 == 0) device.add(sweep(now));
-      device.receive(session.poll(now), now);
-      session.receive(device.transmit(now), now + delay);
-      for (RangeScan& scan : session.take(now)) scans.push_back(std::move(scan));
-    }
-    return scans;
-  }
-  int64_t counted(const std::string& what) const {
-    const auto found = session.counters().find(what);
-    return found == session.counters().end() ? 0 : found->second;
-  }
   std::string reason() const { return session.reason(now).words; }
-
-  int64_t now = 1'000'000;
-  int64_t delay = 0;  ///< [us] of what the device sends
-  ScipSession session;
-  sim::ScipEmulator device;
 };
 
 /// What a session that is asked for PP says to an answer to it.
@@ -193,7 +173,25 @@ TEST_CASE("random bytes between the scans of a Hokuyo cost few of them") {
   sim::ScipFaults faults;
   faults.garbage = true;
   line.device.setFaults(faults);
-  CHECK(line.run(10'000).size() >= 80);
+  const std::vector<RangeScan> scans = line.run(10'000);
+  CHECK(scans.size() >= 80);
+  for (const RangeScan& scan : scans) {
+    // A sweep ends each 100 ms, whenever the bytes before it came.
+    const int64_t off = (scan.utime + scan.duration_us) % 100'000;
+    CHECK(std::min(off, 100'000 - off) < 5'000);
+  }
+}
+
+TEST_CASE("noise long before a scan does not make it, or those that follow, older than they are") {
+  ScipLine line;
+  line.run(1030);
+  line.session.receive("noise", line.now);
+  const std::vector<RangeScan> scans = line.run(2000);
+  CHECK(scans.size() >= 18);
+  for (const RangeScan& scan : scans) {
+    const int64_t off = (scan.utime + scan.duration_us) % 100'000;
+    CHECK(std::min(off, 100'000 - off) < 5'000);
+  }
 }
 
 TEST_CASE("a laser that does not come on is refused with what the device says of itself") {
@@ -273,30 +271,15 @@ TEST_CASE("a Hokuyo's laser is switched off when nobody reads it any longer") {
 }
 
 TEST_CASE("a million random and mutated bytes give few scans that SCIP cannot vouch for") {
-  std::mt19937 random(5);
   ScipLine line;
   line.run(500);
   size_t scans = 0;
-  for (int fed = 0; fed < effort(1'100'000);) {
-    line.now += 50'000;
-    line.device.add(ScipLine::sweep(line.now));
-    line.device.receive(line.session.poll(line.now), line.now);
-    std::string bytes = line.device.transmit(line.now);
-    if (bytes.empty()) bytes.resize(1 + random() % 2000);
-    for (auto i = 2 + random() % 20; i > 0; --i)
-      bytes[random() % bytes.size()] = static_cast<char>(random());
-    if (random() % 8 == 0)
-      for (char& byte : bytes) byte = static_cast<char>(random());
-    fed += static_cast<int>(bytes.size());
-    line.session.receive(bytes, line.now);
-    for (const RangeScan& scan : line.session.take(line.now)) {
-      ++scans;
-      REQUIRE(scan.ranges.size() == 541);
-      REQUIRE(scan.utime + scan.duration_us <= line.now);
-      REQUIRE(scan.duration_us == 18'750);
-    }
-    if (line.session.lost()) line.session.open(line.now);
-  }
+  line.mistreat(effort(1'100'000), 5, 50'000, 0, [&](const RangeScan& scan) {
+    ++scans;
+    REQUIRE(scan.ranges.size() == 541);
+    REQUIRE(scan.utime + scan.duration_us <= line.now);
+    REQUIRE(scan.duration_us == 18'750);
+  });
   // A sum of six bits lets one changed line in 64 through.
   CHECK(scans < 20);
   CHECK(line.session.counters().size() < 20);

@@ -266,7 +266,7 @@ TEST_CASE(
         }
         CHECK(session.take(now).empty());
         if (i < 300) continue;
-        const Reason reason = session.reason(now);
+        const NotedReason reason = session.reason(now);
         REQUIRE(reason.rank == Rank::kRefused);
         REQUIRE(reason.words.find(text ? "CoLa B" : "CoLa A") != std::string::npos);
         REQUIRE(reason.words.find(text ? "telegrams: binary" : "telegrams: ascii") !=

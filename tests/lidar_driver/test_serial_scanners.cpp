@@ -11,6 +11,7 @@
 #include "modules/simulator/emulators/rplidar/rplidar_emulator.hpp"
 #include "modules/simulator/emulators/sick_lms2xx/lms_emulator.hpp"
 #include "tests/helpers.hpp"
+#include "tests/lidar_driver/device_line.hpp"
 
 using namespace tread;
 using namespace tread::lidar;
@@ -18,10 +19,11 @@ using namespace tread::testing;
 
 namespace {
 
-/// A scanner on its line, looked at each millisecond, with a sweep each 100 ms.
 template <class Session, class Device>
-struct SerialLine {
-  explicit SerialLine(Session made) : session(std::move(made)) { session.open(now); }
+struct SerialLine : testkit::DeviceLine<Session, Device, sim::LaserScan> {
+  explicit SerialLine(Session made)
+      : testkit::DeviceLine<Session, Device, sim::LaserScan>(std::move(made), sweep,
+                                                             sim::LaserParameters{}) {}
 
   /// 2 m to the right, 3 m to the left, nothing straight ahead.
   static sim::LaserScan sweep(int64_t finished) {
@@ -32,25 +34,6 @@ struct SerialLine {
     scan.ranges[270] = INFINITY;
     return scan;
   }
-  std::vector<RangeScan> run(int milliseconds) {
-    std::vector<RangeScan> scans;
-    for (int i = 0; i < milliseconds; ++i) {
-      now += 1000;
-      if (now % 100'000 == 0) device.add(sweep(now));
-      device.receive(session.poll(now), now);
-      session.receive(device.transmit(now), now);
-      for (RangeScan& scan : session.take(now)) scans.push_back(std::move(scan));
-    }
-    return scans;
-  }
-  int64_t counted(const std::string& what) const {
-    const auto found = session.counters().find(what);
-    return found == session.counters().end() ? 0 : found->second;
-  }
-
-  int64_t now = 1'000'000;
-  Session session;
-  Device device{sim::LaserParameters{}};
 };
 
 struct LmsLine : SerialLine<LmsSession, sim::LmsEmulator> {
@@ -60,31 +43,16 @@ struct RplidarLine : SerialLine<RplidarSession, sim::RplidarEmulator> {
   explicit RplidarLine(double step = 1.0) : SerialLine(RplidarSession({step, 12.0, 0.0})) {}
 };
 
-/// Mutated and random bytes between sound ones; returns how many scans came of them.
+/// How many scans come of bytes that were spoiled.
 template <class Line>
 size_t mistreat(Line& line, int bytes_to_feed, unsigned seed) {
-  std::mt19937 random(seed);
   size_t scans = 0;
-  for (int fed = 0; fed < bytes_to_feed;) {
-    line.now += 100'000;
-    line.device.add(Line::sweep(line.now - 100'000));
-    line.device.receive(line.session.poll(line.now), line.now);
-    std::string bytes = line.device.transmit(line.now);
-    if (bytes.empty()) bytes.resize(1 + random() % 2000);
-    for (auto i = 2 + random() % 20; i > 0; --i)
-      bytes[random() % bytes.size()] = static_cast<char>(random());
-    if (random() % 8 == 0)
-      for (char& byte : bytes) byte = static_cast<char>(random());
-    fed += static_cast<int>(bytes.size());
-    line.session.receive(bytes, line.now);
-    for (const RangeScan& scan : line.session.take(line.now)) {
-      ++scans;
-      REQUIRE(scan.utime + scan.duration_us <= line.now);
-      REQUIRE(scan.duration_us <= 1'000'000);
-      REQUIRE(std::abs(scan.angle_step) * static_cast<double>(scan.ranges.size() - 1) < 6.2832);
-    }
-    if (line.session.lost()) line.session.open(line.now);
-  }
+  line.mistreat(bytes_to_feed, seed, 100'000, 100'000, [&](const RangeScan& scan) {
+    ++scans;
+    REQUIRE(scan.utime + scan.duration_us <= line.now);
+    REQUIRE(scan.duration_us <= 1'000'000);
+    REQUIRE(std::abs(scan.angle_step) * static_cast<double>(scan.ranges.size() - 1) < 6.2832);
+  });
   return scans;
 }
 

@@ -280,7 +280,7 @@ TEST_CASE("packets of another sensor are named with what is read, also after the
     for (; now < 20'000'000; now += 5'000) REQUIRE(source.take(now).empty());
     std::remove(path.c_str());
     CAPTURE(other.name);
-    const Reason reason = source.reason(now);
+    const NotedReason reason = source.reason(now);
     CHECK(reason.rank == Rank::kRefused);
     CHECK(reason.words == "refused: packets of another product, " + std::string(other.name) +
                               " (20); this driver reads VLP-16, Puck LITE and Puck Hi-Res, in "

@@ -153,6 +153,20 @@ TEST_CASE("the worst cause is the one that is named") {
   }
 }
 
+TEST_CASE("a second E-stop, or a second fault of one kind, is not hidden behind the first") {
+  Rig rig;
+  rig.drive();
+  rig.in.estop = true;
+  rig.in.estop_reason = "smoke (ada)";
+  rig.step();
+  CHECK(rig.out.standing_said);
+  rig.in.estop_reason = "person in front (ben)";
+  rig.step();
+  CHECK(rig.out.reason == "E-stop: smoke (ada)");
+  CHECK_FALSE(rig.out.standing_said);
+  CHECK(rig.out.standing_fault.words == "E-stop: person in front (ben)");
+}
+
 TEST_CASE("an E-stop wins over everything, latches, and needs clearing and then ARM") {
   Rig rig;
   rig.drive();

@@ -98,6 +98,7 @@ TEST_CASE(
   CHECK_THAT(decision.report.reason.words, Catch::Contains("as close as possible"));
   decision = rig.run(25.0);
   CHECK(decision.report.status == PlanStatus::kUnreachable);
+  CHECK(decision.report.reason.code == StopReason::kNoWayFound);  // obstacles may go again
   CHECK_THAT(decision.report.reason.words, Catch::Contains("obstacles enclose"));
   CHECK(std::hypot(rig.pose().x - 12.0, rig.pose().y) < 3.2);
   CHECK(std::abs(rig.speed()) < 0.02);

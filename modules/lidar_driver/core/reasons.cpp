@@ -22,7 +22,7 @@ void Reasons::note(Rank rank, const std::string& what, int64_t now, int64_t time
   noted.remedy = remedy;
 }
 
-Reason Reasons::best(int64_t now) const {
+NotedReason Reasons::best(int64_t now) const {
   const std::pair<const std::string, Noted>* found = nullptr;
   for (const auto& candidate : noted_) {
     const Noted& noted = candidate.second;

@@ -18,7 +18,7 @@ enum class Rank {
 };
 
 /// A reason as HEALTH gives it, with its count and what to do.
-struct Reason {
+struct NotedReason {
   Rank rank = Rank::kNone;
   std::string words;
 };
@@ -34,7 +34,7 @@ class Reasons {
   /// A good scan came: nothing is wrong any more.
   void clear() { noted_.clear(); }
   /// Of the highest rank; among those the one that was noted most often.
-  Reason best(int64_t now) const;
+  NotedReason best(int64_t now) const;
 
  private:
   struct Noted {

@@ -31,7 +31,7 @@ class ScanDevice {
   /// Scans that were completed since the last call, oldest first.
   virtual std::vector<RangeScan> take(int64_t now) = 0;
   /// Why no good scan comes.
-  Reason reason(int64_t now) const { return reasons_.best(now); }
+  NotedReason reason(int64_t now) const { return reasons_.best(now); }
   /// True if only a new connection can help.
   virtual bool lost() const { return false; }
   /// False while it has enough bytes to work on.

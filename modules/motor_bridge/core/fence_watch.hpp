@@ -46,7 +46,7 @@ class FenceWatch {
   /// [s] learned on the ground that the robot stands on.
   void setStoppingTime(double seconds) { limits_.stopping_time = seconds; }
 
-  /// Which fence a zero now keeps it from crossing at now [us], none = no fence.
+  /// Which fence a zero now keeps it from crossing at now [us]; none = no fence.
   Reason fault(int64_t now);
 
  private:

@@ -10,6 +10,7 @@
 
 #include "common/bus/virtual_bus.hpp"
 #include "common/fence/fence_book.hpp"
+#include "common/messages/blank.hpp"
 #include "common/messages/fence_messages.hpp"
 
 using namespace tread;
@@ -195,6 +196,44 @@ TEST_CASE("who is started again gets the operators' fences back, and what is rem
     CHECK(countOf(keeper->book, "yard") == 0);
     CHECK(countOf(keeper->book, "pond") == 1);
   }
+}
+
+TEST_CASE(
+    "a fence that was removed does not come back with what the other keeper said before it knew") {
+  struct Keeper : Node {
+    explicit Keeper(Bus& bus)
+        : exchange(bus, "one", "two",
+                   [this](const FenceRequest& request) { book.take(request, false); }) {}
+    int64_t period() const override { return 10'000; }
+    void step(int64_t /*utime*/) override { exchange.step(book); }
+    FenceBook book;
+    FenceExchange exchange;
+  };
+  VirtualBus bus{1};
+  Keeper* keeper = nullptr;
+  bus.addNode("one", [&keeper](Bus& end) {
+    auto made = std::make_unique<Keeper>(end);
+    keeper = made.get();
+    return made;
+  });
+  keeper->book.take({"ada", false, square("yard", 9)}, true);
+  bus.runUntil(bus.now() + 100'000);
+  keeper->book.take(removal("yard"), true);
+  bus.runUntil(bus.now() + 100'000);
+  const auto otherSays = [&] {
+    auto message = blank<fences_t>();
+    message.utime = bus.now();
+    message.keeper = "two";
+    message.fences = {toMessage(FenceRequest{"", false, square("yard", 9)})};
+    message.num_fences = 1;
+    bus.outside().publish(kFences, message);
+    bus.runUntil(bus.now() + 50'000);
+  };
+  otherSays();
+  CHECK(keeper->book.fences().empty());
+  bus.runUntil(bus.now() + 1'000'000);
+  otherSays();
+  CHECK(keeper->book.fences().size() == 1);
 }
 
 TEST_CASE("fences go through text unchanged, and broken lines make no fence") {

@@ -17,6 +17,7 @@
 #include <tread_before/motor_t.hpp>
 
 #include "common/drive/drive_log.hpp"
+#include "common/execution/stop_reason.hpp"
 #include "common/log/older_types.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "common/types/message_json.hpp"
@@ -117,6 +118,33 @@ TEST_CASE("a message whose type had fewer fields keeps them, and the new ones ar
   CHECK(plan.reason_code == -1);  // its words are no whole sentence
   CHECK(std::isnan(plan.risk));
   CHECK(std::isnan(plan.risk_per_metre));
+}
+
+TEST_CASE(
+    "a code that a message does not have is that of its words, where these are a whole sentence") {
+  std::ifstream file(std::string(TREAD_SOURCE_DIR) + "/lcmtypes/before/2026-11-28/motor_t.lcm");
+  const MessageTypes types = MessageTypes::fromText(
+      std::string(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()));
+  const auto codeOf = [&](const std::string& words) {
+    const std::string zeros = "[0, 0, 0, 0, 0, 0, 0, 0]";
+    const std::string json =
+        R"({"utime": 1, "seq": 1, "motor_run_id": 0, "execution_id": 0, "command_index": -1,
+            "bridge_state": 0, "state_reason": ")" +
+        words + R"(", "channel_kind": )" + zeros + R"(, "command": )" + zeros +
+        R"(, "device_fault": 0, "battery_voltage": 24, "current": )" + zeros + R"(, "measured": )" +
+        zeros + "}";
+    LogEvent event{0, "MOTOR", bytesOf(types, *types.find("motor_t"), json), false};
+    renew(event);
+    motor_t motor{};
+    REQUIRE(decode(event, kMotor, motor));
+    CHECK(motor.holder.empty());
+    CHECK(motor.battery_voltage == 24.0F);
+    return stopReasonFrom(motor.state_code);
+  };
+  CHECK(codeOf("") == StopReason::kNone);
+  CHECK(codeOf("idle or driven by the operator") == StopReason::kOperatorDrives);
+  CHECK(codeOf("stopped by the planner") == StopReason::kStoppedByPlanner);
+  CHECK(codeOf("rolled 34 deg, limit 29") == StopReason::kUnsaid);
 }
 
 TEST_CASE("only whole messages of their own channel are taken for older ones") {

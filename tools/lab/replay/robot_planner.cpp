@@ -106,7 +106,7 @@ Step messagesOf(LogBus& bus, std::vector<LogEvent>& all) {
   return step;
 }
 
-/// Gives a planner what it overhears (HEALTH), between its inputs as they lie in the log.
+/// Gives a planner what it overhears (HEALTH, FENCES), between its inputs as they lie in the log.
 /** PROGRAM neither names nor counts these messages. */
 class Overhearing {
  public:

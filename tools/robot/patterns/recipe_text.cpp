@@ -26,7 +26,7 @@ std::string recipeText(const DesignedRecipe& recipe, const std::string& comment)
   text += "patterns:\n";
   for (const DesignedPattern& pattern : recipe.patterns)
     for (size_t i = 0; i < pattern.made.size(); ++i) {
-      const Candidate& made = pattern.made[i];
+      const CandidatePattern& made = pattern.made[i];
       text += "  - {name: " + pattern.names[i] + ", entry: " + recipe.classes[made.entry].name +
               ", exit: " + recipe.classes[made.exit].name + ", commands: [";
       for (size_t k = 0; k < made.rows.size(); ++k)

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kLeastSlide = 0.25;  // [m/s] as the learner's
 constexpr double kSlideShare = 0.15;  // [1] of the speed
-constexpr double kSlideStep = 0.1;         // [s]
+constexpr double kSlideStep = 0.1;    // [s]
 constexpr double kStands = 0.05;      // [m/s]
 constexpr double kBetter = 0.1;       // [m/s] less is no better
 

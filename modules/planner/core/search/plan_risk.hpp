@@ -10,7 +10,9 @@
 
 namespace tread::planner {
 
-/// How likely it is that a plan touches an obstacle.
+/// Upper bounds of the probability that a plan touches an obstacle.
+/** At least ten times fewer contacts come than these numbers add up to, because the covariances of
+ * the patterns are too wide (tests/bench/RESULTS.md). */
 struct PlanRisk {
   double touch = std::numeric_limits<double>::quiet_NaN();      ///< [1] of the whole plan
   double first = std::numeric_limits<double>::quiet_NaN();      ///< [1] of its first pattern
@@ -26,7 +28,7 @@ struct RiskQuestion {
   double reaction = 0.0;  ///< [s] in which a vehicle that leaves its way is noticed and stands
 };
 
-/// Probability that the vehicle touches an obstacle of the map before the plan ends.
+/// Upper bound of the probability that the vehicle touches an obstacle of the map before the plan ends.
 /** The way is watched while it is driven, and the vehicle stops before what it would touch; so only
  * errors count that grow within the reaction time. They are normal, with the covariances of the
  * patterns; the variance of one grows evenly over its time. Each side of the footprint may touch

@@ -263,13 +263,14 @@ void CandidateFamily::add(size_t entry, size_t exit, std::vector<Held> helds) {
   if (turns && std::hypot(end.y, wish_.gap * end.yaw) < kLeastTurn * wish_.gap) return;
   std::vector<Held> mirrored = helds;
   for (Held& one : mirrored) one.motion = one.motion.mirrored();
-  Candidate other = made(mirrorOf(entry), mirrorOf(exit), mirrored);
+  CandidatePattern other = made(mirrorOf(entry), mirrorOf(exit), mirrored);
   if (other.rows != pair.front().rows || other.entry != entry) pair.push_back(std::move(other));
   pairs_.push_back(std::move(pair));
 }
 
-Candidate CandidateFamily::made(size_t entry, size_t exit, const std::vector<Held>& helds) const {
-  Candidate candidate;
+CandidatePattern CandidateFamily::made(size_t entry, size_t exit,
+                                       const std::vector<Held>& helds) const {
+  CandidatePattern candidate;
   candidate.entry = entry;
   candidate.exit = exit;
   std::vector<Command> commands;

@@ -50,7 +50,7 @@ struct DesignedClass {
 };
 
 /// A pattern that could be in the set.
-struct Candidate {
+struct CandidatePattern {
   size_t entry = 0;                       ///< class
   size_t exit = 0;                        ///< class
   std::vector<std::vector<double>> rows;  ///< as in a recipe: commands, then seconds
@@ -59,7 +59,7 @@ struct Candidate {
 };
 
 /// One candidate, or one and its mirror image.
-using CandidatePair = std::vector<Candidate>;
+using CandidatePair = std::vector<CandidatePattern>;
 
 /// All that a vehicle could do in one pattern: turns of many strengths and durations from class to
 /// class.
@@ -106,7 +106,7 @@ class CandidateFamily {
   void addTurns(size_t entry, size_t exit, const Wanted& base);
   void addHeld(size_t entry, size_t exit, const Wanted& motion, bool to_and_fro);
   void add(size_t entry, size_t exit, std::vector<Held> helds);
-  Candidate made(size_t entry, size_t exit, const std::vector<Held>& helds) const;
+  CandidatePattern made(size_t entry, size_t exit, const std::vector<Held>& helds) const;
 
   const VehicleModel& model_;
   RecipeWish wish_;

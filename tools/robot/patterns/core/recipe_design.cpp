@@ -72,7 +72,7 @@ class Coverage {
   }
 
   void take(const CandidatePair& pair) {
-    for (const Candidate& candidate : pair) {
+    for (const CandidatePattern& candidate : pair) {
       const Place place = placeOf(candidate);
       Reachable& from = reachable_[candidate.entry];
       for (size_t i = 0; i < from.places.size(); ++i)
@@ -97,7 +97,7 @@ class Coverage {
     std::set<std::array<long, 5>> seen;
     std::vector<Place> places;
     for (const CandidatePair& pair : family_.pairs())
-      for (const Candidate& candidate : pair) {
+      for (const CandidatePattern& candidate : pair) {
         if (candidate.entry != entry || candidate.exit != exit) continue;
         const Place place = placeOf(candidate);
         std::array<long, 5> cell{};
@@ -126,7 +126,7 @@ class Coverage {
     return 1.0 / (turn * turn + least * least);
   }
 
-  Place placeOf(const Candidate& candidate) const {
+  Place placeOf(const CandidatePattern& candidate) const {
     const Wanted& exit = family_.classes()[candidate.exit].motion;
     return {kAlongCounts * candidate.end.x, candidate.end.y, wish_.gap * candidate.end.yaw,
             family_.seconds() * exit.forward, family_.seconds() * exit.left};
@@ -137,7 +137,7 @@ class Coverage {
   std::vector<Reachable> reachable_;  ///< by entry class
 };
 
-bool isStraight(const Candidate& candidate) {
+bool isStraight(const CandidatePattern& candidate) {
   return std::abs(candidate.end.yaw) < kStraightAway;
 }
 
@@ -165,19 +165,19 @@ std::vector<const CandidatePair*> neededPairs(const CandidateFamily& family, boo
   for (size_t entry = 0; entry < classes.size(); ++entry)
     for (size_t exit = 0; exit < classes.size(); ++exit)
       // Straight on as far as it goes, from speed to speed as soon as it can.
-      need([&](const Candidate& c) {
+      need([&](const CandidatePattern& c) {
         if (c.entry != entry || c.exit != exit || c.rows.size() != 1) return kNever;
         return entry == exit ? -c.seconds : c.seconds;
       });
   if (!is_car) {
-    need([&](const Candidate& c) {
+    need([&](const CandidatePattern& c) {
       const bool on_the_spot = c.entry == 0 && c.exit == 0 && c.end.position().norm() < kSpot;
       return on_the_spot ? std::abs(std::abs(c.end.yaw) - kSpotTurn) : kNever;
     });
     return needed;
   }
   for (const double sign : {1.0, -1.0})
-    need([&](const Candidate& c) {
+    need([&](const CandidatePattern& c) {
       const bool fits = c.entry == c.exit && sign * classes[c.entry].motion.forward > 0.0;
       return fits ? -std::abs(c.end.yaw) : kNever;
     });
@@ -188,7 +188,7 @@ std::string sizedName(const std::string& name, double size) {
   return name + "_" + std::to_string(std::lround(std::abs(size)));
 }
 
-std::string nameOf(const std::vector<DesignedClass>& classes, const Candidate& candidate) {
+std::string nameOf(const std::vector<DesignedClass>& classes, const CandidatePattern& candidate) {
   const Pose2& end = candidate.end;
   const double degrees = toDegrees(end.yaw);
   const std::string& from = classes[candidate.entry].name;
@@ -217,7 +217,7 @@ DesignedPattern designed(const CandidateFamily& family, const CandidatePair& pai
                          std::set<std::string>& names) {
   DesignedPattern pattern;
   pattern.made = pair;
-  for (const Candidate& candidate : pair) {
+  for (const CandidatePattern& candidate : pair) {
     const std::string plain = nameOf(family.classes(), candidate);
     std::string name = plain;
     for (int more = 2; !names.insert(name).second; ++more)

@@ -11,11 +11,11 @@ namespace tread::patterns {
 
 /// A pattern, or one and its mirror image, in the order in which they were chosen.
 struct DesignedPattern {
-  std::vector<std::string> names;  ///< one or two
-  std::vector<Candidate> made;     ///< as many
-  bool needed = false;             ///< without it a class cannot be reached, kept or left
-  double before = 0.0;             ///< [m] dispersion without it,
-  double after = 0.0;              ///< and with it
+  std::vector<std::string> names;      ///< one or two
+  std::vector<CandidatePattern> made;  ///< as many
+  bool needed = false;                 ///< without it a class cannot be reached, kept or left
+  double before = 0.0;                 ///< [m] dispersion without it,
+  double after = 0.0;                  ///< and with it
 };
 
 /// A recipe that is made, not typed.

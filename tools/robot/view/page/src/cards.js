@@ -57,7 +57,7 @@ export function showRobot(state, clock) {
   }
   if (plan && known(plan.message.risk)) {
     const perMetre = known(plan.message.risk_per_metre) ? `, ${percent(plan.message.risk_per_metre)} a metre` : "";
-    rows.push(["risk", `${percent(plan.message.risk)} that the plan touches something${perMetre}`]);
+    rows.push(["risk", `at most ${percent(plan.message.risk)} that the plan touches something${perMetre}`]);
   }
   if (run) rows.push(["pattern", escape(run.name)]);
   put("robot", `<dl>${rows.map(([name, value]) => `<dt>${name}</dt><dd>${value}</dd>`).join("")}</dl>`);
