@@ -228,6 +228,25 @@ TEST_CASE("a port that answers otherwise or never is one clear line") {
   CHECK(session.reason(now).rank >= Rank::kUnreadable);
 }
 
+TEST_CASE("a line that is too slow for a Hokuyo's scans is named, with what to do") {
+  ScipLine line;
+  std::string waiting;
+  for (int i = 0; i < 6000 && !line.session.lost(); ++i) {
+    line.now += 1000;
+    if (line.now % 100'000 == 0) line.device.add(ScipLine::sweep(line.now));
+    line.device.receive(line.session.poll(line.now), line.now);
+    const std::string sent = line.device.transmit(line.now);
+    // A device drops a scan while it still sends the last one.
+    if (waiting.size() < 2000) waiting += sent;
+    const size_t carried = std::min<size_t>(waiting.size(), 1);  // 9600 baud
+    line.session.receive(waiting.substr(0, carried), line.now);
+    waiting.erase(0, carried);
+    CHECK(line.session.take(line.now).empty());
+  }
+  CHECK(line.reason().find("the line is too slow: a scan has 1623 bytes; raise its rate, or set "
+                           "short_ranges") != std::string::npos);
+}
+
 TEST_CASE("none of a Hokuyo's scans outlives a disconnect") {
   ScipLine line;
   REQUIRE(line.run(500).size() >= 4);

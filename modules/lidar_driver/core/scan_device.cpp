@@ -38,8 +38,10 @@ void StartedDevice::begin(int64_t now) {
   last_scan_ = now;
 }
 
-void StartedDevice::restart(const std::string& reason, int64_t now) {
-  reasons().note(Rank::kSilent, reason + "; starting it up again", now);
+void StartedDevice::restart(const std::string& reason, int64_t now, const std::string& remedy) {
+  // A known remedy says more than the bytes of a scan that the new start cuts off.
+  reasons().note(remedy.empty() ? Rank::kSilent : Rank::kRefused, reason + "; starting it up again",
+                 now, 1, remedy);
   count("restarts: " + reason);
   if (++starts_without_scan_ >= kStartsWithoutScan) lost_ = true;
   begin(now);
@@ -74,7 +76,7 @@ void StartedDevice::refused(const std::string& words, int64_t now, const std::st
 std::string StartedDevice::poll(int64_t now) {
   if (!open_ || lost_) return {};
   if (streaming()) {
-    if (now - last_scan_ > kSilence) restart("no good scan for 1 s", now);
+    if (now - last_scan_ > kSilence) restart("no good scan for 1 s", now, remedyForSilence());
     return {};
   }
   if (tries_ > 0 && now - asked_at_ < patience_us_) return {};

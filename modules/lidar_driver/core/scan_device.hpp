@@ -100,7 +100,9 @@ class StartedDevice : public ScanDevice {
   void setRequest(const std::string& step, std::string bytes);
   void deliver(RangeScan scan, int64_t now);
   /// Starts it up anew for this reason.
-  void restart(const std::string& reason, int64_t now);
+  void restart(const std::string& reason, int64_t now, const std::string& remedy = {});
+  /// What to do if no scan comes though the device streams; empty if nothing hints at a cause.
+  virtual std::string remedyForSilence() const { return {}; }
 
  private:
   void begin(int64_t now);

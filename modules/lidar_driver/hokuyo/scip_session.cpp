@@ -12,6 +12,7 @@ namespace {
 
 constexpr int64_t kPatience = 500'000;    // [us]: on slow lines the rest of a scan comes first
 constexpr size_t kLongest = 65'536;       // of an answer
+constexpr size_t kPartOfScan = 200;       // a buffer of more holds a part of a scan
 constexpr size_t kNoise = 3;              // so many bytes may be noise of long ago
 constexpr int kMostSteps = 10'000;        // a request has four digits
 constexpr double kShortMax = 4.094;       // [m] of two characters: 4095 stands for all beyond
@@ -130,6 +131,13 @@ void ScipSession::forget() {
   clock_.forget();
   state_.clear();
   last_milliseconds_.reset();
+}
+
+std::string ScipSession::remedyForSilence() const {
+  if (buffer_.size() < kPartOfScan) return {};
+  const size_t width = config_.short_ranges ? 2 : 3;
+  return "the line is too slow: a scan has " + std::to_string(width * geometry_.beams()) +
+         " bytes; raise its rate" + (config_.short_ranges ? "" : ", or set short_ranges");
 }
 
 std::string ScipSession::echo() const {

@@ -72,6 +72,8 @@ class ScipSession final : public StartedDevice {
   };
 
   void forget() override;
+  /// A scan that is still arriving needs a faster line.
+  std::string remedyForSilence() const override;
   /// What is expected before an answer's status.
   std::string echo() const;
   void takeBlock(std::string_view block, int64_t now);
