@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "common/drive/odometer.hpp"
 
-#include "common/messages/ins_messages.hpp"
+#include <tread/ins_t.hpp>
 
 namespace tread {
 namespace {
@@ -13,24 +13,19 @@ constexpr double kLeastMotion = 0.05;
 
 }  // namespace
 
-void Odometer::add(const DriveEvent& event, const ins_t& ins) {
-  const auto pose = planarPose(ins);
-  if (!pose || event.wrong_time || pose->position().norm() > kFarthestPlace) return;
-  const Place place{ins.utime, event.restarts, *pose};
-  const bool same_clock = newest_ && newest_->restarts == place.restarts;
-  if (same_clock && place.utime <= newest_->utime) return;
-  const bool follows_newest =
-      same_clock && (ins.ins_status & ins_t::STATUS_JUMP) == 0 && follows(place);
-  newest_ = place;
-  if (!follows_newest) {
-    counted_ = *pose;
-  } else if (const double step = distanceBetween(counted_, *pose); step > kLeastMotion) {
-    distance_ += step;
-    counted_ = *pose;
-  }
+void Odometer::add(const InsNote& ins) {
+  if (!ins.placed || ins.wrong_time) return;
+  const bool same_clock = newest_ && newest_->restarts == ins.restarts;
+  if (same_clock && ins.utime <= newest_->utime) return;
+  const bool follows_newest = same_clock && (ins.status & ins_t::STATUS_JUMP) == 0 && follows(ins);
+  newest_ = ins;
+  const double step = distanceBetween(counted_, ins.T_map_body);
+  if (follows_newest && step <= kLeastMotion) return;
+  if (follows_newest) distance_ += step;
+  counted_ = ins.T_map_body;
 }
 
-bool Odometer::follows(const Place& place) const {
+bool Odometer::follows(const InsNote& place) const {
   const double seconds = 1e-6 * static_cast<double>(place.utime - newest_->utime);
   return isWithinReach(newest_->T_map_body.position(), place.T_map_body.position(), seconds);
 }

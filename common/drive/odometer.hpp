@@ -3,15 +3,30 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
-#include <tread/ins_t.hpp>
-
-#include "common/drive/drive_reader.hpp"
 #include "common/geometry/se2.hpp"
 
 namespace tread {
+
+/// Something that a log says.
+struct Note {
+  double time = 0.0;  ///< [s] since the log began
+  size_t event = 0;   ///< number of its event in the log
+};
+
+/// An INS message.
+struct InsNote : Note {
+  int64_t utime = 0;   ///< [us]
+  int32_t status = 0;  ///< ins_t::STATUS_*
+  Pose2 T_map_body;
+  bool placed = false;       ///< it has a pose that can be one
+  double inclination = 0.0;  ///< [rad] against level ground; NaN unknown
+  bool wrong_time = false;   ///< of its event, see DriveEvent
+  size_t restarts = 0;       ///< the same
+};
 
 /// Farther from the origin of map a position is a broken number [m].
 inline constexpr double kFarthestPlace = 1e6;
@@ -30,20 +45,15 @@ inline bool isWithinReach(const Eigen::Vector2d& from, const Eigen::Vector2d& to
  * time. Messages out of order, or in events whose time cannot be, are left out. */
 class Odometer {
  public:
-  void add(const DriveEvent& event, const ins_t& ins);
+  void add(const InsNote& ins);
   /// What comes next does not follow what came before.
   void interrupt() { newest_.reset(); }
   double distance() const { return distance_; }  ///< [m]
 
  private:
-  struct Place {
-    int64_t utime = 0;  ///< [us] by the INS
-    size_t restarts = 0;
-    Pose2 T_map_body;
-  };
-  bool follows(const Place& place) const;
+  bool follows(const InsNote& place) const;
 
-  std::optional<Place> newest_;
+  std::optional<InsNote> newest_;
   Pose2 counted_;  ///< up to where the distance is counted
   double distance_ = 0.0;
 };

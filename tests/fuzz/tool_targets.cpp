@@ -328,15 +328,11 @@ std::vector<LogEvent> eventsIn(const uint8_t* bytes, size_t size) {
 /// All that the tools make of a drive's log.
 void driveLog(const uint8_t* bytes, size_t size) {
   const std::vector<LogEvent> events = eventsIn(bytes, size);
-  report::Chronicle chronicle;
-  report::HandRecord hand;
-  for (const LogEvent& event : events) {
-    chronicle.take(event);
-    hand.take(event);
-  }
+  const DriveTimeline drive = toTimeline("log", events);
+  const report::Chronicle chronicle(drive);
   chronicle.summary(0);
   chronicle.words();
-  hand.words();
+  report::HandRecord(drive).words();
   refusing([&] { replay::learnerLives(toRobotLog("log", events), shippedSet()); });
   refusing([&] { gap::toDrive(toDriveLog("log", events)); });
 }

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <random>
 
-#include "common/drive/drive_log.hpp"
-#include "common/drive/odometer.hpp"
+#include "common/drive/drive_timeline.hpp"
 #include "common/messages/blank.hpp"
 
 using namespace tread;
@@ -35,10 +34,7 @@ ins_t insOf(const LogEvent& event) {
 }
 
 double metresIn(const std::vector<LogEvent>& events) {
-  Odometer odometer;
-  DriveReader reader(events);
-  for (DriveEvent event; reader.next(event);) odometer.add(event, insOf(event));
-  return odometer.distance();
+  return toTimeline("drive", events).distance;
 }
 
 }  // namespace

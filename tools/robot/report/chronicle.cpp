@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/drive/drive_log.hpp"
-#include "common/messages/pattern_messages.hpp"
 #include "common/report/text.hpp"
 
 namespace tread::report {
 namespace {
 
 constexpr double kContinuous = 5.0;  // [Hz] a channel of this rate is never silent for long
+constexpr double kHole = 0.5;        // [s] of silence of a channel of 5 Hz or more
 constexpr double kTogether = 0.3;    // [s] between beginnings, and ends, of the same hole
 constexpr size_t kMostLines = 30;    // of a kind
 
@@ -33,6 +32,15 @@ std::string linesOf(const std::vector<Item>& items, Line line) {
   return words;
 }
 
+bool isSevere(const PermissionLoss& loss) {
+  return loss.state == motor_t::STATE_FAULT || loss.state == motor_t::STATE_ESTOP;
+}
+
+std::string nameOf(const PermissionLoss& loss) {
+  if (!isSevere(loss)) return "disarmed";
+  return loss.state == motor_t::STATE_FAULT ? "fault" : "E-stop";
+}
+
 std::string lineOf(const GoalStory& goal) {
   const std::string time = formatted("%7.1f s  goal ", goal.given) + std::to_string(goal.id);
   if (goal.arrived) return time + formatted(": arrived after %.1f s", goal.ended - goal.given);
@@ -42,62 +50,41 @@ std::string lineOf(const GoalStory& goal) {
 
 }  // namespace
 
-void Chronicle::take(const LogEvent& event) {
-  if (begun_ < 0) begun_ = event.utime;
-  const double time = static_cast<double>(event.utime - begun_) * 1e-6;
-  listen(event, time);
-  plan_t plan;
-  motor_t motor;
-  if (decode(event, kPlan, plan)) hear(plan, time);
-  if (decode(event, kMotor, motor)) hear(motor, time);
+Chronicle::Chronicle(const DriveTimeline& drive) : incidents_(drive.losses) {
+  for (const PlanNote& plan : drive.plans) follow(plan);
+  for (const auto& [channel, times] : drive.heard)
+    for (size_t i = 1; isContinuous(channel) && i < times.size(); ++i)
+      if (times[i] - times[i - 1] > kHole)
+        silences_.push_back({times[i - 1], times[i] - times[i - 1], {channel}});
+  if (incidents_.empty() || !isSevere(incidents_.back())) return;
+  // A fault after an E-stop is no better an end.
+  const auto [from, to] = notesBetween(drive.motors, incidents_.back().event, drive.events);
+  lasts_ = std::all_of(from, to, [&](const MotorNote& note) {
+    return note.state == incidents_.back().state || note.state == motor_t::STATE_FAULT;
+  });
 }
 
-void Chronicle::listen(const LogEvent& event, double time) {
-  if (!isContinuous(event.channel)) return;
-  const auto [last, first] = heard_.try_emplace(event.channel, time);
-  if (!first && time - last->second > kHole)
-    silences_.push_back({last->second, time - last->second, {event.channel}});
-  last->second = time;
-}
-
-void Chronicle::hear(const plan_t& plan, double time) {
+void Chronicle::follow(const PlanNote& plan) {
   if (plan.goal_id == 0) {
     // Why the planner follows the last goal no more.
-    if (!goals_.empty() && !goals_.back().arrived && !plan.reason.empty())
-      goals_.back().reason = plan.reason;
+    if (!goals_.empty() && !goals_.back().arrived && !plan.reason.words.empty())
+      goals_.back().reason = plan.reason.words;
     return;
   }
-  if (goals_.empty() || goals_.back().id != plan.goal_id) {
-    goals_.push_back({plan.goal_id, time, time, false, ""});
-  }
+  if (goals_.empty() || goals_.back().id != plan.goal_id)
+    goals_.push_back({plan.goal_id, plan.time, plan.time, false, ""});
   GoalStory& goal = goals_.back();
   if (goal.arrived) return;
-  goal.ended = time;
-  goal.arrived = plan.plan_status == plan_t::PLAN_ARRIVED;
-  goal.reason = goal.arrived ? "" : plan.reason;
-}
-
-void Chronicle::hear(const motor_t& motor, double time) {
-  const int16_t state = motor.bridge_state;
-  const bool may = mayDrive(state);
-  const bool entered = state != state_;
-  std::string what;
-  if (entered && state == motor_t::STATE_ESTOP) what = "E-stop";
-  if (entered && state == motor_t::STATE_FAULT && may_drive_) what = "fault";
-  // A fault after an E-stop is no better an end.
-  if (entered && (!what.empty() || state != motor_t::STATE_FAULT)) ends_ = what;
-  if (!what.empty())
-    incidents_.push_back({time, what, motor.state_reason});
-  else if (may_drive_ && !may)
-    incidents_.push_back({time, "disarmed", motor.state_reason});
-  state_ = state;
-  may_drive_ = may;
+  goal.ended = plan.time;
+  goal.arrived = plan.state == plan_t::PLAN_ARRIVED;
+  goal.reason = goal.arrived ? "" : plan.reason.words;
 }
 
 std::vector<Hole> Chronicle::holes() const {
   std::vector<Hole> sorted = silences_;
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const Hole& a, const Hole& b) { return a.begin < b.begin; });
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Hole& a, const Hole& b) {
+    return std::pair(a.begin, a.length) < std::pair(b.begin, b.length);
+  });
   std::vector<Hole> holes;
   for (const Hole& silence : sorted) {
     const auto same = std::find_if(holes.begin(), holes.end(), [&](const Hole& hole) {
@@ -112,10 +99,10 @@ std::vector<Hole> Chronicle::holes() const {
   return holes;
 }
 
-int Chronicle::count(const std::string& what) const {
+int Chronicle::count(int16_t state) const {
   return static_cast<int>(
       std::count_if(incidents_.begin(), incidents_.end(),
-                    [&](const Incident& incident) { return incident.what == what; }));
+                    [&](const PermissionLoss& incident) { return incident.state == state; }));
 }
 
 int Chronicle::reached() const {
@@ -126,16 +113,18 @@ int Chronicle::reached() const {
 std::string Chronicle::counts() const {
   return formatted("%d of %zu goals reached; %zu stops that needed arming ", reached(),
                    goals_.size(), incidents_.size()) +
-         formatted("(%d faults, %d E-stops)", count("fault"), count("E-stop"));
+         formatted("(%d faults, %d E-stops)", count(motor_t::STATE_FAULT),
+                   count(motor_t::STATE_ESTOP));
 }
 
 std::string Chronicle::summary(int disarmed) const {
-  if (goals_.size() <= 1 && static_cast<int>(incidents_.size()) <= disarmed && ends_.empty())
-    return "";
+  if (goals_.size() <= 1 && static_cast<int>(incidents_.size()) <= disarmed && !lasts_) return "";
   std::string line = "in the whole log " + counts();
   if (!goals_.empty() && !goals_.back().arrived) line += ", THE LAST GOAL NOT REACHED";
-  return ends_.empty() ? line
-                       : line + ", IT ENDS WITH " + (ends_ == "fault" ? "A FAULT" : "AN E-STOP");
+  if (lasts_)
+    line += std::string(", IT ENDS WITH ") +
+            (incidents_.back().state == motor_t::STATE_FAULT ? "A FAULT" : "AN E-STOP");
+  return line;
 }
 
 std::string Chronicle::words() const {
@@ -143,8 +132,8 @@ std::string Chronicle::words() const {
   if (goals_.size() <= 1 && incidents_.empty() && holes.empty()) return "";
   std::string words = "the whole log: " + counts() + formatted("; %zu holes\n", holes.size());
   words += linesOf(goals_, lineOf);
-  words += linesOf(incidents_, [](const Incident& incident) {
-    return formatted("%7.1f s  ", incident.time) + incident.what + ": " + incident.reason;
+  words += linesOf(incidents_, [](const PermissionLoss& incident) {
+    return formatted("%7.1f s  ", incident.time) + nameOf(incident) + ": " + incident.reason.words;
   });
   words += linesOf(holes, [](const Hole& hole) {
     std::string names;

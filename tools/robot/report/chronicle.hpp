@@ -3,11 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <string>
 #include <vector>
 
-#include "common/log/event_log.hpp"
+#include "common/drive/drive_timeline.hpp"
 
 namespace tread::report {
 
@@ -20,13 +19,6 @@ struct GoalStory {
   std::string reason;  ///< the planner's last one, where it did not arrive
 };
 
-/// A permission to drive that was lost, a fault or an emergency stop.
-struct Incident {
-  double time = 0.0;  ///< [s] since the log began
-  std::string what;   ///< "disarmed", "fault" or "E-stop"
-  std::string reason;
-};
-
 /// A time in which channels were silent that spoke before and after it.
 struct Hole {
   double begin = 0.0;   ///< [s] since the log began
@@ -37,14 +29,14 @@ struct Hole {
 /// The whole log, beyond the first arrival: goals, incidents, holes.
 class Chronicle {
  public:
-  void take(const LogEvent& event);
+  explicit Chronicle(const DriveTimeline& drive);
 
   const std::vector<GoalStory>& goals() const { return goals_; }
-  const std::vector<Incident>& incidents() const { return incidents_; }
+  const std::vector<PermissionLoss>& incidents() const { return incidents_; }
   /// In the order of their beginnings; channels that fell silent and came back together are one.
   std::vector<Hole> holes() const;
   /// Whether the last goal was reached, and no fault or E-stop lasts to the log's end.
-  bool endsWell() const { return !goals_.empty() && goals_.back().arrived && ends_.empty(); }
+  bool endsWell() const { return !goals_.empty() && goals_.back().arrived && !lasts_; }
   /// What became of it all, for one line; empty where nothing followed the first goal but
   /// `disarmed` losses of the permission.
   std::string summary(int disarmed) const;
@@ -52,23 +44,15 @@ class Chronicle {
   std::string words() const;
 
  private:
-  static constexpr double kHole = 0.5;  ///< [s] of silence of a channel of 5 Hz or more
-
-  void listen(const LogEvent& event, double time);
-  void hear(const plan_t& plan, double time);
-  void hear(const motor_t& motor, double time);
-  int count(const std::string& what) const;
+  void follow(const PlanNote& plan);
+  int count(int16_t state) const;
   int reached() const;
   std::string counts() const;
 
-  int64_t begun_ = -1;  ///< [us]
   std::vector<GoalStory> goals_;
-  std::vector<Incident> incidents_;
-  std::map<std::string, double> heard_;  ///< [s] by channel, the last message
-  std::vector<Hole> silences_;           ///< of one channel each
-  int16_t state_ = 0;
-  std::string ends_;  ///< "fault" or "E-stop" while it lasts
-  bool may_drive_ = false;
+  std::vector<PermissionLoss> incidents_;
+  std::vector<Hole> silences_;  ///< of one channel each
+  bool lasts_ = false;          ///< the last incident, a fault or E-stop, to the log's end
 };
 
 }  // namespace tread::report

@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <stdexcept>
 
 #include "common/config/config_reader.hpp"
-#include "common/drive/drive_log.hpp"
-#include "common/messages/ins_messages.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "common/report/text.hpp"
 #include "common/vehicle/robot_description.hpp"
@@ -99,98 +96,79 @@ namespace {
 constexpr double kNear = 8.0;
 constexpr double kTrackStep = 0.05;  // [m]
 
-/// Takes in a log event by event.
-class Reader {
- public:
-  explicit Reader(DriveRecord& drive) : drive_(drive) {}
+bool isArrival(const PlanNote& plan) {
+  return plan.goal_id != 0 && plan.state == plan_t::PLAN_ARRIVED;
+}
 
-  void take(const DriveEvent& event) {
-    event_ = &event;
-    ++drive_.events;
-    drive_.latencies.add(event, event.wrong_time);
-    drive_.chronicle.take(event);
-    drive_.hand.take(event);
-    dispatch(
-        event, [&](const auto& message) { hear(message); }, kIns, kGoal, kPlan, kPlanTree, kMap,
-        kLearning, kExecution, kMotor, kConfig);
-  }
+bool arrivesNow(const DriveTimeline& log) {
+  return !log.goals.empty() && !log.plans.empty() && isArrival(log.plans.back()) &&
+         log.plans.back().event > log.goals.front().event;
+}
 
- private:
-  double sinceBegin(int64_t utime) const {
-    return static_cast<double>(utime - drive_.begun) * 1e-6;
-  }
-  double toGo() const {
-    if (drive_.track.empty()) return 0.0;
-    return (drive_.track.back().T_map_body.position() - drive_.T_map_goal.position()).norm();
-  }
+/// The richest search tree on the way to the first goal.
+void takeTree(const DriveEvent& event, DriveRecord& drive) {
+  plan_tree_t tree;
+  if (!decode(event, kPlanTree, tree) || drive.log.goals.empty() || drive.log.ins.empty()) return;
+  const InsNote& here = drive.log.ins.back();
+  const double* const goal = drive.log.goals.back().message.goal_pose;
+  const double to_go = (here.T_map_body.position() - Eigen::Vector2d(goal[0], goal[1])).norm();
+  std::vector<TreeEdge> edges = edgesOf(tree);
+  if (here.placed && to_go > kNear && edges.size() >= drive.tree.size())
+    drive.tree = std::move(edges);
+}
 
-  void hear(const ins_t& ins) {
-    const auto pose = planarPose(ins);
-    if (!pose || !drive_.has_goal || drive_.arrived) return;
-    drive_.ended = ins.utime;
-    drive_.odometer.add(*event_, ins);
-    if (drive_.track.empty() ||
-        (drive_.track.back().T_map_body.position() - pose->position()).norm() > kTrackStep)
-      drive_.track.push_back({sinceBegin(ins.utime), *pose});
+/// From the first goal to the arrival.
+void takeFirstDrive(DriveRecord& drive) {
+  const DriveTimeline& log = drive.log;
+  if (log.goals.empty()) return;
+  const size_t begin = log.goals.front().event;
+  drive.has_goal = true;
+  drive.begun = drive.ended = log.goals.front().message.utime;
+  size_t end = log.events;
+  auto [plan, last] = notesBetween(log.plans, begin, end);
+  for (; plan != last && !drive.arrived; ++plan) {
+    if (plan->goal_id == 0) continue;
+    drive.last_status = plan->reason.words;
+    drive.arrived = isArrival(*plan);
+    if (drive.arrived) end = plan->event;
   }
-  void hear(const goal_t& goal) {
-    if (goal.goal_id == 0 || drive_.arrived) return;
-    if (!drive_.has_goal) drive_.begun = drive_.ended = goal.utime;
-    drive_.has_goal = true;
-    drive_.T_map_goal = {goal.goal_pose[0], goal.goal_pose[1], goal.goal_pose[2]};
+  for (const auto& goal : log.goals)
+    if (goal.event < end)
+      drive.T_map_goal = {goal.message.goal_pose[0], goal.message.goal_pose[1],
+                          goal.message.goal_pose[2]};
+  const auto [ins, ins_end] = notesBetween(log.ins, begin, end);
+  for (auto place = ins; place != ins_end; ++place) {
+    if (!place->placed) continue;
+    drive.ended = place->utime;
+    drive.odometer.add(*place);
+    if (drive.track.empty() ||
+        distanceBetween(drive.track.back().T_map_body, place->T_map_body) > kTrackStep)
+      drive.track.push_back({drive.sinceBegin(place->utime), place->T_map_body});
   }
-  void hear(const plan_t& plan) {
-    if (!drive_.has_goal || drive_.arrived || plan.goal_id == 0) return;
-    drive_.last_status = plan.reason;
-    if (plan.plan_status != plan_t::PLAN_ARRIVED) return;
-    drive_.arrived = true;
-    drive_.ended = plan.utime;
-  }
-  void hear(const plan_tree_t& tree) {
-    std::vector<TreeEdge> edges = edgesOf(tree);
-    if (toGo() > kNear && edges.size() >= drive_.tree.size()) drive_.tree = std::move(edges);
-  }
-  void hear(const map_tile_t& message) {
-    if (!drive_.map) drive_.map = std::make_unique<TileMap>(message.cell_size, message.tile_cells);
-    if (message.tile_cells != drive_.map->tileCells()) return;
-    Tile tile;
-    tile.tile_x = message.tile_x;
-    tile.tile_y = message.tile_y;
-    tile.utime = message.utime;
-    tile.cells = message.cells;
-    drive_.map->put(std::move(tile));
-  }
-  void hear(const learning_t& message) {
-    if (!message.accepted) ++drive_.refused;
+  if (drive.arrived) drive.ended = std::prev(plan)->utime;
+  drive.disarmed = static_cast<int>(
+      std::count_if(log.losses.begin(), log.losses.end(),
+                    [&](const PermissionLoss& loss) { return loss.had_it && loss.event < end; }));
+}
+
+void takePatterns(DriveRecord& drive) {
+  for (const auto& pattern : drive.log.patterns) {
+    const learning_t& message = pattern.message;
+    drive.refused += message.accepted ? 0 : 1;
     if (message.accepted && std::isfinite(message.error_position))
-      drive_.errors.push_back(
-          {sinceBegin(message.utime), message.error_position, message.error_yaw});
+      drive.errors.push_back(
+          {drive.sinceBegin(message.utime), message.error_position, message.error_yaw});
   }
-  void hear(const execution_t& message) {
-    for (const execution_record_t& record : message.records) {
-      if (record.outcome == execution_record_t::OUTCOME_RUNNING) continue;
-      if (!ended_.insert(keyOf(record)).second) continue;
-      ++(record.outcome == execution_record_t::OUTCOME_COMPLETED ? drive_.completed
-                                                                 : drive_.aborted);
-    }
-  }
-  /// Mapping says which robot it was; logs from before robots were described do not.
-  void hear(const config_t& config) {
-    if (config.config_process != "mapping" || drive_.outline) return;
-    ConfigReader reader = ConfigReader::fromText(config.config_text, "CONFIG of mapping");
-    if (reader.has("robot")) drive_.outline = readRobot(reader).outline;
-  }
-  void hear(const motor_t& motor) {
-    const bool may = mayDrive(motor.bridge_state);
-    if (may_drive_ && !may && !drive_.arrived) ++drive_.disarmed;
-    may_drive_ = may;
-  }
+}
 
-  DriveRecord& drive_;
-  const DriveEvent* event_ = nullptr;  // that is taken
-  std::set<ExecutionKey> ended_;
-  bool may_drive_ = false;
-};
+/// Mapping says which robot it was; logs from before robots were described do not.
+std::optional<FootprintSize> outlineIn(const DriveTimeline& log) {
+  const auto config = log.configs.find("mapping");
+  if (config == log.configs.end()) return std::nullopt;
+  ConfigReader reader = ConfigReader::fromText(config->second, "CONFIG of mapping");
+  if (!reader.has("robot")) return std::nullopt;
+  return readRobot(reader).outline;
+}
 
 double mean(const DriveRecord& drive, double PatternError::*error) {
   double sum = 0.0;
@@ -247,12 +225,22 @@ double DriveRecord::straightLine() const {
 
 DriveRecord readDrive(const std::vector<std::string>& logs) {
   DriveRecord drive;
-  Reader reader(drive);
+  TimelineReader timeline(drive.log);
   DriveReader log(logs);
-  for (DriveEvent event; log.next(event);) reader.take(event);
-  drive.problem = log.problem();
+  bool arrived = false;
+  for (DriveEvent event; log.next(event);) {
+    timeline.take(event);
+    drive.latencies.add(event, event.wrong_time);
+    arrived = arrived || arrivesNow(drive.log);
+    if (!arrived) takeTree(event, drive);
+  }
+  drive.log.problem = log.problem();
   // A file of another kind has nothing to tell.
-  if (drive.events == 0 && !drive.problem.empty()) throw std::runtime_error(drive.problem);
+  if (drive.log.events == 0 && !drive.log.problem.empty())
+    throw std::runtime_error(drive.log.problem);
+  takeFirstDrive(drive);
+  takePatterns(drive);
+  drive.outline = outlineIn(drive.log);
   return drive;
 }
 
@@ -267,8 +255,9 @@ std::string driveLine(const DriveRecord& drive, const SimulationTruth& truth) {
                       drive.distance(), drive.straightLine())
           : formatted("NOT ARRIVED after %.1f s and %.1f m", drive.seconds(), drive.distance());
   if (!drive.arrived && !drive.last_status.empty()) line += ": " + drive.last_status;
-  line += formatted("; %d patterns driven, %d aborted, disarmed %d times", drive.completed,
-                    drive.aborted, drive.disarmed);
+  line += formatted("; %d patterns driven, %d aborted, disarmed %d times",
+                    drive.log.ended(execution_record_t::OUTCOME_COMPLETED),
+                    drive.log.ended(execution_record_t::OUTCOME_ABORTED), drive.disarmed);
   if (!truth.rows.empty()) line += formatted("; contacts %d", truth.rows.back().contacts);
   return line;
 }
@@ -276,19 +265,19 @@ std::string driveLine(const DriveRecord& drive, const SimulationTruth& truth) {
 }  // namespace
 
 std::string resultLine(const DriveRecord& drive, const SimulationTruth& truth) {
-  const std::string more = drive.has_goal ? drive.chronicle.summary(drive.disarmed) : "";
+  const std::string more = drive.has_goal ? Chronicle(drive.log).summary(drive.disarmed) : "";
   return driveLine(drive, truth) + (more.empty() ? "" : "; " + more);
 }
 
 bool endedWell(const DriveRecord& drive, const SimulationTruth& truth) {
   const bool touched = !truth.rows.empty() && truth.rows.back().contacts > 0;
-  return drive.arrived && drive.chronicle.endsWell() && !touched;
+  return drive.arrived && Chronicle(drive.log).endsWell() && !touched;
 }
 
 std::string reportOf(const DriveRecord& drive, const SimulationTruth& truth,
                      const RuleErrors& by_rule) {
-  std::string words =
-      resultLine(drive, truth) + "\n" + drive.chronicle.words() + drive.hand.words();
+  std::string words = resultLine(drive, truth) + "\n" + Chronicle(drive.log).words() +
+                      HandRecord(drive.log).words();
   words += formatted("prediction error at a pattern's end: mean %.3f m, %.2f deg over %zu measured",
                      mean(drive, &PatternError::position),
                      mean(drive, &PatternError::yaw) * 180.0 / kPi, drive.errors.size());
@@ -301,7 +290,7 @@ std::string reportOf(const DriveRecord& drive, const SimulationTruth& truth,
   words += latencyLine("INS to learner's set", drive.latencies.insToSet());
   words += latencyLine("set to plan", drive.latencies.setToPlan());
   words += latencyLine("scan to tile", drive.latencies.scanToTile());
-  if (!drive.problem.empty()) words += "the log: " + drive.problem + "\n";
+  if (!drive.log.problem.empty()) words += "the log: " + drive.log.problem + "\n";
   return words;
 }
 
@@ -310,7 +299,7 @@ DriveScene sceneOf(const DriveRecord& drive, const SimulationTruth& truth,
   DriveScene scene;
   scene.title = driveLine(drive, truth);
   scene.world = truth.world;
-  if (drive.map) scene.map = *drive.map;
+  if (drive.log.map) scene.map = *drive.log.map;
   scene.tree = drive.tree;
   scene.outline = drive.outline;
   scene.track = drive.track;

@@ -6,12 +6,11 @@
 #include <deque>
 #include <limits>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "common/drive/odometer.hpp"
+#include "common/drive/drive_timeline.hpp"
 #include "common/geometry/se2.hpp"
 #include "common/grid/grid.hpp"
 #include "common/log/event_log.hpp"
@@ -158,29 +157,24 @@ class Latencies {
 
 /// One drive in a log: from the first goal to the arrival, or to the log's end.
 struct DriveRecord {
-  std::string problem;  ///< of the log, one line; empty = nothing is wrong with it
-  int64_t events = 0;
+  DriveTimeline log;
   bool has_goal = false;
   Pose2 T_map_goal;
   int64_t begun = 0;  ///< [us] of the first goal
   int64_t ended = 0;  ///< [us] of the arrival, else of the last INS
   bool arrived = false;
-  std::string last_status;  ///< the planner's last reason
-  int completed = 0;        ///< executions
-  int aborted = 0;
+  std::string last_status;           ///< the planner's last reason
   int refused = 0;                   ///< executions that were no fair measurement
   int disarmed = 0;                  ///< times that a permission to drive was lost
   std::vector<PatternError> errors;  ///< time since begun
   std::vector<TrackPoint> track;     ///< as the INS measured, time since begun
   Odometer odometer;
-  std::vector<TreeEdge> tree;  ///< the richest one on the way
-  std::unique_ptr<TileMap> map;
+  std::vector<TreeEdge> tree;            ///< the richest one on the way
   std::optional<FootprintSize> outline;  ///< of the robot; none = the log does not say
   Latencies latencies;
-  Chronicle chronicle;  ///< of the whole log
-  HandRecord hand;      ///< of the whole log
 
-  double seconds() const { return static_cast<double>(ended - begun) * 1e-6; }
+  double sinceBegin(int64_t utime) const { return static_cast<double>(utime - begun) * 1e-6; }
+  double seconds() const { return sinceBegin(ended); }
   double distance() const { return odometer.distance(); }  ///< [m] driven
   double straightLine() const;
 };

@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
-#include "common/drive/drive_log.hpp"
-#include "common/messages/ins_messages.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "common/report/text.hpp"
 
@@ -51,70 +50,49 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+bool isByHand(const MotorNote& note) {
+  return note.state == motor_t::STATE_MANUAL;
+}
+
 double percent(int part, int whole) {
   return whole == 0 ? 0.0 : 100.0 * part / whole;
 }
 
 }  // namespace
 
-void HandRecord::take(const DriveEvent& event) {
-  dispatch(
-      event,
-      [&](const auto& message) {
-        using Message = std::decay_t<decltype(message)>;
-        if constexpr (std::is_same_v<Message, ins_t>) {
-          const std::optional<Pose2> pose = planarPose(message);
-          if (!by_hand_) return odometer_.interrupt();
-          odometer_.add(event, message);
-          if (pose) places_.push_back({message.utime, *pose});
-        } else {
-          hear(message);
-        }
-      },
-      kIns, kMotor, kPlan, kLearning, kPatternSet);
-}
-
-void HandRecord::hear(const motor_t& motor) {
-  const bool now = motor.bridge_state == motor_t::STATE_MANUAL;
-  const bool armed = mayDrive(motor.bridge_state);
-  if (now && !by_hand_) {
-    spans_.push_back({motor.utime, motor.utime});
-    ++(was_armed_ ? taken_over_ : armed_for_hand_);
+HandRecord::HandRecord(const DriveTimeline& drive) {
+  for (size_t i = 0; i < drive.motors.size(); ++i) {
+    const MotorNote& note = drive.motors[i];
+    if (!isByHand(note)) continue;
+    if (i == 0 || !isByHand(drive.motors[i - 1])) {
+      spans_.push_back({note.utime, note.utime});
+      ++(i > 0 && mayDrive(drive.motors[i - 1].state) ? taken_over_ : armed_for_hand_);
+      odometer_.interrupt();
+    }
+    follow(drive, note, i + 1 < drive.motors.size() ? &drive.motors[i + 1] : nullptr);
   }
-  if (by_hand_) {
-    spans_.back().end = motor.utime;
-    if (commandFrom(last_) != Command{})
-      moving_ += secondsOf(std::max<int64_t>(0, motor.utime - last_.utime));
-    if (!now) ++(armed ? given_back_ : stopped_);
+  for (const auto& pattern : drive.patterns) {
+    if (pattern.message.learned_run_id != 0) continue;
+    ++taught_;
+    fair_ += pattern.message.accepted ? 1 : 0;
   }
-  by_hand_ = now;
-  was_armed_ = armed;
-  last_ = motor;
 }
 
-void HandRecord::hear(const plan_t& plan) {
-  if (!by_hand_ || plan.goal_id == 0) return;
-  ShadowPlan shadow;
-  shadow.utime = plan.utime;
-  shadow.reason = plan.reason;
-  if (plan.num_patterns > 0) {
-    const auto& pose = plan.pose.front();
-    shadow.T_map_end = Pose2{pose[0], pose[1], pose[2]};
-    const auto known = durations_.find(plan.pattern_id.front());
-    if (known == durations_.end()) return;
-    shadow.duration = known->second;
-  }
-  plans_.push_back(shadow);
-}
-
-void HandRecord::hear(const learning_t& learning) {
-  if (learning.learned_run_id != 0) return;
-  ++taught_;
-  fair_ += learning.accepted ? 1 : 0;
-}
-
-void HandRecord::hear(const pattern_set_part_t& part) {
-  durations_[part.set_pattern_id] = int64_t{part.set_period} * part.num_samples;
+/// `next`: what motor_bridge did after that; nullptr = the log ends.
+void HandRecord::follow(const DriveTimeline& drive, const MotorNote& note, const MotorNote* next) {
+  spans_.back().end = next == nullptr ? note.until : next->utime;
+  if (note.command != Command{})
+    moving_ += secondsOf(std::max<int64_t>(0, spans_.back().end - note.utime));
+  if (next != nullptr && !isByHand(*next)) ++(mayDrive(next->state) ? given_back_ : stopped_);
+  const size_t end = next == nullptr ? drive.events : next->event;
+  const auto [ins, ins_end] = notesBetween(drive.ins, note.event, end);
+  std::for_each(ins, ins_end, [&](const InsNote& place) { odometer_.add(place); });
+  std::copy_if(ins, ins_end, std::back_inserter(places_),
+               [](const InsNote& place) { return place.placed; });
+  const auto [plan, plan_end] = notesBetween(drive.plans, note.event, end);
+  std::copy_if(plan, plan_end, std::back_inserter(plans_), [](const PlanNote& shadow) {
+    return shadow.goal_id != 0 && (!shadow.T_map_next || shadow.duration > 0);
+  });
 }
 
 double HandRecord::seconds() const {
@@ -126,7 +104,7 @@ double HandRecord::seconds() const {
 std::optional<Pose2> HandRecord::poseAt(int64_t utime) const {
   const auto found =
       std::lower_bound(places_.begin(), places_.end(), utime,
-                       [](const Place& place, int64_t time) { return place.utime < time; });
+                       [](const InsNote& place, int64_t time) { return place.utime < time; });
   if (found == places_.end() || found->utime - utime > kPoseGap) return std::nullopt;
   return found->T_map_body;
 }
@@ -139,18 +117,18 @@ bool HandRecord::inHand(int64_t from, int64_t to) const {
 ShadowComparison HandRecord::comparison() const {
   constexpr int64_t kLook = 1'000'000;  // [us] what a person does where the planner has no way
   ShadowComparison result;
-  for (const ShadowPlan& plan : plans_) {
-    const int64_t duration = plan.T_map_end ? plan.duration : kLook;
+  for (const PlanNote& plan : plans_) {
+    const int64_t duration = plan.T_map_next ? plan.duration : kLook;
     const std::optional<Pose2> here = poseAt(plan.utime);
     const std::optional<Pose2> there = poseAt(plan.utime + duration);
     if (!here || !there || !inHand(plan.utime, plan.utime + duration)) continue;
     ++result.plans;
     const BodyMotion person(between(*here, *there));
-    const BodyMotion planner(plan.T_map_end ? between(*here, *plan.T_map_end) : Pose2{});
+    const BodyMotion planner(plan.T_map_next ? between(*here, *plan.T_map_next) : Pose2{});
     result.same += sameMotion(person, planner) ? 1 : 0;
     if (planner.stands() && !person.stands()) {
       ++result.would_stand;
-      ++result.why[plan.reason];
+      ++result.why[plan.reason.words];
     }
     if (!person.travels() || !planner.travels()) continue;
     result.turned_away.push_back(std::abs(wrapAngle(person.direction - planner.direction)));

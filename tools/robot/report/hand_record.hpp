@@ -6,16 +6,9 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include <tread/learning_t.hpp>
-#include <tread/motor_t.hpp>
-#include <tread/pattern_set_part_t.hpp>
-#include <tread/plan_t.hpp>
-
-#include "common/drive/odometer.hpp"
-#include "common/geometry/se2.hpp"
+#include "common/drive/drive_timeline.hpp"
 
 namespace tread::report {
 
@@ -33,7 +26,7 @@ struct ShadowComparison {
 /// What a person drove by hand, and what the planner would have done.
 class HandRecord {
  public:
-  void take(const DriveEvent& event);
+  explicit HandRecord(const DriveTimeline& drive);
 
   int takenOver() const { return taken_over_; }
   int givenBack() const { return given_back_; }
@@ -53,31 +46,14 @@ class HandRecord {
     int64_t begin = 0;  ///< [us]
     int64_t end = 0;
   };
-  struct ShadowPlan {
-    int64_t utime = 0;
-    std::optional<Pose2> T_map_end;  ///< of the first pattern; none = it had no way
-    int64_t duration = 0;            ///< [us]
-    std::string reason;
-  };
-  struct Place {
-    int64_t utime;
-    Pose2 T_map_body;
-  };
-  void hear(const motor_t& motor);
-  void hear(const plan_t& plan);
-  void hear(const learning_t& learning);
-  void hear(const pattern_set_part_t& part);
+  void follow(const DriveTimeline& drive, const MotorNote& note, const MotorNote* next);
   std::optional<Pose2> poseAt(int64_t utime) const;
   bool inHand(int64_t from, int64_t to) const;
 
   std::vector<Span> spans_;
-  std::vector<ShadowPlan> plans_;
-  std::vector<Place> places_;             ///< while in the hand
-  Odometer odometer_;                     ///< the same
-  std::map<int32_t, int64_t> durations_;  ///< [us] by pattern
-  bool by_hand_ = false;
-  bool was_armed_ = false;
-  motor_t last_{};
+  std::vector<PlanNote> plans_;  ///< while in the hand
+  std::vector<InsNote> places_;  ///< the same
+  Odometer odometer_;            ///< the same
   double moving_ = 0.0;
   int taken_over_ = 0;
   int armed_for_hand_ = 0;

@@ -4,8 +4,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "common/config/config_folder.hpp"
 #include "common/config/command_line.hpp"
+#include "common/config/config_folder.hpp"
 #include "common/config/outputs.hpp"
 #include "modules/simulator/simulator_files.hpp"
 #include "tools/robot/report/drive_report.hpp"

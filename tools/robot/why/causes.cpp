@@ -7,7 +7,6 @@
 #include <tread/motor_t.hpp>
 #include <tread/plan_t.hpp>
 
-#include "common/messages/pattern_messages.hpp"
 #include "common/report/text.hpp"
 #include "tools/robot/why/debrief.hpp"
 
@@ -61,35 +60,35 @@ struct Incident {
   }
 };
 
-bool drives(int plan_state) {
-  return plan_state == plan_t::PLAN_DRIVING;
+bool drives(const PlanNote& plan) {
+  return plan.state == plan_t::PLAN_DRIVING;
 }
-bool stops(int plan_state) {
-  return plan_state == plan_t::PLAN_WAITING || plan_state == plan_t::PLAN_BLOCKED ||
-         plan_state == plan_t::PLAN_UNREACHABLE || plan_state == plan_t::PLAN_STOPPED ||
-         plan_state == plan_t::PLAN_IDLE;
+bool stops(const PlanNote& plan) {
+  return plan.state == plan_t::PLAN_WAITING || plan.state == plan_t::PLAN_BLOCKED ||
+         plan.state == plan_t::PLAN_UNREACHABLE || plan.state == plan_t::PLAN_STOPPED ||
+         plan.state == plan_t::PLAN_IDLE;
 }
 
 /// All reasons that tell of something wrong, in the order of time.
 std::vector<Signal> signalsOf(const DriveTimeline& drive) {
   std::vector<Signal> signals;
-  const auto add = [&](const StateNote& note, const char* channel) {
-    const bool says_nothing = note.reason.code == StopReason::kUnsaid && note.reason.words.empty();
-    if (!isOrdinary(note.reason.code) && !says_nothing)
-      signals.push_back({note.time, channel, note.reason.code, note.reason.words});
+  const auto add = [&](const Note& note, const Reason& reason, const char* channel) {
+    const bool says_nothing = reason.code == StopReason::kUnsaid && reason.words.empty();
+    if (!isOrdinary(reason.code) && !says_nothing)
+      signals.push_back({note.time, channel, reason.code, reason.words});
   };
-  bool may = false;
-  for (const StateNote& note : drive.motors) {
-    const bool now = mayDrive(static_cast<int16_t>(note.state));
-    if (may && !now) add(note, "MOTOR");
-    may = now;
-  }
+  for (const PermissionLoss& loss : drive.losses)
+    if (loss.had_it) add(loss, loss.reason, "MOTOR");
   bool drove = false;
-  for (const StateNote& note : drive.plans) {
-    drove = drove || drives(note.state);
-    if (drove && stops(note.state)) add(note, "PLAN");
+  for (const PlanNote& plan : drive.plans) {
+    drove = drove || drives(plan);
+    if (drove && plan.news && stops(plan)) add(plan, plan.reason, "PLAN");
   }
-  for (const StateNote& note : drive.aborts) add(note, "EXECUTION");
+  for (const auto& execution : drive.executions)
+    if (execution.message.outcome == execution_record_t::OUTCOME_ABORTED)
+      add(execution,
+          {stopReasonFrom(execution.message.outcome_code), execution.message.outcome_reason},
+          "EXECUTION");
   std::stable_sort(signals.begin(), signals.end(),
                    [](const Signal& a, const Signal& b) { return a.time < b.time; });
   return signals;
@@ -97,8 +96,8 @@ std::vector<Signal> signalsOf(const DriveTimeline& drive) {
 
 /// When the planner drove again after a time; the log's end if it did not.
 double drivesAgain(const DriveTimeline& drive, double time) {
-  for (const StateNote& note : drive.plans)
-    if (note.time > time && drives(note.state)) return note.time;
+  for (const PlanNote& plan : drive.plans)
+    if (plan.news && plan.time > time && drives(plan)) return plan.time;
   return drive.duration;
 }
 
@@ -139,9 +138,7 @@ class CauseSearch {
         break;
       case StopReason::kRangeFinder:
         say("range_finder", "what the range finder shows was not believed: " + main_.reason);
-        if (const HealthNote* const note =
-                drive_.complaintOf("mapping", t_ - kBefore, t_ + kAfterwards))
-          prove("mapping", *note);
+        proveComplaint("mapping", t_ - kBefore);
         break;
       case StopReason::kDisarmed:
         say("disarmed", main_.reason);
@@ -241,8 +238,10 @@ class CauseSearch {
   void prove(double time, const std::string& channel, const std::string& words) {
     finding_.evidence.push_back({time, channel, words});
   }
-  void prove(const std::string& process, const HealthNote& note) {
-    prove(note.time, "HEALTH", process + ": " + note.reason);
+  /// What a process complained of from then until some time after the stop.
+  void proveComplaint(const std::string& process, double from) {
+    if (const auto* const note = drive_.complaintOf(process, from, t_ + kAfterwards))
+      prove(note->time, "HEALTH", process + ": " + note->message.health_reason);
   }
   /// A vehicle that is not its model any more moves otherwise than it was planned.
   void proveGap() {
@@ -271,8 +270,7 @@ class CauseSearch {
 
   void controller() {
     say("motor_line", "the motor controller did not answer: " + main_.reason);
-    if (const HealthNote* const note = drive_.complaintOf("motor_bridge", t_, t_ + kAfterwards))
-      prove("motor_bridge", *note);
+    proveComplaint("motor_bridge", t_);
   }
 
   void operatorLost() {
@@ -310,7 +308,7 @@ class CauseSearch {
   bool healthLate(const std::string& process, const DriveTimeline::Silence& silence) const {
     const auto found = drive_.health.find(process);
     if (found == drive_.health.end()) return true;
-    const std::vector<HealthNote>& notes = found->second;
+    const std::vector<Said<health_t>>& notes = found->second;
     for (size_t i = 1; i < notes.size(); ++i) {
       const bool around = notes[i - 1].time < silence.to && notes[i].time > silence.from;
       const double period = notes[i].time - notes[i - 1].time;
@@ -324,9 +322,9 @@ class CauseSearch {
     return silence.length() < 1.0 && !dueWithin(notes, silence) &&
            !deviceComplains(process, silence);
   }
-  static bool dueWithin(const std::vector<HealthNote>& notes,
+  static bool dueWithin(const std::vector<Said<health_t>>& notes,
                         const DriveTimeline::Silence& silence) {
-    return std::any_of(notes.begin(), notes.end(), [&](const HealthNote& note) {
+    return std::any_of(notes.begin(), notes.end(), [&](const Note& note) {
       return note.time > silence.from + 0.02 && note.time < silence.to - 0.02;
     });
   }
@@ -348,11 +346,12 @@ class CauseSearch {
     prove(t_, channel, formatted("%td messages within the second before", within));
     // Several senders share this channel, and nobody counts what is missing of it.
     if (channel == "OPERATOR") return;
-    const HealthNote* const before = drive_.healthAt(to, t_ - 1.0);
-    const HealthNote* const after = drive_.healthAt(to, t_ + kAfterwards);
-    if (before == nullptr || after == nullptr || before->boot != after->boot) return;
-    const int64_t missing = after->lost - before->lost, late = after->late - before->late,
-                  broken = after->undecodable - before->undecodable;
+    const Said<health_t>* const before = drive_.healthAt(to, t_ - 1.0);
+    const Said<health_t>* const after = drive_.healthAt(to, t_ + kAfterwards);
+    if (!areOfOneLife(before, after)) return;
+    const int64_t missing = after->message.lost - before->message.lost,
+                  late = after->message.late - before->message.late,
+                  broken = after->message.undecodable - before->message.undecodable;
     prove(after->time, "HEALTH",
           to + ": since a second before the stop " +
               (missing > kMostLost
@@ -373,8 +372,7 @@ class CauseSearch {
                   main_.channel == std::string("PLAN") ? "planner" : "motor_bridge");
     say("ins_device", formatted("the INS gave nothing usable for %.2f s", silence->length()));
     prove(silence->from, "INS", formatted("nothing from here on for %.2f s", silence->length()));
-    if (const HealthNote* const note = drive_.complaintOf("ins_driver", t_ - 1.0, t_ + kAfterwards))
-      prove("ins_driver", *note);
+    proveComplaint("ins_driver", t_ - 1.0);
   }
 
   void insBlind() {
@@ -393,22 +391,25 @@ class CauseSearch {
       say("ins_no_fix", "the INS lost its position or heading");
     }
     prove(blind->time, "INS", formatted("status %d, no pose", blind->status));
-    if (const HealthNote* const note = drive_.complaintOf("ins_driver", t_ - 1.0, t_ + kAfterwards))
-      prove("ins_driver", *note);
+    proveComplaint("ins_driver", t_ - 1.0);
   }
 
   /// How many bytes and sentences ins_driver counted as senseless from then to 3 s later.
   int64_t garbledSince(double time) const {
-    const HealthNote* const before = drive_.healthAt("ins_driver", time);
-    const HealthNote* const after = drive_.healthAt("ins_driver", time + 3.0);
-    if (before == nullptr || after == nullptr || before->boot != after->boot) return 0;
+    const Said<health_t>* const before = drive_.healthAt("ins_driver", time);
+    const Said<health_t>* const after = drive_.healthAt("ins_driver", time + 3.0);
+    return areOfOneLife(before, after) ? garbledBy(after->message) - garbledBy(before->message) : 0;
+  }
+  static int64_t garbledBy(const health_t& health) {
     int64_t garbled = 0;
-    for (const char* name : {"stray bytes", "refused: wrong checksum", "refused: not printable"}) {
-      const auto then = before->counters.find(name), now = after->counters.find(name);
-      if (now == after->counters.end()) continue;
-      garbled += now->second - (then == before->counters.end() ? 0 : then->second);
-    }
+    for (const counter_t& counter : health.counters)
+      for (const char* name : {"stray bytes", "refused: wrong checksum", "refused: not printable"})
+        if (counter.counter_name == name) garbled += counter.counted;
     return garbled;
+  }
+  static bool areOfOneLife(const Said<health_t>* before, const Said<health_t>* after) {
+    return before != nullptr && after != nullptr &&
+           before->message.boot_id == after->message.boot_id;
   }
 
   void motion() {

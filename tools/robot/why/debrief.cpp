@@ -20,10 +20,11 @@ constexpr double kInTheWay = 3.0;     // [m] from the robot
 constexpr int kGhostCells = 4;        // that came within a second
 constexpr double kGhostPause = 12.0;  // [s] within which they are told once
 
-std::vector<double> errorsOf(const DriveTimeline& drive, double PatternNote::*error) {
+std::vector<double> errorsOf(const DriveTimeline& drive, double learning_t::*error) {
   std::vector<double> errors;
-  for (const PatternNote& note : drive.patterns)
-    if (note.accepted && std::isfinite(note.*error)) errors.push_back(std::abs(note.*error));
+  for (const auto& pattern : drive.patterns)
+    if (pattern.message.accepted && std::isfinite(pattern.message.*error))
+      errors.push_back(std::abs(pattern.message.*error));
   return errors;
 }
 
@@ -33,18 +34,18 @@ DriveFigures figuresOf(const DriveTimeline& drive) {
   figures.distance = drive.distance;
   figures.goals = static_cast<int>(drive.goals.size());
   bool arrived = false;
-  for (const StateNote& plan : drive.plans) {
+  for (const PlanNote& plan : drive.plans) {
     const bool now = plan.state == plan_t::PLAN_ARRIVED;
     if (now && !arrived) ++figures.reached;
     arrived = now;
   }
-  figures.patterns = drive.completed;
-  figures.aborted = static_cast<int>(drive.aborts.size());
-  figures.measured =
-      static_cast<int>(std::count_if(drive.patterns.begin(), drive.patterns.end(),
-                                     [](const PatternNote& note) { return note.accepted; }));
-  figures.error_position = median(errorsOf(drive, &PatternNote::position));
-  figures.error_yaw = median(errorsOf(drive, &PatternNote::yaw));
+  figures.patterns = drive.ended(execution_record_t::OUTCOME_COMPLETED);
+  figures.aborted = drive.ended(execution_record_t::OUTCOME_ABORTED);
+  figures.measured = static_cast<int>(
+      std::count_if(drive.patterns.begin(), drive.patterns.end(),
+                    [](const auto& pattern) { return pattern.message.accepted != 0; }));
+  figures.error_position = median(errorsOf(drive, &learning_t::error_position));
+  figures.error_yaw = median(errorsOf(drive, &learning_t::error_yaw));
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   figures.battery_begin = drive.battery.empty() ? unknown : drive.battery.front().second;
   figures.battery_end = drive.battery.empty() ? unknown : drive.battery.back().second;
@@ -62,7 +63,9 @@ bool isNear(const std::vector<Finding>& findings, double time, const std::string
 void addProcesses(const DriveTimeline& drive, std::vector<Finding>& findings) {
   for (const auto& [process, notes] : drive.health) {
     for (size_t i = 1; i < notes.size(); ++i) {
-      if (notes[i].boot == notes[i - 1].boot || isNear(findings, notes[i].time, process)) continue;
+      if (notes[i].message.boot_id == notes[i - 1].message.boot_id ||
+          isNear(findings, notes[i].time, process))
+        continue;
       Finding finding;
       finding.kind = FindingKind::kProcess;
       finding.time = notes[i - 1].time;
@@ -89,15 +92,15 @@ void addProcesses(const DriveTimeline& drive, std::vector<Finding>& findings) {
 void addComplaints(const DriveTimeline& drive, std::vector<Finding>& findings) {
   bool drove = false;
   double first_drive = drive.duration;
-  for (const StateNote& plan : drive.plans)
+  for (const PlanNote& plan : drive.plans)
     if (!drove && plan.state == plan_t::PLAN_DRIVING) {
       drove = true;
       first_drive = plan.time;
     }
   for (const auto& [process, notes] : drive.health)
     for (size_t i = 1; i < notes.size(); ++i) {
-      const HealthNote& note = notes[i];
-      if (note.ok || !notes[i - 1].ok || note.time < first_drive) continue;
+      const Said<health_t>& note = notes[i];
+      if (isOk(note.message) || !isOk(notes[i - 1].message) || note.time < first_drive) continue;
       const bool told = std::any_of(findings.begin(), findings.end(), [&](const Finding& finding) {
         return finding.kind == FindingKind::kStop && note.time > finding.time - 2.0 &&
                note.time < finding.until + 4.0;
@@ -107,10 +110,12 @@ void addComplaints(const DriveTimeline& drive, std::vector<Finding>& findings) {
       finding.kind = FindingKind::kProcess;
       finding.time = note.time;
       finding.until = note.time;
-      for (size_t k = i; k < notes.size() && !notes[k].ok; ++k) finding.until = notes[k].time;
+      for (size_t k = i; k < notes.size() && !isOk(notes[k].message); ++k)
+        finding.until = notes[k].time;
       finding.cause = process + "_complains";
-      finding.sentence = process + " complained: " + note.reason;
-      finding.evidence.push_back({note.time, "HEALTH", process + ": " + note.reason});
+      finding.sentence = process + " complained: " + note.message.health_reason;
+      finding.evidence.push_back(
+          {note.time, "HEALTH", process + ": " + note.message.health_reason});
       findings.push_back(std::move(finding));
     }
 }
@@ -122,22 +127,22 @@ void addLosses(const DriveTimeline& drive, std::vector<Finding>& findings) {
     finding.kind = FindingKind::kMessages;
     int64_t lost = 0, late = 0, broken = 0;
     for (size_t i = 1; i < notes.size(); ++i) {
-      const HealthNote &before = notes[i - 1], &now = notes[i];
-      if (before.boot != now.boot) continue;
+      const health_t &before = notes[i - 1].message, &now = notes[i].message;
+      if (before.boot_id != now.boot_id) continue;
       // More within a second is a broken number.
       const int64_t missing = now.lost - before.lost > kMostLost ? 0 : now.lost - before.lost;
       const int64_t bad = missing + now.late - before.late + now.undecodable - before.undecodable;
       const int64_t all = now.received - before.received + missing;
       if (bad < kLostLeast || static_cast<double>(bad) < kLostShare * static_cast<double>(all))
         continue;
-      if (finding.evidence.empty()) finding.time = before.time;
-      finding.until = now.time;
+      if (finding.evidence.empty()) finding.time = notes[i - 1].time;
+      finding.until = notes[i].time;
       lost += missing;
       late += now.late - before.late;
       broken += now.undecodable - before.undecodable;
       if (finding.evidence.size() < 3)
         finding.evidence.push_back(
-            {now.time, "HEALTH",
+            {notes[i].time, "HEALTH",
              process + formatted(": %lld lost, %lld late, %lld broken within a second",
                                  static_cast<long long>(missing),
                                  static_cast<long long>(now.late - before.late),
@@ -235,11 +240,14 @@ std::optional<Eigen::Vector2d> firstObstacle(const TileMap& map, const Pose2& fr
 /// Ways that were much longer than the straight line, and goals that were not reached.
 void addGoals(const DriveTimeline& drive, std::vector<Finding>& findings) {
   for (size_t i = 0; i < drive.goals.size(); ++i) {
-    const GoalNote& goal = drive.goals[i];
+    const Note& goal = drive.goals[i];
+    const double* const pose = drive.goals[i].message.goal_pose;
+    const Pose2 T_map_goal{pose[0], pose[1], pose[2]};
     const double end = i + 1 < drive.goals.size() ? drive.goals[i + 1].time : drive.duration;
     double arrived = -1.0;
-    const StateNote* last = nullptr;
-    for (const StateNote& plan : drive.plans) {
+    const PlanNote* last = nullptr;
+    for (const PlanNote& plan : drive.plans) {
+      if (!plan.news) continue;
       if (plan.time > end) break;
       const bool follows = plan.time > goal.time + 0.3;
       if (follows && plan.state == plan_t::PLAN_ARRIVED && arrived < 0.0) arrived = plan.time;
@@ -247,7 +255,7 @@ void addGoals(const DriveTimeline& drive, std::vector<Finding>& findings) {
     }
     const auto start = drive.poseAt(goal.time);
     if (!start) continue;
-    const double straight = distanceBetween(*start, goal.T_map_goal);
+    const double straight = distanceBetween(*start, T_map_goal);
     const double way = wayBetween(drive, goal.time, arrived < 0.0 ? end : arrived);
     Finding finding;
     finding.time = goal.time;
@@ -255,11 +263,11 @@ void addGoals(const DriveTimeline& drive, std::vector<Finding>& findings) {
     if (arrived < 0.0 && i + 1 == drive.goals.size()) {
       finding.kind = FindingKind::kGoal;
       finding.cause = "goal_not_reached";
-      finding.sentence = formatted("the goal at x %.1f m, y %.1f m was not reached",
-                                   goal.T_map_goal.x, goal.T_map_goal.y);
+      finding.sentence =
+          formatted("the goal at x %.1f m, y %.1f m was not reached", T_map_goal.x, T_map_goal.y);
       if (last != nullptr) {
-        const std::string why =
-            last->reason.words.empty() ? "it still drove when the log ended" : last->reason.words;
+        const bool drives = last->state == plan_t::PLAN_DRIVING || last->reason.words.empty();
+        const std::string why = drives ? "it still drove when the log ended" : last->reason.words;
         finding.sentence += ": " + why;
         finding.evidence.push_back({last->time, "PLAN", why});
       } else {
@@ -272,7 +280,7 @@ void addGoals(const DriveTimeline& drive, std::vector<Finding>& findings) {
       finding.sentence = formatted("it drove %.1f m for a straight line of %.1f m", way, straight);
       finding.evidence.push_back({arrived, "INS", formatted("%.1f m driven", way)});
       const auto obstacle =
-          drive.map ? firstObstacle(*drive.map, *start, goal.T_map_goal) : std::nullopt;
+          drive.map ? firstObstacle(*drive.map, *start, T_map_goal) : std::nullopt;
       if (obstacle) {
         const std::string where = formatted("x %.1f m, y %.1f m", obstacle->x(), obstacle->y());
         finding.sentence += ": the line is blocked at " + where;

@@ -5,9 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "tools/robot/why/drive_timeline.hpp"
+#include "common/drive/drive_timeline.hpp"
 
 namespace tread::why {
+
+/// More messages than that are not lost within seconds: a broken number.
+inline constexpr int64_t kMostLost = 100'000;
 
 /// What a finding is about.
 enum class FindingKind { kStop, kProcess, kMessages, kDetour, kGoal, kRefusal, kPrediction };
@@ -53,6 +56,8 @@ struct Debrief {
   const Finding* worst() const;
 };
 
+/// Of INS messages that come faster a debrief needs no more [s].
+inline constexpr double kInsStep = 0.1;
 /// Looks through a drive.
 Debrief debrief(const DriveTimeline& drive);
 

@@ -24,9 +24,9 @@ struct Arguments {
 };
 
 int run(const Arguments& arguments) {
-  const Debrief drive = debrief(readTimeline(arguments.logs));
+  const Debrief drive = debrief(readTimeline(arguments.logs, kInsStep));
   std::optional<Debrief> other;
-  if (!arguments.against.empty()) other = debrief(readTimeline({arguments.against}));
+  if (!arguments.against.empty()) other = debrief(readTimeline({arguments.against}, kInsStep));
   const Debrief* const before = other ? &*other : nullptr;
   std::cout << textOf(drive, arguments.at);
   if (before != nullptr) std::cout << "\n" << textOfDifferences(*before, drive);

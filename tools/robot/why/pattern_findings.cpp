@@ -9,17 +9,19 @@
 namespace tread::why {
 namespace {
 
+using Pattern = Said<learning_t>;
+
 constexpr double kMuchWorse = 2.5;  // [1] of the errors before
 constexpr size_t kManyRefused = 3;
 constexpr size_t kRun = 4;  // patterns that are compared with those before
 
 /// Patterns that ended far from their predictions from the first on, until they had been corrected.
-void addBeginning(const std::vector<const PatternNote*>& measured, std::vector<Finding>& findings) {
+void addBeginning(const std::vector<const Pattern*>& measured, std::vector<Finding>& findings) {
   if (measured.size() < 4 * kRun) return;
   std::vector<double> first, later;
   for (size_t i = 0; i < measured.size(); ++i)
     if (i < kRun || i >= 2 * kRun)
-      (i < kRun ? first : later).push_back(std::abs(measured[i]->position));
+      (i < kRun ? first : later).push_back(std::abs(measured[i]->message.error_position));
   const double begun = median(first), usual = std::max(0.03, median(later));
   if (begun < kMuchWorse * usual) return;
   Finding finding;
@@ -32,29 +34,30 @@ void addBeginning(const std::vector<const PatternNote*>& measured, std::vector<F
       "began with was another vehicle's or ground's",
       begun, usual);
   for (size_t i = 0; i < kRun; ++i)
-    finding.evidence.push_back(
-        {measured[i]->time, "LEARNING",
-         measured[i]->pattern + formatted(": %.2f m", measured[i]->position)});
+    finding.evidence.push_back({measured[i]->time, "LEARNING",
+                                measured[i]->message.learned_pattern_name +
+                                    formatted(": %.2f m", measured[i]->message.error_position)});
   findings.push_back(std::move(finding));
 }
 
 /// Stretches in which patterns ended much further from their predictions than before.
 void addPredictions(const DriveTimeline& drive, std::vector<Finding>& findings) {
-  std::vector<const PatternNote*> measured;
-  for (const PatternNote& note : drive.patterns)
-    if (note.accepted && std::isfinite(note.position)) measured.push_back(&note);
-  const auto typical = [&](size_t from, size_t to, double PatternNote::*error) {
+  std::vector<const Pattern*> measured;
+  for (const Pattern& note : drive.patterns)
+    if (note.message.accepted && std::isfinite(note.message.error_position))
+      measured.push_back(&note);
+  const auto typical = [&](size_t from, size_t to, double learning_t::*error) {
     std::vector<double> errors;
-    for (size_t i = from; i < to; ++i) errors.push_back(std::abs(measured[i]->*error));
+    for (size_t i = from; i < to; ++i) errors.push_back(std::abs(measured[i]->message.*error));
     return median(errors);
   };
   addBeginning(measured, findings);
   for (size_t i = kRun; i + kRun <= measured.size();) {
     const size_t before = i > 2 * kRun ? i - 2 * kRun : 0;
-    const double usual = std::max(0.03, typical(before, i, &PatternNote::position));
-    const double usual_yaw = std::max(0.02, typical(before, i, &PatternNote::yaw));
-    const double now = typical(i, i + kRun, &PatternNote::position);
-    const double now_yaw = typical(i, i + kRun, &PatternNote::yaw);
+    const double usual = std::max(0.03, typical(before, i, &learning_t::error_position));
+    const double usual_yaw = std::max(0.02, typical(before, i, &learning_t::error_yaw));
+    const double now = typical(i, i + kRun, &learning_t::error_position);
+    const double now_yaw = typical(i, i + kRun, &learning_t::error_yaw);
     if (now < kMuchWorse * usual && now_yaw < kMuchWorse * usual_yaw) {
       ++i;
       continue;
@@ -68,29 +71,30 @@ void addPredictions(const DriveTimeline& drive, std::vector<Finding>& findings) 
         "patterns ended %.2f m and %.1f deg from their predictions, %.2f m and %.1f deg before",
         now, now_yaw * 180.0 / kPi, usual, usual_yaw * 180.0 / kPi);
     for (size_t k = i; k < i + kRun; ++k) {
-      const PatternNote& note = *measured[k];
+      const learning_t& pattern = measured[k]->message;
       std::string words =
-          note.pattern + formatted(": %.2f m, %.1f deg", note.position, note.yaw * 180.0 / kPi);
-      if (note.ground_changed > 0.5) words += ", the learner takes it for another ground";
-      if (!note.words.empty()) words += "; " + note.words;
-      finding.evidence.push_back({note.time, "LEARNING", words});
+          pattern.learned_pattern_name +
+          formatted(": %.2f m, %.1f deg", pattern.error_position, pattern.error_yaw * 180.0 / kPi);
+      if (pattern.ground_changed > 0.5) words += ", the learner takes it for another ground";
+      if (!wordsOf(pattern).empty()) words += "; " + wordsOf(pattern);
+      finding.evidence.push_back({measured[k]->time, "LEARNING", words});
     }
     const auto sameSide = [&](double sign) {
-      return std::all_of(measured.begin() + static_cast<long>(i),
-                         measured.begin() + static_cast<long>(i + kRun),
-                         [&](const PatternNote* note) { return sign * note->yaw > 0.01; });
+      return std::all_of(
+          measured.begin() + static_cast<long>(i), measured.begin() + static_cast<long>(i + kRun),
+          [&](const Pattern* note) { return sign * note->message.error_yaw > 0.01; });
     };
     if (sameSide(1.0) || sameSide(-1.0))
       finding.sentence +=
           std::string(", each time too far to the ") + (sameSide(1.0) ? "left" : "right");
     const auto changed = std::find_if(
         measured.begin() + static_cast<long>(i), measured.begin() + static_cast<long>(i + kRun),
-        [](const PatternNote* note) { return note->ground_changed > 0.5; });
+        [](const Pattern* note) { return note->message.ground_changed > 0.5; });
     if (changed != measured.begin() + static_cast<long>(i + kRun))
-      finding.sentence +=
-          (*changed)->surface > 0
-              ? formatted(": the ground became another, known as surface %d", (*changed)->surface)
-              : ": the ground became another, which was not known";
+      finding.sentence += (*changed)->message.surface > 0
+                              ? formatted(": the ground became another, known as surface %d",
+                                          (*changed)->message.surface)
+                              : ": the ground became another, which was not known";
     findings.push_back(std::move(finding));
     i += kRun;
   }
@@ -98,11 +102,11 @@ void addPredictions(const DriveTimeline& drive, std::vector<Finding>& findings) 
 
 /// Patterns of which the learner took no measurement, by reason.
 void addRefusals(const DriveTimeline& drive, std::vector<Finding>& findings) {
-  std::map<std::string, std::vector<const PatternNote*>> by_reason;
+  std::map<std::string, std::vector<const Pattern*>> by_reason;
   size_t refused = 0;
-  for (const PatternNote& note : drive.patterns)
-    if (!note.accepted) {
-      by_reason[note.words].push_back(&note);
+  for (const Pattern& note : drive.patterns)
+    if (!note.message.accepted) {
+      by_reason[wordsOf(note.message)].push_back(&note);
       ++refused;
     }
   if (refused < kManyRefused || refused * 5 < drive.patterns.size()) return;
@@ -115,8 +119,8 @@ void addRefusals(const DriveTimeline& drive, std::vector<Finding>& findings) {
     words.push_back(formatted("%zu for ", notes.size()) + reason);
     finding.time = std::min(finding.time, notes.front()->time);
     finding.until = std::max(finding.until, notes.back()->time);
-    finding.evidence.push_back(
-        {notes.front()->time, "LEARNING", notes.front()->pattern + ": " + reason});
+    finding.evidence.push_back({notes.front()->time, "LEARNING",
+                                notes.front()->message.learned_pattern_name + ": " + reason});
   }
   finding.sentence =
       formatted("the learner refused %zu of %zu patterns: ", refused, drive.patterns.size()) +

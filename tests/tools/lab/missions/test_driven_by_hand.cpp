@@ -100,8 +100,7 @@ HandDriven driveByHand(std::optional<double> max_command, uint64_t seed) {
     }
     system.bus().setTap({});
   }
-  const report::DriveRecord drive = report::readDrive({path});
-  result.report = drive.hand.words();
+  result.report = report::HandRecord(readTimeline({path})).words();
   std::remove(path.c_str());
   return result;
 }

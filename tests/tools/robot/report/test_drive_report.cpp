@@ -56,7 +56,7 @@ bool contains(const std::string& text, const std::string& part) {
 TEST_CASE("a drive that arrives is told with its time, its way and the straight line") {
   const DriveRecord drive = driveOf(arrivingDrive());
   CHECK(drive.arrived);
-  CHECK(drive.problem.empty());
+  CHECK(drive.log.problem.empty());
   CHECK(drive.seconds() == Approx(10.2));
   CHECK(drive.distance() == Approx(10.0).margin(0.11));
   CHECK(drive.straightLine() == Approx(10.0));
@@ -117,8 +117,8 @@ TEST_CASE("beyond the first arrival: goals, stops, faults and E-stops of the who
   motor(19.5, motor_t::STATE_DISARMED, "INS is stale");
   plan(19.6, 4, plan_t::PLAN_STOPPED, "motor_bridge: INS is stale");
   const DriveRecord drive = driveOf(events);
-  CHECK(drive.chronicle.goals().size() == 4);
-  CHECK(drive.chronicle.incidents().size() == 2);
+  CHECK(Chronicle(drive.log).goals().size() == 4);
+  CHECK(Chronicle(drive.log).incidents().size() == 2);
   const std::string report = reportOf(drive, {}, {});
   INFO(report);
   CHECK(contains(resultLine(drive, {}),
@@ -163,7 +163,7 @@ TEST_CASE("holes in a log are told with their channels, one line where all fell 
     if (!hole) events.push_back(eventOf(kMotor, motorAt(time, motor_t::STATE_ARMED)));
     if (!hole && (time < 12.0 || time > 12.9)) events.push_back(eventOf(kIns, insAt(time, 0.0)));
   }
-  const std::vector<Hole> holes = driveOf(events).chronicle.holes();
+  const std::vector<Hole> holes = Chronicle(driveOf(events).log).holes();
   REQUIRE(holes.size() == 2);
   CHECK(holes[0].begin == Approx(3.0));
   CHECK(holes[0].length == Approx(2.0));
@@ -233,9 +233,9 @@ TEST_CASE("a log that breaks off is read as far as it goes, and the report says 
   std::filesystem::resize_file(path, std::filesystem::file_size(path) - 20);
   const DriveRecord drive = readDrive({path});
   CHECK_FALSE(drive.arrived);
-  CHECK_FALSE(drive.problem.empty());
+  CHECK_FALSE(drive.log.problem.empty());
   CHECK(drive.distance() == Approx(10.0).margin(0.11));
-  CHECK(contains(reportOf(drive, {}, {}), "the log: " + drive.problem + "\n"));
+  CHECK(contains(reportOf(drive, {}, {}), "the log: " + drive.log.problem + "\n"));
 }
 
 TEST_CASE("parts of one recording are one drive") {
@@ -245,7 +245,7 @@ TEST_CASE("parts of one recording are one drive") {
   const DriveRecord drive = readDrive({writeLog(folder.path("a.lcmlog"), {all.begin(), middle}),
                                        writeLog(folder.path("b.lcmlog"), {middle, all.end()})});
   CHECK(resultLine(drive, {}) == resultOf(all));
-  CHECK(drive.events == static_cast<int64_t>(all.size()));
+  CHECK(drive.log.events == all.size());
 }
 
 TEST_CASE("INS measurements that are not finite or have no fix are no part of the track") {

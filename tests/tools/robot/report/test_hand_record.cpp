@@ -30,23 +30,23 @@ plan_t shadowAt(double seconds, double x, double y) {
 /// 10 s by hand at 0.5 m/s along x; `plan` says what the planner shows each second.
 template <class Plan>
 HandRecord tenSeconds(Plan&& plan, int16_t state_after) {
-  HandRecord record;
+  std::vector<LogEvent> events;
   pattern_set_part_t part{};
   part.set_pattern_id = 4;
   part.set_period = 50'000;
   part.num_samples = 20;
   part.command.assign(20, {0.0, 0.0});
   part.trajectory.assign(20, {0.0, 0.0, 0.0});
-  record.take(eventOf(kPatternSet, part));
-  record.take(eventOf(kMotor, motorAt(0.9, motor_t::STATE_DRIVING)));
+  events.push_back(eventOf(kPatternSet, part));
+  events.push_back(eventOf(kMotor, motorAt(0.9, motor_t::STATE_DRIVING)));
   for (int i = 0; i <= 200; ++i) {
     const double time = 1.0 + 0.05 * i;
-    record.take(eventOf(kMotor, handAt(time, i < 100 ? 0.5F : 0.0F)));
-    record.take(eventOf(kIns, insAt(time, 0.5 * 0.05 * i)));
-    if (i % 20 == 0) record.take(eventOf(kPlan, plan(time, 0.5 * 0.05 * i)));
+    events.push_back(eventOf(kMotor, handAt(time, i < 100 ? 0.5F : 0.0F)));
+    events.push_back(eventOf(kIns, insAt(time, 0.5 * 0.05 * i)));
+    if (i % 20 == 0) events.push_back(eventOf(kPlan, plan(time, 0.5 * 0.05 * i)));
   }
-  record.take(eventOf(kMotor, motorAt(11.05, state_after)));
-  return record;
+  events.push_back(eventOf(kMotor, motorAt(11.05, state_after)));
+  return HandRecord(toTimeline("drive", std::move(events)));
 }
 
 }  // namespace
@@ -91,20 +91,18 @@ TEST_CASE("a planner that would have turned away does not agree, and one that sa
 }
 
 TEST_CASE("a log that nobody drove by hand says nothing of it") {
-  HandRecord record;
-  for (const LogEvent& event : tenMetres()) record.take(event);
-  CHECK(record.words().empty());
+  CHECK(HandRecord(toTimeline("drive", tenMetres())).words().empty());
 }
 
 TEST_CASE("patterns that a person's driving taught are counted, those of the planner are not") {
-  HandRecord record;
-  record.take(eventOf(kMotor, handAt(1.0, 0.5F)));
+  std::vector<LogEvent> events{eventOf(kMotor, handAt(1.0, 0.5F))};
   learning_t planners = learningAt(2.0, true, 0.1, 0.0);
   planners.learned_run_id = 7;
-  record.take(eventOf(kLearning, planners));
-  record.take(eventOf(kLearning, learningAt(2.0, true, 0.1, 0.0)));
-  record.take(eventOf(kLearning, learningAt(3.0, false, 0.1, 0.0)));
-  CHECK_THAT(record.words(), Catch::Contains("it taught 2 patterns, 1 of them fair"));
+  events.push_back(eventOf(kLearning, planners));
+  events.push_back(eventOf(kLearning, learningAt(2.0, true, 0.1, 0.0)));
+  events.push_back(eventOf(kLearning, learningAt(3.0, false, 0.1, 0.0)));
+  CHECK_THAT(HandRecord(toTimeline("drive", std::move(events))).words(),
+             Catch::Contains("it taught 2 patterns, 1 of them fair"));
 }
 
 }  // namespace tread::report

@@ -29,7 +29,7 @@ Score scoreOf(uint64_t first, uint64_t count, bool tells) {
   for (uint64_t seed = first; seed < first + count; ++seed) {
     const samples::OwnFolder folder;
     const FaultyMission mission = driveFaulty(seed, folder.path("drive.lcmlog"));
-    const Debrief drive = debrief(readTimeline({folder.path("drive.lcmlog")}));
+    const Debrief drive = debrief(readTimeline({folder.path("drive.lcmlog")}, kInsStep));
     for (const Finding& finding : drive.findings) REQUIRE_FALSE(finding.evidence.empty());
     const Finding* const worst = drive.worst();
     const bool right = worst != nullptr && mission.causes.count(worst->cause) > 0;

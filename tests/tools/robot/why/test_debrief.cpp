@@ -111,7 +111,7 @@ struct InventedDrive {
 Debrief debriefOf(const InventedDrive& drive) {
   const OwnFolder folder;
   drive.write(folder.path("drive.lcmlog"));
-  return debrief(readTimeline({folder.path("drive.lcmlog")}));
+  return debrief(readTimeline({folder.path("drive.lcmlog")}, kInsStep));
 }
 
 InventedDrive withoutIns() {

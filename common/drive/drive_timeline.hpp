@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/drive/drive_log.hpp"
+#include "common/drive/odometer.hpp"
+#include "common/execution/stop_reason.hpp"
+#include "common/geometry/se2.hpp"
+#include "common/grid/grid.hpp"
+#include "common/pattern/command.hpp"
+
+namespace tread {
+
+/// A message that says something new, as it was received.
+template <class Message>
+struct Said : Note {
+  Message message;
+};
+
+/// What motor_bridge did, until its state, its reason or the command changed.
+struct MotorNote : Note {
+  int64_t utime = 0, until = 0;  ///< [us] of the first and the last message that says so
+  int16_t state = 0;             ///< motor_t::STATE_*
+  Reason reason;
+  Command command;
+};
+
+/// A permission to drive that was lost, a fault that took it, or an emergency stop.
+struct PermissionLoss : Note {
+  int16_t state = 0;  ///< motor_t::STATE_* that it was lost to
+  Reason reason;
+  bool had_it = true;  ///< false: an emergency stop without a permission
+};
+
+struct PlanNote : Note {
+  int64_t utime = 0;  ///< [us]
+  int16_t state = 0;  ///< plan_t::PLAN_*
+  Reason reason;      ///< while it drives: of a stop that is planned
+  int64_t goal_id = 0;
+  bool news = false;                ///< it does not drive as before, or stands for another reason
+  std::optional<Pose2> T_map_next;  ///< end of its first pattern; none: it has no way
+  int64_t duration = 0;             ///< [us] of that pattern; 0 before its set is known
+};
+
+struct PersonNote : Note {
+  std::string who;
+  std::string what;
+};
+
+/// How the vehicle differs from its model from then on.
+struct GapNote : Note {
+  std::string words;
+  bool holds = true;  ///< else the vehicle is as its model again
+};
+
+/// An obstacle cell that came or went near the robot.
+struct CellNote : Note {
+  Eigen::Vector2d p_map;
+  bool came = false;
+};
+
+/// What a log holds of a drive, in the robot's time. All times are [s] since the log began.
+struct DriveTimeline {
+  std::string name;
+  std::string problem;  ///< one clear line of what is wrong with the log; empty if nothing is
+  int64_t begun = -1;   ///< [us] of the robot's clock
+  double duration = 0.0;
+  size_t events = 0;
+  std::map<std::string, std::vector<double>> heard;  ///< by channel, without HEALTH
+  std::map<std::string, std::vector<Said<health_t>>> health;
+  std::vector<MotorNote> motors;
+  std::vector<PermissionLoss> losses;
+  std::vector<PlanNote> plans;                       ///< each
+  std::vector<Said<execution_record_t>> executions;  ///< those that ended, each once
+  std::vector<Said<learning_t>> patterns;            ///< how each ended, as the learner scored it
+  std::vector<InsNote> ins;
+  std::vector<Said<goal_t>> goals;
+  std::vector<PersonNote> people;  ///< arming, disarming, E-stops, fences, marks
+  std::vector<GapNote> gaps;       ///< what tread-gap watch found new
+  std::vector<CellNote> cells;
+  std::vector<std::pair<double, double>> battery;  ///< [s], [V] once a second
+
+  std::map<std::string, std::string> configs;  ///< by process, the last
+  std::unique_ptr<TileMap> map;                ///< at the end
+  double distance = 0.0;                       ///< [m] driven
+
+  /// How many executions ended so (execution_record_t::OUTCOME_*).
+  int ended(int16_t outcome) const;
+  /// Silence of a channel that overlaps a time: [from, to]; nothing if it spoke at least every
+  /// `longest` seconds around it.
+  struct Silence {
+    double from = 0.0, to = 0.0;
+    double length() const { return to - from; }
+  };
+  std::optional<Silence> silenceOf(const std::string& channel, double time, double longest) const;
+  /// When a process was started again within these times; nothing if it was not.
+  std::optional<double> restartOf(const std::string& process, double from, double to) const;
+  /// When it was heard last, if that is long before the log's end.
+  std::optional<double> deathOf(const std::string& process) const;
+  /// Its newest HEALTH at a time; nullptr before the first.
+  const Said<health_t>* healthAt(const std::string& process, double time) const;
+  /// Its first HEALTH within these times that says that something is wrong; nullptr if none does.
+  const Said<health_t>* complaintOf(const std::string& process, double from, double to) const;
+  /// Of the cells near a place that became obstacles within these times, how many, and how many of
+  /// these places were free again later.
+  struct Ghost {
+    int came = 0, went = 0;
+    double gone = 0.0;  ///< [s] when the last of them went
+    bool alone = true;  ///< no obstacle is there at the end of the log
+  };
+  Ghost ghostAt(const Eigen::Vector2d& p_map, double from, double to) const;
+  /// Where the robot was; nothing before the INS knew.
+  std::optional<Pose2> poseAt(double time) const;
+};
+
+inline bool isOk(const health_t& health) {
+  return health.health_state == health_t::HEALTH_OK;
+}
+/// Why the learner refused a pattern, or what its rule took it for.
+inline const std::string& wordsOf(const learning_t& learning) {
+  return learning.accepted ? learning.change_reason : learning.gate_reason;
+}
+
+/// The notes of the events from one (inclusive) to another one (exclusive): [begin, end).
+template <class Kind>
+auto notesBetween(const std::vector<Kind>& notes, size_t from, size_t to) {
+  const auto at = [&](size_t number) {
+    return std::lower_bound(notes.begin(), notes.end(), number,
+                            [](const Kind& note, size_t event) { return note.event < event; });
+  };
+  return std::pair(at(from), at(to));
+}
+
+/// Fills a timeline from the events of a log, in their order.
+class TimelineReader {
+ public:
+  /// `ins_step` [s]: of INS messages that come faster only those with another status are noted.
+  explicit TimelineReader(DriveTimeline& drive, double ins_step = 0.0)
+      : drive_(drive), ins_step_(ins_step) {}
+  void take(const DriveEvent& event);
+
+ private:
+  void hear(const ins_t& ins);
+  void hear(const motor_t& motor);
+  void notePermission(const MotorNote& note);
+  void hear(const plan_t& plan);
+  void hear(const pattern_set_part_t& part);
+  void hear(const health_t& health);
+  void hear(const learning_t& learning);
+  void hear(const execution_t& executions);
+  void hear(const goal_t& goal);
+  void hear(const map_tile_t& message);
+  void compare(const map_tile_t& message);
+  void hear(const arm_t& arm);
+  void hear(const estop_t& estop);
+  void hear(const fence_t& fence);
+  void hear(const mark_t& mark);
+  void hear(const config_t& config);
+  void person(const std::string& who, const std::string& what);
+
+  DriveTimeline& drive_;
+  double ins_step_;
+  Note now_;
+  const DriveEvent* event_ = nullptr;  // that is taken
+  Odometer odometer_;
+  std::optional<Pose2> last_;
+  std::set<ExecutionKey> ended_;
+  std::map<int32_t, int64_t> durations_;  // [us] by pattern
+};
+
+/// Reads logs (parts of one recording, in order); throws std::runtime_error with one clear line if
+/// one cannot be read or holds no message of Tread.
+DriveTimeline readTimeline(const std::vector<std::string>& logs, double ins_step = 0.0);
+/// The same of events in memory, at the recorder's times, whatever they hold.
+DriveTimeline toTimeline(const std::string& name, std::vector<LogEvent> events);
+
+}  // namespace tread
