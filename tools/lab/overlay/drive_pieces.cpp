@@ -4,63 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <stdexcept>
 
 #include "common/drive/drive_log.hpp"
-#include "common/messages/ins_messages.hpp"
-#include "common/messages/pattern_messages.hpp"
 #include "common/report/plot.hpp"
 #include "common/report/text.hpp"
+#include "common/soundness/drive_log.hpp"
 #include "common/vehicle/kernel.hpp"
+#include "modules/identification/core/observations.hpp"
 
 namespace tread::overlay {
 namespace {
-
-double secondsBetween(int64_t from, int64_t to) {
-  return 1e-6 * static_cast<double>(to - from);
-}
-
-std::vector<GivenCommand> commandsOf(const DriveLog& log) {
-  std::vector<GivenCommand> commands;
-  double full_voltage = 0.0;
-  for (const motor_t& motor : log.motor) {
-    const auto voltage = static_cast<double>(motor.battery_voltage);
-    if (full_voltage == 0.0 && std::isfinite(voltage)) full_voltage = voltage;
-    GivenCommand given;
-    given.time = secondsBetween(log.motor.front().utime, motor.utime);
-    given.command = {static_cast<double>(motor.command[0]), static_cast<double>(motor.command[1])};
-    if (full_voltage > 0.0 && std::isfinite(voltage))
-      given.battery_drop = 1.0 - voltage / full_voltage;
-    commands.push_back(given);
-  }
-  return commands;
-}
-
-/// The poses since the first MOTOR message.
-std::vector<MeasuredPose> trackOf(const DriveLog& log) {
-  std::vector<MeasuredPose> track;
-  if (log.motor.empty()) return track;
-  const int64_t begin = log.motor.front().utime;
-  for (const ins_t& ins : log.ins) {
-    const std::optional<Pose2> T_map_body = planarPose(ins);
-    if (!T_map_body || ins.utime < begin) continue;
-    MeasuredPose measured;
-    measured.time = secondsBetween(begin, ins.utime);
-    measured.T_map_body = *T_map_body;
-    if (!track.empty()) {
-      const double last = track.back().T_map_body.yaw;
-      measured.T_map_body.yaw = last + wrapAngle(T_map_body->yaw - last);
-    }
-    if (const auto T = spatialPose(ins)) {
-      const YawPitchRoll angles = yawPitchRoll(Eigen::Quaterniond(T->linear()));
-      measured.roll = angles.roll;
-      measured.pitch = angles.pitch;
-    }
-    track.push_back(measured);
-  }
-  return track;
-}
 
 constexpr double kLeadIn = 3.0;      // [s]
 constexpr double kFine = 0.02;       // [s], longest step between two poses of a model
@@ -68,82 +22,66 @@ constexpr double kLongestGap = 0.3;  // [s] of the INS
 constexpr double kLeastPath = 0.3;   // [m] in a piece that counts
 constexpr double kLeastTurn = 0.3;   // [rad]
 
-/// The last entry that is not after a time; the first one before all.
-template <typename Entry>
-size_t indexAt(const std::vector<Entry>& entries, double time) {
-  const auto after = std::upper_bound(entries.begin(), entries.end(), time,
-                                      [](double t, const Entry& entry) { return t < entry.time; });
-  return after == entries.begin() ? 0 : static_cast<size_t>(after - entries.begin()) - 1;
+bool isDriven(const gap::Segment& segment) {
+  return std::any_of(
+      segment.commands.begin(), segment.commands.end(),
+      [](const gap::CommandSample& sample) { return sample.command != TrackCommand{}; });
 }
 
-Pose2 measuredAtTime(const LoggedDrive& drive, double time) {
-  const size_t i = std::min(indexAt(drive.track, time), drive.track.size() - 2);
-  const MeasuredPose& from = drive.track[i];
-  const MeasuredPose& to = drive.track[i + 1];
-  const double share = (time - from.time) / (to.time - from.time);
-  const Pose2 &a = from.T_map_body, &b = to.T_map_body;
-  return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y), a.yaw + share * (b.yaw - a.yaw)};
+/// The poses that the INS measured.
+std::vector<MotionSample> measuredIn(const gap::Segment& segment) {
+  std::vector<MotionSample> motion;
+  for (const gap::InsSample& sample : segment.ins)
+    if (sample.hasPose()) motion.push_back({sample.time, sample.T_map_body, 0.0});
+  return motion;
 }
 
-bool isCovered(const LoggedDrive& drive, double begin, double end) {
-  if (drive.track.front().time > begin || drive.track.back().time < end) return false;
-  for (size_t i = indexAt(drive.track, begin); drive.track[i].time < end; ++i)
-    if (drive.track[i + 1].time - drive.track[i].time > kLongestGap) return false;
-  return true;
+bool isCovered(const std::vector<MotionSample>& motion, double begin, double end) {
+  double last = motion.empty() || motion.front().time > begin ? -1e9 : begin;
+  for (const MotionSample& sample : motion) {
+    if (last > end) return true;
+    if (sample.time > begin && sample.time - last > kLongestGap) return false;
+    last = std::max(last, sample.time);
+  }
+  return last >= end;
 }
 
 bool moves(const std::vector<Pose2>& poses) {
   double path = 0.0, turn = 0.0;
   for (size_t i = 1; i < poses.size(); ++i) {
-    path += std::hypot(poses[i].x - poses[i - 1].x, poses[i].y - poses[i - 1].y);
+    path += distanceBetween(poses[i - 1], poses[i]);
     turn += std::abs(poses[i].yaw - poses[i - 1].yaw);
   }
   return path > kLeastPath || turn > kLeastTurn;
 }
 
-/// A model's motion under the drive's commands, from rest.
-std::vector<MotionSample> driven(const LoggedDrive& drive, const VehicleModel& model, double begin,
-                                 double end) {
-  VehicleKernel kernel(model, EntryState{});
-  std::vector<MotionSample> motion{{begin, {}, 0.0}};
-  size_t command = indexAt(drive.commands, begin);
-  for (double time = begin; time < end;) {
-    double next = std::min(time + kFine, end);
-    if (command + 1 < drive.commands.size())
-      next = std::min(next, drive.commands[command + 1].time);
-    const MeasuredPose& there = drive.track[indexAt(drive.track, time)];
-    const GivenCommand& given = drive.commands[command];
-    if (next > time) {
-      kernel.step(given.command, next - time, {time, given.battery_drop, there.roll, there.pitch});
-      motion.push_back({next, kernel.pose(), kernel.twist().omega});
-    }
-    time = next;
-    while (command + 1 < drive.commands.size() && drive.commands[command + 1].time <= time)
-      ++command;
-  }
-  return motion;
-}
-
-std::vector<Pose2> predicted(const LoggedDrive& drive, const ModelDocument& model, double begin,
-                             size_t samples) {
-  const double end = begin + kSample * static_cast<double>(samples);
-  const std::vector<MotionSample> motion = driven(drive, model.vehicle, begin - kLeadIn, end);
-  const Pose2 T_start_begin = measuredAt(motion, model.measurement, begin).T_map_body;
+/// The poses of a piece, relative to the first one, as an INS with these properties says them.
+std::vector<Pose2> posesOf(const std::vector<MotionSample>& motion, const MeasurementModel& ins,
+                           double begin, size_t samples) {
+  const auto at = [&](size_t sample) {
+    return measuredAt(motion, ins, begin + kSample * static_cast<double>(sample)).T_map_body;
+  };
   std::vector<Pose2> poses;
-  for (size_t i = 0; i < samples; ++i) {
-    const double time = begin + kSample * static_cast<double>(i);
-    poses.push_back(between(T_start_begin, measuredAt(motion, model.measurement, time).T_map_body));
-  }
+  for (size_t i = 0; i < samples; ++i) poses.push_back(between(at(0), at(i)));
   return poses;
 }
 
-std::vector<Pose2> measuredFrom(const LoggedDrive& drive, double begin, size_t samples) {
-  const Pose2 T_map_begin = measuredAtTime(drive, begin);
-  std::vector<Pose2> poses;
-  for (size_t i = 0; i < samples; ++i)
-    poses.push_back(
-        between(T_map_begin, measuredAtTime(drive, begin + kSample * static_cast<double>(i))));
-  return poses;
+void addPieces(const gap::Drive& drive, const gap::Segment& segment,
+               const std::vector<ModelDocument>& models, double length,
+               std::vector<Piece>& pieces) {
+  const auto samples = static_cast<size_t>(std::round(length / kSample)) + 1;
+  const std::vector<MotionSample> measured = measuredIn(segment);
+  const gap::SegmentPlan plan(drive, segment, kFine);
+  std::vector<std::vector<MotionSample>> motions;
+  for (const ModelDocument& model : models) motions.push_back(plan.simulate(model.vehicle));
+  for (double begin = segment.begin() + kLeadIn; begin + length < segment.end; begin += length) {
+    if (!isCovered(measured, begin - kLeadIn, begin + length)) continue;
+    Piece piece{begin, posesOf(measured, {}, begin, samples), {}};
+    if (!moves(piece.measured)) continue;
+    for (size_t m = 0; m < models.size(); ++m)
+      piece.predicted.push_back(posesOf(motions[m], models[m].measurement, begin, samples));
+    pieces.push_back(std::move(piece));
+  }
 }
 
 double medianOf(std::vector<double> values) {
@@ -235,17 +173,17 @@ void drawErrors(Picture& page, Box box, const std::vector<Piece>& pieces,
 
 }  // namespace
 
-LoggedDrive readLoggedDrive(const std::vector<std::string>& logs) {
+gap::Drive readLoggedDrive(const std::vector<std::string>& logs, std::string& problem) {
   const DriveLog log = readDriveLog(logs);
-  LoggedDrive drive{{}, commandsOf(log), trackOf(log), log.problem};
+  problem = log.problem;
   for (const auto& [channel, empty] :
-       {std::pair{"MOTOR", drive.commands.empty()}, std::pair{"INS", drive.track.empty()}})
+       {std::pair{"MOTOR", log.motor.empty()}, std::pair{"INS", log.ins.empty()}})
     if (empty)
       throw std::runtime_error(logs.front() + ": holds no " + channel +
                                "; a log of a drive has MOTOR and INS");
-  for (const motor_t& motor : log.motor)
-    if (motor.channel_kind[0] != 0) drive.kinds = kindsFrom(motor);
-  if (drive.kinds.empty()) throw std::runtime_error(logs.front() + ": nothing was driven in it");
+  gap::Drive drive = gap::toDrive(log);
+  if (std::none_of(drive.segments.begin(), drive.segments.end(), isDriven))
+    throw std::runtime_error(logs.front() + ": nothing was driven in it");
   return drive;
 }
 
@@ -258,26 +196,17 @@ double Piece::yawError(size_t model, size_t sample) const {
   return std::abs(predicted[model][sample].yaw - measured[sample].yaw);
 }
 
-std::vector<Piece> replay(const LoggedDrive& drive, const std::vector<ModelDocument>& models,
+std::vector<Piece> replay(const gap::Drive& drive, const std::vector<ModelDocument>& models,
                           double length) {
   for (const ModelDocument& model : models)
-    if (kindsOf(model.vehicle.channels()) != drive.kinds)
+    if (model.vehicle.kind != drive.kind)
       throw std::runtime_error(
           "model " + model.vehicle.name +
-          " takes another kind of command than the log has (power, track speed "
-          "or steering); give a model of the same vehicle");
-  const auto samples = static_cast<size_t>(std::round(length / kSample)) + 1;
+          " takes another kind of command than the log has (power or track speed); give a model of "
+          "the same vehicle");
   std::vector<Piece> pieces;
-  for (double begin = kLeadIn; begin + length < drive.commands.back().time; begin += length) {
-    if (!isCovered(drive, begin - kLeadIn, begin + length)) continue;
-    Piece piece;
-    piece.begin = begin;
-    piece.measured = measuredFrom(drive, begin, samples);
-    if (!moves(piece.measured)) continue;
-    for (const ModelDocument& model : models)
-      piece.predicted.push_back(predicted(drive, model, begin, samples));
-    pieces.push_back(std::move(piece));
-  }
+  for (const gap::Segment& segment : drive.segments)
+    addPieces(drive, segment, models, length, pieces);
   return pieces;
 }
 

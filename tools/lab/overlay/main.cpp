@@ -47,8 +47,9 @@ void tell(const std::string& file, const std::vector<Piece>& pieces, size_t mode
 }
 
 int run(const Arguments& arguments) {
-  const LoggedDrive drive = readLoggedDrive(arguments.logs);
-  if (!drive.problem.empty()) std::printf("%s\n", drive.problem.c_str());
+  std::string problem;
+  const gap::Drive drive = readLoggedDrive(arguments.logs, problem);
+  if (!problem.empty()) std::printf("%s\n", problem.c_str());
   std::vector<ModelDocument> models;
   std::vector<std::string> names;
   for (const std::string& file : arguments.models) {

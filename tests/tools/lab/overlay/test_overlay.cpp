@@ -73,6 +73,7 @@ class Log {
   static motor_t motor(int i) {
     motor_t message{};
     message.utime = 1'000'000 + 50'000 * i;
+    message.bridge_state = motor_t::STATE_DRIVING;
     message.channel_kind[0] = message.channel_kind[1] = 1;
     message.command[0] = static_cast<float>(commandAt(i).left);
     message.command[1] = static_cast<float>(commandAt(i).right);
@@ -94,6 +95,11 @@ class Log {
   std::string path_;
 };
 
+gap::Drive driveOf(const std::string& path) {
+  std::string problem;
+  return readLoggedDrive({path}, problem);
+}
+
 }  // namespace
 
 TEST_CASE("the model that drove a log stays on what was measured, another one leaves it") {
@@ -102,7 +108,7 @@ TEST_CASE("the model that drove a log stays on what was measured, another one le
       "effects:\n  track_asymmetry: {share: 0.04}\n"
       "measurement:\n  lever_arm_x: {offset: 0.2}\n  ins_latency: {latency: 0.2}\n");
   const Log log(hidden);
-  const LoggedDrive drive = readLoggedDrive({log.path()});
+  const gap::Drive drive = driveOf(log.path());
   const std::vector<Piece> pieces = replay(drive, {plain, hidden}, 4.0);
   REQUIRE(pieces.size() == 9);
   const size_t last = pieces[0].measured.size() - 1;
@@ -125,20 +131,20 @@ TEST_CASE("a log without INS, and a model of another kind of command, are refuse
   const ModelDocument plain = modelWith("");
   {
     const Log blind(plain, false);
-    CHECK_THROWS_WITH(readLoggedDrive({blind.path()}), Catch::Contains("holds no INS"));
+    CHECK_THROWS_WITH(driveOf(blind.path()), Catch::Contains("holds no INS"));
   }
   const Log log(plain);
   ModelDocument wheels = plain;
   wheels.vehicle.kind = CommandKind::kTrackSpeed;
-  CHECK_THROWS_WITH(replay(readLoggedDrive({log.path()}), {wheels}, 4.0),
+  CHECK_THROWS_WITH(replay(driveOf(log.path()), {wheels}, 4.0),
                     Catch::Contains("another kind of command"));
-  CHECK_THROWS(readLoggedDrive({"/no/such.lcmlog"}));
+  CHECK_THROWS(driveOf("/no/such.lcmlog"));
 }
 
 TEST_CASE("a model's error is zero on its own track, and does not grow with the way") {
   const ModelDocument exact = modelWith("");
   const Log log(exact);
-  const std::vector<Piece> pieces = replay(readLoggedDrive({log.path()}), {exact}, 8.0);
+  const std::vector<Piece> pieces = replay(driveOf(log.path()), {exact}, 8.0);
   REQUIRE(pieces.size() == 4);
   for (size_t sample = 0; sample <= 80; sample += 20) {
     // What is left is of the kernel's steps, of 10 ms in the drive and of 20 ms here.
@@ -167,9 +173,9 @@ TEST_CASE("the median of pieces is the middle one, and of no piece zero") {
 TEST_CASE("pieces in which the INS was silent are left out, the others stay") {
   const ModelDocument plain = modelWith("");
   const Log whole(plain);
-  const std::vector<Piece> all = replay(readLoggedDrive({whole.path()}), {plain}, 4.0);
+  const std::vector<Piece> all = replay(driveOf(whole.path()), {plain}, 4.0);
   const Log gap(plain, true, [](double time) { return time > 17.0 && time < 17.5; });
-  const std::vector<Piece> some = replay(readLoggedDrive({gap.path()}), {plain}, 4.0);
+  const std::vector<Piece> some = replay(driveOf(gap.path()), {plain}, 4.0);
   // Pieces begin at 3, 7, 11, 15, 19 s; each needs the 3 s before, too.
   REQUIRE(all.size() == 9);
   REQUIRE(some.size() == 7);
@@ -178,7 +184,7 @@ TEST_CASE("pieces in which the INS was silent are left out, the others stay") {
     CHECK(piece.begin != 19.0);
   }
   const Log short_gap(plain, true, [](double time) { return time > 17.0 && time < 17.2; });
-  CHECK(replay(readLoggedDrive({short_gap.path()}), {plain}, 4.0).size() == 9);
+  CHECK(replay(driveOf(short_gap.path()), {plain}, 4.0).size() == 9);
 }
 
 TEST_CASE("a picture of one piece and of many is drawn, with one model and with two") {
@@ -186,7 +192,7 @@ TEST_CASE("a picture of one piece and of many is drawn, with one model and with 
   const ModelDocument plain = modelWith("");
   const ModelDocument askew = modelWith("effects:\n  track_asymmetry: {share: 0.04}\n");
   const Log log(plain);
-  const std::vector<Piece> pieces = replay(readLoggedDrive({log.path()}), {askew, plain}, 4.0);
+  const std::vector<Piece> pieces = replay(driveOf(log.path()), {askew, plain}, 4.0);
   drawOverlay(folder.path("many.png"), "many", pieces, {"askew.yaml", "plain.yaml"});
   CHECK(samples::isPng(folder.text("many.png")));
   Piece alone = pieces.front();
