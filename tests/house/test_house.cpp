@@ -14,7 +14,7 @@
 #include <sstream>
 
 #include "common/bus/channels.hpp"
-#include "tests/helpers.hpp"
+#include "tests/house/sources.hpp"
 
 namespace fs = std::filesystem;
 
@@ -26,18 +26,10 @@ struct Include {
 };
 
 using tread::testing::contentOf;
-
-std::vector<fs::path> sourcesUnder(const std::string& folder) {
-  std::vector<fs::path> files;
-  const fs::path root = fs::path(TREAD_SOURCE_DIR) / folder;
-  if (!fs::exists(root)) return files;
-  for (const auto& entry : fs::recursive_directory_iterator(root)) {
-    const std::string extension = entry.path().extension().string();
-    if (extension == ".hpp" || extension == ".cpp") files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
+using tread::testing::foldersOf;
+using tread::testing::head;
+using tread::testing::sourcesUnder;
+using tread::testing::startsWith;
 
 std::vector<Include> includesUnder(const std::string& folder) {
   static const std::regex kInclude(R"re(^\s*#\s*include\s*[<"]([^>"]+)[>"])re");
@@ -50,26 +42,6 @@ std::vector<Include> includesUnder(const std::string& folder) {
         includes.push_back({fs::relative(path, TREAD_SOURCE_DIR).string(), match[1]});
   }
   return includes;
-}
-
-bool startsWith(const std::string& text, const std::string& prefix) {
-  return text.compare(0, prefix.size(), prefix) == 0;
-}
-
-/// The first `parts` components of a path: modules/planner of
-/// modules/planner/core/search/pattern_search.hpp.
-std::string head(const std::string& path, int parts) {
-  size_t end = 0;
-  for (int i = 0; i < parts && end != std::string::npos; ++i) end = path.find('/', end + 1);
-  return path.substr(0, end);
-}
-
-std::vector<std::string> foldersOf(const std::string& folder) {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(fs::path(TREAD_SOURCE_DIR) / folder))
-    if (entry.is_directory()) names.push_back(entry.path().filename().string());
-  std::sort(names.begin(), names.end());
-  return names;
 }
 
 /// Every folder called core wherever it lies, and the devices behind the doors of motor_bridge,

@@ -12,54 +12,16 @@
 #include <string>
 #include <vector>
 
-#include "tests/helpers.hpp"
+#include "tests/house/sources.hpp"
 
 namespace fs = std::filesystem;
 
-namespace {
-
-/// The text without comments, literals and preprocessor lines.
-std::string codeOf(const std::string& text) {
-  static const std::regex kNoise(
-      R"re(//[^\n]*|/\*[^]*?\*/|R"([a-z]*)\([^]*?\)\1"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])+')re");
-  static const std::regex kDirective(R"re((^|\n)[ \t]*#(?:[^\n]*\\\n)*[^\n]*)re");
-  return std::regex_replace(std::regex_replace(text, kDirective, "$1"), kNoise, " ");
-}
-
-/// Names of the types that a source defines in a named namespace, with that namespace.
-std::vector<std::string> typesIn(const std::string& text) {
-  static const std::regex kNamespace(R"re((?:inline\s+)?namespace(?:\s+([\w:]+))?\s*)re");
-  static const std::regex kType(
-      R"re((?:template\s*<[^{}]*>\s*)?(?:struct|class|union|enum(?:\s+(?:class|struct))?)\s+(?:\w+\s*\([^)]*\)\s*)?(\w+)(?:\s+final)?\s*(?::[^:][^]*)?)re");
-  std::vector<std::string> types;
-  std::vector<std::string> scopes;  // of each open brace: its namespace, "" if it is none
-  std::string head;                 // what stands before a brace
-  for (const char c : codeOf(text)) {
-    if (c != '{' && c != '}' && c != ';') {
-      if (!head.empty() || !std::isspace(static_cast<unsigned char>(c))) head += c;
-      continue;
-    }
-    if (c == '}' && !scopes.empty()) scopes.pop_back();
-    if (c == '{') {
-      std::smatch match;
-      std::string scope;
-      for (const std::string& part : scopes) scope += part.empty() ? "{}" : part + "::";
-      const bool named = scope.find("{}") == std::string::npos;
-      if (std::regex_match(head, match, kNamespace)) {
-        scopes.push_back(match[1]);
-      } else {
-        if (named && std::regex_match(head, match, kType)) types.push_back(scope + match[1].str());
-        scopes.emplace_back();
-      }
-    }
-    head.clear();
-  }
-  return types;
-}
-
+using tread::testing::codeOf;
 using tread::testing::contentOf;
-
-}  // namespace
+using tread::testing::foldersOf;
+using tread::testing::sourcesUnder;
+using tread::testing::startsWith;
+using tread::testing::typesIn;
 
 TEST_CASE("the search for types finds structs, classes and enums, and tells namespaces apart") {
   const std::string text = R"(
@@ -76,16 +38,90 @@ TEST_CASE("the search for types finds structs, classes and enums, and tells name
 TEST_CASE("no type is defined twice in one namespace") {
   std::map<std::string, std::set<std::string>> places;
   for (const char* folder : {"common", "modules", "tools", "tests"})
-    for (const auto& entry :
-         fs::recursive_directory_iterator(fs::path(TREAD_SOURCE_DIR) / folder)) {
-      const std::string extension = entry.path().extension().string();
-      if (extension != ".hpp" && extension != ".cpp") continue;
-      const std::string file = fs::relative(entry.path(), TREAD_SOURCE_DIR).string();
-      for (const std::string& type : typesIn(contentOf(entry.path()))) places[type].insert(file);
-    }
+    for (const fs::path& path : sourcesUnder(folder))
+      for (const std::string& type : typesIn(contentOf(path))) places[type].insert(path);
   CHECK(places.size() > 300);  // the check itself looks at something
   for (const auto& [type, files] : places) {
     CAPTURE(type, files);
     CHECK(files.size() == 1);
+  }
+}
+
+// Who looks for a name finds one thing. Types in the unnamed namespace of one source do not count.
+TEST_CASE("the name of a type stands once in the product, whatever its namespace") {
+  constexpr size_t kMost = 22;  // falls only
+  std::map<std::string, std::set<std::string>> types;
+  for (const char* folder : {"common", "modules", "tools"})
+    for (const fs::path& path : sourcesUnder(folder))
+      for (const std::string& type : typesIn(contentOf(path)))
+        types[type.substr(type.rfind(':') + 1)].insert(type);
+  CHECK(types.size() > 800);
+  std::vector<std::string> twice;
+  for (const auto& [name, full] : types)
+    if (full.size() > 1) twice.push_back(name);
+  CAPTURE(twice);
+  CHECK(twice.size() <= kMost);
+}
+
+TEST_CASE("a source has the header of its own name") {
+  constexpr size_t kMost = 114;  // falls only
+  std::vector<std::string> without;
+  for (const char* folder : {"common", "modules", "tools"})
+    for (fs::path path : sourcesUnder(folder)) {
+      const std::string stem = path.stem();
+      const bool is_main = stem == "main" || stem.find("_main") != std::string::npos;
+      if (path.extension() == ".hpp" || is_main || path.filename() == "headers.cpp") continue;
+      const std::string file = fs::relative(path, TREAD_SOURCE_DIR);
+      if (!fs::exists(path.replace_extension(".hpp"))) without.push_back(file);
+    }
+  CAPTURE(without);
+  CHECK(without.size() <= kMost);
+}
+
+// common/ is tread itself, but for folders that others would take for something else.
+TEST_CASE("a folder and its namespace have one name") {
+  constexpr size_t kMost = 11;  // falls only
+  const std::regex opens(R"((?:^|\n)namespace tread(?:::(\w+))?)");
+  std::set<std::string> others;
+  for (const char* folder : {"modules", "tools/robot", "tools/lab"})
+    for (const std::string& name : foldersOf(folder))
+      for (const fs::path& path : sourcesUnder(std::string(folder) + "/" + name)) {
+        const std::string text = contentOf(path);
+        const std::string parent = path.parent_path().filename();
+        for (std::sregex_iterator found(text.begin(), text.end(), opens), end; found != end;
+             ++found) {
+          const std::string space = (*found)[1];
+          if (space != name && space != parent) others.insert(name + ": " + space);
+        }
+      }
+  CAPTURE(others);
+  CHECK(others.size() <= kMost);
+}
+
+// One place for each: common/statistics has median and quantile, common/geometry a pose with its
+// time, common/pattern a command with its time.
+TEST_CASE("what has a place in common is not made again") {
+  struct Place {
+    const char* file;
+    std::regex marks;
+    size_t most;  // files beside it; falls only
+  };
+  const std::string start = R"(struct\s+\w+\s*\{\s+(?:int64_t\s+utime|double\s+time)[^;]*;)";
+  const std::vector<Place> places{
+      {"common/statistics/", std::regex("nth_element"), 15},
+      {"common/geometry/track.hpp", std::regex(start + R"(\s+Pose2\s+\w+[^;]*;\s*\};)"), 6},
+      {"common/pattern/command.hpp", std::regex(start + R"(\s+(?:Track)?Command\s+\w+[^;]*;)"), 6}};
+  std::map<std::string, std::set<std::string>> beside;
+  for (const char* folder : {"common", "modules", "tools"})
+    for (const fs::path& path : sourcesUnder(folder)) {
+      const std::string file = fs::relative(path, TREAD_SOURCE_DIR);
+      const std::string code = codeOf(contentOf(path));
+      for (const Place& place : places)
+        if (!startsWith(file, place.file) && std::regex_search(code, place.marks))
+          beside[place.file].insert(file);
+    }
+  for (const Place& place : places) {
+    CAPTURE(place.file, beside[place.file]);
+    CHECK(beside[place.file].size() <= place.most);
   }
 }
