@@ -29,10 +29,10 @@ void requireTimeUnits(const std::string& path, const Message& message,
 
 }  // namespace
 
-LogCounts writeLog(const std::string& path, LogWriter& log) {
+McapCounts writeLog(const std::string& path, LogWriter& log) {
   Reader reader(path);
   Message message;
-  LogCounts counts;
+  McapCounts counts;
   while (reader.next(message)) {
     const MessageType* const type = typeOfChannel(message.topic);
     if (type == nullptr || message.schema_name != "tread." + type->name ||

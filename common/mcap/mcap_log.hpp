@@ -11,7 +11,7 @@
 namespace tread::mcap {
 
 /// What became of an MCAP file's messages.
-struct LogCounts {
+struct McapCounts {
   int64_t taken = 0;
   std::map<std::string, int64_t> left_out;  ///< by topic and why
   std::map<std::string, int64_t> lost;      ///< messages of Tread's, by topic and why
@@ -24,6 +24,6 @@ struct LogCounts {
 /// Writes the messages of an MCAP file that are Tread's (JSON, as tread-export writes it) to a log,
 /// each at the time at which it was recorded and in the order of these times.
 /** Throws std::runtime_error with one clear line if the file cannot be read or holds none. */
-LogCounts writeLog(const std::string& path, LogWriter& log);
+McapCounts writeLog(const std::string& path, LogWriter& log);
 
 }  // namespace tread::mcap

@@ -78,7 +78,7 @@ std::vector<Planned> plannedExecutions(const std::vector<CommandRun>& runs,
 
 class ImportMaker {
  public:
-  explicit ImportMaker(LogCounts& counts) : counts_(counts) {}
+  explicit ImportMaker(ImportCounts& counts) : counts_(counts) {}
 
   void addNotes(const Session& session, const std::string& format, bool all_gyro,
                 const ExecutionLayout& layout, double begin) {
@@ -214,7 +214,7 @@ class ImportMaker {
     motor.command_index = static_cast<int32_t>(since / kPeriodUs);
   }
 
-  LogCounts& counts_;
+  ImportCounts& counts_;
   DriveLogBuilder log_;
 };
 
@@ -230,7 +230,7 @@ std::vector<CommandHole> commandHoles(const std::vector<DriveSample>& drive) {
 
 std::vector<LogEvent> makeLog(const RecordedDrive& recording, const Session& session,
                               const std::string& format, const ExecutionLayout& layout,
-                              LogCounts& counts) {
+                              ImportCounts& counts) {
   counts.holes = commandHoles(recording.drive);
   const auto executions = plannedExecutions(recording.runs, layout, counts.holes);
   double begin = std::numeric_limits<double>::max();

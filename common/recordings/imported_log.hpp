@@ -138,7 +138,7 @@ struct CommandHole {
 std::vector<CommandHole> commandHoles(const std::vector<DriveSample>& drive);
 
 /// What was put into a log.
-struct LogCounts {
+struct ImportCounts {
   size_t ins = 0;
   size_t motor = 0;
   size_t scans = 0;
@@ -153,6 +153,6 @@ struct LogCounts {
 /// utime 0 is one second before the recording's time 0.
 std::vector<LogEvent> makeLog(const RecordedDrive& recording, const Session& session,
                               const std::string& format, const ExecutionLayout& layout,
-                              LogCounts& counts);
+                              ImportCounts& counts);
 
 }  // namespace tread::recordings

@@ -43,7 +43,7 @@ struct SourceLog {
 };
 
 /// A person's last word on an effect of the catalogue.
-struct Decision {
+struct EffectDecision {
   std::string effect;
   bool accepted = false;  ///< in whatever the tests say; else never considered
   std::string by;         ///< who decided; may be empty
@@ -55,7 +55,7 @@ struct Provenance {
   std::optional<int64_t> seed;  ///< of its random numbers
   int64_t runs = 0;             ///< how often a tool has worked on these logs
   std::vector<SourceLog> logs;
-  std::vector<Decision> decisions;
+  std::vector<EffectDecision> decisions;
 };
 
 /// The largest motion that a model was made from or that a drive asks for.

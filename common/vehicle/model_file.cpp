@@ -215,7 +215,7 @@ void readProvenance(ConfigReader reader, Provenance& provenance) {
     provenance.logs.push_back(log);
   }
   for (ConfigReader& entry : reader.sections("decisions")) {
-    Decision decision;
+    EffectDecision decision;
     entry.text("effect", decision.effect, true);
     requireEffect(entry, decision.effect);
     std::string decided = "accepted";
@@ -414,7 +414,7 @@ void writeProvenance(std::ostringstream& out, const Provenance& provenance) {
     out << "    - name: " << formatText(log.name) << "\n      sha256: " << formatText(log.sha256)
         << '\n';
   if (!provenance.decisions.empty()) out << "  decisions:  # of people\n";
-  for (const Decision& decision : provenance.decisions) {
+  for (const EffectDecision& decision : provenance.decisions) {
     out << "    - effect: " << decision.effect
         << "\n      decision: " << (decision.accepted ? "accepted" : "rejected") << '\n';
     if (!decision.by.empty()) out << "      by: " << formatText(decision.by) << '\n';

@@ -72,7 +72,7 @@ void recordedDrive(const uint8_t* bytes, size_t size) {
           format == "steps"     ? recordings::readSteps(file.path(), session)
           : format == "aligned" ? recordings::readAligned(file.path(), session)
                                 : recordings::readContinuous(file.path(), session);
-      recordings::LogCounts counts;
+      recordings::ImportCounts counts;
       makeLog(drive, session, format, recordings::ExecutionLayout{}, counts);
     });
 }
@@ -91,7 +91,7 @@ void mappedCsv(const uint8_t* bytes, size_t size) {
     const recordings::RecordedDrive drive = import::readMappedCsv(file.path(), mapping).drive;
     recordings::Session session;
     session.pose_rate = 10.0;
-    recordings::LogCounts counts;
+    recordings::ImportCounts counts;
     makeLog(drive, session, "csv", recordings::ExecutionLayout{}, counts);
   });
 }

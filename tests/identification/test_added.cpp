@@ -25,7 +25,7 @@ void add(const std::string& text) {
   addEntry(std::move(entry), reader);
 }
 
-Finding found(const Values& hidden, uint64_t seed) {
+GapFinding found(const Values& hidden, uint64_t seed) {
   GapTask task;
   task.model = syntheticVehicle();
   task.train = {syntheticDrive(vehicleWith(hidden), 400.0, seed)};
@@ -55,7 +55,7 @@ TEST_CASE("the effects of config/effects are found by name, and not where they a
                                           {"yaw_windup.time", 0.3},
                                           {"centre_to_side.offset", 0.08}}) {
     INFO(path);
-    const Finding finding = found({{path, value}}, 33);
+    const GapFinding finding = found({{path, value}}, 33);
     // What no drive tells from a lever arm of the INS may be named as that, with it beside.
     const std::string name = effectOfPath(path);
     int named = 0;

@@ -89,7 +89,7 @@ TEST_CASE("a cell's mean is that of the residuals whose variable lies in it") {
       double sum = 0.0;
       size_t count = 0;
       for (Eigen::Index i = 0; i < residuals.size(); ++i) {
-        if (rig.data.all()[static_cast<size_t>(i)].channel != Channel::kAlong) continue;
+        if (rig.data.all()[static_cast<size_t>(i)].channel != ObservedRate::kAlong) continue;
         const bool within =
             v[i] >= looked[c].from && (v[i] < looked[c].to || c + 1 == looked.size());
         if (!within) continue;
@@ -168,7 +168,7 @@ TEST_CASE(
   const Eigen::VectorXd v = valuesOf(rig, nominal, "v");
   const Eigen::VectorXd omega = valuesOf(rig, nominal, "yaw rate");
   const Eigen::VectorXd residuals = rig.data.residuals(rig.data.predict(nominal));
-  const AtlasMap& map = atlas.maps[static_cast<size_t>(Channel::kAlong)];
+  const AtlasMap& map = atlas.maps[static_cast<size_t>(ObservedRate::kAlong)];
   CHECK(map.channel == "along");
   const size_t columns = map.v_edges.size() - 1;
   const size_t lines = map.omega_edges.size() - 1;
@@ -183,7 +183,7 @@ TEST_CASE(
                (value < edges[at + 1] || (at + 2 == edges.size() && value <= edges[at + 1]));
       };
       for (Eigen::Index i = 0; i < v.size(); ++i) {
-        if (rig.data.all()[static_cast<size_t>(i)].channel != Channel::kAlong) continue;
+        if (rig.data.all()[static_cast<size_t>(i)].channel != ObservedRate::kAlong) continue;
         if (!inside(map.v_edges, column, v[i]) || !inside(map.omega_edges, line, omega[i]))
           continue;
         sum += residuals[i];

@@ -16,7 +16,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-Finding findWith(const Values& hidden, const std::vector<Decision>& decisions) {
+GapFinding findWith(const Values& hidden, const std::vector<EffectDecision>& decisions) {
   GapTask task;
   task.model = syntheticVehicle();
   task.train.push_back(syntheticDrive(vehicleWith(hidden), 300.0, 6));
@@ -24,7 +24,7 @@ Finding findWith(const Values& hidden, const std::vector<Decision>& decisions) {
   return findGap(task, [](const std::string&) {});
 }
 
-Names namesIn(const Finding& finding) {
+Names namesIn(const GapFinding& finding) {
   Names names;
   for (const FoundEffect& effect : finding.identified.effects) names.push_back(effect.name);
   return names;
@@ -33,7 +33,7 @@ Names namesIn(const Finding& finding) {
 }  // namespace
 
 TEST_CASE("an accepted effect stays in the model though the drive does not show it, and says so") {
-  const Finding finding = findWith({}, {{"yaw_pull", true, "Anna"}});
+  const GapFinding finding = findWith({}, {{"yaw_pull", true, "Anna"}});
   REQUIRE(namesIn(finding) == Names{"yaw_pull"});
   CHECK(finding.identified.effects[0].accepted);
   CHECK_FALSE(isShown(finding.identified.effects[0]));
@@ -46,7 +46,7 @@ TEST_CASE("an accepted effect stays in the model though the drive does not show 
 }
 
 TEST_CASE("an accepted effect that is there is sized, shown, and others are found beside it") {
-  const Finding finding =
+  const GapFinding finding =
       findWith({{"track_asymmetry.share", 0.05}, {"centrifugal_drift.time", 0.2}},
                {{"track_asymmetry", true, ""}});
   const Names names = namesIn(finding);
@@ -58,7 +58,7 @@ TEST_CASE("an accepted effect that is there is sized, shown, and others are foun
 }
 
 TEST_CASE("a rejected effect is not considered: neither found nor among the candidates") {
-  const Finding finding =
+  const GapFinding finding =
       findWith({{"motor_deadband.speed", 0.1}}, {{"motor_deadband", false, ""}});
   const Names names = namesIn(finding);
   CHECK(std::count(names.begin(), names.end(), "motor_deadband") == 0);
@@ -68,7 +68,7 @@ TEST_CASE("a rejected effect is not considered: neither found nor among the cand
 }
 
 TEST_CASE("a rejected plain cause is no nuisance term either") {
-  const Finding finding = findWith({{"slip_ratio.slip", 0.1}}, {{"slip_ratio", false, ""}});
+  const GapFinding finding = findWith({{"slip_ratio.slip", 0.1}}, {{"slip_ratio", false, ""}});
   const Names names = namesIn(finding);
   CHECK(std::count(names.begin(), names.end(), "slip_ratio") == 0);
   CHECK(finding.identified.model.vehicle.effects.slip_ratio == 0.0);
@@ -76,22 +76,23 @@ TEST_CASE("a rejected plain cause is no nuisance term either") {
 
 TEST_CASE("of two effects that no drive tells apart a decision names the one") {
   const Values hidden{{"icr_offset.offset", 0.1}};
-  const Finding rejected = findWith(hidden, {{"lever_arm_x", false, ""}});
+  const GapFinding rejected = findWith(hidden, {{"lever_arm_x", false, ""}});
   CHECK(rejected.verdict == GapVerdict::kFound);
   REQUIRE(namesIn(rejected) == Names{"icr_offset"});
   CHECK(rejected.identified.effects[0].group.empty());
-  const Finding accepted = findWith(hidden, {{"lever_arm_x", true, ""}});
+  const GapFinding accepted = findWith(hidden, {{"lever_arm_x", true, ""}});
   CHECK(accepted.verdict == GapVerdict::kMeasurement);
   CHECK(namesIn(accepted) == Names{"lever_arm_x"});
 }
 
 TEST_CASE("an effect under its second name can be accepted, too") {
-  const Finding finding = findWith({{"heading_misalignment.angle", 0.05}}, {{"crab", true, "Ben"}});
+  const GapFinding finding =
+      findWith({{"heading_misalignment.angle", 0.05}}, {{"crab", true, "Ben"}});
   CHECK(namesIn(finding) == Names{"crab"});
 }
 
 TEST_CASE("what the drive cannot size cannot be accepted, and one line says why") {
-  const auto refused = [](const Values& hidden, const std::vector<Decision>& decisions) {
+  const auto refused = [](const Values& hidden, const std::vector<EffectDecision>& decisions) {
     try {
       findWith(hidden, decisions);
     } catch (const std::invalid_argument& error) {

@@ -157,13 +157,13 @@ TEST_CASE("a finding that was cut short is partial with what it has, and else ca
   task.train.push_back(
       syntheticDrive(samples::vehicleWith({{"motor_deadband.speed", 0.1}}), 300.0, 2));
   task.is_over = [] { return true; };
-  const Finding nothing = findGap(task, kSilent);
+  const GapFinding nothing = findGap(task, kSilent);
   CHECK(nothing.verdict == GapVerdict::kCannotTell);
   CHECK(nothing.reason.find("time limit") != std::string::npos);
   REQUIRE(nothing.gap);
   CHECK_FALSE(nothing.gap->structure_nested);
   task.is_over = [asked = 0]() mutable { return ++asked > 6; };
-  const Finding some = findGap(task, kSilent);
+  const GapFinding some = findGap(task, kSilent);
   CHECK(some.verdict == GapVerdict::kPartial);
   CHECK(some.search.cut_short);
   CHECK(some.identified.effects.size() == 1);

@@ -16,8 +16,8 @@ using samples::kSilent;
 using Values = std::vector<std::pair<std::string, double>>;
 
 /// What is found with a model on a drive of the synthetic vehicle in which numbers were changed.
-Finding findOn(const Values& hidden, const ModelDocument& model, double seconds, uint64_t seed,
-               const ParallelFor& parallel = serialFor) {
+GapFinding findOn(const Values& hidden, const ModelDocument& model, double seconds, uint64_t seed,
+                  const ParallelFor& parallel = serialFor) {
   ModelDocument truth = syntheticVehicle();
   for (const auto& [path, value] : hidden) *findParameter(truth, path) = value;
   GapTask task;
@@ -28,8 +28,8 @@ Finding findOn(const Values& hidden, const ModelDocument& model, double seconds,
   return findGap(task, kSilent);
 }
 
-Finding findAfter(const Values& hidden, double seconds, uint64_t seed,
-                  const ParallelFor& parallel = serialFor) {
+GapFinding findAfter(const Values& hidden, double seconds, uint64_t seed,
+                     const ParallelFor& parallel = serialFor) {
   return findOn(hidden, syntheticVehicle(), seconds, seed, parallel);
 }
 
@@ -45,7 +45,7 @@ ModelDocument sureOf(const Values& known, double deviation) {
   return model;
 }
 
-std::vector<std::string> namesIn(const Finding& finding) {
+std::vector<std::string> namesIn(const GapFinding& finding) {
   std::vector<std::string> names;
   for (const FoundEffect& effect : finding.identified.effects) names.push_back(effect.name);
   return names;
@@ -56,7 +56,7 @@ using Names = std::vector<std::string>;
 }  // namespace
 
 TEST_CASE("a drive of the model itself shows no discrepancy, and says what it would have seen") {
-  const Finding finding = findAfter({}, 400.0, 3);
+  const GapFinding finding = findAfter({}, 400.0, 3);
   CHECK(finding.verdict == GapVerdict::kNoDiscrepancy);
   CHECK(finding.identified.effects.empty());
   REQUIRE(!finding.search.candidates.empty());
@@ -65,7 +65,7 @@ TEST_CASE("a drive of the model itself shows no discrepancy, and says what it wo
 }
 
 TEST_CASE("a hidden effect of the drive is named, sized within its interval, and closes the gap") {
-  const Finding finding = findAfter({{"motor_deadband.speed", 0.1}}, 400.0, 2);
+  const GapFinding finding = findAfter({{"motor_deadband.speed", 0.1}}, 400.0, 2);
   CHECK(finding.verdict == GapVerdict::kFound);
   REQUIRE(namesIn(finding) == Names{"motor_deadband"});
   const ParameterEstimate& speed = finding.identified.effects[0].parameters.at(0);
@@ -82,14 +82,14 @@ TEST_CASE("an effect of the calibrated set that the model lacks is found, not sw
 }
 
 TEST_CASE("what the INS does is named as the INS's") {
-  const Finding finding = findAfter({{"lever_arm_y.offset", 0.1}}, 400.0, 5);
+  const GapFinding finding = findAfter({{"lever_arm_y.offset", 0.1}}, 400.0, 5);
   CHECK(finding.verdict == GapVerdict::kMeasurement);
   CHECK(namesIn(finding) == Names{"lever_arm_y"});
   CHECK(finding.identified.model.vehicle.effects.icr_offset == 0.0);
 }
 
 TEST_CASE("what no drive can tell apart is ambiguous, with both names") {
-  const Finding finding = findAfter({{"icr_offset.offset", 0.1}}, 400.0, 6);
+  const GapFinding finding = findAfter({{"icr_offset.offset", 0.1}}, 400.0, 6);
   CHECK(finding.verdict == GapVerdict::kAmbiguous);
   REQUIRE(finding.identified.effects.size() == 1);
   Names both = finding.identified.effects[0].group;
@@ -99,7 +99,7 @@ TEST_CASE("what no drive can tell apart is ambiguous, with both names") {
 }
 
 TEST_CASE("a bias of the gyro is found though it moves no pose") {
-  const Finding finding = findAfter({{"gyro_bias.rate", 0.03}}, 400.0, 10);
+  const GapFinding finding = findAfter({{"gyro_bias.rate", 0.03}}, 400.0, 10);
   CHECK(finding.verdict == GapVerdict::kMeasurement);
   CHECK(namesIn(finding) == Names{"gyro_bias"});
 }
@@ -109,8 +109,8 @@ TEST_CASE("a large effect is found in the shortest drive that counts") {
 }
 
 TEST_CASE("a term that the model was sure of and that is another now has moved") {
-  const Finding finding = findOn({{"track_width.widening", 0.4}},
-                                 sureOf({{"track_width.widening", 0.2}}, 0.004), 400.0, 12);
+  const GapFinding finding = findOn({{"track_width.widening", 0.4}},
+                                    sureOf({{"track_width.widening", 0.2}}, 0.004), 400.0, 12);
   CHECK(finding.verdict == GapVerdict::kFound);
   CHECK(namesIn(finding).empty());
   REQUIRE(!finding.identified.calibrated.empty());
@@ -125,7 +125,7 @@ TEST_CASE("terms that the model is sure of do not give way to what is new") {
   const Values known{{"yaw_inertia.lag", 0.05}, {"body_inertia.lag", 0.05}};
   Values hidden = known;
   hidden.emplace_back("actuator_lag.lag", 0.15);
-  const Finding finding = findOn(hidden, sureOf(known, 0.002), 400.0, 13);
+  const GapFinding finding = findOn(hidden, sureOf(known, 0.002), 400.0, 13);
   CHECK(namesIn(finding) == Names{"actuator_lag"});
   for (const ParameterEstimate& estimate : finding.identified.calibrated) CHECK(!estimate.moved);
 }
@@ -158,10 +158,10 @@ TEST_CASE("two hidden effects are both named") {
 }
 
 TEST_CASE("effects that are both found do not stand in each other's place") {
-  const Finding finding = findAfter({{"speed_saturation.inverse_limit", 1.3},
-                                     {"turn_power_limit.inverse_limit", 1.5},
-                                     {"turn_speed_loss.loss", 0.15}},
-                                    500.0, 7);
+  const GapFinding finding = findAfter({{"speed_saturation.inverse_limit", 1.3},
+                                        {"turn_power_limit.inverse_limit", 1.5},
+                                        {"turn_speed_loss.loss", 0.15}},
+                                       500.0, 7);
   const Names names = namesIn(finding);
   REQUIRE(names.size() > 1);
   for (const FoundEffect& effect : finding.identified.effects)
@@ -172,18 +172,18 @@ TEST_CASE("effects that are both found do not stand in each other's place") {
 }
 
 TEST_CASE("a drive of two minutes is too short to tell chance from cause") {
-  const Finding finding = findAfter({{"motor_deadband.speed", 0.1}}, 120.0, 8);
+  const GapFinding finding = findAfter({{"motor_deadband.speed", 0.1}}, 120.0, 8);
   CHECK(finding.verdict == GapVerdict::kCannotTell);
   CHECK(finding.reason.find("drive at least 200 s") != std::string::npos);
 }
 
 TEST_CASE(
     "the order of work that may run at the same time does not change a bit of what is found") {
-  const Finding one = findAfter({{"yaw_pull.pull", 0.06}}, 300.0, 9);
+  const GapFinding one = findAfter({{"yaw_pull.pull", 0.06}}, 300.0, 9);
   const auto backwards = [](size_t count, const std::function<void(size_t)>& body) {
     while (count > 0) body(--count);
   };
-  const Finding other = findAfter({{"yaw_pull.pull", 0.06}}, 300.0, 9, backwards);
+  const GapFinding other = findAfter({{"yaw_pull.pull", 0.06}}, 300.0, 9, backwards);
   REQUIRE(namesIn(one) == namesIn(other));
   REQUIRE(!one.identified.effects.empty());
   for (size_t i = 0; i < one.identified.effects[0].parameters.size(); ++i) {
@@ -199,7 +199,7 @@ TEST_CASE("a limit that is given higher than the drive goes, and is lower, is wh
   ModelDocument model = syntheticVehicle();
   model.vehicle.effects.speed_saturation = 1.0 / 1.6;
   for (const uint64_t seed : {11U, 12U}) {
-    const Finding finding =
+    const GapFinding finding =
         findOn({{"speed_saturation.inverse_limit", 1.0 / 0.7}}, model, 400.0, seed);
     CHECK(finding.verdict == GapVerdict::kFound);
     CHECK(namesIn(finding).empty());
@@ -219,7 +219,7 @@ TEST_CASE("a term that the drive does not feel stays as it is and has no interva
   ModelDocument model = syntheticVehicle();
   model.vehicle.effects.speed_saturation = 1.0 / 3.0;
   model.vehicle.effects.grip_limit = 1.0 / 2.0;
-  const Finding finding = findOn({}, model, 400.0, 14);
+  const GapFinding finding = findOn({}, model, 400.0, 14);
   CHECK(finding.verdict == GapVerdict::kNoDiscrepancy);
   int terms = 0;
   for (const ParameterEstimate& estimate : finding.identified.calibrated) {

@@ -21,7 +21,7 @@ using samples::vehicleWith;
 
 namespace {
 
-Finding findOn(const ModelDocument& model, const Drive& drive, bool calibrate = false) {
+GapFinding findOn(const ModelDocument& model, const Drive& drive, bool calibrate = false) {
   GapTask task;
   task.model = model;
   task.train = {drive};
@@ -38,8 +38,8 @@ constexpr double kTurns =
     0.03;  // [s] more or less what the ground's noise is, and well beyond chance
 
 /// A model that was calibrated on a drive of that vehicle.
-const Finding& calibrated() {
-  static const Finding finding = findOn(syntheticVehicle(), turningDrive({}, kTurns, 1), true);
+const GapFinding& calibrated() {
+  static const GapFinding finding = findOn(syntheticVehicle(), turningDrive({}, kTurns, 1), true);
   return finding;
 }
 
@@ -62,7 +62,7 @@ TEST_CASE("what calibration leaves without a name is in the new model as its res
 }
 
 TEST_CASE("what calibration explains leaves an empty rest, and later drives no discrepancy") {
-  const Finding first = findOn(syntheticVehicle(), turningDrive({}, 0.0, 1), true);
+  const GapFinding first = findOn(syntheticVehicle(), turningDrive({}, 0.0, 1), true);
   REQUIRE(first.identified.model.rest);
   CHECK(first.identified.model.rest->empty());
   CHECK(findOn(first.identified.model, turningDrive({}, 0.0, 2)).verdict ==
@@ -72,7 +72,7 @@ TEST_CASE("what calibration explains leaves an empty rest, and later drives no d
 TEST_CASE("a vehicle that did not change has nothing new, and its model keeps its rest") {
   const ModelDocument& model = calibrated().identified.model;
   for (uint64_t seed = 2; seed <= 4; ++seed) {
-    const Finding again = findOn(model, turningDrive({}, kTurns, seed));
+    const GapFinding again = findOn(model, turningDrive({}, kTurns, seed));
     CHECK(again.verdict == GapVerdict::kNothingNew);
     CHECK(exitStatus(again.verdict) == 0);
     CHECK(again.adequacy.unexplained.empty());
@@ -83,8 +83,8 @@ TEST_CASE("a vehicle that did not change has nothing new, and its model keeps it
 }
 
 TEST_CASE("a new effect is named beside a known rest, and nothing else is") {
-  const Finding deadband = findOn(calibrated().identified.model,
-                                  turningDrive({{"motor_deadband.speed", 0.1}}, kTurns, 8));
+  const GapFinding deadband = findOn(calibrated().identified.model,
+                                     turningDrive({{"motor_deadband.speed", 0.1}}, kTurns, 8));
   CHECK(deadband.verdict == GapVerdict::kFound);
   REQUIRE(deadband.identified.effects.size() == 1);
   CHECK(deadband.identified.effects[0].name == "motor_deadband");
@@ -94,7 +94,7 @@ TEST_CASE("a new effect is named beside a known rest, and nothing else is") {
 TEST_CASE("a number of the model that is another one now is told beside a known rest") {
   const ModelDocument& model = calibrated().identified.model;
   const double delay = 0.1 + model.vehicle.delay;
-  const Finding later = findOn(model, turningDrive({{"delay", delay}}, kTurns, 9));
+  const GapFinding later = findOn(model, turningDrive({{"delay", delay}}, kTurns, 9));
   CHECK(exitStatus(later.verdict) != 0);
   std::vector<std::string> told;
   for (const FoundEffect& effect : later.identified.effects) told.push_back(effect.name);
@@ -115,8 +115,8 @@ TEST_CASE("scores and sizes scatter by what a known rest varies, in its channel 
   state.model.rest = {{"yaw rate", kAllConditions, 0.5, 0.01}};
   const Eigen::VectorXd variation = restVariation(rig.fitter, state);
   for (size_t row = 0; row < rig.data.all().size(); ++row) {
-    const Channel channel = rig.data.all()[row].channel;
-    const bool turns = channel == Channel::kYawRate || channel == Channel::kHeading;
+    const ObservedRate channel = rig.data.all()[row].channel;
+    const bool turns = channel == ObservedRate::kYawRate || channel == ObservedRate::kHeading;
     REQUIRE((variation[static_cast<Eigen::Index>(row)] > 0.0) == turns);
   }
   const Eigen::MatrixXd varied = parameterCovariance(rig.fitter, state);
@@ -128,7 +128,7 @@ TEST_CASE("scores and sizes scatter by what a known rest varies, in its channel 
 TEST_CASE("what is new and has no name is not taken for the known rest, and is in the next one") {
   const ModelDocument& model = calibrated().identified.model;
   // By measurement: half of it is found in this noise, too.
-  const Finding slides = findOn(model, turningDrive({}, kTurns, 3, 0.02));
+  const GapFinding slides = findOn(model, turningDrive({}, kTurns, 3, 0.02));
   CHECK(slides.verdict == GapVerdict::kNotInCatalogue);
   REQUIRE_FALSE(slides.adequacy.unexplained.empty());
   for (const Unexplained& one : slides.adequacy.unexplained) CHECK(one.channel == "lateral");
@@ -139,7 +139,7 @@ TEST_CASE("what is new and has no name is not taken for the known rest, and is i
 }
 
 TEST_CASE("who calibrates anew knows of no rest") {
-  const Finding again = findOn(calibrated().identified.model, turningDrive({}, kTurns, 2), true);
+  const GapFinding again = findOn(calibrated().identified.model, turningDrive({}, kTurns, 2), true);
   CHECK_FALSE(again.before.rest);
   CHECK(exitStatus(again.verdict) != 0);
   CHECK_FALSE(again.adequacy.unexplained.empty());
@@ -154,7 +154,7 @@ TEST_CASE("a rest of what nothing tests is refused, in one line that names it") 
   CHECK(conditions.col(0).norm() > 0.0);
   CHECK(conditions.col(1).norm() == 0.0);
   for (size_t row = 0; row < rig.data.all().size(); ++row)
-    if (rig.data.all()[row].channel != Channel::kYawRate)
+    if (rig.data.all()[row].channel != ObservedRate::kYawRate)
       REQUIRE(conditions(static_cast<Eigen::Index>(row), 0) == 0.0);
   const Fitter fitter(rig.data, serialFor, conditions);
   const std::vector<FreeParameter> sizes = restParameters(fitter, model);

@@ -31,7 +31,7 @@ double studentBeyond(double t, int freedom) {
 /// Rows of one channel after the other; along and across in turns, as Observations makes them.
 std::vector<Observation> rowsOf(size_t count) {
   std::vector<Observation> rows(count);
-  for (size_t i = 0; i < count; ++i) rows[i].channel = static_cast<Channel>(i % kChannels);
+  for (size_t i = 0; i < count; ++i) rows[i].channel = static_cast<ObservedRate>(i % kChannels);
   return rows;
 }
 
@@ -178,7 +178,7 @@ TEST_CASE("the noise that residuals were drawn from is estimated, each channel b
   const Drawn drawn(kKnown);
   const Noise found = estimateNoise(drawn.rows, drawn.residuals, drawn.activity, drawn.mask);
   for (size_t c = 0; c < kChannels; ++c) {
-    INFO(channelName(static_cast<Channel>(c)));
+    INFO(channelName(static_cast<ObservedRate>(c)));
     // At the activity of the middle both parts are told together, and better than either.
     CHECK(std::hypot(found[c].still, found[c].share) ==
           Approx(std::hypot(kKnown[c].still, kKnown[c].share)).epsilon(0.06));

@@ -98,7 +98,7 @@ TEST_CASE("rows of the gyro are means over quarters of a second") {
   const Observations data(drives, {});
   REQUIRE(data.all().size() == 40);
   for (const Observation& row : data.all()) {
-    CHECK(row.channel == Channel::kYawRate);
+    CHECK(row.channel == ObservedRate::kYawRate);
     CHECK(row.end - row.begin == Approx(0.25));
     CHECK(row.measured == Approx(0.05 * (row.begin + row.end)));  // of the middle
   }
@@ -111,11 +111,11 @@ TEST_CASE("rows of poses take turns, last within their limits and together lead 
   double last = 0.0;
   for (size_t i = 0; i < rig.data.all().size(); ++i) {
     const Observation& row = rig.data.all()[i];
-    if (row.channel != Channel::kHeading) continue;
+    if (row.channel != ObservedRate::kHeading) continue;
     CHECK(row.end - row.begin >= 0.3);
     CHECK(row.end - row.begin <= 1.2);
-    REQUIRE(rig.data.all().at(i + 2).channel == Channel::kAcross);
-    CHECK(rig.data.all()[i + 1].channel == Channel::kAlong);
+    REQUIRE(rig.data.all().at(i + 2).channel == ObservedRate::kAcross);
+    CHECK(rig.data.all()[i + 1].channel == ObservedRate::kAlong);
     CHECK(rig.data.all()[i + 2].begin == row.begin);
     if (std::isnan(first)) first = row.begin;
     CHECK((last == 0.0 || row.begin == last));

@@ -106,7 +106,7 @@ TEST_CASE("what no effect explains is named by its channel and by what it depend
   REQUIRE(squared != variables.end());
   Eigen::VectorXd residuals = blockNoise(rig.data, 2);
   for (size_t i = 0; i < rig.data.all().size(); ++i)
-    if (rig.data.all()[i].channel == Channel::kAcross)
+    if (rig.data.all()[i].channel == ObservedRate::kAcross)
       residuals[static_cast<Eigen::Index>(i)] +=
           4.0 * squared->values[static_cast<Eigen::Index>(i)];
   const Adequacy adequacy = testAdequacy(rig.fitter, rig.stateOf(residuals, 1.0), 0.01, 2);

@@ -28,7 +28,7 @@ Eigen::VectorXd wavedNoise(const Rig& rig, uint64_t seed, double size) {
   Eigen::VectorXd residuals = blockNoise(rig.data, seed, 0.1);
   for (size_t i = 0; i < rig.data.all().size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    if (rig.data.all()[i].channel == Channel::kAlong)
+    if (rig.data.all()[i].channel == ObservedRate::kAlong)
       residuals[at] += size * std::cos(17.0 * pitch[at]);
   }
   return residuals;
@@ -43,7 +43,7 @@ TEST_CASE("a wave over a condition, which no variable follows, is found and name
       smoothRests(rig.fitter, state, inputsOf(rig.data, state.model), {}, 0.005, 3);
   REQUIRE(rests.size() == 3);
   for (const SmoothRest& rest : rests) {
-    const bool along = rest.channels.front() == Channel::kAlong;
+    const bool along = rest.channels.front() == ObservedRate::kAlong;
     CHECK((rest.p_value <= 0.005) == along);
     REQUIRE(rest.variable == (along ? "pitch" : ""));
   }
@@ -52,7 +52,7 @@ TEST_CASE("a wave over a condition, which no variable follows, is found and name
   const Eigen::VectorXd wave = wavedNoise(rig, 3, 1.0) - wavedNoise(rig, 3, 0.0);
   CHECK(fitted.dot(wave) > 0.7 * fitted.norm() * wave.norm());
   for (size_t i = 0; i < rig.data.all().size(); ++i)
-    if (rig.data.all()[i].channel != Channel::kAlong)
+    if (rig.data.all()[i].channel != ObservedRate::kAlong)
       REQUIRE(fitted[static_cast<Eigen::Index>(i)] == 0.0);
 }
 
@@ -62,7 +62,7 @@ TEST_CASE("a condition that is constant or was not measured is never named") {
   std::vector<Variable> inputs = inputsOf(rig.data, syntheticVehicle());
   // What is left is proportional to the speed: functions of a constant are that, too.
   for (size_t i = 0; i < rig.data.all().size(); ++i)
-    if (rig.data.all()[i].channel == Channel::kAlong)
+    if (rig.data.all()[i].channel == ObservedRate::kAlong)
       residuals[static_cast<Eigen::Index>(i)] += inputs[0].values[static_cast<Eigen::Index>(i)];
   for (Variable& input : inputs)
     if (input.name == "voltage drop" || input.name == "pitch" || input.name == "roll")

@@ -22,8 +22,8 @@ using samples::turningDrive;
 namespace {
 
 /// What find says of a drive, with the errors on another one.
-Finding findWithTest(const ModelDocument& model, const Drive& train, const Drive& test,
-                     bool named_only = false) {
+GapFinding findWithTest(const ModelDocument& model, const Drive& train, const Drive& test,
+                        bool named_only = false) {
   GapTask task;
   task.model = model;
   task.train = {train};
@@ -45,7 +45,7 @@ double headingError(const ModelDocument& model, const Drive& drive) {
 TEST_CASE("an effect without a name becomes a term that closes most of the gap on another drive") {
   constexpr double kTurns = 0.1;  // [s]
   const Drive test = turningDrive({}, kTurns, 22);
-  const Finding found = findWithTest(syntheticVehicle(), turningDrive({}, kTurns, 21), test);
+  const GapFinding found = findWithTest(syntheticVehicle(), turningDrive({}, kTurns, 21), test);
   REQUIRE_FALSE(found.identified.unnamed.empty());
   // What has no name is told as such, whatever plain cause was found beside it.
   CHECK((found.verdict == GapVerdict::kNotInCatalogue || found.verdict == GapVerdict::kPartial));
@@ -74,8 +74,8 @@ TEST_CASE("an effect without a name becomes a term that closes most of the gap o
 TEST_CASE("friction that brakes a turn faster than it winds up gets a term beside the names") {
   const Drive train = frictionDrive(0.5, 0.02, 31);
   const Drive test = frictionDrive(0.5, 0.02, 32);
-  const Finding named = findWithTest(syntheticVehicle(), train, test, true);
-  const Finding found = findWithTest(syntheticVehicle(), train, test);
+  const GapFinding named = findWithTest(syntheticVehicle(), train, test, true);
+  const GapFinding found = findWithTest(syntheticVehicle(), train, test);
   REQUIRE_FALSE(found.identified.unnamed.empty());
   CHECK(named.identified.unnamed.empty());
   CHECK(named.identified.model.vehicle.unnamed.empty());
@@ -88,7 +88,7 @@ TEST_CASE("friction that brakes a turn faster than it winds up gets a term besid
 
 TEST_CASE("a vehicle that is as its model says gets no term") {
   for (uint64_t seed = 41; seed <= 46; ++seed) {
-    const Finding found =
+    const GapFinding found =
         findWithTest(syntheticVehicle(), turningDrive({}, 0.0, seed), turningDrive({}, 0.0, 1));
     CHECK(found.identified.unnamed.empty());
     CHECK(found.identified.model.vehicle.unnamed.empty());
@@ -97,24 +97,24 @@ TEST_CASE("a vehicle that is as its model says gets no term") {
 
 TEST_CASE("what a term of the model says is nothing new on the next drive") {
   constexpr double kTurns = 0.1;  // [s]
-  const Finding first =
+  const GapFinding first =
       findWithTest(syntheticVehicle(), turningDrive({}, kTurns, 21), turningDrive({}, kTurns, 22));
   const ModelDocument& model = first.identified.model;
   REQUIRE(model.vehicle.unnamed.size() == 1);
   for (uint64_t seed = 23; seed <= 25; ++seed) {
-    const Finding again =
+    const GapFinding again =
         findWithTest(model, turningDrive({}, kTurns, seed), turningDrive({}, kTurns, seed + 100));
     CHECK(exitStatus(again.verdict) == 0);
     CHECK(again.identified.unnamed.empty());
     CHECK(again.identified.moved_terms.empty());
     CHECK(again.identified.model.vehicle.unnamed.size() == 1);
   }
-  const Finding moved =
+  const GapFinding moved =
       findWithTest(model, turningDrive({}, 4.0 * kTurns, 23), turningDrive({}, 4.0 * kTurns, 24));
   CHECK(exitStatus(moved.verdict) != 0);
   CHECK(moved.identified.moved_terms == std::vector<std::string>{"unnamed_1"});
   // What the term stood for is gone.
-  const Finding gone = findWithTest(model, turningDrive({}, 0.0, 23), turningDrive({}, 0.0, 24));
+  const GapFinding gone = findWithTest(model, turningDrive({}, 0.0, 23), turningDrive({}, 0.0, 24));
   CHECK(exitStatus(gone.verdict) != 0);
   CHECK(gone.identified.moved_terms == std::vector<std::string>{"unnamed_1"});
 }

@@ -61,11 +61,11 @@ TEST_CASE("executions that are shown are those of the headline's errors, by mode
   task.model = syntheticVehicle();
   task.train.push_back(syntheticDrive(syntheticVehicle(), 240.0, 3));
   const Progress silent = [](const std::string&) {};
-  const Finding nested = findGap(task, silent);
+  const GapFinding nested = findGap(task, silent);
   CHECK(nested.shown.overlays.size() == 9);
   CHECK(nested.shown.places.size() == nested.gap->after.executions);
   task.test.push_back(syntheticDrive(syntheticVehicle(), 60.0, 4));
-  const Finding tested = findGap(task, silent);
+  const GapFinding tested = findGap(task, silent);
   CHECK(tested.shown.places.size() == tested.gap->after.executions);
   for (const PlaceError& place : tested.shown.places) CHECK(place.drive == 1);
 }

@@ -17,8 +17,8 @@ constexpr double kAlpha = 0.01;
 constexpr double kLeastGain = 0.01;
 
 /// A finding without effects, whose model errs as much as before times a factor.
-Finding findingWith(const std::vector<ParameterEstimate>& calibrated, double error_after) {
-  Finding finding;
+GapFinding findingWith(const std::vector<ParameterEstimate>& calibrated, double error_after) {
+  GapFinding finding;
   finding.before = syntheticVehicle();
   for (const ParameterEstimate& estimate : calibrated)
     *findParameter(finding.before, estimate.parameter) = estimate.before;
@@ -43,7 +43,7 @@ ParameterEstimate moved(const std::string& parameter, double before, double now)
   return estimate;
 }
 
-GapVerdict judged(Finding finding) {
+GapVerdict judged(GapFinding finding) {
   judge(finding, kAlpha, kLeastGain);
   return finding.verdict;
 }
@@ -57,7 +57,7 @@ TEST_CASE("a term of the vehicle that moved is a finding if the end error falls 
 }
 
 TEST_CASE("a term that moved is a finding if the end error would fall were the new model right") {
-  Finding finding = findingWith({moved("track_width.widening", 0.2, 0.4)}, 1.0);
+  GapFinding finding = findingWith({moved("track_width.widening", 0.2, 0.4)}, 1.0);
   finding.gap->apart.yaw.median = 0.1;  // of an error of 1: it would be 1.005
   CHECK(judged(finding) == GapVerdict::kNoDiscrepancy);
   finding.gap->apart.yaw.median = 0.2;
@@ -76,7 +76,7 @@ TEST_CASE("a term of the INS that moved counts even where executions end the sam
 }
 
 TEST_CASE("what was seen but has no plausible size is not nothing") {
-  Finding finding = findingWith({}, 1.0);
+  GapFinding finding = findingWith({}, 1.0);
   finding.search.at_bound = {"battery_sag"};
   judge(finding, kAlpha, kLeastGain);
   CHECK(finding.verdict == GapVerdict::kCannotTell);
@@ -93,8 +93,8 @@ FoundEffect foundEffect(const std::string& name) {
 }
 
 /// A finding with these effects, adequate or not.
-Finding findingOf(const std::vector<FoundEffect>& effects, double adequacy = 0.5) {
-  Finding finding = findingWith({}, 0.5);
+GapFinding findingOf(const std::vector<FoundEffect>& effects, double adequacy = 0.5) {
+  GapFinding finding = findingWith({}, 0.5);
   finding.identified.effects = effects;
   finding.adequacy.p_value = adequacy;
   return finding;
@@ -109,7 +109,7 @@ TEST_CASE("nothing found is no discrepancy only if nothing is left over") {
 }
 
 TEST_CASE("with a known rest nothing found is nothing new, and what is left over is new") {
-  Finding finding = findingOf({});
+  GapFinding finding = findingOf({});
   finding.before.rest = {{"along", "v", 0.1, 0.01}};
   CHECK(judged(finding) == GapVerdict::kNothingNew);
   finding.adequacy.p_value = 0.001;
@@ -120,12 +120,12 @@ TEST_CASE("with a known rest nothing found is nothing new, and what is left over
 }
 
 TEST_CASE("a search that was cut short is partial with what it has, and cannot tell without") {
-  Finding finding = findingOf({foundEffect("slip_ratio")});
+  GapFinding finding = findingOf({foundEffect("slip_ratio")});
   finding.search.cut_short = true;
   CHECK(judged(finding) == GapVerdict::kPartial);
   finding.identified.effects.clear();
   CHECK(judged(finding) == GapVerdict::kCannotTell);
-  Finding width = findingWith({moved("track_width.widening", 0.2, 0.4)}, 0.8);
+  GapFinding width = findingWith({moved("track_width.widening", 0.2, 0.4)}, 0.8);
   width.search.cut_short = true;
   CHECK(judged(width) == GapVerdict::kPartial);
 }
@@ -133,7 +133,7 @@ TEST_CASE("a search that was cut short is partial with what it has, and cannot t
 TEST_CASE("effects that leave something over are part of the answer") {
   CHECK(judged(findingOf({foundEffect("slip_ratio")}, 0.001)) == GapVerdict::kPartial);
   CHECK(judged(findingOf({foundEffect("slip_ratio")})) == GapVerdict::kFound);
-  Finding width = findingWith({moved("track_width.widening", 0.2, 0.4)}, 0.8);
+  GapFinding width = findingWith({moved("track_width.widening", 0.2, 0.4)}, 0.8);
   width.adequacy.p_value = 0.001;
   CHECK(judged(width) == GapVerdict::kPartial);
 }
@@ -145,7 +145,7 @@ TEST_CASE(
         GapVerdict::kMeasurement);
   CHECK(judged(findingOf({foundEffect("gyro_bias"), foundEffect("slip_ratio")})) ==
         GapVerdict::kFound);
-  Finding with_width = findingWith({moved("track_width.widening", 0.2, 0.4)}, 0.8);
+  GapFinding with_width = findingWith({moved("track_width.widening", 0.2, 0.4)}, 0.8);
   with_width.identified.effects = {foundEffect("gyro_bias")};
   CHECK(judged(with_width) == GapVerdict::kFound);
 }
@@ -176,7 +176,7 @@ TEST_CASE("what a person accepted and no test shows makes no verdict") {
 }
 
 TEST_CASE("a size at the end of its range tells nothing, and says of which parameter") {
-  Finding finding = findingOf({foundEffect("slip_ratio")});
+  GapFinding finding = findingOf({foundEffect("slip_ratio")});
   const double most = freeParameter(finding.before, "slip_ratio.slip").max;
   ParameterEstimate slip;
   slip.parameter = "slip_ratio.slip";

@@ -37,10 +37,10 @@ Truth truthAt(int64_t utime) {
 }
 
 /// What a device measures that stands at kArm, turned by kMountedYaw.
-sim::InsSample sampleAt(int64_t utime) {
+sim::InsMeasurement sampleAt(int64_t utime) {
   const Truth truth = truthAt(utime);
   const Eigen::AngleAxisd R_map_body(truth.yaw, Eigen::Vector3d::UnitZ());
-  sim::InsSample sample;
+  sim::InsMeasurement sample;
   sample.utime = utime;
   sample.p_map = truth.p_map + R_map_body * kArm;
   sample.yaw = truth.yaw + kMountedYaw;

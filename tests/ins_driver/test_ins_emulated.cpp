@@ -17,9 +17,9 @@ constexpr int64_t kPeriodUs = 20'000;
 constexpr int64_t kLatencyUs = 20'000;
 
 /// A left-hand circle on a slope, as the truth at a time.
-sim::InsSample truthAt(int64_t utime) {
+sim::InsMeasurement truthAt(int64_t utime) {
   const double t = static_cast<double>(utime) * 1e-6;
-  sim::InsSample truth;
+  sim::InsMeasurement truth;
   truth.utime = utime;
   truth.rate_body.z() = 0.4;
   truth.yaw = 3.0 + 0.4 * t;
@@ -54,7 +54,7 @@ struct Worst {
 };
 
 void compare(const InsEstimate& ins, Worst& worst) {
-  const sim::InsSample truth = truthAt(ins.utime);
+  const sim::InsMeasurement truth = truthAt(ins.utime);
   ++worst.messages;
   if (!(ins.status & kNoPosition))
     worst.position = std::max(worst.position, (ins.p_map_body - truth.p_map).norm());
@@ -111,8 +111,8 @@ TEST_CASE("a bad line costs sentences but never makes a wrong pose") {
   CAPTURE(worst.position, worst.yaw, worst.tilt, worst.velocity);
   CHECK(worst.messages > 5500);
   CHECK(worst.position < 2e-3);  // carried straight on for 60 ms while it turns
-  CHECK(worst.yaw < 2e-5);   // one carried on by its rate is a little coarser
-  CHECK(worst.tilt < 7e-3);  // pitch and roll are held for 60 ms at most, here at 0.1 rad/s
+  CHECK(worst.yaw < 2e-5);       // one carried on by its rate is a little coarser
+  CHECK(worst.tilt < 7e-3);      // pitch and roll are held for 60 ms at most, here at 0.1 rad/s
   CHECK(worst.velocity < 1e-3);
   CHECK(ins.counts().refused.total() > 1000);
 }

@@ -81,7 +81,7 @@ class ScanDrive {
     const sim::Bearing bearing = world_->bearing(pose, {0.5, 0.5, 0.3});
     const sim::BodyPose body = sim::poseOnGround(pose, bearing.height, bearing.gradient);
     if (ins_.due(utime_)) ins_.measure(utime_, {body, pose.yaw, {}, {}});
-    for (const sim::InsSample& sample : ins_.takeSamples(utime_))
+    for (const sim::InsMeasurement& sample : ins_.takeSamples(utime_))
       track_.push(sample.utime,
                   isometryFrom(sample.p_map, {sample.yaw, sample.pitch, sample.roll}));
     laser_.advanceTo(utime_, *world_, body);

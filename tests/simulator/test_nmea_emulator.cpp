@@ -42,8 +42,8 @@ double degreesOf(const std::string& text, size_t digits) {
   return std::stod(text.substr(0, digits)) + std::stod(text.substr(digits)) / 60.0;
 }
 
-InsSample movingSample() {
-  InsSample sample;
+InsMeasurement movingSample() {
+  InsMeasurement sample;
   sample.utime = 3723004000;
   sample.p_map = {12.3456, -7.8912, 0.5};
   sample.yaw = 0.3;
@@ -56,7 +56,7 @@ InsSample movingSample() {
 
 /// Sentences of one measurement by address.
 std::map<std::string, std::vector<std::string>> sentencesOf(NmeaInsEmulator& ins,
-                                                            const InsSample& sample) {
+                                                            const InsMeasurement& sample) {
   ins.add(sample);
   std::map<std::string, std::vector<std::string>> sentences;
   for (const std::string& line : linesOf(ins.transmit(sample.utime))) {
@@ -88,7 +88,7 @@ TEST_CASE("all sentences of a measurement carry it, in this order, with correct 
 TEST_CASE("position, heading, attitude, course and turn are what the sample says") {
   NmeaInsSettings settings;
   NmeaInsEmulator ins(settings, 1);
-  const InsSample sample = movingSample();
+  const InsMeasurement sample = movingSample();
   auto sentences = sentencesOf(ins, sample);
 
   const auto& gga = sentences["$GPGGA"];
@@ -121,7 +121,7 @@ TEST_CASE("position, heading, attitude, course and turn are what the sample says
 TEST_CASE("headings are compass degrees from 0 to below 360 whatever the yaw") {
   NmeaInsEmulator ins({}, 1);
   for (double yaw : {kPi / 2.0, kPi / 2.0 + 1e-9, kPi / 2.0 - 1e-9, -10.0, 20.0, 1e-7}) {
-    InsSample sample = movingSample();
+    InsMeasurement sample = movingSample();
     sample.yaw = yaw;
     const double heading = std::stod(sentencesOf(ins, sample)["$GPHDT"][1]);
     CHECK(heading >= 0.0);

@@ -40,7 +40,7 @@ std::string bytesOfDrive(uint64_t seed, int64_t slice_us) {
   for (int64_t t = 0; t <= 5000000; t += slice_us) {
     robot.setPower(t < 3000000 ? MotorPower{0.9, 0.8} : MotorPower{0.2, 0.9});
     robot.advanceTo(t);
-    for (const InsSample& sample : robot.takeInsSamples()) {
+    for (const InsMeasurement& sample : robot.takeInsSamples()) {
       append(bytes, sample.utime);
       append(bytes, sample.p_map.x());
       append(bytes, sample.yaw);
@@ -146,7 +146,7 @@ TEST_CASE(
   int count = 0;
   for (int64_t t = 1000; t < 60000000; t += 10000) {
     robot.advanceTo(t);
-    for (const InsSample& sample : robot.takeInsSamples()) {
+    for (const InsMeasurement& sample : robot.takeInsSamples()) {
       REQUIRE(sample.utime == expected);
       REQUIRE(t - sample.utime >= settings.ins.latency_us);
       REQUIRE(t - sample.utime < settings.ins.latency_us + 10000);
@@ -172,8 +172,8 @@ TEST_CASE("INS velocity and rates are those of the motion") {
   Eigen::Vector3d v_mean = Eigen::Vector3d::Zero();
   double rate_mean = 0.0, position_speed = 0.0;
   robot.advanceTo(5000000);
-  const std::vector<InsSample> samples = robot.takeInsSamples();
-  for (const InsSample& sample : samples) {
+  const std::vector<InsMeasurement> samples = robot.takeInsSamples();
+  for (const InsMeasurement& sample : samples) {
     v_mean += sample.v_body / static_cast<double>(samples.size());
     rate_mean += sample.rate_body.z() / static_cast<double>(samples.size());
   }

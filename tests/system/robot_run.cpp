@@ -147,7 +147,7 @@ bool RobotRun::until(double seconds, const std::function<bool()>& condition) {
 
 bool RobotRun::arm(double seconds) {
   calls_.push_back(std::make_unique<operators::ArmCall>(
-      bus_, operators::Requester{"test", "a test", "test"}, operators::ArmRequest{}, seconds));
+      bus_, operators::Requester{"test", "a test", "test"}, operators::ArmOptions{}, seconds));
   operators::CallResult result = operators::CallResult::kPending;
   until(seconds + 1.0, [&] {
     result = calls_.back()->step(now());

@@ -166,7 +166,7 @@ size_t placeAmong(const std::vector<Unexplained>& unexplained, const std::string
   return static_cast<size_t>(std::distance(unexplained.begin(), at));
 }
 
-void addCurves(const Observations& data, const AtlasRows& of, Channel channel,
+void addCurves(const Observations& data, const AtlasRows& of, ObservedRate channel,
                const std::vector<size_t>& members, const std::vector<Unexplained>& unexplained,
                std::vector<AtlasCurve>& curves) {
   for (const Variable& variable : of.variables) {
@@ -181,7 +181,7 @@ void addCurves(const Observations& data, const AtlasRows& of, Channel channel,
   }
 }
 
-void addMap(const AtlasRows& of, Channel channel, const std::vector<size_t>& members,
+void addMap(const AtlasRows& of, ObservedRate channel, const std::vector<size_t>& members,
             std::vector<AtlasMap>& maps) {
   const Eigen::VectorXd& v = named(of.variables, "v").values;
   const Eigen::VectorXd& omega = named(of.variables, "yaw rate").values;
@@ -263,9 +263,9 @@ double restsOnVariables(const Fitter& fitter, const FitState& state, double alph
       const double p = familyWise(chance, test.score(at));
       least = std::min(least, p);
       if (p > alpha) continue;
-      rests.push_back(
-          {{channelName(static_cast<Channel>(channel)), variables[v].name, test.score(at), p, ""},
-           directions.col(at)});
+      rests.push_back({{channelName(static_cast<ObservedRate>(channel)), variables[v].name,
+                        test.score(at), p, ""},
+                       directions.col(at)});
     }
   return least;
 }
@@ -284,9 +284,9 @@ double restsOnAll(const Fitter& fitter, const FitState& state, double alpha, uin
     const double p = std::min(1.0, rest.p_value / kSmoothShare);
     least = std::min(least, p);
     const bool told = std::any_of(rests.begin(), rests.end(), [&rest](const Rest& other) {
-      return std::any_of(rest.channels.begin(), rest.channels.end(), [&other](Channel channel) {
-        return other.told.channel == channelName(channel);
-      });
+      return std::any_of(
+          rest.channels.begin(), rest.channels.end(),
+          [&other](ObservedRate channel) { return other.told.channel == channelName(channel); });
     });
     if (p <= alpha && !told)
       rests.push_back({{channelName(rest.channels.front()), rest.variable, rest.score, p, ""},
@@ -327,7 +327,7 @@ ResidualAtlas residualAtlas(const Observations& data, const ModelDocument& befor
       of.variables.push_back(std::move(input));
   ResidualAtlas atlas;
   for (size_t c = 0; c < kChannels; ++c) {
-    const auto channel = static_cast<Channel>(c);
+    const auto channel = static_cast<ObservedRate>(c);
     std::vector<size_t> members;
     for (size_t i = 0; i < data.all().size(); ++i)
       if (data.all()[i].channel == channel) members.push_back(i);

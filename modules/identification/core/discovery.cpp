@@ -173,7 +173,7 @@ bool hasInstrumentChanged(const ParameterEstimate& estimate) {
 /// fall if the new model were right.
 /** Errors scatter more than a small change lets them fall: two models that are apart by d leave an
  * error of e and, of the wrong one, of the root of e^2 + d^2. */
-void dropIrrelevantMoves(Finding& finding, double least_gain) {
+void dropIrrelevantMoves(GapFinding& finding, double least_gain) {
   const Gap& gap = *finding.gap;
   const double least = 1.0 - least_gain;
   const double share = std::sqrt(1.0 / (least * least) - 1.0);
@@ -188,12 +188,12 @@ void dropIrrelevantMoves(Finding& finding, double least_gain) {
   if (!matters) finding.identified.moved_terms.clear();
 }
 
-bool anyMoved(const Finding& finding) {
+bool anyMoved(const GapFinding& finding) {
   return std::any_of(finding.identified.calibrated.begin(), finding.identified.calibrated.end(),
                      [](const ParameterEstimate& estimate) { return estimate.moved; });
 }
 
-GapVerdict verdictWithoutEffects(const Finding& finding, bool adequate) {
+GapVerdict verdictWithoutEffects(const GapFinding& finding, bool adequate) {
   bool vehicle = false;
   for (const ParameterEstimate& estimate : finding.identified.calibrated)
     vehicle = vehicle || (estimate.moved && kindOf(estimate) == EffectKind::kVehicle);
@@ -206,7 +206,8 @@ GapVerdict verdictWithoutEffects(const Finding& finding, bool adequate) {
   return vehicle ? GapVerdict::kFound : GapVerdict::kMeasurement;
 }
 
-GapVerdict verdictOf(const Finding& finding, const std::vector<FoundEffect>& shown, bool adequate) {
+GapVerdict verdictOf(const GapFinding& finding, const std::vector<FoundEffect>& shown,
+                     bool adequate) {
   if (!adequate) return GapVerdict::kPartial;
   if (std::any_of(shown.begin(), shown.end(), isAmbiguous)) return GapVerdict::kAmbiguous;
   const bool measurement = std::all_of(shown.begin(), shown.end(), [](const FoundEffect& effect) {
@@ -222,7 +223,7 @@ GapVerdict verdictOf(const Finding& finding, const std::vector<FoundEffect>& sho
 }
 
 /// A size at the end of what is plausible is no measurement.
-void refuseOnBound(const ParameterEstimate& estimate, Finding& finding) {
+void refuseOnBound(const ParameterEstimate& estimate, GapFinding& finding) {
   if (!runsToBound(finding.identified.model, freeParameter(finding.before, estimate.parameter)))
     return;
   finding.verdict = GapVerdict::kCannotTell;
@@ -306,7 +307,7 @@ std::string tooLittleDriving(const Observations& data) {
          fixed(kLeastBlocks * ObservationSettings{}.block, 0) + " s";
 }
 
-void judge(Finding& finding, double adequacy_alpha, double least_gain) {
+void judge(GapFinding& finding, double adequacy_alpha, double least_gain) {
   std::vector<FoundEffect> shown;
   std::copy_if(finding.identified.effects.begin(), finding.identified.effects.end(),
                std::back_inserter(shown), isShown);
@@ -354,7 +355,7 @@ SearchSettings settingsOf(const GapTask& task) {
   settings.seed = task.seed;
   settings.calibrate = task.calibrate;
   if (task.keep_small) settings.least_gain = 0.0;
-  for (const Decision& decision : task.decisions)
+  for (const EffectDecision& decision : task.decisions)
     (decision.accepted ? settings.accepted : settings.rejected).push_back(decision.effect);
   settings.all_sized = true;
   settings.is_over = task.is_over;
@@ -474,14 +475,14 @@ Noise residualNoise(const Fitter& fitter, const ModelDocument& model) {
 
 }  // namespace
 
-Finding findGap(const GapTask& task, const Progress& say) {
+GapFinding findGap(const GapTask& task, const Progress& say) {
   const Observations data(task.train, {});
   ModelDocument before = task.model;
   // What is calibrated is as if new: nothing of it is known.
   if (task.calibrate) before.rest.reset();
   const Fitter fitter(data, task.parallel, restConditions(data, before));
   const int blocks = data.measuredBlocks();
-  Finding finding;
+  GapFinding finding;
   finding.source = {task.seed, task.log_notes, task.decisions, static_cast<size_t>(blocks),
                     data.blockLength()};
   finding.before = before;

@@ -62,7 +62,7 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
 /** Adequate is a p-value above `adequacy_alpha`. Terms of the model that moved count if the end
  * error falls by more than the share `least_gain`. A search that was cut short is kPartial with
  * what it has found, and kCannotTell if that is nothing. */
-void judge(Finding& finding, double adequacy_alpha, double least_gain);
+void judge(GapFinding& finding, double adequacy_alpha, double least_gain);
 
 /// What `tread-gap find` is asked.
 struct GapTask {
@@ -78,7 +78,7 @@ struct GapTask {
   /// person has rejected an effect, which would come back without its name.
   bool named_only = false;
   /// Accepted effects are in the model from the start and stay; rejected ones are never considered.
-  std::vector<Decision> decisions;
+  std::vector<EffectDecision> decisions;
   uint64_t seed = 1;
   ParallelFor parallel = serialFor;  ///< does not change a bit of the result
   TimeLimit is_over = neverOver;     ///< then the best so far is the result
@@ -90,6 +90,6 @@ struct GapTask {
  * alternate blocks of the training drives, each half predicted with what the other half found.
  * Deterministic for a seed. Throws std::invalid_argument for an accepted effect that the drives
  * cannot size. */
-Finding findGap(const GapTask& task, const Progress& say);
+GapFinding findGap(const GapTask& task, const Progress& say);
 
 }  // namespace tread::gap

@@ -104,7 +104,7 @@ double scaleOf(const ChannelNoise& noise, double activity) {
 
 std::vector<double> spreadOf(const Overlay& overlay, const Noise& noise) {
   const double dt = overlay.duration / static_cast<double>(overlay.after.size() - 1);
-  const auto of = [&noise](Channel channel) { return noise[static_cast<size_t>(channel)]; };
+  const auto of = [&noise](ObservedRate channel) { return noise[static_cast<size_t>(channel)]; };
   double heading = 0.0;
   double along = 0.0;
   double across = 0.0;
@@ -112,9 +112,9 @@ std::vector<double> spreadOf(const Overlay& overlay, const Noise& noise) {
   for (size_t i = 1; i < overlay.after.size(); ++i) {
     const Pose2 moved = between(overlay.after[i - 1], overlay.after[i]);
     const double way = moved.position().norm();
-    along += dt * scaleOf(of(Channel::kAlong), way / dt);
-    across += dt * scaleOf(of(Channel::kAcross), way / dt) + heading * way;
-    heading += dt * scaleOf(of(Channel::kHeading), std::abs(moved.yaw) / dt);
+    along += dt * scaleOf(of(ObservedRate::kAlong), way / dt);
+    across += dt * scaleOf(of(ObservedRate::kAcross), way / dt) + heading * way;
+    heading += dt * scaleOf(of(ObservedRate::kHeading), std::abs(moved.yaw) / dt);
     spread.push_back(std::hypot(along, across));
   }
   return spread;

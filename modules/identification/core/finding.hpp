@@ -283,9 +283,9 @@ struct ShownExecutions {
 struct FindingSource {
   uint64_t seed = 0;
   std::vector<LogNote> log_notes;
-  std::vector<Decision> decisions;  ///< of people, in the order given
-  size_t blocks = 0;                ///< of measured driving
-  double block_length = 0.0;        ///< [s]
+  std::vector<EffectDecision> decisions;  ///< of people, in the order given
+  size_t blocks = 0;                      ///< of measured driving
+  double block_length = 0.0;              ///< [s]
 };
 
 /// What the model is now: each number with its interval.
@@ -300,7 +300,7 @@ struct IdentifiedModel {
 };
 
 /// Everything that `tread-gap find` says: what each stage returned, and the verdict.
-struct Finding {
+struct GapFinding {
   GapVerdict verdict = GapVerdict::kCannotTell;
   std::string reason;  ///< of CANNOT_TELL; empty else
   FindingSource source;

@@ -97,9 +97,9 @@ Eigen::VectorXd activityOf(const std::vector<Observation>& data, const Eigen::Ve
   for (size_t i = 0; i < data.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     // Rows along and across follow one another, see Observations.
-    if (data[i].channel == Channel::kAlong)
+    if (data[i].channel == ObservedRate::kAlong)
       activity[at] = std::hypot(predicted[at], predicted[at + 1]);
-    else if (data[i].channel == Channel::kAcross)
+    else if (data[i].channel == ObservedRate::kAcross)
       activity[at] = std::hypot(predicted[at - 1], predicted[at]);
     else
       activity[at] = std::abs(predicted[at]);

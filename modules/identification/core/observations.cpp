@@ -192,13 +192,13 @@ TermInputs meanInputs(const std::vector<TermSample>& samples, double from, doubl
 
 }  // namespace
 
-const char* channelName(Channel channel) {
+const char* channelName(ObservedRate channel) {
   static constexpr const char* kNames[kChannels] = {"yaw rate", "heading rate", "along", "lateral"};
   return kNames[static_cast<size_t>(channel)];
 }
 
-const char* channelUnit(Channel channel) {
-  return channel == Channel::kYawRate || channel == Channel::kHeading ? "rad/s" : "m/s";
+const char* channelUnit(ObservedRate channel) {
+  return channel == ObservedRate::kYawRate || channel == ObservedRate::kHeading ? "rad/s" : "m/s";
 }
 
 Observations::Observations(const std::vector<Drive>& drives, const ObservationSettings& settings)
@@ -296,7 +296,7 @@ void Observations::addGyro(const Segment& segment, const Observation& like) {
     // Samples stand for the time around them.
     const double half = (last - from) / (2.0 * static_cast<double>(count - 1));
     Observation row = like;
-    row.channel = Channel::kYawRate;
+    row.channel = ObservedRate::kYawRate;
     row.begin = from - half;
     row.end = last + half;
     row.measured = sum / static_cast<double>(count);
@@ -321,8 +321,8 @@ void Observations::addPoses(const Segment& segment, const Observation& like) {
       row.begin = from.time;
       row.end = to.time;
       for (const auto& [channel, value] :
-           {std::pair{Channel::kHeading, moved.yaw}, std::pair{Channel::kAlong, moved.x},
-            std::pair{Channel::kAcross, moved.y}}) {
+           {std::pair{ObservedRate::kHeading, moved.yaw}, std::pair{ObservedRate::kAlong, moved.x},
+            std::pair{ObservedRate::kAcross, moved.y}}) {
         row.channel = channel;
         row.measured = value / duration;
         all_.push_back(row);
@@ -370,12 +370,12 @@ Eigen::VectorXd Observations::predict(const Motions& motions, const MeasurementM
     if (motion.empty()) continue;
     const double duration = row.end - row.begin;
     double value = 0.0;
-    if (row.channel == Channel::kYawRate) {
+    if (row.channel == ObservedRate::kYawRate) {
       const double before = yawAt(motion, row.begin - gyro_latency, piece);
       value = (yawAt(motion, row.end - gyro_latency, piece) - before) / duration + ins.gyro_bias;
     } else {
       // The three rows of an interval follow one another, and intervals share their ends.
-      if (row.channel == Channel::kHeading) {
+      if (row.channel == ObservedRate::kHeading) {
         const Pose2 start =
             of == &motion && from_time == row.begin ? from : saidPose(motion, ins, row.begin);
         from = saidPose(motion, ins, row.end);
@@ -383,9 +383,9 @@ Eigen::VectorXd Observations::predict(const Motions& motions, const MeasurementM
         of = &motion;
         moved = between(start, from);
       }
-      value = (row.channel == Channel::kHeading ? moved.yaw
-               : row.channel == Channel::kAlong ? moved.x
-                                                : moved.y) /
+      value = (row.channel == ObservedRate::kHeading ? moved.yaw
+               : row.channel == ObservedRate::kAlong ? moved.x
+                                                     : moved.y) /
               duration;
     }
     predicted[static_cast<Eigen::Index>(i)] = value;

@@ -61,17 +61,17 @@ class SegmentPlan {
 using Motions = std::vector<std::vector<MotionSample>>;
 
 /// What an observation is: mean rates over an interval, in the body frame of its beginning.
-enum class Channel { kYawRate, kHeading, kAlong, kAcross };
+enum class ObservedRate { kYawRate, kHeading, kAlong, kAcross };
 inline constexpr size_t kChannels = 4;
 
 /// Name of a channel in reports: "yaw rate", "heading rate", "along", "lateral".
-const char* channelName(Channel channel);
+const char* channelName(ObservedRate channel);
 /// Its unit: rad/s or m/s.
-const char* channelUnit(Channel channel);
+const char* channelUnit(ObservedRate channel);
 
 /// One comparison of measurement and simulation.
 struct Observation {
-  Channel channel = Channel::kYawRate;
+  ObservedRate channel = ObservedRate::kYawRate;
   size_t drive = 0;
   size_t segment = 0;     ///< of the drive
   double begin = 0.0;     ///< [s] since the drive's first message

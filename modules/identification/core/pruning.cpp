@@ -85,7 +85,7 @@ Missed missedBy(const Fitter& fitter, const FitState& state) {
   }
   const Eigen::VectorXd residuals = fitter.data().residuals(state.predicted);
   for (size_t i = 0; i < fitter.mask().size(); ++i)
-    if (fitter.mask()[i] && fitter.data().all()[i].channel == Channel::kYawRate)
+    if (fitter.mask()[i] && fitter.data().all()[i].channel == ObservedRate::kYawRate)
       missed.yaw_rate += std::abs(residuals[static_cast<Eigen::Index>(i)]);
   return missed;
 }

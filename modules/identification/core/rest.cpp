@@ -23,16 +23,16 @@ constexpr int kRestDraws = 1999;
 constexpr double kAnySize = 1e9;           // bound of a size, in any unit
 constexpr double kLeastDeviation = 1e-12;  // so that nothing is known for ever
 
-Channel channelNamed(const std::string& name) {
+ObservedRate channelNamed(const std::string& name) {
   for (size_t i = 0; i < kChannels; ++i)
-    if (name == channelName(static_cast<Channel>(i))) return static_cast<Channel>(i);
+    if (name == channelName(static_cast<ObservedRate>(i))) return static_cast<ObservedRate>(i);
   throw std::invalid_argument("rest: '" + name +
                               "' is no channel of the residuals; take the term out of the model");
 }
 
 /// The channel whose function of all conditions a channel belongs to, see smoothRests().
-const char* channelOfFunction(Channel channel) {
-  return channelName(channel == Channel::kHeading ? Channel::kYawRate : channel);
+const char* channelOfFunction(ObservedRate channel) {
+  return channelName(channel == ObservedRate::kHeading ? ObservedRate::kYawRate : channel);
 }
 
 FreeParameter sizeOf(size_t term, double expected, double deviation) {
@@ -107,7 +107,8 @@ class RestFit {
 
 }  // namespace
 
-Eigen::VectorXd inChannel(const Observations& data, const Variable& variable, Channel channel) {
+Eigen::VectorXd inChannel(const Observations& data, const Variable& variable,
+                          ObservedRate channel) {
   Eigen::VectorXd values = Eigen::VectorXd::Zero(variable.values.size());
   for (Eigen::Index row = 0; row < values.size(); ++row)
     if (data.all()[static_cast<size_t>(row)].channel == channel) values[row] = variable.values[row];
@@ -120,7 +121,7 @@ Eigen::MatrixXd perChannel(const Observations& data, const std::vector<Variable>
                              static_cast<Eigen::Index>(count * kChannels));
   for (size_t i = 0; i < count * kChannels; ++i)
     directions.col(static_cast<Eigen::Index>(i)) =
-        inChannel(data, variables[i % count], static_cast<Channel>(i / count));
+        inChannel(data, variables[i % count], static_cast<ObservedRate>(i / count));
   return directions;
 }
 
@@ -132,7 +133,7 @@ Eigen::MatrixXd restConditions(const Observations& data, const ModelDocument& mo
   const std::vector<Variable> variables = variablesOf(data, model);
   for (size_t i = 0; i < rest.size(); ++i) {
     const std::string& name = rest[i].condition;
-    const Channel channel = channelNamed(rest[i].channel);
+    const ObservedRate channel = channelNamed(rest[i].channel);
     const auto variable = std::find_if(variables.begin(), variables.end(),
                                        [&name](const Variable& one) { return one.name == name; });
     if (variable != variables.end())
@@ -192,7 +193,7 @@ std::vector<RestTerm> restOf(const Fitter& fitter, const FitState& state, uint64
     least = std::min(least, p);
     if (p > kRestAlpha) break;
     const auto at = static_cast<size_t>(best);
-    rest.add({channelName(static_cast<Channel>(at / variables.size())),
+    rest.add({channelName(static_cast<ObservedRate>(at / variables.size())),
               variables[at % variables.size()].name, 0.0, 0.0},
              directions.col(best));
   }

@@ -24,7 +24,7 @@ inline constexpr double kRestVaries = 0.25;
 inline constexpr const char* kAllConditions = "all together";
 
 /// One variable in the rows of one channel, 0 in others (rows x 1).
-Eigen::VectorXd inChannel(const Observations& data, const Variable& variable, Channel channel);
+Eigen::VectorXd inChannel(const Observations& data, const Variable& variable, ObservedRate channel);
 
 /// Each variable in the rows of one channel only, channel by channel (rows x channels variables).
 Eigen::MatrixXd perChannel(const Observations& data, const std::vector<Variable>& variables);

@@ -315,7 +315,7 @@ void addMissed(const Fitter& fitter, const FitState& state, const Eigen::VectorX
     const Observation& row = data.all()[i];
     const auto at = static_cast<Eigen::Index>(i);
     if (row.block % 2 != half) continue;
-    if (row.channel == Channel::kYawRate) sums(row.block, 2) += std::abs(residuals[at]);
+    if (row.channel == ObservedRate::kYawRate) sums(row.block, 2) += std::abs(residuals[at]);
     sums(row.block, 3) += lossOf(residuals[at], scales[at]);
   }
 }

@@ -106,7 +106,8 @@ struct Rows {
   Eigen::MatrixXd free_pulls;  ///< blocks x free
 };
 
-Rows rowsOf(const Fitter& fitter, const FitState& state, const std::vector<Channel>& channels) {
+Rows rowsOf(const Fitter& fitter, const FitState& state,
+            const std::vector<ObservedRate>& channels) {
   const std::vector<Observation>& all = fitter.data().all();
   Rows rows{{},
             fitter.data().residuals(state.predicted),
@@ -273,8 +274,9 @@ std::vector<SmoothRest> smoothRests(const Fitter& fitter, const FitState& state,
                                     uint64_t seed) {
   const Inputs inputs = inputsFrom(variables);
   const std::vector<Feature> features = drawFeatures(inputs, seed);
-  std::vector<SmoothRest> rests{
-      {{Channel::kYawRate, Channel::kHeading}}, {{Channel::kAlong}}, {{Channel::kAcross}}};
+  std::vector<SmoothRest> rests{{{ObservedRate::kYawRate, ObservedRate::kHeading}},
+                                {{ObservedRate::kAlong}},
+                                {{ObservedRate::kAcross}}};
   const auto all = featuresWhere(features, [](const Feature&) { return true; });
   fitter.parallel()(rests.size(), [&](size_t i) {
     SmoothRest& rest = rests[i];

@@ -14,13 +14,13 @@ namespace tread::gap {
 
 /// Whether the residuals of some channels are a smooth function of all conditions together.
 struct SmoothRest {
-  std::vector<Channel> channels;  ///< tested together: both that tell of turning, or one
-  double p_value = 1.0;           ///< over all channels (Bonferroni)
-  double score = 0.0;             ///< standard deviations of chance above its mean
-  std::string variable{};         ///< on which it depends most; empty where chance explains it
-  Eigen::VectorXd function{};     ///< as fitted, 0 in other channels (rows x 1); empty likewise
-  double size = 0.0;              ///< its root mean square, without chance [rad/s or m/s]
-  double deviation = 0.0;         ///< by which chance makes the size larger
+  std::vector<ObservedRate> channels;  ///< tested together: both that tell of turning, or one
+  double p_value = 1.0;                ///< over all channels (Bonferroni)
+  double score = 0.0;                  ///< standard deviations of chance above its mean
+  std::string variable{};              ///< on which it depends most; empty where chance explains it
+  Eigen::VectorXd function{};  ///< as fitted, 0 in other channels (rows x 1); empty likewise
+  double size = 0.0;           ///< its root mean square, without chance [rad/s or m/s]
+  double deviation = 0.0;      ///< by which chance makes the size larger
 };
 
 /// Tests channels for a smooth function of all inputs, of which no form is known beforehand.

@@ -46,9 +46,9 @@ bool isSame(const TermCondition& condition, const TermCondition* times) {
   return times != nullptr && unsignedName(condition) == unsignedName(*times);
 }
 
-bool isOf(Channel channel, TermChannel term) {
-  if (channel == Channel::kAlong) return term == TermChannel::kSpeed;
-  if (channel == Channel::kAcross) return term == TermChannel::kSideways;
+bool isOf(ObservedRate channel, TermChannel term) {
+  if (channel == ObservedRate::kAlong) return term == TermChannel::kSpeed;
+  if (channel == ObservedRate::kAcross) return term == TermChannel::kSideways;
   return term == TermChannel::kYawRate;
 }
 
@@ -269,8 +269,8 @@ std::vector<TermChannel> termChannels(const std::vector<Unexplained>& unexplaine
     for (size_t c = 0; c < kChannels; ++c)
       for (const TermChannel term :
            {TermChannel::kYawRate, TermChannel::kSpeed, TermChannel::kSideways})
-        if (one.channel == channelName(static_cast<Channel>(c)) &&
-            isOf(static_cast<Channel>(c), term) &&
+        if (one.channel == channelName(static_cast<ObservedRate>(c)) &&
+            isOf(static_cast<ObservedRate>(c), term) &&
             std::find(channels.begin(), channels.end(), term) == channels.end())
           channels.push_back(term);
   return channels;
@@ -340,7 +340,8 @@ void countTermsToRest(const Observations& data, ModelDocument& model) {
   if (model.vehicle.unnamed.empty()) return;
   const std::vector<TermInputs> rows = data.termInputs(model.vehicle);
   if (!model.rest) model.rest.emplace();
-  for (const Channel channel : {Channel::kYawRate, Channel::kAlong, Channel::kAcross}) {
+  for (const ObservedRate channel :
+       {ObservedRate::kYawRate, ObservedRate::kAlong, ObservedRate::kAcross}) {
     double squares = 0.0;
     size_t count = 0;
     for (size_t i = 0; i < rows.size(); ++i) {

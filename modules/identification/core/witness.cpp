@@ -62,8 +62,8 @@ BlockGrams gramsOf(const Fitter& fitter, const FitState& state,
   for (size_t i = 0; i < data.all().size(); ++i) {
     const Observation& row = data.all()[i];
     const auto at = static_cast<Eigen::Index>(i);
-    const bool turning = row.channel == Channel::kYawRate;
-    if (!turning && row.channel != Channel::kAlong) continue;
+    const bool turning = row.channel == ObservedRate::kYawRate;
+    if (!turning && row.channel != ObservedRate::kAlong) continue;
     const auto said = turning ? wheels[row.drive].turn(row, ins.ins_latency_gyro * ins.ins_latency)
                               : wheels[row.drive].speed(row, ins.ins_latency);
     if (!said) continue;
@@ -155,11 +155,11 @@ double showsIn(const Fitter& fitter, const FitState& state, const Eigen::VectorX
   double shown = 0.0;
   double all = 0.0;
   for (Eigen::Index i = 0; i < without.size(); ++i) {
-    const Channel channel = fitter.data().all()[static_cast<size_t>(i)].channel;
-    if (channel == Channel::kHeading) continue;
+    const ObservedRate channel = fitter.data().all()[static_cast<size_t>(i)].channel;
+    if (channel == ObservedRate::kHeading) continue;
     const double size = std::pow((state.predicted[i] - without[i]) / state.scales[i], 2);
     all += size;
-    if (channel != Channel::kAcross) shown += size;
+    if (channel != ObservedRate::kAcross) shown += size;
   }
   return all > 0.0 ? shown / all : 0.0;
 }

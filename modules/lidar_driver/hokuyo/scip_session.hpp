@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/config/config_reader.hpp"
-#include "modules/lidar_driver/core/device_clock.hpp"
+#include "modules/lidar_driver/core/tick_clock.hpp"
 #include "modules/lidar_driver/core/scan_device.hpp"
 
 namespace tread::lidar {
@@ -93,7 +93,7 @@ class ScipSession final : public StartedDevice {
   int64_t began_ = 0;  ///< [us] when the first byte in the buffer came
   std::string identity_;
   std::string state_;  ///< STAT of the answer to II
-  DeviceClock clock_;
+  TickClock clock_;
   std::optional<uint32_t> last_milliseconds_;
   uint32_t ticks_ = 0;  ///< [us] the device's clock beyond its 24 bits
 };

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "common/config/config_reader.hpp"
-#include "modules/lidar_driver/core/device_clock.hpp"
+#include "modules/lidar_driver/core/tick_clock.hpp"
 #include "modules/lidar_driver/core/scan_device.hpp"
 #include "modules/lidar_driver/sick_cola/cola_framer.hpp"
 #include "modules/lidar_driver/sick_cola/cola_telegram.hpp"
@@ -52,7 +52,7 @@ class ColaSession final : public StartedDevice {
   ColaFramer framer_;
   ColaFramer other_framer_;  ///< in the other dialect, to name it
   bool understood_ = false;  ///< a telegram came in the configured dialect
-  DeviceClock clock_;
+  TickClock clock_;
   std::string identity_;
   std::optional<uint16_t> last_telegram_;
 };

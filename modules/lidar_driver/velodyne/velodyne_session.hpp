@@ -12,7 +12,7 @@
 
 #include "common/capture/pcap_stream.hpp"
 #include "common/config/config_reader.hpp"
-#include "modules/lidar_driver/core/device_clock.hpp"
+#include "modules/lidar_driver/core/tick_clock.hpp"
 #include "modules/lidar_driver/core/scan_device.hpp"
 #include "modules/lidar_driver/velodyne/velodyne_packet.hpp"
 
@@ -72,7 +72,7 @@ class VelodyneSession final : public ScanDevice {
   bool capture_refused_ = false;
   std::deque<CapturedPayload> waiting_;    ///< of a capture, with the times at which they are due
   std::optional<int64_t> capture_offset_;  ///< [us] from the capture's clock to the host's
-  DeviceClock clock_;
+  TickClock clock_;
   std::optional<uint32_t> last_past_hour_;  ///< [us]
   uint32_t hours_ = 0;                      ///< [us] of full hours, wraps with the clock's counter
   RangeScan slice_;

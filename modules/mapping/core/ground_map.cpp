@@ -25,7 +25,7 @@ std::optional<GroundPlane> planeUnder(const Eigen::Isometry3d& T_map_body) {
   return GroundPlane{T_map_body.translation(), -up.head<2>() / up.z()};
 }
 
-GroundMap::GroundMap(const GroundConfig& config, double cell_size, int side_cells)
+GroundMap::GroundMap(const GroundMapConfig& config, double cell_size, int side_cells)
     : config_(config), cell_size_(cell_size), patches_(side_cells / kPatchCells) {}
 
 void GroundMap::moveTo(CellIndex lower) {

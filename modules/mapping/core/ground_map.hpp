@@ -13,7 +13,7 @@
 namespace tread::mapping {
 
 /// What the robot's own stand says about the ground farther away.
-struct GroundConfig {
+struct GroundMapConfig {
   double height_noise = 0.03;  ///< [m] of the ground under the robot
   double slope_noise = 0.03;   ///< [1] of the robot's inclination against the ground's: bumps
   double curvature = 0.04;     ///< [1/m] by which the ground's slope changes along the way
@@ -46,7 +46,7 @@ class GroundMap {
   /// Cells per side of a patch.
   static constexpr int kPatchCells = 8;
 
-  GroundMap(const GroundConfig& config, double cell_size, int side_cells);
+  GroundMap(const GroundMapConfig& config, double cell_size, int side_cells);
 
   /// Moves the window; `lower` is its lower left cell, a multiple of kPatchCells.
   void moveTo(CellIndex lower);
@@ -69,7 +69,7 @@ class GroundMap {
   Eigen::Vector2d centreOf(CellIndex patch) const;
   bool refine(Patch& patch, const Eigen::Vector2d& centre, const GroundPlane& plane) const;
 
-  GroundConfig config_;
+  GroundMapConfig config_;
   double cell_size_;
   Window<Patch> patches_;
 };

@@ -40,7 +40,7 @@ bool isOwnBody(const Eigen::Vector3d& p_body, const FootprintSize& robot, double
 /// Everything that shapes the local map.
 struct OccupancyMapConfig {
   VoxelConfig voxels;
-  GroundConfig ground;
+  GroundMapConfig ground;
   ObstacleConfig obstacle;
   RoughnessConfig roughness;
   FootprintSize robot;             ///< its outline

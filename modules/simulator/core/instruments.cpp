@@ -88,7 +88,7 @@ void Ins::measure(int64_t utime, const InsInput& of_body) {
   bias_x_.step(gaussian_);
   bias_y_.step(gaussian_);
   bias_yaw_.step(gaussian_);
-  InsSample sample;
+  InsMeasurement sample;
   sample.utime = utime;
   sample.p_map = truth.body.p_map + noise3(parameters_.position_noise);
   sample.p_map.x() += parameters_.position_bias * bias_x_.value();
@@ -103,8 +103,8 @@ void Ins::measure(int64_t utime, const InsInput& of_body) {
   pending_.push_back(sample);
 }
 
-std::vector<InsSample> Ins::takeSamples(int64_t utime) {
-  std::vector<InsSample> out;
+std::vector<InsMeasurement> Ins::takeSamples(int64_t utime) {
+  std::vector<InsMeasurement> out;
   while (!pending_.empty() && pending_.front().utime + parameters_.latency_us <= utime) {
     out.push_back(pending_.front());
     pending_.pop_front();

@@ -59,7 +59,7 @@ class InsErrors {
 };
 
 /// One measurement.
-struct InsSample {
+struct InsMeasurement {
   int64_t utime = 0;                                    ///< of the measurement [us]
   Eigen::Vector3d p_map = Eigen::Vector3d::Zero();      ///< of the reported point [m]
   double yaw = 0.0;                                     ///< [rad], unwrapped, counter-clockwise
@@ -81,7 +81,7 @@ class Ins {
   void measure(int64_t utime, const InsInput& truth);
 
   /// Measurements that are out at a time, oldest first; each is given once.
-  std::vector<InsSample> takeSamples(int64_t utime);
+  std::vector<InsMeasurement> takeSamples(int64_t utime);
 
   const InsParameters& parameters() const { return parameters_; }
 
@@ -96,7 +96,7 @@ class Ins {
   OrnsteinUhlenbeck bias_y_;
   OrnsteinUhlenbeck bias_yaw_;
   int64_t next_;
-  std::deque<InsSample> pending_;
+  std::deque<InsMeasurement> pending_;
 };
 
 /// A scanning laser range finder: one plane, beams in turn from right to left.

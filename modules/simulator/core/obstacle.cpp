@@ -48,8 +48,8 @@ double discPenetration(const Obstacle& disc, const Rectangle& rectangle, const P
   return disc.radius - outside.cwiseMax(0.0).norm();
 }
 
-std::optional<Crossing> discCrossing(const Obstacle& disc, const Eigen::Vector2d& start,
-                                     const Eigen::Vector2d& direction) {
+std::optional<RayCrossing> discCrossing(const Obstacle& disc, const Eigen::Vector2d& start,
+                                        const Eigen::Vector2d& direction) {
   const Eigen::Vector2d to_centre = disc.centre - start;
   const double along = to_centre.dot(direction);
   const double across = cross(direction, to_centre);
@@ -57,13 +57,13 @@ std::optional<Crossing> discCrossing(const Obstacle& disc, const Eigen::Vector2d
   if (square < 0.0) return std::nullopt;
   const double half = std::sqrt(square);
   if (along + half < 0.0) return std::nullopt;
-  return Crossing{std::max(0.0, along - half), along + half};
+  return RayCrossing{std::max(0.0, along - half), along + half};
 }
 
-std::optional<Crossing> polygonCrossing(const std::vector<Eigen::Vector2d>& corners,
-                                        const Eigen::Vector2d& start,
-                                        const Eigen::Vector2d& direction) {
-  Crossing crossing{0.0, std::numeric_limits<double>::infinity()};
+std::optional<RayCrossing> polygonCrossing(const std::vector<Eigen::Vector2d>& corners,
+                                           const Eigen::Vector2d& start,
+                                           const Eigen::Vector2d& direction) {
+  RayCrossing crossing{0.0, std::numeric_limits<double>::infinity()};
   for (size_t i = 0; i < corners.size(); ++i) {
     const Eigen::Vector2d edge = corners[(i + 1) % corners.size()] - corners[i];
     // Inside is to the left of each edge: cross(edge, p - corner) >= 0.
@@ -139,8 +139,8 @@ Extent extentOf(const Obstacle& obstacle) {
   return {obstacle.centre - reach, obstacle.centre + reach};
 }
 
-std::optional<Crossing> crossingOf(const Obstacle& obstacle, const Eigen::Vector2d& start,
-                                   const Eigen::Vector2d& direction) {
+std::optional<RayCrossing> crossingOf(const Obstacle& obstacle, const Eigen::Vector2d& start,
+                                      const Eigen::Vector2d& direction) {
   return obstacle.isDisc() ? discCrossing(obstacle, start, direction)
                            : polygonCrossing(obstacle.corners, start, direction);
 }
@@ -185,9 +185,9 @@ ObstacleGrid::ObstacleGrid(const std::vector<Obstacle>& obstacles, double cell_e
   starts_.push_back(static_cast<uint32_t>(indices_.size()));
 }
 
-Crossing ObstacleGrid::clip(const Eigen::Vector2d& start, const Eigen::Vector2d& direction,
-                            double range) const {
-  Crossing inside{0.0, range};
+RayCrossing ObstacleGrid::clip(const Eigen::Vector2d& start, const Eigen::Vector2d& direction,
+                               double range) const {
+  RayCrossing inside{0.0, range};
   const Eigen::Vector2d high = low_ + edge_ * Eigen::Vector2d(columns_, rows_);
   for (int axis = 0; axis < 2; ++axis) {
     if (direction[axis] == 0.0) {

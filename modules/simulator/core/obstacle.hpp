@@ -51,14 +51,14 @@ Extent extentOf(const std::vector<Eigen::Vector2d>& corners);  ///< at least one
 bool insidePolygon(const std::vector<Eigen::Vector2d>& corners, const Eigen::Vector2d& p);
 
 /// The part of a horizontal ray inside a shape, as distances from its start [m].
-struct Crossing {
+struct RayCrossing {
   double enter = 0.0;
   double leave = 0.0;
 };
 /// Where a ray (unit direction) passes through an obstacle; nothing if it misses or lies behind.
 /** `enter` is 0 for a ray that starts inside. */
-std::optional<Crossing> crossingOf(const Obstacle& obstacle, const Eigen::Vector2d& start,
-                                   const Eigen::Vector2d& direction);
+std::optional<RayCrossing> crossingOf(const Obstacle& obstacle, const Eigen::Vector2d& start,
+                                      const Eigen::Vector2d& direction);
 
 /// A rectangle in the body frame, centred at the body origin.
 struct Rectangle {
@@ -103,7 +103,8 @@ class ObstacleGrid {
 
  private:
   /// Distances along a ray at which it enters and leaves the grid.
-  Crossing clip(const Eigen::Vector2d& start, const Eigen::Vector2d& direction, double range) const;
+  RayCrossing clip(const Eigen::Vector2d& start, const Eigen::Vector2d& direction,
+                   double range) const;
 
   int column(double x) const { return static_cast<int>(std::floor((x - low_.x()) / edge_)); }
   int row(double y) const { return static_cast<int>(std::floor((y - low_.y()) / edge_)); }
@@ -125,7 +126,7 @@ template <typename Visit>
 void ObstacleGrid::visitAlong(const Eigen::Vector2d& start, const Eigen::Vector2d& direction,
                               double range, Visit&& visit) const {
   if (columns_ == 0) return;
-  const Crossing inside = clip(start, direction, range);
+  const RayCrossing inside = clip(start, direction, range);
   if (inside.enter > inside.leave) return;
   const Eigen::Vector2d entry = start + inside.enter * direction;
   int at[2] = {std::clamp(column(entry.x()), 0, columns_ - 1),

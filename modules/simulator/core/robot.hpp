@@ -102,7 +102,7 @@ class SimulatedRobot {
   const RobotSettings& settings() const { return settings_; }
 
   /// INS measurements that came out since the last call.
-  std::vector<InsSample> takeInsSamples() { return ins_.takeSamples(truth_.utime); }
+  std::vector<InsMeasurement> takeInsSamples() { return ins_.takeSamples(truth_.utime); }
   /// Laser scans finished since the last call, oldest first.
   std::vector<LaserScan> takeScans();
 

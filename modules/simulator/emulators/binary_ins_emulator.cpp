@@ -19,7 +19,7 @@ BinaryInsEmulator::BinaryInsEmulator(const MapOnEarth& map, uint64_t seed)
       map_(map.origin_latitude, map.origin_longitude, map.origin_height),
       random_(seed) {}
 
-EarthFix BinaryInsEmulator::fixOf(const InsSample& sample) const {
+EarthFix BinaryInsEmulator::fixOf(const InsMeasurement& sample) const {
   EarthFix fix;
   map_.Reverse(sample.p_map.x(), sample.p_map.y(), sample.p_map.z(), fix.latitude, fix.longitude,
                fix.height);
@@ -33,7 +33,7 @@ EarthFix BinaryInsEmulator::fixOf(const InsSample& sample) const {
   return fix;
 }
 
-void BinaryInsEmulator::add(const InsSample& sample) {
+void BinaryInsEmulator::add(const InsMeasurement& sample) {
   if (faults_.silent) return;
   say(sample, fixOf(sample), !faults_.no_fix && sample.utime - started_ >= kAlignmentUs);
 }

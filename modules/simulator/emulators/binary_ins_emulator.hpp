@@ -60,7 +60,7 @@ class BinaryInsEmulator : public InsEmulator {
 
   /// The device takes no commands; bytes to it are ignored.
   void receive(std::string_view /*bytes*/, int64_t /*utime*/) override {}
-  void add(const InsSample& sample) final;
+  void add(const InsMeasurement& sample) final;
   std::string transmit(int64_t utime) final;
   void setFaults(const BinaryInsFaults& faults) { faults_ = faults; }
   /// The device starts anew: what it had not sent is lost, and it has no solution for a while.
@@ -69,13 +69,13 @@ class BinaryInsEmulator : public InsEmulator {
  protected:
   static constexpr int64_t kLeapSeconds = 18;
 
-  virtual void say(const InsSample& sample, const EarthFix& fix, bool valid) = 0;
+  virtual void say(const InsMeasurement& sample, const EarthFix& fix, bool valid) = 0;
   void send(const std::string& message);
   const MapOnEarth& map() const { return settings_; }
   int64_t started() const { return started_; }
 
  private:
-  EarthFix fixOf(const InsSample& sample) const;
+  EarthFix fixOf(const InsMeasurement& sample) const;
   bool happens(double share);
 
   MapOnEarth settings_;

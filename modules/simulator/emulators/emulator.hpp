@@ -39,7 +39,7 @@ struct MapOnEarth {
 class InsEmulator : public Emulator {
  public:
   /// A measurement that leaves the device now.
-  virtual void add(const InsSample& sample) = 0;
+  virtual void add(const InsMeasurement& sample) = 0;
 };
 
 /// A range finder behind its driver's line.

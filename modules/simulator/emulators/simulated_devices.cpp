@@ -145,7 +145,7 @@ void SimulatedDevices::advanceTo(int64_t utime) {
     robot_.advanceTo(robot_.truth().utime + kStepUs);
     measureDrive();
   }
-  for (const InsSample& sample : robot_.takeInsSamples()) ins_->add(sample);
+  for (const InsMeasurement& sample : robot_.takeInsSamples()) ins_->add(sample);
   for (const LaserScan& scan : robot_.takeScans())
     (scan.ground ? *ground_laser_ : *laser_).add(scan);
 }

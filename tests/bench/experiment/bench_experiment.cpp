@@ -33,8 +33,8 @@ surfaces:
   - {name: soft, forward_gain: 1.1, yaw_gain: 1.3, spread: {forward: 0.04, yaw: 0.08, crab: 0.015}}
 )";
 
-const std::vector<Ground>& grounds() {
-  static const std::vector<Ground> both = [] {
+const std::vector<TrialGround>& grounds() {
+  static const std::vector<TrialGround> both = [] {
     std::vector<std::string> notes;
     return groundsOf(record(parseTransitionWorld(kWorld, "bench"), 1), notes);
   }();

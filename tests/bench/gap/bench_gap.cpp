@@ -62,7 +62,7 @@ void find(benchmark::State& state, const Hidden& hidden) {
   double spent = 0.0;
   for (auto _ : state) {
     const double begun = now();
-    const Finding finding = findGap(task, silent);
+    const GapFinding finding = findGap(task, silent);
     spent += now() - begun;
     names = verdictName(finding.verdict);
     for (const FoundEffect& effect : finding.identified.effects) names += " " + effect.name;

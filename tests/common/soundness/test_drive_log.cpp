@@ -35,7 +35,7 @@ Drive importedSteps(int steps, bool keep_lag, recordings::Gyro gyro) {
       recordings::readSession(folder.file("sessions.csv", sessions(121 * steps)), "drive");
   session.lag_kept = keep_lag;
   if (keep_lag) session.pose_lag = 0.0;
-  recordings::LogCounts counts;
+  recordings::ImportCounts counts;
   return toDrive(
       toDriveLog("drive.lcmlog", recordings::makeLog(recordings::readSteps(csv, session, gyro),
                                                      session, "steps", {}, counts)));
@@ -333,7 +333,7 @@ TEST_CASE(
     const std::string name = expected.session;
     recordings::Session session = recordings::readSession(folder + "sessions.csv", name);
     session.pose_lag = 0.0;
-    recordings::LogCounts counts;
+    recordings::ImportCounts counts;
     const auto recording =
         recordings::readSteps(folder + "steps/" + name + ".csv", session, recordings::Gyro::kAll);
     const Drive result =

@@ -34,7 +34,7 @@ int main() {
   VehicleModel truth = task.model.vehicle;
   truth.effects.motor_deadband = 0.1;
   task.train = {driveOf(truth)};
-  const gap::Finding found = gap::findGap(task, [](const std::string&) {});
+  const gap::GapFinding found = gap::findGap(task, [](const std::string&) {});
   for (const auto& effect : found.identified.effects)
     std::printf("%s %.3f\n", effect.name.c_str(), effect.parameters.at(0).value);
 }

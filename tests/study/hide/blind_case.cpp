@@ -49,7 +49,7 @@ std::vector<HiddenTruth> truthOf(const std::vector<Hidden>& hidden, const Compar
 /// A drive, what was measured of it, and the truth.
 struct Driven {
   HiddenDrive drive;
-  std::vector<sim::InsSample> measured;
+  std::vector<sim::InsMeasurement> measured;
   CaseTruth truth;
 };
 

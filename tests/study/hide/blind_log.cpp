@@ -45,8 +45,8 @@ class LogMaker {
     }
   }
 
-  void addIns(const std::vector<sim::InsSample>& samples) {
-    for (const sim::InsSample& sample : samples) {
+  void addIns(const std::vector<sim::InsMeasurement>& samples) {
+    for (const sim::InsMeasurement& sample : samples) {
       auto ins = blank<ins_t>();
       ins.ins_status = ins_t::STATUS_NO_VELOCITY;
       ins.utime = begin_ + sample.utime;
@@ -171,7 +171,8 @@ int64_t startUtime(uint64_t seed) {
   return 3'000'000'000 + static_cast<int64_t>(rng.uniform(0.0, 5e10));
 }
 
-std::vector<LogEvent> makeLog(const HiddenDrive& drive, const std::vector<sim::InsSample>& measured,
+std::vector<LogEvent> makeLog(const HiddenDrive& drive,
+                              const std::vector<sim::InsMeasurement>& measured,
                               const std::string& name, uint64_t seed) {
   LogMaker maker(drive, seed);
   maker.addNotes(name);

@@ -14,7 +14,8 @@ namespace tread::blind {
 
 /// The log of a drive as a robot's logger would have it: CONFIG, MARK, MOTOR 20 Hz, INS 50 Hz,
 /// EXECUTION 5 Hz and on change, in order of time. Nothing in it tells what is hidden.
-std::vector<LogEvent> makeLog(const HiddenDrive& drive, const std::vector<sim::InsSample>& measured,
+std::vector<LogEvent> makeLog(const HiddenDrive& drive,
+                              const std::vector<sim::InsMeasurement>& measured,
                               const std::string& name, uint64_t seed);
 
 /// utime of the beginning of the log of a seed [us]: a robot that has been on for a while.

@@ -130,17 +130,17 @@ double binOf(double time, YawRate yaw_rate) {
 /// Bins of 0.25 s in a pattern.
 constexpr int kBins = 8;
 
-Pose2 measuredAt(const std::vector<sim::InsSample>& samples, int64_t time) {
-  const auto after =
-      std::lower_bound(samples.begin(), samples.end(), time,
-                       [](const sim::InsSample& sample, int64_t t) { return sample.utime < t; });
+Pose2 measuredAt(const std::vector<sim::InsMeasurement>& samples, int64_t time) {
+  const auto after = std::lower_bound(
+      samples.begin(), samples.end(), time,
+      [](const sim::InsMeasurement& sample, int64_t t) { return sample.utime < t; });
   if (after == samples.begin()) return {after->p_map.x(), after->p_map.y(), after->yaw};
   if (after == samples.end()) {
-    const sim::InsSample& last = samples.back();
+    const sim::InsMeasurement& last = samples.back();
     return {last.p_map.x(), last.p_map.y(), last.yaw};
   }
-  const sim::InsSample& a = *std::prev(after);
-  const sim::InsSample& b = *after;
+  const sim::InsMeasurement& a = *std::prev(after);
+  const sim::InsMeasurement& b = *after;
   const double share = static_cast<double>(time - a.utime) / static_cast<double>(b.utime - a.utime);
   const Eigen::Vector3d p = a.p_map + share * (b.p_map - a.p_map);
   return {p.x(), p.y(), a.yaw + share * (b.yaw - a.yaw)};
@@ -150,10 +150,10 @@ constexpr int64_t kBinUs = 250'000;
 
 /// Mean of measured minus true yaw rate over one bin.
 double yawRateError(const HiddenDrive& drive, const InstrumentFault& fault,
-                    const std::vector<sim::InsSample>& measured, int64_t begin) {
-  auto sample =
-      std::lower_bound(measured.begin(), measured.end(), begin,
-                       [](const sim::InsSample& one, int64_t time) { return one.utime < time; });
+                    const std::vector<sim::InsMeasurement>& measured, int64_t begin) {
+  auto sample = std::lower_bound(
+      measured.begin(), measured.end(), begin,
+      [](const sim::InsMeasurement& one, int64_t time) { return one.utime < time; });
   double sum = 0.0;
   int count = 0;
   for (; sample != measured.end() && sample->utime < begin + kBinUs; ++sample, ++count) {
@@ -182,20 +182,20 @@ Pose2 sensedPose(const std::vector<Pose2>& T_map_body, const InstrumentFault& fa
   return {scale * p_map.x(), scale * p_map.y(), yaw - fault.misalignment};
 }
 
-std::vector<sim::InsSample> measure(const Track& track, const InstrumentFault& fault,
-                                    const NoiseLevel& noise, uint64_t seed, int64_t phase) {
+std::vector<sim::InsMeasurement> measure(const Track& track, const InstrumentFault& fault,
+                                         const NoiseLevel& noise, uint64_t seed, int64_t phase) {
   sim::Ins ins(insParameters(noise), sim::streamSeed(seed, kInsStream), phase);
-  std::vector<sim::InsSample> samples;
+  std::vector<sim::InsMeasurement> samples;
   const int64_t end = static_cast<int64_t>(track.pitch.size() - 1) * Track::kStepUs;
   for (int64_t time = phase; time <= end; time += ins.parameters().period_us) {
     ins.measure(time, sensed(track, fault, static_cast<double>(time) * 1e-6));
-    for (const sim::InsSample& sample : ins.takeSamples(time)) samples.push_back(sample);
+    for (const sim::InsMeasurement& sample : ins.takeSamples(time)) samples.push_back(sample);
   }
   return samples;
 }
 
 EndPoseError oracleFloor(const HiddenDrive& drive, const InstrumentFault& fault,
-                         const std::vector<sim::InsSample>& measured) {
+                         const std::vector<sim::InsMeasurement>& measured) {
   EndPoses ends;
   for (const Pattern& pattern : drive.programme.patterns) {
     const int64_t end = pattern.start + kPatternUs;

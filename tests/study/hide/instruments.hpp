@@ -17,8 +17,8 @@ InstrumentFault faultOf(const std::vector<Hidden>& hidden);
 Pose2 sensedPose(const std::vector<Pose2>& T_map_body, const InstrumentFault& fault, double time);
 
 /// All measurements of a drive: 50 Hz, times since its beginning, the first at `phase` [us].
-std::vector<sim::InsSample> measure(const Track& track, const InstrumentFault& fault,
-                                    const NoiseLevel& noise, uint64_t seed, int64_t phase);
+std::vector<sim::InsMeasurement> measure(const Track& track, const InstrumentFault& fault,
+                                         const NoiseLevel& noise, uint64_t seed, int64_t phase);
 
 /// Two numbers that say how large errors are.
 struct ErrorSize {
@@ -36,7 +36,7 @@ struct EndPoseError {
 
 /// What the truth without any noise still misses of the measured executions: nobody can do better.
 EndPoseError oracleFloor(const HiddenDrive& drive, const InstrumentFault& fault,
-                         const std::vector<sim::InsSample>& measured);
+                         const std::vector<sim::InsMeasurement>& measured);
 
 /// What the plain vehicle misses of the vehicle with the effect, noise apart: the gap itself.
 EndPoseError hiddenGap(const HiddenDrive& with, const InstrumentFault& fault,

@@ -42,7 +42,7 @@ struct Said {
 
 Said saidStanding(const NoiseLevel& noise) {
   Said said;
-  for (const sim::InsSample& sample : measure(standing(20.0), {}, noise, 3, 0)) {
+  for (const sim::InsMeasurement& sample : measure(standing(20.0), {}, noise, 3, 0)) {
     said.x.push_back(sample.p_map.x());
     said.yaw.push_back(sample.yaw);
     said.rate.push_back(sample.rate_body.z());

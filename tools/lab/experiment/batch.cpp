@@ -172,7 +172,7 @@ class Runner {
 
   void runRecordings(const PatternRecordings& recorded, uint64_t number) {
     std::vector<std::string> notes;
-    std::vector<Ground> grounds = groundsOf(recorded, notes);
+    std::vector<TrialGround> grounds = groundsOf(recorded, notes);
     batch_.notes.insert(batch_.notes.end(), notes.begin(), notes.end());
     batch_.settings.seed = batch_.request.seed + number;
     const auto begun = std::chrono::steady_clock::now();
@@ -185,7 +185,7 @@ class Runner {
     batch_.seconds += passed.count();
     batch_.sets.push_back(tablesOf(errors, batch_.settings, grounds));
     if (number > 0) return;
-    for (const Ground& ground : grounds) batch_.setting.surfaces.push_back(ground.surface);
+    for (const TrialGround& ground : grounds) batch_.setting.surfaces.push_back(ground.surface);
     batch_.grounds = std::move(grounds);
     batch_.first = std::move(errors);
   }

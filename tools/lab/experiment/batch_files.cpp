@@ -139,7 +139,7 @@ std::string textOfRemembered(const Batch& batch) {
   std::string text;
   for (size_t i = 0; i < batch.settings.rules.size(); ++i) {
     std::string line = formatted("\n%-24s", batch.settings.rules[i].c_str());
-    for (const Ground& ground : batch.grounds) {
+    for (const TrialGround& ground : batch.grounds) {
       std::vector<double> counts;
       for (const TransitionErrors& transition : batch.first.transitions)
         if (batch.grounds[transition.from].surface == ground.surface)
@@ -150,14 +150,14 @@ std::string textOfRemembered(const Batch& batch) {
   }
   if (text.empty()) return "";
   std::string head = formatted("%-24s", "from");
-  for (const Ground& ground : batch.grounds) head += formatted("%12s", ground.surface.c_str());
+  for (const TrialGround& ground : batch.grounds) head += formatted("%12s", ground.surface.c_str());
   return "REMEMBERED surfaces before a transition, that of the shipped set among them; mean over "
          "excitation runs.\n\n" +
          head + text + "\n";
 }
 
 std::string watchedPattern(const Batch& batch) {
-  const Ground& ground = batch.grounds.front();
+  const TrialGround& ground = batch.grounds.front();
   const auto watched = neverExecuted(ground, batch.settings.sequences);
   if (!watched || batch.first.drift.empty()) return "";
   return ground.averaged.patterns()[*watched].name;

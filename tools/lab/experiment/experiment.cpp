@@ -40,7 +40,7 @@ int64_t longDrives(int64_t repetitions) {
 }
 
 /// Bins for the errors of single executions, from those without learning.
-std::pair<Histogram, Histogram> binsFor(const Ground& from, const Ground& to,
+std::pair<Histogram, Histogram> binsFor(const TrialGround& from, const TrialGround& to,
                                         const std::vector<Sequence>& sequences) {
   double position = 0.0, orientation = 0.0, metres = 0.0, radians = 0.0;
   for (const Sequence& sequence : sequences)
@@ -66,8 +66,8 @@ std::pair<Histogram, Histogram> binsFor(const Ground& from, const Ground& to,
 /// What followed one excitation run from a surface to another one.
 struct RunErrors {
   SequenceErrors sequences;
-  std::vector<Errors> all_patterns;
-  std::vector<Errors> development;
+  std::vector<MethodErrors> all_patterns;
+  std::vector<MethodErrors> development;
   FirstExecutions first;
   std::vector<int> remembered;
 };
@@ -76,8 +76,8 @@ using Drift = std::vector<std::vector<double>>;  // [method][execution]
 
 /// What followed one excitation run on unchanged ground.
 struct UnchangedErrors {
-  Errors random;
-  Errors sequences;
+  MethodErrors random;
+  MethodErrors sequences;
   FirstExecutions first;
   Drift drift;  ///< empty without a pattern to watch
 };
@@ -86,7 +86,7 @@ struct UnchangedErrors {
 /// Each excitation run is a task with seeds of its own: threads have no influence on numbers.
 class Schedule {
  public:
-  Schedule(const std::vector<Ground>& grounds, const ExperimentSettings& settings)
+  Schedule(const std::vector<TrialGround>& grounds, const ExperimentSettings& settings)
       : grounds_(grounds),
         settings_(settings),
         runs_(std::min(settings.excitations, settings.repetitions)),
@@ -133,7 +133,7 @@ class Schedule {
   RunErrors driveTransition(size_t from, size_t to, int64_t run) const;
   void addUnchanged(size_t surface);
 
-  const std::vector<Ground>& grounds_;
+  const std::vector<TrialGround>& grounds_;
   const ExperimentSettings& settings_;
   int64_t runs_, long_drives_, long_runs_;
   std::vector<Rivals> rivals_;  ///< [from * surfaces + to]
@@ -188,8 +188,8 @@ void Schedule::addUnchanged(size_t surface) {
 }
 
 /// Adds a run's errors number by number.
-void addRun(const std::vector<Errors>& run, std::vector<Errors>& sums, size_t methods) {
-  sums.resize(run.size(), Errors(methods));
+void addRun(const std::vector<MethodErrors>& run, std::vector<MethodErrors>& sums, size_t methods) {
+  sums.resize(run.size(), MethodErrors(methods));
   for (size_t i = 0; i < run.size(); ++i) sums[i].addRun(run[i]);
 }
 
@@ -213,7 +213,7 @@ ExperimentErrors Schedule::errors() const {
         binsFor(grounds_[transition.from], grounds_[transition.to], settings_.sequences);
     TransitionErrors sums{transition.from,
                           transition.to,
-                          {Errors(methods), std::vector<Histogram>(methods, bins.first),
+                          {MethodErrors(methods), std::vector<Histogram>(methods, bins.first),
                            std::vector<Histogram>(methods, bins.second)},
                           {},
                           {},
@@ -231,7 +231,7 @@ ExperimentErrors Schedule::errors() const {
   }
   std::vector<const Drift*> drifts;
   for (const std::vector<UnchangedErrors>& runs : unchanged_) {
-    Errors random(methods), sequences(methods);
+    MethodErrors random(methods), sequences(methods);
     FirstExecutions first(methods);
     for (const UnchangedErrors& run : runs) {
       random.addRun(run.random);
@@ -253,7 +253,8 @@ size_t ExperimentSettings::ruleIndex(const std::string& name) const {
   return static_cast<size_t>(std::find(rules.begin(), rules.end(), name) - rules.begin());
 }
 
-std::optional<size_t> neverExecuted(const Ground& ground, const std::vector<Sequence>& sequences) {
+std::optional<size_t> neverExecuted(const TrialGround& ground,
+                                    const std::vector<Sequence>& sequences) {
   constexpr double kLeastWidth = 0.02;  // [m]
   std::optional<size_t> widest;
   for (size_t p = 0; p < ground.averaged_ends.size(); ++p) {
@@ -269,7 +270,7 @@ std::optional<size_t> neverExecuted(const Ground& ground, const std::vector<Sequ
   return widest;
 }
 
-ExperimentErrors runExperiment(const std::vector<Ground>& grounds,
+ExperimentErrors runExperiment(const std::vector<TrialGround>& grounds,
                                const ExperimentSettings& settings, const Progress& progress) {
   const Schedule schedule(grounds, settings);
   const auto& tasks = schedule.tasks();

@@ -160,7 +160,7 @@ Points density(const Histogram& histogram) {
 }  // namespace
 
 size_t transitionOfFigures(const ExperimentErrors& errors, const ExperimentSettings& settings,
-                           const std::vector<Ground>& grounds) {
+                           const std::vector<TrialGround>& grounds) {
   const size_t off = settings.ruleIndex("off"), omniscient = settings.ruleIndex(kOmniscient);
   size_t best = 0;
   double most = 0.0;
@@ -169,7 +169,7 @@ size_t transitionOfFigures(const ExperimentErrors& errors, const ExperimentSetti
     if (grounds[transition.from].surface == "cinder" && grounds[transition.to].surface == "grass")
       return t;
     if (std::max(off, omniscient) == settings.rules.size()) continue;
-    const Errors& sums = transition.sequences.errors;
+    const MethodErrors& sums = transition.sequences.errors;
     const double ratio =
         sums.position.ratio(off, omniscient).value + sums.orientation.ratio(off, omniscient).value;
     if (ratio > most) {
@@ -180,7 +180,7 @@ size_t transitionOfFigures(const ExperimentErrors& errors, const ExperimentSetti
   return best;
 }
 
-std::string wordsOf(const TransitionErrors& transition, const std::vector<Ground>& grounds) {
+std::string wordsOf(const TransitionErrors& transition, const std::vector<TrialGround>& grounds) {
   return grounds[transition.from].surface + " to " + grounds[transition.to].surface;
 }
 
@@ -190,7 +190,7 @@ void drawDevelopment(const std::string& path, const TransitionErrors& transition
   const size_t rules = settings.rules.size();
   std::vector<Column> columns;
   for (const bool position : {true, false}) {
-    const auto of = [position](const Errors& errors) -> const RatioMoments& {
+    const auto of = [position](const MethodErrors& errors) -> const RatioMoments& {
       return position ? errors.position : errors.orientation;
     };
     const std::string name = position ? "Position" : "Orientation";
@@ -198,14 +198,16 @@ void drawDevelopment(const std::string& path, const TransitionErrors& transition
     const auto axes = [&](const std::string& title) {
       return Panel::Axes{title, "execution after the change", unit, 1.0, last, 0.0, 0.0};
     };
-    columns.push_back({axes(name + " error"),
-                       overExecutions(transition, rules, [&](const Errors& errors, size_t rule) {
-                         return of(errors).error(rule).value;
-                       })});
-    columns.push_back({axes("... its deviation"),
-                       overExecutions(transition, rules, [&](const Errors& errors, size_t rule) {
-                         return of(errors).deviation(rule);
-                       })});
+    columns.push_back(
+        {axes(name + " error"),
+         overExecutions(transition, rules, [&](const MethodErrors& errors, size_t rule) {
+           return of(errors).error(rule).value;
+         })});
+    columns.push_back(
+        {axes("... its deviation"),
+         overExecutions(transition, rules, [&](const MethodErrors& errors, size_t rule) {
+           return of(errors).deviation(rule);
+         })});
   }
   drawRows(path, "From " + words + ": error over executions, without a reset", std::move(columns),
            settings.rules);

@@ -17,8 +17,8 @@ void FirstExecutions::addRun(const FirstExecutions& run) {
 
 FirstExecutions driveFirstExecutions(Methods& methods, const TrialSite& site) {
   FirstExecutions result(methods.size());
-  Drive drive(methods, site);
-  const auto testAll = [&](Errors& errors) {
+  TrialDrive drive(methods, site);
+  const auto testAll = [&](MethodErrors& errors) {
     drive.clear();
     for (size_t p = 0; p < site.to.tests.size(); ++p) drive.execute(p, false);
     drive.addTo(errors);

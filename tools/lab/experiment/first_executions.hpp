@@ -28,11 +28,11 @@ struct FirstExecutions {
   static constexpr std::array<size_t, 6> kTested{0, 1, 2, 3, 5, 10};
 
   explicit FirstExecutions(size_t methods = 0)
-      : all_patterns(kTested.size(), Errors(methods)),
+      : all_patterns(kTested.size(), MethodErrors(methods)),
         regions(kCount, std::vector<RegionCount>(methods)) {}
   void addRun(const FirstExecutions& run);
 
-  std::vector<Errors> all_patterns;               ///< by kTested
+  std::vector<MethodErrors> all_patterns;         ///< by kTested
   std::vector<std::vector<RegionCount>> regions;  ///< [execution][method], before the execution
 };
 

@@ -46,8 +46,9 @@ using recordings::Execution;
 constexpr int kFewest = 8;  // fair executions of a pattern
 constexpr size_t kFew = 40;
 
-Ground groundOf(const recordings::PatternRecordings& recorded,
-                const recordings::SurfaceRecordings& surface, std::vector<std::string>& notes) {
+TrialGround groundOf(const recordings::PatternRecordings& recorded,
+                     const recordings::SurfaceRecordings& surface,
+                     std::vector<std::string>& notes) {
   AverageLimits limits;
   limits.min_executions = kFewest;
   std::vector<AverageNote> fairness, of_half;
@@ -74,11 +75,11 @@ Ground groundOf(const recordings::PatternRecordings& recorded,
                     "the intervals do not tell");
   limits.max_speed = std::numeric_limits<double>::max();  // all are fair
   limits.min_executions = 1;
-  Ground ground{surface.surface,
-                recordings::averageSet(recorded.patterns, known, limits, of_half),
-                {},
-                {},
-                {}};
+  TrialGround ground{surface.surface,
+                     recordings::averageSet(recorded.patterns, known, limits, of_half),
+                     {},
+                     {},
+                     {}};
   for (size_t p = 0; p < tests.size(); ++p) {
     const MotionPattern& pattern = ground.averaged.patterns()[p];
     ground.averaged_ends.push_back(pattern.end());
@@ -90,14 +91,14 @@ Ground groundOf(const recordings::PatternRecordings& recorded,
 
 }  // namespace
 
-std::vector<Ground> groundsOf(const recordings::PatternRecordings& recorded,
-                              std::vector<std::string>& notes) {
+std::vector<TrialGround> groundsOf(const recordings::PatternRecordings& recorded,
+                                   std::vector<std::string>& notes) {
   if (recorded.surfaces.size() < 2)
     throw recordings::RecordingError(
         "a transition needs recordings of at least two surfaces; there " +
         (recorded.surfaces.empty() ? std::string("is none")
                                    : "is one: '" + recorded.surfaces.front().surface + "'"));
-  std::vector<Ground> grounds;
+  std::vector<TrialGround> grounds;
   for (const recordings::SurfaceRecordings& surface : recorded.surfaces)
     grounds.push_back(groundOf(recorded, surface, notes));
   return grounds;

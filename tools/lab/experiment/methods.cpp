@@ -13,14 +13,14 @@ constexpr const char* kOff = "off";
 
 struct NamedHistory {
   const char* suffix;
-  History history;
+  TrialHistory history;
 };
-const NamedHistory kHistories[] = {{"", History::kNone},
-                                   {"_home", History::kHome},
-                                   {"_unmet", History::kUnmet},
-                                   {"_remembered", History::kRemembered}};
+const NamedHistory kHistories[] = {{"", TrialHistory::kNone},
+                                   {"_home", TrialHistory::kHome},
+                                   {"_unmet", TrialHistory::kUnmet},
+                                   {"_remembered", TrialHistory::kRemembered}};
 
-void drive(learner::LearningRule& rule, const Ground& ground, int64_t executions,
+void drive(learner::LearningRule& rule, const TrialGround& ground, int64_t executions,
            std::mt19937_64& random) {
   learner::RuleNote note;
   for (int64_t i = 0; i < executions; ++i) {
@@ -42,7 +42,7 @@ std::optional<Method> methodOf(const std::string& name) {
   if (name == kOmniscient) return Method{};
   for (const std::string& rule : learnerNames())
     for (const NamedHistory& one : kHistories)
-      if (name == rule + one.suffix && (rule != kOff || one.history == History::kNone))
+      if (name == rule + one.suffix && (rule != kOff || one.history == TrialHistory::kNone))
         return Method{rule, one.history};
   return std::nullopt;
 }
@@ -71,28 +71,28 @@ std::vector<std::string> defaultMethods() {
   return names;
 }
 
-std::vector<size_t> excitationOrder(History history, size_t surfaces, size_t from, size_t to,
+std::vector<size_t> excitationOrder(TrialHistory history, size_t surfaces, size_t from, size_t to,
                                     std::mt19937_64& random) {
   std::vector<size_t> order;
-  const bool unmet = history == History::kUnmet;
+  const bool unmet = history == TrialHistory::kUnmet;
   for (size_t s = 0; s < surfaces; ++s)
-    if (history == History::kRemembered || unmet)
+    if (history == TrialHistory::kRemembered || unmet)
       if (s != from && !(unmet && s == to)) order.push_back(s);
   for (size_t left = order.size(); left > 1; --left)
     std::swap(order[left - 1], order[drawIndex(random, left)]);
-  if (history != History::kNone && !(unmet && from == to)) order.push_back(from);
+  if (history != TrialHistory::kNone && !(unmet && from == to)) order.push_back(from);
   return order;
 }
 
 Methods::Methods(const std::vector<std::string>& names, const learner::RuleConfig& config,
-                 const std::vector<Ground>& grounds, size_t from, size_t to,
-                 const Excitation& excitation)
+                 const std::vector<TrialGround>& grounds, size_t from, size_t to,
+                 const ExcitationRun& excitation)
     : Methods(names, config, grounds, from, to, excitation, tunedRivals(names, grounds, from, to)) {
 }
 
 Methods::Methods(const std::vector<std::string>& names, const learner::RuleConfig& config,
-                 const std::vector<Ground>& grounds, size_t from, size_t to,
-                 const Excitation& excitation, const Rivals& rivals) {
+                 const std::vector<TrialGround>& grounds, size_t from, size_t to,
+                 const ExcitationRun& excitation, const Rivals& rivals) {
   for (const std::string& name : names) {
     const Method method = methodOf(name).value();
     State one;

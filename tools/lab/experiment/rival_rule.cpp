@@ -28,7 +28,7 @@ Eigen::Vector3d meanTwist(const ConstTrajectory& measured, double period) {
 }
 
 /// Variances of the mean twist over the executions of each pattern.
-std::vector<Eigen::Vector3d> noiseOf(const Ground& ground) {
+std::vector<Eigen::Vector3d> noiseOf(const TrialGround& ground) {
   constexpr double kLeast = 1e-8;  // [m^2/s^2], [rad^2/s^2]: nothing is exact
   const double period = ground.averaged.periodSeconds();
   std::vector<Eigen::Vector3d> noise;
@@ -46,7 +46,7 @@ std::vector<Eigen::Vector3d> noiseOf(const Ground& ground) {
 }
 
 /// What the executions known of a surface are beside the set of another, pattern after pattern.
-std::vector<Sample> samplesOf(const Ground& ground, const std::vector<Sample>& reference) {
+std::vector<Sample> samplesOf(const TrialGround& ground, const std::vector<Sample>& reference) {
   const double period = ground.averaged.periodSeconds();
   std::vector<Sample> samples;
   for (size_t i = 0; samples.size() < kMostTraining; ++i) {
@@ -61,7 +61,7 @@ std::vector<Sample> samplesOf(const Ground& ground, const std::vector<Sample>& r
   return samples;
 }
 
-std::vector<Sample> referenceOf(const Ground& ground) {
+std::vector<Sample> referenceOf(const TrialGround& ground) {
   const std::vector<Eigen::Vector3d> noise = noiseOf(ground);
   std::vector<Sample> samples;
   for (const MotionPattern& pattern : ground.averaged.patterns()) {
@@ -115,7 +115,7 @@ void RivalRule::assign(const learner::LearningRule& other) {
   rival_ = static_cast<const RivalRule&>(other).rival_->clone();
 }
 
-Rivals tunedRivals(const std::vector<std::string>& methods, const std::vector<Ground>& grounds,
+Rivals tunedRivals(const std::vector<std::string>& methods, const std::vector<TrialGround>& grounds,
                    size_t from, size_t to) {
   const std::vector<Sample> reference = referenceOf(grounds[from]);
   adaptation::TrainingSamples training;
@@ -134,7 +134,7 @@ Rivals tunedRivals(const std::vector<std::string>& methods, const std::vector<Gr
 }
 
 std::unique_ptr<learner::LearningRule> rivalRule(const adaptation::Rival& rival,
-                                                 const Ground& ground) {
+                                                 const TrialGround& ground) {
   return std::make_unique<RivalRule>(rival.clone(), ground.averaged, noiseOf(ground));
 }
 

@@ -49,11 +49,11 @@ class RivalRule : public learner::LearningRule {
 /// The rivals among the names of some methods, tuned for a transition between two surfaces.
 /** They know the recordings of excitation runs of all surfaces but the new one, each as a session:
  * how grounds differ from the one of the set that they begin with. */
-Rivals tunedRivals(const std::vector<std::string>& methods, const std::vector<Ground>& grounds,
+Rivals tunedRivals(const std::vector<std::string>& methods, const std::vector<TrialGround>& grounds,
                    size_t from, size_t to);
 
 /// A rival that begins with a surface's averaged set.
 std::unique_ptr<learner::LearningRule> rivalRule(const adaptation::Rival& rival,
-                                                 const Ground& ground);
+                                                 const TrialGround& ground);
 
 }  // namespace tread::experiment

@@ -15,14 +15,14 @@ Estimate reduction(const Estimate& ratio) {
 
 /// Rows of both quantities of some errors; make(row, moments of the quantity).
 template <class Make>
-void forBoth(const Errors& errors, Row row, const Make& make) {
+void forBoth(const MethodErrors& errors, Row row, const Make& make) {
   row.quantity = kPosition;
   make(row, errors.position);
   row.quantity = kOrientation;
   make(row, errors.orientation);
 }
 
-void addErrors(const Errors& errors, const ExperimentSettings& settings, const Row& about,
+void addErrors(const MethodErrors& errors, const ExperimentSettings& settings, const Row& about,
                std::vector<Row>& rows) {
   forBoth(errors, about, [&](Row row, const RatioMoments& moments) {
     for (size_t i = 0; i < settings.rules.size(); ++i) {
@@ -33,7 +33,7 @@ void addErrors(const Errors& errors, const ExperimentSettings& settings, const R
   });
 }
 
-void addReductions(const Errors& errors, const ExperimentSettings& settings, const Row& about,
+void addReductions(const MethodErrors& errors, const ExperimentSettings& settings, const Row& about,
                    std::vector<Row>& rows) {
   const auto add = [&](Row row, const RatioMoments& moments) {
     for (const char* against : {"single", "off"}) {
@@ -51,7 +51,7 @@ void addReductions(const Errors& errors, const ExperimentSettings& settings, con
   forBoth(errors, about, add);
 }
 
-void addUnchanged(const Errors& errors, const ExperimentSettings& settings, const Row& about,
+void addUnchanged(const MethodErrors& errors, const ExperimentSettings& settings, const Row& about,
                   std::vector<Row>& rows) {
   const size_t omniscient = settings.ruleIndex(kOmniscient);
   if (omniscient == settings.rules.size()) return;
@@ -154,7 +154,7 @@ std::vector<std::string> learningRules(const std::vector<std::string>& rules) {
 }
 
 Tables tablesOf(const ExperimentErrors& errors, const ExperimentSettings& settings,
-                const std::vector<Ground>& grounds) {
+                const std::vector<TrialGround>& grounds) {
   Tables tables;
   for (const TransitionErrors& transition : errors.transitions) {
     Row about;

@@ -36,30 +36,31 @@ struct TransitionErrors {
   size_t from = 0;
   size_t to = 0;
   SequenceErrors sequences;
-  std::vector<Errors> all_patterns;  ///< by all_patterns_after
-  std::vector<Errors> development;   ///< by execution
-  FirstExecutions first;             ///< of random patterns
-  std::vector<double> remembered;    ///< surfaces before the transition, mean over excitation runs
+  std::vector<MethodErrors> all_patterns;  ///< by all_patterns_after
+  std::vector<MethodErrors> development;   ///< by execution
+  FirstExecutions first;                   ///< of random patterns
+  std::vector<double> remembered;  ///< surfaces before the transition, mean over excitation runs
 };
 
 /// Section V on one set of recordings.
 struct ExperimentErrors {
-  std::vector<TransitionErrors> transitions;     ///< from each surface to each other one, in order
-  std::vector<Errors> unchanged;                 ///< by surface, in the long run, random patterns
-  std::vector<Errors> unchanged_sequences;       ///< the same over the test sequences
-  std::vector<FirstExecutions> unchanged_first;  ///< by surface
+  std::vector<TransitionErrors> transitions;      ///< from each surface to each other one, in order
+  std::vector<MethodErrors> unchanged;            ///< by surface, in the long run, random patterns
+  std::vector<MethodErrors> unchanged_sequences;  ///< the same over the test sequences
+  std::vector<FirstExecutions> unchanged_first;   ///< by surface
   /// Width of the pattern `watched` by rule, over executions on unchanged ground; see driveDrift().
   std::vector<std::vector<double>> drift;
 };
 
 /// The widest pattern of a set that no sequence executes; nothing if all are executed or straight.
-std::optional<size_t> neverExecuted(const Ground& ground, const std::vector<Sequence>& sequences);
+std::optional<size_t> neverExecuted(const TrialGround& ground,
+                                    const std::vector<Sequence>& sequences);
 
 /// Parts done and parts in all; called from the threads, one at a time.
 using Progress = std::function<void(size_t done, size_t all)>;
 
 /// Runs all trials. Same settings and grounds, same bytes, for any number of threads.
-ExperimentErrors runExperiment(const std::vector<Ground>& grounds,
+ExperimentErrors runExperiment(const std::vector<TrialGround>& grounds,
                                const ExperimentSettings& settings, const Progress& progress);
 
 inline constexpr const char* kPosition = "position";
@@ -94,7 +95,7 @@ struct Tables {
 };
 
 Tables tablesOf(const ExperimentErrors& errors, const ExperimentSettings& settings,
-                const std::vector<Ground>& grounds);
+                const std::vector<TrialGround>& grounds);
 
 /// Means over the sets of recordings, number by number, with the spread and the 99 % interval of
 /// the mean (by Student); of one set of recordings that set of recordings.
@@ -225,11 +226,11 @@ struct Batch {
   std::string source;              ///< the world or folder, in words
   std::vector<std::string> notes;  ///< about the recordings
   std::vector<Tables> sets;
-  Tables tables;                  ///< of all sets of recordings together
-  std::vector<Ground> grounds;    ///< of the first set of recordings
-  ExperimentErrors first;         ///< of it, for the pictures
-  std::vector<Variant> variants;  ///< if the request wants extras
-  double seconds = 0.0;           ///< of the trials, without recording
+  Tables tables;                     ///< of all sets of recordings together
+  std::vector<TrialGround> grounds;  ///< of the first set of recordings
+  ExperimentErrors first;            ///< of it, for the pictures
+  std::vector<Variant> variants;     ///< if the request wants extras
+  double seconds = 0.0;              ///< of the trials, without recording
 };
 
 /// Runs everything; throws an exception with one line for what cannot be done. progress(share of
@@ -254,10 +255,10 @@ void writeBatch(const std::string& folder, const Batch& batch);
 /// The transition of the paper's figures: from cinder to grass if it is there, else the one that
 /// costs most without learning. An index into errors.transitions.
 size_t transitionOfFigures(const ExperimentErrors& errors, const ExperimentSettings& settings,
-                           const std::vector<Ground>& grounds);
+                           const std::vector<TrialGround>& grounds);
 
 /// "cinder to grass".
-std::string wordsOf(const TransitionErrors& transition, const std::vector<Ground>& grounds);
+std::string wordsOf(const TransitionErrors& transition, const std::vector<TrialGround>& grounds);
 
 /// Figure 4: error and its deviation over executions without a reset, by rule (PNG).
 void drawDevelopment(const std::string& path, const TransitionErrors& transition,

@@ -23,9 +23,9 @@ inline double orientationError(const Pose2& predicted, const Pose2& driven) {
 }
 
 /// Executions drawn at random, and the errors of all methods since the last clear().
-class Drive {
+class TrialDrive {
  public:
-  Drive(Methods& methods, const TrialSite& site)
+  TrialDrive(Methods& methods, const TrialSite& site)
       : methods_(methods),
         site_(site),
         random_(site.seed),
@@ -40,7 +40,7 @@ class Drive {
     std::fill(position_.begin(), position_.end(), 0.0);
     std::fill(orientation_.begin(), orientation_.end(), 0.0);
   }
-  void addTo(Errors& errors) const {
+  void addTo(MethodErrors& errors) const {
     errors.position.add(metres_, position_.data());
     errors.orientation.add(radians_, orientation_.data());
   }

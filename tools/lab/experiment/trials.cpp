@@ -78,14 +78,14 @@ Sequence joined(const std::vector<Sequence>& sequences) {
 SequenceErrors driveSequences(Methods& methods, const TrialSite& site,
                               const std::vector<Sequence>& sequences, Histogram position_bins,
                               Histogram orientation_bins) {
-  SequenceErrors result{Errors(methods.size()),
+  SequenceErrors result{MethodErrors(methods.size()),
                         std::vector<Histogram>(methods.size(), position_bins),
                         std::vector<Histogram>(methods.size(), orientation_bins)};
   const auto count = [&](size_t i, double position, double orientation, const ExecutionEnd& end) {
     result.position[i].add(position / end.metres);
     result.orientation[i].add(orientation / end.radians);
   };
-  Drive drive(methods, site);
+  TrialDrive drive(methods, site);
   for (int64_t repetition = 0; repetition < site.repetitions; ++repetition) {
     drive.clear();
     for (const Sequence& sequence : sequences) {
@@ -100,11 +100,11 @@ SequenceErrors driveSequences(Methods& methods, const TrialSite& site,
   return result;
 }
 
-std::vector<Errors> driveAllPatterns(Methods& methods, const TrialSite& site,
-                                     const std::vector<Sequence>& sequences,
-                                     const std::vector<int>& executions) {
-  std::vector<Errors> result(executions.size(), Errors(methods.size()));
-  Drive drive(methods, site);
+std::vector<MethodErrors> driveAllPatterns(Methods& methods, const TrialSite& site,
+                                           const std::vector<Sequence>& sequences,
+                                           const std::vector<int>& executions) {
+  std::vector<MethodErrors> result(executions.size(), MethodErrors(methods.size()));
+  TrialDrive drive(methods, site);
   for (int64_t repetition = 0; repetition < site.repetitions; ++repetition) {
     for (const Sequence& sequence : sequences) {
       methods.reset();
@@ -126,11 +126,12 @@ std::vector<Errors> driveAllPatterns(Methods& methods, const TrialSite& site,
   return result;
 }
 
-std::vector<Errors> driveDevelopment(Methods& methods, const TrialSite& site,
-                                     const std::vector<Sequence>& sequences, size_t executions) {
-  std::vector<Errors> result(executions, Errors(methods.size()));
+std::vector<MethodErrors> driveDevelopment(Methods& methods, const TrialSite& site,
+                                           const std::vector<Sequence>& sequences,
+                                           size_t executions) {
+  std::vector<MethodErrors> result(executions, MethodErrors(methods.size()));
   const Sequence& sequence = sequences.front();
-  Drive drive(methods, site);
+  TrialDrive drive(methods, site);
   for (int64_t repetition = 0; repetition < site.repetitions; ++repetition) {
     methods.reset();
     for (size_t j = 0; j < executions; ++j) {
@@ -146,10 +147,11 @@ std::vector<Errors> driveDevelopment(Methods& methods, const TrialSite& site,
   return result;
 }
 
-Errors driveLong(Methods& methods, const TrialSite& site, const std::vector<Sequence>& sequences) {
-  Errors result(methods.size());
+MethodErrors driveLong(Methods& methods, const TrialSite& site,
+                       const std::vector<Sequence>& sequences) {
+  MethodErrors result(methods.size());
   const Sequence order = joined(sequences);
-  Drive drive(methods, site);
+  TrialDrive drive(methods, site);
   for (int64_t repetition = 0; repetition < site.repetitions; ++repetition) {
     methods.reset();
     for (size_t j = 0; j < kSettling + kLongRun; ++j) {
@@ -166,7 +168,7 @@ std::vector<std::vector<double>> driveDrift(Methods& methods, const TrialSite& s
                                             size_t executions) {
   std::vector<std::vector<double>> sums(methods.size(), std::vector<double>(executions + 1, 0.0));
   const Sequence order = joined(sequences);
-  Drive drive(methods, site);
+  TrialDrive drive(methods, site);
   const auto note = [&](size_t j) {
     for (size_t i = 0; i < methods.size(); ++i)
       sums[i][j] += std::abs(methods.predictEnd(i, watched).y);

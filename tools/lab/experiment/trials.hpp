@@ -55,7 +55,7 @@ class Executions {
 };
 
 /// One surface of an experiment. What is tested was never averaged nor driven before.
-struct Ground {
+struct TrialGround {
   std::string surface;
   PatternSet averaged;               ///< IP_S, of one half of the recordings
   std::vector<Pose2> averaged_ends;  ///< of it, by pattern
@@ -71,8 +71,8 @@ ExecutionEnd executionEnd(const learner::ConstTrajectory& trajectory);
  * have one local mean, so both halves know it. Throws recordings::RecordingError with one line if a
  * pattern has fewer than eight fair executions or there is one surface only. What is no fair
  * execution is left out; a line for each goes to `notes`, and one if recordings are few. */
-std::vector<Ground> groundsOf(const recordings::PatternRecordings& recorded,
-                              std::vector<std::string>& notes);
+std::vector<TrialGround> groundsOf(const recordings::PatternRecordings& recorded,
+                                   std::vector<std::string>& notes);
 
 /// One surface of a world: the vehicle on it.
 struct WorldSurface {
@@ -128,7 +128,7 @@ inline uint64_t seedOf(std::initializer_list<uint64_t> numbers) {
 }
 
 /// What a method has driven before a transition from surface A to surface B.
-enum class History {
+enum class TrialHistory {
   kNone,        ///< nothing: the rule as it begins, with IP_A (the paper's protocol)
   kHome,        ///< A
   kUnmet,       ///< all surfaces but B, A last; on unchanged ground (A = B) all others
@@ -139,7 +139,7 @@ enum class History {
 /// Without a rule it is the omniscient one.
 struct Method {
   std::string rule;
-  History history = History::kNone;
+  TrialHistory history = TrialHistory::kNone;
 };
 
 /// The right set from the beginning, learning off: column d of the paper's Table I.
@@ -155,11 +155,11 @@ std::vector<std::string> defaultMethods();
 
 /// Surfaces of an excitation run from A to B, in the order in which it drives them; the others are
 /// shuffled, A is the last one.
-std::vector<size_t> excitationOrder(History history, size_t surfaces, size_t from, size_t to,
+std::vector<size_t> excitationOrder(TrialHistory history, size_t surfaces, size_t from, size_t to,
                                     std::mt19937_64& random);
 
 /// An excitation run: so many executions of random patterns on each of its surfaces.
-struct Excitation {
+struct ExcitationRun {
   int64_t executions = 200;
   uint64_t seed = 1;
 };
@@ -172,11 +172,12 @@ std::vector<std::string> learnerNames();
 class Methods {
  public:
   Methods(const std::vector<std::string>& names, const learner::RuleConfig& config,
-          const std::vector<Ground>& grounds, size_t from, size_t to, const Excitation& excitation);
+          const std::vector<TrialGround>& grounds, size_t from, size_t to,
+          const ExcitationRun& excitation);
   /// The same with rivals that were tuned for this transition before.
   Methods(const std::vector<std::string>& names, const learner::RuleConfig& config,
-          const std::vector<Ground>& grounds, size_t from, size_t to, const Excitation& excitation,
-          const Rivals& rivals);
+          const std::vector<TrialGround>& grounds, size_t from, size_t to,
+          const ExcitationRun& excitation, const Rivals& rivals);
 
   size_t size() const { return all_.size(); }
   /// All methods as they were before the transition; rules of the learner allocate nothing.
@@ -279,9 +280,9 @@ using Sequence = std::vector<size_t>;
 std::vector<Sequence> sequencesFor(const PatternSet& set);
 
 /// Errors of all rules: per driven metre and per radian turned.
-struct Errors {
-  explicit Errors(size_t rules = 0) : position(rules), orientation(rules) {}
-  void addRun(const Errors& run) {
+struct MethodErrors {
+  explicit MethodErrors(size_t rules = 0) : position(rules), orientation(rules) {}
+  void addRun(const MethodErrors& run) {
     position.addRun(run.position);
     orientation.addRun(run.orientation);
   }
@@ -291,8 +292,8 @@ struct Errors {
 
 /// Where trials happen: the surface left behind, the one that is driven on, and how often.
 struct TrialSite {
-  const Ground& from;
-  const Ground& to;
+  const TrialGround& from;
+  const TrialGround& to;
   bool change_inside = false;  ///< the first execution drives its first half on `from`
   int64_t repetitions = 0;
   uint64_t seed = 0;
@@ -300,7 +301,7 @@ struct TrialSite {
 
 /// Errors over the test sequences and how they are distributed, by rule.
 struct SequenceErrors {
-  Errors errors;
+  MethodErrors errors;
   std::vector<Histogram> position;     ///< of single executions, per metre of each
   std::vector<Histogram> orientation;  ///< per radian
 
@@ -321,17 +322,19 @@ SequenceErrors driveSequences(Methods& methods, const TrialSite& site,
 
 /// Errors over ALL patterns on fresh recordings, after each of some numbers of executions of a
 /// sequence continued (ascending).
-std::vector<Errors> driveAllPatterns(Methods& methods, const TrialSite& site,
-                                     const std::vector<Sequence>& sequences,
-                                     const std::vector<int>& executions);
+std::vector<MethodErrors> driveAllPatterns(Methods& methods, const TrialSite& site,
+                                           const std::vector<Sequence>& sequences,
+                                           const std::vector<int>& executions);
 
 /// Errors of each of the first executions of the first sequence continued, without a reset.
-std::vector<Errors> driveDevelopment(Methods& methods, const TrialSite& site,
-                                     const std::vector<Sequence>& sequences, size_t executions);
+std::vector<MethodErrors> driveDevelopment(Methods& methods, const TrialSite& site,
+                                           const std::vector<Sequence>& sequences,
+                                           size_t executions);
 
 /// Errors in the long run: the test sequences again and again, random patterns if there are none,
 /// without a reset; the first executions do not count. A repetition is one such drive.
-Errors driveLong(Methods& methods, const TrialSite& site, const std::vector<Sequence>& sequences);
+MethodErrors driveLong(Methods& methods, const TrialSite& site,
+                       const std::vector<Sequence>& sequences);
 
 /// How wide a pattern that is never executed is predicted, over its shipped width (sideways reach
 /// of its end), before and after each execution of the test sequences on unchanged ground; by rule,

@@ -85,7 +85,7 @@ std::vector<Drive> readDrives(const std::vector<std::string>& paths, InputFile::
 }
 
 /// Where the files are; a model that an earlier run left is not this one's.
-void sayWhere(const std::string& folder, const Finding& finding) {
+void sayWhere(const std::string& folder, const GapFinding& finding) {
   say("Report: " + folder + "/report.html");
   if (hasNewModel(finding)) {
     say("New model, not applied by itself: " + folder + "/model.yaml");
@@ -129,7 +129,7 @@ GapTask taskOf(const FindOptions& options, std::vector<InputFile>& inputs) {
 int find(const FindOptions& options) {
   std::vector<InputFile> inputs;
   const GapTask task = taskOf(options, inputs);
-  const Finding finding = findGap(task, say);
+  const GapFinding finding = findGap(task, say);
   OutputFolder folder(options.out);
   writeFinding(folder.path(), finding, inputs);
   folder.commit();

@@ -249,8 +249,8 @@ struct RepeatedParameter {
 /// What several logs of one vehicle say, each alone and all together.
 struct Repetition {
   std::vector<std::string> logs;
-  std::vector<Finding> alone;
-  Finding together;
+  std::vector<GapFinding> alone;
+  GapFinding together;
   std::vector<RepeatedParameter> parameters;  ///< none if all together cannot tell
   double needed = 0.0;                        ///< [standard errors] that no chance explains
 

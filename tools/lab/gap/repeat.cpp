@@ -15,7 +15,7 @@
 namespace tread::gap {
 namespace {
 
-std::vector<std::string> namesOf(const Finding& finding) {
+std::vector<std::string> namesOf(const GapFinding& finding) {
   std::vector<std::string> names;
   for (const FoundEffect& effect : finding.identified.effects)
     if (isShown(effect)) names.push_back(effect.name);
@@ -98,12 +98,12 @@ bool Repetition::differs() const {
 size_t Repetition::logsThatName(const std::string& effect) const {
   return static_cast<size_t>(std::count_if(
       alone.begin(), alone.end(),
-      [&effect](const Finding& finding) { return contains(namesOf(finding), effect); }));
+      [&effect](const GapFinding& finding) { return contains(namesOf(finding), effect); }));
 }
 
 std::vector<std::string> Repetition::names() const {
   std::set<std::string> all;
-  for (const Finding& finding : alone)
+  for (const GapFinding& finding : alone)
     for (const std::string& name : namesOf(finding)) all.insert(name);
   for (const std::string& name : namesOf(together)) all.insert(name);
   return {all.begin(), all.end()};
@@ -134,7 +134,7 @@ Repetition repeatLogs(const GapTask& task, const Progress& say) {
     one.log_notes = drive.notes;
     repetition.logs.push_back(drive.name);
     repetition.alone.push_back(findGap(one, silent));
-    const Finding& finding = repetition.alone.back();
+    const GapFinding& finding = repetition.alone.back();
     say(drive.name + ": " + verdictName(finding.verdict) +
         (finding.reason.empty() ? "" : ", " + finding.reason) +
         (namesOf(finding).empty() ? "" : ": " + joined(namesOf(finding))));

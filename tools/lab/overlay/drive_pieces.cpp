@@ -68,7 +68,7 @@ std::vector<Pose2> posesOf(const std::vector<MotionSample>& motion, const Measur
 
 void addPieces(const gap::Drive& drive, const gap::Segment& segment,
                const std::vector<ModelDocument>& models, double length,
-               std::vector<Piece>& pieces) {
+               std::vector<ComparedPiece>& pieces) {
   const auto samples = static_cast<size_t>(std::round(length / kSample)) + 1;
   const std::vector<MotionSample> measured = measuredIn(segment);
   const gap::SegmentPlan plan(drive, segment, kFine);
@@ -76,7 +76,7 @@ void addPieces(const gap::Drive& drive, const gap::Segment& segment,
   for (const ModelDocument& model : models) motions.push_back(plan.simulate(model.vehicle));
   for (double begin = segment.begin() + kLeadIn; begin + length < segment.end; begin += length) {
     if (!isCovered(measured, begin - kLeadIn, begin + length)) continue;
-    Piece piece{begin, posesOf(measured, {}, begin, samples), {}};
+    ComparedPiece piece{begin, posesOf(measured, {}, begin, samples), {}};
     if (!moves(piece.measured)) continue;
     for (size_t m = 0; m < models.size(); ++m)
       piece.predicted.push_back(posesOf(motions[m], models[m].measurement, begin, samples));
@@ -117,7 +117,8 @@ Style styleOf(const std::vector<std::string>& names, size_t model) {
 
 const Style kMeasured{report::kBlack, 4.0, false, "measured"};
 
-void drawPiece(Picture& page, Box box, const Piece& piece, const std::vector<std::string>& names) {
+void drawPiece(Picture& page, Box box, const ComparedPiece& piece,
+               const std::vector<std::string>& names) {
   Points all = pointsOf(piece.measured);
   for (const auto& poses : piece.predicted)
     for (const Pose2& pose : poses) all.push_back(pose.position());
@@ -147,14 +148,14 @@ void drawPiece(Picture& page, Box box, const Piece& piece, const std::vector<std
 }
 
 /// Median error over the horizon; `yaw` chooses which.
-void drawErrors(Picture& page, Box box, const std::vector<Piece>& pieces,
+void drawErrors(Picture& page, Box box, const std::vector<ComparedPiece>& pieces,
                 const std::vector<std::string>& names, bool yaw) {
   const size_t samples = pieces.front().measured.size();
   std::vector<Points> curves(names.size());
   double highest = 0.0;
   for (size_t m = 0; m < names.size(); ++m)
     for (size_t i = 0; i < samples; ++i) {
-      const Errors errors = medianErrors(pieces, m, i);
+      const MedianErrors errors = medianErrors(pieces, m, i);
       const double value = yaw ? errors.yaw * kDegrees : errors.position;
       curves[m].emplace_back(kSample * static_cast<double>(i), value);
       highest = std::max(highest, value);
@@ -187,32 +188,32 @@ gap::Drive readLoggedDrive(const std::vector<std::string>& logs, std::string& pr
   return drive;
 }
 
-double Piece::positionError(size_t model, size_t sample) const {
+double ComparedPiece::positionError(size_t model, size_t sample) const {
   const Pose2 &a = measured[sample], &b = predicted[model][sample];
   return std::hypot(b.x - a.x, b.y - a.y);
 }
 
-double Piece::yawError(size_t model, size_t sample) const {
+double ComparedPiece::yawError(size_t model, size_t sample) const {
   return std::abs(predicted[model][sample].yaw - measured[sample].yaw);
 }
 
-std::vector<Piece> replay(const gap::Drive& drive, const std::vector<ModelDocument>& models,
-                          double length) {
+std::vector<ComparedPiece> replay(const gap::Drive& drive, const std::vector<ModelDocument>& models,
+                                  double length) {
   for (const ModelDocument& model : models)
     if (model.vehicle.kind != drive.kind)
       throw std::runtime_error(
           "model " + model.vehicle.name +
           " takes another kind of command than the log has (power or track speed); give a model of "
           "the same vehicle");
-  std::vector<Piece> pieces;
+  std::vector<ComparedPiece> pieces;
   for (const gap::Segment& segment : drive.segments)
     addPieces(drive, segment, models, length, pieces);
   return pieces;
 }
 
-Errors medianErrors(const std::vector<Piece>& pieces, size_t model, size_t sample) {
+MedianErrors medianErrors(const std::vector<ComparedPiece>& pieces, size_t model, size_t sample) {
   std::vector<double> position, yaw;
-  for (const Piece& piece : pieces) {
+  for (const ComparedPiece& piece : pieces) {
     position.push_back(piece.positionError(model, sample));
     yaw.push_back(piece.yawError(model, sample));
   }
@@ -220,7 +221,8 @@ Errors medianErrors(const std::vector<Piece>& pieces, size_t model, size_t sampl
 }
 
 void drawOverlay(const std::string& path, const std::string& title,
-                 const std::vector<Piece>& pieces, const std::vector<std::string>& model_names) {
+                 const std::vector<ComparedPiece>& pieces,
+                 const std::vector<std::string>& model_names) {
   constexpr size_t kShown = kColumns * kRows;
   const double left = kColumns * (kSide + 50.0);
   Picture page(static_cast<int>(left + 400.0), static_cast<int>(kRows * (kSide + 70.0) + 60.0),

@@ -21,7 +21,7 @@ inline constexpr double kSample = 0.1;  ///< [s] between the poses of a piece
 
 /// A piece of a drive: what was measured, and what models make of the same commands from the
 /// measured pose at its beginning on. Poses relative to that one, at 0, kSample, 2 kSample, ...
-struct Piece {
+struct ComparedPiece {
   double begin = 0.0;  ///< [s] of the drive
   std::vector<Pose2> measured;
   std::vector<std::vector<Pose2>> predicted;  ///< by model
@@ -36,20 +36,21 @@ struct Piece {
  * way; it knows slopes and battery as the log does, and its INS part is between it and what is
  * compared.
  * Throws std::runtime_error if the models take another kind of command than was given. */
-std::vector<Piece> replay(const gap::Drive& drive, const std::vector<ModelDocument>& models,
-                          double length);
+std::vector<ComparedPiece> replay(const gap::Drive& drive, const std::vector<ModelDocument>& models,
+                                  double length);
 
 /// Median over the pieces of the errors of a model at a sample: [m] and [rad].
-struct Errors {
+struct MedianErrors {
   double position = 0.0;
   double yaw = 0.0;
 };
-Errors medianErrors(const std::vector<Piece>& pieces, size_t model, size_t sample);
+MedianErrors medianErrors(const std::vector<ComparedPiece>& pieces, size_t model, size_t sample);
 
 /// Draws six pieces, evenly chosen over the drive, as measured and by model, and how the models'
 /// median errors grow.
 /** Throws std::runtime_error with one clear line if the file cannot be written. */
 void drawOverlay(const std::string& path, const std::string& title,
-                 const std::vector<Piece>& pieces, const std::vector<std::string>& model_names);
+                 const std::vector<ComparedPiece>& pieces,
+                 const std::vector<std::string>& model_names);
 
 }  // namespace tread::overlay

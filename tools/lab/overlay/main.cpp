@@ -36,10 +36,11 @@ void describe(CLI::App& app, Arguments& arguments) {
   app.add_option("--title", arguments.title, "of the picture");
 }
 
-void tell(const std::string& file, const std::vector<Piece>& pieces, size_t model, double length) {
+void tell(const std::string& file, const std::vector<ComparedPiece>& pieces, size_t model,
+          double length) {
   for (const double horizon : std::set<double>{2.0, length}) {
     if (horizon > length) continue;
-    const Errors errors =
+    const MedianErrors errors =
         medianErrors(pieces, model, static_cast<size_t>(std::round(horizon / kSample)));
     std::printf("%s: after %g s %.3f m, %.2f deg\n", file.c_str(), horizon, errors.position,
                 errors.yaw * 180.0 / kPi);
@@ -57,7 +58,7 @@ int run(const Arguments& arguments) {
     const size_t slash = file.rfind('/');
     names.push_back(slash == std::string::npos ? file : file.substr(slash + 1));
   }
-  const std::vector<Piece> pieces = replay(drive, models, arguments.length);
+  const std::vector<ComparedPiece> pieces = replay(drive, models, arguments.length);
   if (pieces.empty())
     throw std::runtime_error(arguments.logs.front() + ": no " + std::to_string(arguments.length) +
                              " s of driving with INS in one piece; try a smaller --length");

@@ -12,14 +12,14 @@ namespace {
 constexpr double kMostReach = 1e3;  // [m]
 
 /// The poses of a primitive that moves begin behind its start.
-void addStart(const PrimitiveFile& file, Primitive& primitive) {
+void addStart(const PrimitiveFile& file, LatticePrimitive& primitive) {
   const Pose2 start{0.0, 0.0, file.headings[static_cast<size_t>(primitive.start_bin)]};
   const Pose2& first = primitive.poses.front();
   if (std::hypot(first.x, first.y) > 1e-4 || std::abs(wrapAngle(first.yaw - start.yaw)) > 1e-4)
     primitive.poses.insert(primitive.poses.begin(), start);
 }
 
-Primitive readPrimitive(ConfigReader& reader, const PrimitiveFile& file) {
+LatticePrimitive readPrimitive(ConfigReader& reader, const PrimitiveFile& file) {
   const Range bins{0.0, static_cast<double>(file.headings.size()) - 1.0};
   int64_t id = 0;
   int64_t start = 0;
@@ -30,7 +30,7 @@ Primitive readPrimitive(ConfigReader& reader, const PrimitiveFile& file) {
   std::vector<std::vector<double>> poses;
   reader.table("poses", poses, 3, {-kMostReach, kMostReach}, "m, m, rad", true);
   if (poses.empty()) throw reader.error("poses", "none are there");
-  Primitive primitive;
+  LatticePrimitive primitive;
   primitive.id = static_cast<int>(id);
   primitive.start_bin = static_cast<int>(start);
   primitive.end_bin = static_cast<int>(end);

@@ -112,7 +112,7 @@ std::vector<PlanQuery> randomQueries(const Grid& grid, const Pose2& T_map_grid,
                                      const std::function<bool(const Pose2&)>& is_free);
 
 /// One motion primitive of a lattice planner.
-struct Primitive {
+struct LatticePrimitive {
   int id = 0;         ///< unique among those of a start bin only
   int start_bin = 0;  ///< heading bin in which it begins
   int dx = 0;         ///< [cells] to where it ends
@@ -127,7 +127,7 @@ struct PrimitiveFile {
   std::string name;              ///< the file that it was read from
   double resolution = 0.025;     ///< [m] side of a cell
   std::vector<double> headings;  ///< [rad] 0..2 pi, by bin, rising
-  std::vector<Primitive> primitives;
+  std::vector<LatticePrimitive> primitives;
 };
 
 /// Reads SBPL's motion primitives (.mprim), with or without stated angles.
@@ -142,7 +142,7 @@ PrimitiveFile parsePrimitives(std::string text, const std::string& name);
 PrimitiveFile readLattice(const std::string& path);
 
 /// What is wrong with where a primitive begins and ends; empty if nothing is.
-std::string endsProblem(const Primitive& primitive, const PrimitiveFile& file);
+std::string endsProblem(const LatticePrimitive& primitive, const PrimitiveFile& file);
 
 /// The bin whose heading is nearest to an angle [rad].
 int nearestBin(const std::vector<double>& headings, double yaw);

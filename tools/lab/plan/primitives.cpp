@@ -26,7 +26,7 @@ double seconds(double length, double turn, const PrimitivePace& pace) {
 }
 
 /// Poses from the start pose on in its frame, the start itself first.
-std::vector<Pose2> fromStart(const Primitive& primitive, double heading) {
+std::vector<Pose2> fromStart(const LatticePrimitive& primitive, double heading) {
   const Pose2 T_map_start{0.0, 0.0, heading};
   std::vector<Pose2> poses{{}};
   for (const Pose2& T_map_body : primitive.poses) {
@@ -53,7 +53,7 @@ int cellOf(double from_corner, double resolution) {
   return static_cast<int>(std::floor(from_corner / resolution));
 }
 
-std::vector<CellIndex> passedCells(const Primitive& primitive, double resolution) {
+std::vector<CellIndex> passedCells(const LatticePrimitive& primitive, double resolution) {
   std::vector<CellIndex> cells;
   for (const Pose2& pose : primitive.poses) {
     const CellIndex cell{cellOf(pose.x + resolution / 2.0, resolution),
@@ -122,9 +122,9 @@ bool isNear(const Pose2& pose, double x, double y, double resolution) {
   return std::abs(pose.x - x) <= reach && std::abs(pose.y - y) <= reach;
 }
 
-Primitive readPrimitive(Tokenizer& tokens, const PrimitiveFile& file) {
+LatticePrimitive readPrimitive(Tokenizer& tokens, const PrimitiveFile& file) {
   const int bins = static_cast<int>(file.headings.size());
-  Primitive primitive;
+  LatticePrimitive primitive;
   primitive.id = readInt(tokens, "primID", 0, kMostPrimitives);
   primitive.start_bin = readInt(tokens, "startangle_c", 0, bins - 1);
   primitive.dx = readInt(tokens, "endpose_c", -kFarthest, kFarthest);
@@ -148,7 +148,7 @@ Primitive readPrimitive(Tokenizer& tokens, const PrimitiveFile& file) {
 
 std::vector<SearchPrimitive> headingFree(const PrimitiveFile& file, const PrimitivePace& pace) {
   std::vector<SearchPrimitive> primitives;
-  for (const Primitive& read : file.primitives) {
+  for (const LatticePrimitive& read : file.primitives) {
     if (read.start_bin != 0) continue;
     SearchPrimitive primitive;
     primitive.id = static_cast<int>(primitives.size());
@@ -169,7 +169,7 @@ std::vector<SearchPrimitive> headingFree(const PrimitiveFile& file, const Primit
 std::vector<SearchPrimitive> onLattice(const PrimitiveFile& file, const PrimitivePace& pace) {
   std::vector<SearchPrimitive> primitives;
   for (int bin = 0; bin < static_cast<int>(file.headings.size()); ++bin) {
-    for (const Primitive& read : file.primitives) {
+    for (const LatticePrimitive& read : file.primitives) {
       if (read.start_bin != bin) continue;
       const double start = file.headings[static_cast<size_t>(bin)];
       const double end = file.headings[static_cast<size_t>(read.end_bin)];
@@ -191,7 +191,7 @@ std::vector<SearchPrimitive> onLattice(const PrimitiveFile& file, const Primitiv
   return primitives;
 }
 
-std::string endsProblem(const Primitive& primitive, const PrimitiveFile& file) {
+std::string endsProblem(const LatticePrimitive& primitive, const PrimitiveFile& file) {
   const double cell = file.resolution;
   const Pose2& first = primitive.poses.front();
   if (!isNear(first, 0.0, 0.0, cell) || nearestBin(file.headings, first.yaw) != primitive.start_bin)

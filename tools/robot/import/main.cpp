@@ -207,7 +207,7 @@ Reading readDrive(const Arguments& arguments, Session& session) {
 /// Messages as they are, not a drive made of samples.
 int takeMcap(const Arguments& arguments) {
   LogWriter writer(arguments.log);
-  const mcap::LogCounts counts = mcap::writeLog(arguments.input, writer);
+  const mcap::McapCounts counts = mcap::writeLog(arguments.input, writer);
   writer.close();
   for (const auto& [what, count] : counts.left_out)
     std::printf("left out: %lld of %s\n", static_cast<long long>(count), what.c_str());
@@ -229,7 +229,7 @@ int writeLog(const Arguments& arguments) {
   Session session;
   const Reading reading = readDrive(arguments, session);
   const RecordedDrive& recording = reading.drive;
-  LogCounts counts;
+  ImportCounts counts;
   const auto events = makeLog(recording, session, arguments.format, arguments.layout, counts);
   LogWriter writer(arguments.log);
   for (const LogEvent& event : events)

@@ -4,7 +4,7 @@
 
 int main(int argc, char** argv) {
   using namespace tread::operators;
-  ArmRequest request;
+  ArmOptions request;
   bool disarm = false;
   const auto addOptions = [&](CLI::App& app) {
     auto* off = app.add_flag("--disarm", disarm, "take the permission back");

@@ -90,7 +90,7 @@ void sendArm(Bus& bus, const Requester& requester, bool arm, int64_t utime, int6
   bus.publish(kArm, message);
 }
 
-ArmCall::ArmCall(Bus& bus, const Requester& requester, const ArmRequest& request, double patience)
+ArmCall::ArmCall(Bus& bus, const Requester& requester, const ArmOptions& request, double patience)
     : PermissionCall(
           bus, requester.operator_name, patience,
           {[&bus, requester, arm = request.arm](int64_t utime, int64_t seq) {

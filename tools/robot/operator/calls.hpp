@@ -105,7 +105,7 @@ class PermissionCall : public Call {
 };
 
 /// What tread-arm is asked for.
-struct ArmRequest {
+struct ArmOptions {
   bool arm = true;           ///< false: disarm
   bool hold = false;         ///< stay once armed: the robot may drive only as long as this runs
   std::string hand_over_to;  ///< name of the operator who takes over; empty = nobody
@@ -114,7 +114,7 @@ struct ArmRequest {
 /// Arms or disarms, and holds the robot for its operator meanwhile.
 class ArmCall : public PermissionCall {
  public:
-  ArmCall(Bus& bus, const Requester& requester, const ArmRequest& request, double patience);
+  ArmCall(Bus& bus, const Requester& requester, const ArmOptions& request, double patience);
 
   CallResult step(int64_t utime) override;
   std::string describe(int64_t utime) const override;
@@ -130,7 +130,7 @@ class ArmCall : public PermissionCall {
   std::string otherHolder() const;
 
   Requester requester_;
-  ArmRequest request_;
+  ArmOptions request_;
   HolderWatch holder_;
   std::optional<int64_t> began_;  ///< [us]
   bool waits_ = false;            ///< to be handed over a robot that it is to hold

@@ -102,7 +102,7 @@ std::string OperatorConsole::take(const std::string& text, uint64_t page, int64_
     if (op == "arm") {
       if (!runs(kArming))
         start(kArming,
-              std::make_unique<ArmCall>(bus_, requester_, ArmRequest{true, true, ""}, kPatience),
+              std::make_unique<ArmCall>(bus_, requester_, ArmOptions{true, true, ""}, kPatience),
               true);
     } else if (op == "goal") {
       const GoalRequest request = goalFrom(json);
@@ -145,7 +145,7 @@ bool OperatorConsole::takeStop(const std::string& op, int64_t utime) {
     letGo(utime, "disarmed");
     if (!runs(kDisarming))
       start(kDisarming,
-            std::make_unique<ArmCall>(bus_, requester_, ArmRequest{false, false, ""}, kPatience),
+            std::make_unique<ArmCall>(bus_, requester_, ArmOptions{false, false, ""}, kPatience),
             false);
   } else {
     return false;

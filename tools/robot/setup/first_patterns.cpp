@@ -30,11 +30,11 @@ const std::string kOperator = "setup";
 
 /// Arms for the setup; throws std::runtime_error where the bridge does not. The call listens to the
 /// bus: keep it as long as that is handled.
-std::unique_ptr<operators::ArmCall> arm(RunningRobot& robot, const std::string& why,
+std::unique_ptr<operators::ArmCall> arm(RobotSession& robot, const std::string& why,
                                         const std::function<void()>& meanwhile) {
   Bus& bus = robot.bus();
   auto call = std::make_unique<operators::ArmCall>(
-      bus, operators::Requester{kOperator, why, kOperator}, operators::ArmRequest{}, 15.0);
+      bus, operators::Requester{kOperator, why, kOperator}, operators::ArmOptions{}, 15.0);
   operators::CallResult result = operators::CallResult::kPending;
   while (result == operators::CallResult::kPending) {
     robot.pass(kStep);
@@ -47,7 +47,7 @@ std::unique_ptr<operators::ArmCall> arm(RunningRobot& robot, const std::string& 
 }
 
 /// Where the INS says that it is.
-Pose2 presentPose(RunningRobot& robot, Latest<ins_t>& ins) {
+Pose2 presentPose(RobotSession& robot, Latest<ins_t>& ins) {
   for (int i = 0; i < 400; ++i) {
     if (ins.any() && ins.age(robot.bus().now()) < 500'000)
       if (const auto pose = planarPose(ins.message())) return *pose;

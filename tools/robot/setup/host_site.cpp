@@ -82,7 +82,7 @@ std::vector<std::string> neighbours() {
 }
 
 /// tread-launch and what it has started, and a bus beside them.
-class LaunchedRobot : public RunningRobot {
+class LaunchedRobot : public RobotSession {
  public:
   LaunchedRobot(const std::string& file, const std::string& folder, const HostOptions& options,
                 const std::atomic<bool>& interrupted)
@@ -180,7 +180,7 @@ void HostSite::pass(int64_t duration) {
   }
 }
 
-std::unique_ptr<RunningRobot> HostSite::start(const std::string& folder, Processes which) {
+std::unique_ptr<RobotSession> HostSite::start(const std::string& folder, Processes which) {
   const char* file = which == Processes::kAll ? "/robot.yaml" : "/recording.yaml";
   return std::make_unique<LaunchedRobot>(options_.launch_folder + file,
                                          fs::absolute(folder).lexically_normal().string(), options_,

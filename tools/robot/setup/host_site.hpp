@@ -33,7 +33,7 @@ class HostSite : public Site {
   std::unique_ptr<Link> open(const std::string& address) override;
   int64_t now() override;
   void pass(int64_t duration) override;
-  std::unique_ptr<RunningRobot> start(const std::string& folder, Processes which) override;
+  std::unique_ptr<RobotSession> start(const std::string& folder, Processes which) override;
 
  private:
   HostOptions options_;

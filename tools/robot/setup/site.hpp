@@ -13,9 +13,9 @@
 namespace tread::setup {
 
 /// The robot's processes, running from its folder until this is gone.
-class RunningRobot {
+class RobotSession {
  public:
-  virtual ~RunningRobot() = default;
+  virtual ~RobotSession() = default;
   /// Where they are heard and told.
   virtual Bus& bus() = 0;
   /// Lets them run on [us]; messages are handled meanwhile.
@@ -39,7 +39,7 @@ class Site {
   virtual int64_t now() = 0;  ///< [us]
   virtual void pass(int64_t duration) = 0;
   /// Starts the processes of a robot's folder; throws std::runtime_error, one line.
-  virtual std::unique_ptr<RunningRobot> start(const std::string& folder, Processes which) = 0;
+  virtual std::unique_ptr<RobotSession> start(const std::string& folder, Processes which) = 0;
 };
 
 }  // namespace tread::setup

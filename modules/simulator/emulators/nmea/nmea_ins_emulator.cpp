@@ -54,7 +54,7 @@ NmeaInsEmulator::NmeaInsEmulator(const NmeaInsSettings& settings, uint64_t seed)
       map_(settings.origin_latitude, settings.origin_longitude, settings.origin_height),
       random_(seed) {}
 
-NmeaInsEmulator::Fix NmeaInsEmulator::fixOf(const InsSample& sample) const {
+NmeaInsEmulator::Fix NmeaInsEmulator::fixOf(const InsMeasurement& sample) const {
   Fix fix;
   const int64_t milliseconds = (settings_.utc_at_zero + sample.utime + 500) / 1000;
   const std::time_t seconds = milliseconds / 1000;
@@ -73,7 +73,7 @@ NmeaInsEmulator::Fix NmeaInsEmulator::fixOf(const InsSample& sample) const {
   return fix;
 }
 
-void NmeaInsEmulator::add(const InsSample& sample) {
+void NmeaInsEmulator::add(const InsMeasurement& sample) {
   const int64_t n = count_++;
   if (faults_.silent) return;
   const Fix fix = fixOf(sample);
@@ -102,7 +102,7 @@ void NmeaInsEmulator::sayPlace(int64_t n, const Fix& fix) {
   }
 }
 
-void NmeaInsEmulator::sayMotion(int64_t n, const Fix& fix, const InsSample& sample) {
+void NmeaInsEmulator::sayMotion(int64_t n, const Fix& fix, const InsMeasurement& sample) {
   const bool valid = !faults_.no_fix;
   if (due(n, settings_.rates.vtg)) {
     say(valid ? formatted("GPVTG,%.3f,T,,M,%.4f,N,%.4f,K,D", fix.course, fix.speed / kKnot,

@@ -51,15 +51,15 @@ class NmeaInsEmulator final : public InsEmulator {
 
   /// The device takes no commands; bytes to it are ignored.
   void receive(std::string_view /*bytes*/, int64_t /*utime*/) override {}
-  void add(const InsSample& sample) override;
+  void add(const InsMeasurement& sample) override;
   std::string transmit(int64_t utime) override;
   void setFaults(const NmeaInsFaults& faults) { faults_ = faults; }
 
  private:
   struct Fix;
-  Fix fixOf(const InsSample& sample) const;
+  Fix fixOf(const InsMeasurement& sample) const;
   void sayPlace(int64_t n, const Fix& fix);
-  void sayMotion(int64_t n, const Fix& fix, const InsSample& sample);
+  void sayMotion(int64_t n, const Fix& fix, const InsMeasurement& sample);
   void say(const std::string& body);
   double chance();
 

@@ -47,7 +47,7 @@ std::string bestpos(const EarthFix& fix, double geoid, bool valid) {
   return body.str();
 }
 
-std::string inspvax(const InsSample& sample, const EarthFix& fix, double geoid, bool valid) {
+std::string inspvax(const InsMeasurement& sample, const EarthFix& fix, double geoid, bool valid) {
   Bytes body;
   body.put<uint32_t>(valid ? 3 : 1);   // INS_SOLUTION_GOOD, INS_ALIGNING
   body.put<uint32_t>(valid ? 56 : 0);  // INS_RTKFIXED
@@ -66,7 +66,7 @@ std::string inspvax(const InsSample& sample, const EarthFix& fix, double geoid, 
   return body.str();
 }
 
-std::string corrimudata(const InsSample& sample, const EarthFix& fix) {
+std::string corrimudata(const InsMeasurement& sample, const EarthFix& fix) {
   Bytes body;
   const int64_t ms = fix.gps / 1000;
   body.put(static_cast<uint32_t>(ms / kWeek));
@@ -108,7 +108,7 @@ void NovatelEmulator::sendShort(uint16_t id, const EarthFix& fix, const std::str
   send(withCrc(header, body));
 }
 
-void NovatelEmulator::say(const InsSample& sample, const EarthFix& fix, bool valid) {
+void NovatelEmulator::say(const InsMeasurement& sample, const EarthFix& fix, bool valid) {
   const double geoid = map().geoid_separation;
   sendLong(42, fix, bestpos(fix, geoid, valid));
   if (valid) sendShort(813, fix, corrimudata(sample, fix));

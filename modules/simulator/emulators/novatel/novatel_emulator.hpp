@@ -14,7 +14,7 @@ class NovatelEmulator final : public BinaryInsEmulator {
   using BinaryInsEmulator::BinaryInsEmulator;
 
  protected:
-  void say(const InsSample& sample, const EarthFix& fix, bool valid) override;
+  void say(const InsMeasurement& sample, const EarthFix& fix, bool valid) override;
 
  private:
   void sendLong(uint16_t id, const EarthFix& fix, const std::string& body);

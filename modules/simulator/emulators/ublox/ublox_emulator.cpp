@@ -19,7 +19,7 @@ int32_t scaled(double value, double unit) {
   return static_cast<int32_t>(std::llround(value / unit));
 }
 
-std::string navPvt(const InsSample& sample, const EarthFix& fix, double geoid, bool valid) {
+std::string navPvt(const InsMeasurement& sample, const EarthFix& fix, double geoid, bool valid) {
   const std::time_t seconds = fix.utc / 1'000'000;
   std::tm utc{};
   gmtime_r(&seconds, &utc);
@@ -51,7 +51,7 @@ std::string navPvt(const InsSample& sample, const EarthFix& fix, double geoid, b
   return p.str();
 }
 
-std::string navAtt(const InsSample& sample, const EarthFix& fix, bool valid) {
+std::string navAtt(const InsMeasurement& sample, const EarthFix& fix, bool valid) {
   Bytes p;
   p.put(timeOfWeek(fix));
   p.zeros(4);
@@ -81,7 +81,7 @@ std::string navRelposned(const EarthFix& fix, bool valid) {
   return p.str();
 }
 
-std::string esfIns(const InsSample& sample, const EarthFix& fix) {
+std::string esfIns(const InsMeasurement& sample, const EarthFix& fix) {
   Bytes p;
   p.put<uint32_t>(0x3F01);
   p.zeros(4);
@@ -109,7 +109,7 @@ void UbloxEmulator::sendUbx(uint8_t message_class, uint8_t id, const std::string
   send("\xB5\x62" + summed.str() + static_cast<char>(a) + static_cast<char>(b));
 }
 
-void UbloxEmulator::say(const InsSample& sample, const EarthFix& fix, bool valid) {
+void UbloxEmulator::say(const InsMeasurement& sample, const EarthFix& fix, bool valid) {
   sendUbx(0x10, 0x15, esfIns(sample, fix));
   sendUbx(0x01, 0x07, navPvt(sample, fix, map().geoid_separation, valid));
   sendUbx(0x01, 0x05, navAtt(sample, fix, valid));

@@ -14,7 +14,7 @@ class UbloxEmulator final : public BinaryInsEmulator {
   using BinaryInsEmulator::BinaryInsEmulator;
 
  protected:
-  void say(const InsSample& sample, const EarthFix& fix, bool valid) override;
+  void say(const InsMeasurement& sample, const EarthFix& fix, bool valid) override;
 
  private:
   void sendUbx(uint8_t message_class, uint8_t id, const std::string& payload);

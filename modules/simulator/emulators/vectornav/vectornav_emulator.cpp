@@ -25,7 +25,7 @@ uint16_t crc16Of(std::string_view bytes) {
 
 }  // namespace
 
-void VectornavEmulator::say(const InsSample& sample, const EarthFix& fix, bool valid) {
+void VectornavEmulator::say(const InsMeasurement& sample, const EarthFix& fix, bool valid) {
   Bytes m;
   m.put<uint8_t>(0xFA);
   m.put<uint8_t>(0x01 | 0x10 | 0x20);         // common, attitude, INS

@@ -14,7 +14,7 @@ class VectornavEmulator final : public BinaryInsEmulator {
   using BinaryInsEmulator::BinaryInsEmulator;
 
  protected:
-  void say(const InsSample& sample, const EarthFix& fix, bool valid) override;
+  void say(const InsMeasurement& sample, const EarthFix& fix, bool valid) override;
 };
 
 }  // namespace tread::sim

@@ -102,7 +102,7 @@ void putPvt(const EarthFix& fix, MtData& m) {
 
 }  // namespace
 
-void XsensEmulator::say(const InsSample& sample, const EarthFix& fix, bool valid) {
+void XsensEmulator::say(const InsMeasurement& sample, const EarthFix& fix, bool valid) {
   MtData m;
   const std::tm date = calendar(fix.utc);
   m.begin(0x1010, 12);

@@ -15,7 +15,7 @@ class XsensEmulator final : public BinaryInsEmulator {
   using BinaryInsEmulator::BinaryInsEmulator;
 
  protected:
-  void say(const InsSample& sample, const EarthFix& fix, bool valid) override;
+  void say(const InsMeasurement& sample, const EarthFix& fix, bool valid) override;
 
  private:
   int64_t last_pvt_ = -1'000'000;  // [us]

@@ -26,9 +26,10 @@ inline std::vector<recordings::BodyCommand> drawnCommands(int steps, uint64_t se
 }
 
 /// A session of so many steps; executions scatter by `noise` (uniform, relative), a second long.
-inline Session drawnSession(const std::string& name, const std::string& surface,
-                            const DrawnGround& ground, int steps, double noise, uint64_t seed) {
-  Session session;
+inline SampledSession drawnSession(const std::string& name, const std::string& surface,
+                                   const DrawnGround& ground, int steps, double noise,
+                                   uint64_t seed) {
+  SampledSession session;
   session.name = name;
   session.vehicle = "drawn";
   session.surface = surface;

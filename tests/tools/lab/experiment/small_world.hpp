@@ -34,7 +34,7 @@ surfaces:
     spread: {forward: 0.01, yaw: 0.03, crab: 0.01}
 )";
 
-inline std::vector<Ground> groundsOfText(const std::string& text, uint64_t seed = 1) {
+inline std::vector<TrialGround> groundsOfText(const std::string& text, uint64_t seed = 1) {
   std::vector<std::string> notes;
   return groundsOf(record(parseTransitionWorld(text, "small.yaml"), seed), notes);
 }

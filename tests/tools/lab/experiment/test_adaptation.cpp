@@ -12,8 +12,8 @@ namespace tread::adaptation {
 namespace {
 
 /// Ground that differs by its yaw gain; the last session's is far from all others.
-std::vector<Session> drawnSessions(double last_yaw) {
-  std::vector<Session> sessions;
+std::vector<SampledSession> drawnSessions(double last_yaw) {
+  std::vector<SampledSession> sessions;
   const double yaw[] = {0.46, 0.48, 0.5, 0.52, 0.54};
   for (size_t i = 0; i < 5; ++i)
     sessions.push_back(drawnSession("s" + std::to_string(i), i < 3 ? "grass" : "sand",
@@ -29,7 +29,7 @@ Settings few() {
 }
 
 /// Ratio of a rule's error to that of no learning in a session.
-double ratioOf(const Errors& errors, const Settings& settings, LeftOut kind,
+double ratioOf(const AdaptationErrors& errors, const Settings& settings, HeldOut kind,
                const std::string& session, const std::string& rule, size_t k, size_t h, bool yaw) {
   const auto place = [&](const std::string& name) {
     return static_cast<size_t>(std::find(settings.rules.begin(), settings.rules.end(), name) -
@@ -47,14 +47,14 @@ double ratioOf(const Errors& errors, const Settings& settings, LeftOut kind,
 }
 
 TEST_CASE("on ground of another yaw gain every rule becomes better, on known ground none worse") {
-  const std::vector<Session> sessions = drawnSessions(0.3);
+  const std::vector<SampledSession> sessions = drawnSessions(0.3);
   const Settings settings = few();
-  const Errors errors = runAdaptation(sessions, settings, nullptr);
+  const AdaptationErrors errors = runAdaptation(sessions, settings, nullptr);
   for (const std::string& rule : settings.rules) {
     if (rule == kOff) continue;
     CAPTURE(rule);
     const auto far = [&](size_t k, size_t h) {
-      return ratioOf(errors, settings, LeftOut::kSurface, "last", rule, k, h, true);
+      return ratioOf(errors, settings, HeldOut::kSurface, "last", rule, k, h, true);
     };
     // After ten executions; two and ten seconds ahead. The paper's rule scales by single ones.
     const double most = rule == "collective" ? 0.75 : 0.4;
@@ -62,14 +62,14 @@ TEST_CASE("on ground of another yaw gain every rule becomes better, on known gro
     CHECK(far(3, 2) < most);
     if (rule == "collective" || rule == "multi_model_home") continue;
     // The middle of what was known: nothing is to be gained there.
-    CHECK(ratioOf(errors, settings, LeftOut::kSession, "s2", rule, 3, 0, true) < 1.15);
+    CHECK(ratioOf(errors, settings, HeldOut::kSession, "s2", rule, 3, 0, true) < 1.15);
   }
-  CHECK(ratioOf(errors, settings, LeftOut::kSurface, "last", kJudged, 0, 0, true) ==
+  CHECK(ratioOf(errors, settings, HeldOut::kSurface, "last", kJudged, 0, 0, true) ==
         Approx(1.0).margin(1e-6));
 }
 
 TEST_CASE("the same sessions and settings give the same bytes, for any number of threads") {
-  const std::vector<Session> sessions = drawnSessions(0.4);
+  const std::vector<SampledSession> sessions = drawnSessions(0.4);
   Report one, two;
   one.settings = two.settings = few();
   one.settings.starts = two.settings.starts = 3;
@@ -86,7 +86,7 @@ TEST_CASE("the same sessions and settings give the same bytes, for any number of
 
 TEST_CASE("longer predictions are pieces in a chain, and what was not measured is not scored") {
   // Without noise and on ground that the reference knows exactly, the chain ends at the truth.
-  std::vector<Session> sessions;
+  std::vector<SampledSession> sessions;
   for (size_t i = 0; i < 4; ++i)
     sessions.push_back(drawnSession("s" + std::to_string(i), "grass", {}, 12, 0.0, i + 1));
   const size_t cut = sessions[3].pieces[20].begin + 5;
@@ -95,7 +95,7 @@ TEST_CASE("longer predictions are pieces in a chain, and what was not measured i
   Settings settings = few();
   settings.rules = {kOff, kJudged};
   settings.starts = 100;
-  const Errors errors = runAdaptation(sessions, settings, nullptr);
+  const AdaptationErrors errors = runAdaptation(sessions, settings, nullptr);
   REQUIRE(errors.sessions.size() == 4);  // one surface and one vehicle: only sessions are left out
   CHECK(errors.notes.size() == 2);
   for (const SessionErrors& session : errors.sessions)
@@ -113,7 +113,7 @@ TEST_CASE("longer predictions are pieces in a chain, and what was not measured i
 }
 
 TEST_CASE("what cannot be left out and rules that nobody knows are refused in one line") {
-  const std::vector<Session> one{drawnSession("alone", "grass", {}, 12, 0.0, 1)};
+  const std::vector<SampledSession> one{drawnSession("alone", "grass", {}, 12, 0.0, 1)};
   CHECK_THROWS_WITH(runAdaptation(one, few(), nullptr), Catch::Contains("nothing can be left out"));
   Settings settings = few();
   settings.rules = {kOff, "oracle"};
@@ -139,8 +139,8 @@ TEST_CASE("intervals are over sessions") {
 }
 
 /// Errors of two rules in some sessions, the same in all cells.
-Errors drawnErrors(const std::vector<std::pair<double, double>>& off_and_judged) {
-  Errors errors;
+AdaptationErrors drawnErrors(const std::vector<std::pair<double, double>>& off_and_judged) {
+  AdaptationErrors errors;
   for (const auto& [off, judged] : off_and_judged) {
     SessionErrors session;
     session.session = "s" + std::to_string(errors.sessions.size());
@@ -169,8 +169,8 @@ TEST_CASE("better and worse are beyond one standard error over sessions, level i
   CHECK(standing({{1.0, 1.2}, {1.0, 1.1}}).judged == Verdict::kWorse);
   CHECK(standing({{1.0, 0.5}}).judged == Verdict::kUnknown);  // one session says nothing
   const auto lines = summaryOf(drawnErrors({{1.0, 0.8}, {2.0, 1.8}}), rules, 1);
-  const Line& judged = *std::find_if(lines.begin(), lines.end(),
-                                     [](const Line& line) { return line.rule == kJudged; });
+  const SummaryLine& judged = *std::find_if(
+      lines.begin(), lines.end(), [](const SummaryLine& line) { return line.rule == kJudged; });
   CHECK(judged.position.worst == Approx(0.9));
   CHECK(judged.position.worst_session == "s1");
   CHECK(judged.position.error == Approx(1.3));

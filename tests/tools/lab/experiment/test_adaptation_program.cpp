@@ -71,10 +71,10 @@ TEST_CASE("on real drives the default rule is better than no learning and holds 
   settings.starts = 300;
   settings.threads = 2;
   const Recordings found = readRecordings(drive);
-  const Errors errors = runAdaptation(found.sessions, settings, nullptr);
+  const AdaptationErrors errors = runAdaptation(found.sessions, settings, nullptr);
   size_t inside = 0, stated = 0;
   for (const SessionErrors& session : errors.sessions)
-    if (session.kind == LeftOut::kSession)
+    if (session.kind == HeldOut::kSession)
       for (size_t k = 2; k < kExecutions.size(); ++k) {
         inside += session.cells[1][k][0].inside;
         stated += session.cells[1][k][0].stated;
@@ -85,7 +85,7 @@ TEST_CASE("on real drives the default rule is better than no learning and holds 
   CHECK(static_cast<double>(inside) > 0.70 * static_cast<double>(stated));
   CHECK(static_cast<double>(inside) < 0.95 * static_cast<double>(stated));
   size_t judged = 0;
-  for (const Line& line : summaryOf(errors, settings.rules, 1)) {
+  for (const SummaryLine& line : summaryOf(errors, settings.rules, 1)) {
     if (line.sessions < 2 || line.executions < 3) continue;
     CAPTURE(nameOf(line.kind), line.vehicle, line.rule, line.executions, line.horizon);
     if (line.rule == kJudged) {
@@ -97,7 +97,7 @@ TEST_CASE("on real drives the default rule is better than no learning and holds 
     // Measured .00 to .08 better than slip regression in position; in yaw .00 to .13 better, but
     // .03 worse 10 s ahead in a session that was left out.
     if (line.rule == "slip" && line.executions == 3) {
-      const bool known_worse = line.kind == LeftOut::kSession && line.horizon == 10;
+      const bool known_worse = line.kind == HeldOut::kSession && line.horizon == 10;
       CHECK(line.position.difference < 0.01);
       CHECK(line.yaw.difference < (known_worse ? 0.04 : 0.01));
     }

@@ -39,11 +39,11 @@ TEST_CASE("poses are interpolated along the arc, and not across a long silence")
 }
 
 TEST_CASE("pieces follow one another until a pose is missing or jumps") {
-  Session session = drawnSession("one", "grass", {}, 4, 0.0, 3);
+  SampledSession session = drawnSession("one", "grass", {}, 4, 0.0, 3);
   REQUIRE(session.pieces.size() == 12);
   for (size_t i = 0; i + 1 < 12; ++i) CHECK(session.goesOn(i));
   const size_t broken = session.pieces[4].begin + 10;
-  Session gap = session, jump = session;
+  SampledSession gap = session, jump = session;
   gap.segments[0].poses[broken].x = testing::kNan;
   cutPieces(gap);
   CHECK(gap.pieces.size() == 11);
@@ -66,7 +66,7 @@ TEST_CASE("steps that were recorded apart are joined where one went on into the 
       writeDriving(folder, {{"whole", "grass", 6}, {"parts", "grass", 6, 0.5, 3, 5}});
   const Recordings found = readRecordings(path);
   REQUIRE(found.sessions.size() == 2);
-  const Session& whole = found.sessions[0];
+  const SampledSession& whole = found.sessions[0];
   REQUIRE(whole.segments.size() == 1);
   // The truth over ten seconds, across a join: the same as of what was driven.
   const auto commands = drawnCommands(6, 1);
@@ -80,7 +80,7 @@ TEST_CASE("steps that were recorded apart are joined where one went on into the 
   CHECK(distanceBetween(truth, said) < 0.02);
   CHECK(std::abs(truth.yaw - said.yaw) < 0.01);
   // Step 3 is not fit for use, and before step 5 somebody else drove.
-  const Session& parts = found.sessions[1];
+  const SampledSession& parts = found.sessions[1];
   REQUIRE(parts.segments.size() == 2);
   CHECK(parts.segments[0].commands.size() == 4 * 121);
   CHECK(std::isnan(parts.segments[0].poses[2 * 121 + 60].x));
@@ -92,7 +92,7 @@ TEST_CASE("a folder of LCM logs is read, too, each log a session") {
   const std::string folder = writeDriving(drives, {{"one", "gravel", 6}, {"two", "sand", 6}});
   for (const char* name : {"one", "two"}) {
     const recordings::Session session = recordings::readSession(folder + "/sessions.csv", name);
-    recordings::LogCounts counts;
+    recordings::ImportCounts counts;
     LogWriter writer(logs.file(std::string(name) + ".lcmlog"));
     for (const LogEvent& event :
          recordings::makeLog(recordings::readSteps(folder + "/steps/" + name + ".csv", session),
@@ -102,7 +102,7 @@ TEST_CASE("a folder of LCM logs is read, too, each log a session") {
   }
   const Recordings found = readRecordings(logs.file(""));
   REQUIRE(found.sessions.size() == 2);
-  const Session& two = found.sessions[1];
+  const SampledSession& two = found.sessions[1];
   CHECK(two.name == "two");
   CHECK(two.vehicle == "drawn robot");
   CHECK(two.surface == "sand");

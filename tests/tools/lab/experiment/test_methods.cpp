@@ -16,9 +16,9 @@ using namespace testing;
 }  // namespace
 
 TEST_CASE("a method is a rule with a history, the same histories for every rule") {
-  CHECK(methodOf("single")->history == History::kNone);
+  CHECK(methodOf("single")->history == TrialHistory::kNone);
   CHECK(methodOf("multi_model_unmet")->rule == "multi_model");
-  CHECK(methodOf("multi_model_unmet")->history == History::kUnmet);
+  CHECK(methodOf("multi_model_unmet")->history == TrialHistory::kUnmet);
   CHECK(methodOf(kOmniscient)->rule.empty());
   for (const char* none : {"", "off_home", "omniscient_home", "single_", "_home", "magic"})
     CHECK_FALSE(methodOf(none));
@@ -31,27 +31,28 @@ TEST_CASE(
     "an excitation run drives the surfaces of its history, from where the transition starts") {
   std::mt19937_64 random(1);
   using Surfaces = std::vector<size_t>;
-  const auto order = [&](History history, size_t from, size_t to) {
+  const auto order = [&](TrialHistory history, size_t from, size_t to) {
     return excitationOrder(history, 4, from, to, random);
   };
-  CHECK(order(History::kNone, 0, 1).empty());
-  CHECK(order(History::kHome, 0, 1) == Surfaces{0});
+  CHECK(order(TrialHistory::kNone, 0, 1).empty());
+  CHECK(order(TrialHistory::kHome, 0, 1) == Surfaces{0});
   std::set<Surfaces> orders;
   for (int i = 0; i < 50; ++i) {
-    Surfaces unmet = order(History::kUnmet, 0, 1), all = order(History::kRemembered, 0, 1);
+    Surfaces unmet = order(TrialHistory::kUnmet, 0, 1),
+             all = order(TrialHistory::kRemembered, 0, 1);
     orders.insert(all);
     CHECK((unmet == Surfaces{2, 3, 0} || unmet == Surfaces{3, 2, 0}));
     CHECK(all.back() == 0);
     std::sort(all.begin(), all.end());
     CHECK(all == Surfaces{0, 1, 2, 3});
-    CHECK(order(History::kUnmet, 2, 2).size() == 3);
+    CHECK(order(TrialHistory::kUnmet, 2, 2).size() == 3);
   }
   CHECK(orders.size() == 6);
-  CHECK(order(History::kHome, 2, 2) == Surfaces{2});
+  CHECK(order(TrialHistory::kHome, 2, 2) == Surfaces{2});
 }
 
 TEST_CASE("every rule is what it was without a history, and has learned with one") {
-  const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
+  const std::vector<TrialGround> grounds = groundsOfText(kSmallWorld);
   for (const std::string& rule : learnerNames()) {
     if (rule == "off" || rule == "basis") continue;  // one surface teaches no basis
     const std::vector<std::string> names{rule, rule + "_home", rule + "_remembered"};
@@ -73,7 +74,7 @@ TEST_CASE("no recording that is tested was averaged or driven before") {
   recordings::PatternRecordings recorded = record(parseTransitionWorld(kSmallWorld, "small"), 1);
   const Pose2 odd = recorded.surfaces[0].executions[1][0].back();
   std::vector<std::string> notes;
-  const std::vector<Ground> before = groundsOf(recorded, notes);
+  const std::vector<TrialGround> before = groundsOf(recorded, notes);
   CHECK(notes.empty());
   std::set<double> known, tested;
   for (size_t p = 0; p < 3; ++p) {
@@ -88,7 +89,7 @@ TEST_CASE("no recording that is tested was averaged or driven before") {
   // Another recording of the tests changes no average; the neighbours 2 and 3 are tests.
   for (size_t i : {2U, 3U})
     for (Pose2& pose : recorded.surfaces[0].executions[1][i]) pose.x *= 1.01;
-  const std::vector<Ground> after = groundsOf(recorded, notes);
+  const std::vector<TrialGround> after = groundsOf(recorded, notes);
   CHECK(after[0].averaged_ends[1].x == before[0].averaged_ends[1].x);
   CHECK(after[0].tests[1].endOf(0).pose.x != before[0].tests[1].endOf(0).pose.x);
 }
@@ -105,7 +106,7 @@ TEST_CASE("few recordings are told, too few are refused") {
 }
 
 TEST_CASE("a rule that met both surfaces errs less after a change than one that met one") {
-  const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
+  const std::vector<TrialGround> grounds = groundsOfText(kSmallWorld);
   ExperimentSettings settings = smallSettings();
   settings.rules = {"multi_model_remembered", "multi_model_home"};
   for (const TransitionErrors& transition : runExperiment(grounds, settings, {}).transitions) {
@@ -120,7 +121,7 @@ TEST_CASE("collective scaling widens what is never executed, the default rule do
   const std::string straight = "  - {name: straight, commands: [[1, 1, 10]]}\n";
   world.replace(world.find(straight), straight.size(),
                 straight + "  - {name: hard, commands: [[0.5, 1, 10]]}\n");
-  const std::vector<Ground> grounds = groundsOfText(world);
+  const std::vector<TrialGround> grounds = groundsOfText(world);
   ExperimentSettings settings = smallSettings();
   settings.sequences = {{2, 2, 3}, {3, 3, 2}};
   settings.rules = {"collective", "telescoping", "multi_model"};

@@ -67,7 +67,7 @@ TEST_CASE("the printed tables agree with each other but in the cells that are ca
 }
 
 TEST_CASE("numbers of other surfaces are not compared with the paper") {
-  const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
+  const std::vector<TrialGround> grounds = groundsOfText(kSmallWorld);
   ExperimentSettings settings = smallSettings();
   settings.repetitions = 50;
   const Tables tables = tablesOf(runExperiment(grounds, settings, {}), settings, grounds);

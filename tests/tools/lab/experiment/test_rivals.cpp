@@ -149,7 +149,7 @@ TEST_CASE("lagged commands follow the step response of a dead time and a first-o
 }
 
 TEST_CASE("a reference finds the lag and the gains of what was driven") {
-  const Session session = drawnSession("one", "grass", {0.9, 0.6, -0.1}, 40, 0.0, 5);
+  const SampledSession session = drawnSession("one", "grass", {0.9, 0.6, -0.1}, 40, 0.0, 5);
   const TermTable table(session);
   const Reference reference({&table});
   CHECK(reference.lag(0).delay == 0.2);

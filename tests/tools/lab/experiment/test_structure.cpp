@@ -15,7 +15,7 @@ using namespace testing;
 constexpr size_t kOff = 0, kSingle = 1, kCollective = 2, kBest = 4;
 
 ExperimentErrors smallExperiment() {
-  const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
+  const std::vector<TrialGround> grounds = groundsOfText(kSmallWorld);
   return runExperiment(grounds, smallSettings(), {});
 }
 
@@ -24,7 +24,7 @@ ExperimentErrors smallExperiment() {
 TEST_CASE("simple learning errs as none at first and at the pattern that it did not execute yet") {
   for (const TransitionErrors& transition : smallExperiment().transitions)
     for (const size_t execution : {0U, 2U}) {
-      const Errors& errors = transition.development[execution];
+      const MethodErrors& errors = transition.development[execution];
       CHECK(errors.position.error(kSingle).value == errors.position.error(kOff).value);
       CHECK(errors.orientation.error(kSingle).value == errors.orientation.error(kOff).value);
     }
@@ -32,7 +32,7 @@ TEST_CASE("simple learning errs as none at first and at the pattern that it did 
 
 TEST_CASE("b = (2 a + b2) / 3, b2 the error after one update of its own") {
   for (const TransitionErrors& transition : smallExperiment().transitions) {
-    const Errors& all = transition.sequences.errors;
+    const MethodErrors& all = transition.sequences.errors;
     const double a = all.orientation.error(kOff).value;
     const double b2 = transition.development[1].orientation.error(kSingle).value;
     CHECK(all.orientation.error(kSingle).value == Approx((2.0 * a + b2) / 3.0).epsilon(0.03));
@@ -53,7 +53,7 @@ TEST_CASE("who must begin with the old set cannot beat (a + 2 d) / 3, and the ri
 
 TEST_CASE("in the long run smoothing with w = 0.5 costs sqrt(1 + w / (2 - w)) = 1.155") {
   // Errors are lengths: the factor is that of their deviation, when they have no bias.
-  for (const Errors& errors : smallExperiment().unchanged) {
+  for (const MethodErrors& errors : smallExperiment().unchanged) {
     CHECK(errors.orientation.ratio(kSingle, kBest).value ==
           Approx(std::sqrt(1.0 + 0.5 / 1.5)).epsilon(0.02));
     CHECK(errors.position.ratio(kOff, kBest).value == 1.0);
@@ -61,7 +61,7 @@ TEST_CASE("in the long run smoothing with w = 0.5 costs sqrt(1 + w / (2 - w)) = 
 }
 
 TEST_CASE("a change of ground inside a pattern slows learning down, but does not break it") {
-  const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
+  const std::vector<TrialGround> grounds = groundsOfText(kSmallWorld);
   ExperimentSettings settings = smallSettings();
   const ExperimentErrors between = runExperiment(grounds, settings, {});
   settings.change_inside = true;

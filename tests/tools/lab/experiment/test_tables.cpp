@@ -28,8 +28,8 @@ RatioMoments moments(const std::vector<double>& shares) {
   return sums;
 }
 
-Errors errorsOf(const std::vector<double>& shares) {
-  Errors errors(shares.size());
+MethodErrors errorsOf(const std::vector<double>& shares) {
+  MethodErrors errors(shares.size());
   errors.position = moments(shares);
   std::vector<double> turned;
   for (const double share : shares) turned.push_back(2.0 * share);
@@ -37,8 +37,8 @@ Errors errorsOf(const std::vector<double>& shares) {
   return errors;
 }
 
-const std::vector<Ground>& grounds() {
-  static const std::vector<Ground> both = groundsOfText(kSmallWorld);
+const std::vector<TrialGround>& grounds() {
+  static const std::vector<TrialGround> both = groundsOfText(kSmallWorld);
   return both;
 }
 
@@ -52,14 +52,14 @@ ExperimentSettings settings() {
 /// The same errors after any number of executions; the last method states regions.
 FirstExecutions knownFirst() {
   FirstExecutions first(4);
-  for (Errors& errors : first.all_patterns) errors = errorsOf({0.4, 0.2, 0.1, 0.05});
+  for (MethodErrors& errors : first.all_patterns) errors = errorsOf({0.4, 0.2, 0.1, 0.05});
   for (auto& methods : first.regions) methods[3] = {10.0, 9.0};
   return first;
 }
 
 /// From ice to road: without learning 0.4, single 0.2, collective 0.1, the best 0.05.
 ExperimentErrors knownErrors() {
-  const Errors known = errorsOf({0.4, 0.2, 0.1, 0.05});
+  const MethodErrors known = errorsOf({0.4, 0.2, 0.1, 0.05});
   TransitionErrors transition;
   transition.from = 0;
   transition.to = 1;
@@ -133,7 +133,7 @@ TEST_CASE("without single or the omniscient rule the tables that need them are e
   ExperimentSettings alone = settings();
   alone.rules = {"collective", "multi_model"};
   ExperimentErrors errors = knownErrors();
-  const Errors two = errorsOf({0.2, 0.1});
+  const MethodErrors two = errorsOf({0.2, 0.1});
   errors.transitions[0].sequences.errors = two;
   errors.transitions[0].all_patterns = {two, two};
   errors.unchanged = errors.unchanged_sequences = {two, two};

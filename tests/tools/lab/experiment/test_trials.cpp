@@ -17,7 +17,7 @@ using namespace testing;
 using tread::testing::effort;
 
 /// Everything that an experiment puts into files.
-std::string filesOf(const std::vector<Ground>& grounds, const ExperimentSettings& settings) {
+std::string filesOf(const std::vector<TrialGround>& grounds, const ExperimentSettings& settings) {
   const Tables tables = tablesOf(runExperiment(grounds, settings, {}), settings, grounds);
   std::string text;
   for (const TableFile& file : tableFiles()) text += csvOf(tables, file);
@@ -25,7 +25,8 @@ std::string filesOf(const std::vector<Ground>& grounds, const ExperimentSettings
 }
 
 /// What learning off errs in truth: every recording is as likely as any other.
-double expectedError(const Ground& from, const Ground& to, const std::vector<Sequence>& sequences) {
+double expectedError(const TrialGround& from, const TrialGround& to,
+                     const std::vector<Sequence>& sequences) {
   double error = 0.0, metres = 0.0;
   for (const Sequence& sequence : sequences)
     for (const size_t pattern : sequence) {
@@ -42,7 +43,7 @@ double expectedError(const Ground& from, const Ground& to, const std::vector<Seq
 }  // namespace
 
 TEST_CASE("the number of threads has no influence on any byte, the seed has") {
-  const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
+  const std::vector<TrialGround> grounds = groundsOfText(kSmallWorld);
   ExperimentSettings settings = smallSettings();
   const std::string one = filesOf(grounds, settings);
   settings.threads = 3;
@@ -65,7 +66,7 @@ TEST_CASE("progress tells every part once") {
 }
 
 TEST_CASE("every rule of the learner takes part, and others do not disturb it") {
-  const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
+  const std::vector<TrialGround> grounds = groundsOfText(kSmallWorld);
   ExperimentSettings settings = smallSettings();
   settings.repetitions = effort(100);
   settings.excitations = 4;
@@ -87,7 +88,7 @@ TEST_CASE("every rule of the learner takes part, and others do not disturb it") 
 }
 
 TEST_CASE("the interval of a table covers the error that all recordings together have") {
-  const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
+  const std::vector<TrialGround> grounds = groundsOfText(kSmallWorld);
   ExperimentSettings settings = smallSettings();
   settings.rules = {"off"};
   const double truth = expectedError(grounds[0], grounds[1], settings.sequences);
@@ -111,7 +112,7 @@ TEST_CASE("cells of two seeds differ beyond their joint interval as seldom as it
           "[study]") {
   // What an excitation run teaches decides on all repetitions after it: here a short one that may
   // leave out a pattern, so that repetitions of one run are alike.
-  const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
+  const std::vector<TrialGround> grounds = groundsOfText(kSmallWorld);
   ExperimentSettings settings = smallSettings();
   // `multi_model_remembered` would double the time and shares all that is tested with `_home`.
   settings.rules = {"single", "collective_home", "multi_model_home"};
@@ -143,7 +144,7 @@ TEST_CASE("cells of two seeds differ beyond their joint interval as seldom as it
 }
 
 TEST_CASE("repetitions of the learner's rules allocate nothing but hypotheses of ground") {
-  const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
+  const std::vector<TrialGround> grounds = groundsOfText(kSmallWorld);
   const ExperimentSettings settings = smallSettings();
   const std::vector<std::string> rules = learner::ruleNames();
   for (const std::string& rule : methodNames()) {
@@ -173,7 +174,7 @@ TEST_CASE("twice as long commands make patterns twice as long") {
 }
 
 TEST_CASE("first executions: no learning stays, learning improves, regions hold at home") {
-  const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
+  const std::vector<TrialGround> grounds = groundsOfText(kSmallWorld);
   Methods changed({"off", "collective", "multi_model"}, {}, grounds, 0, 1, {});
   const FirstExecutions first =
       driveFirstExecutions(changed, {grounds[0], grounds[1], false, 200, 7});
@@ -198,7 +199,7 @@ TEST_CASE("first executions: no learning stays, learning improves, regions hold 
 }
 
 TEST_CASE("sequences are of the patterns whose ends are most apart, not of straight ones") {
-  const std::vector<Ground> grounds = groundsOfText(kSmallWorld);
+  const std::vector<TrialGround> grounds = groundsOfText(kSmallWorld);
   CHECK(sequencesFor(grounds[0].averaged) == std::vector<Sequence>{{1, 1, 2}, {2, 2, 1}});
 }
 

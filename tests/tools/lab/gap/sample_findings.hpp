@@ -117,7 +117,7 @@ inline Overlay overlay(double turn, double begin) {
   return overlay;
 }
 
-inline void addEvidence(Finding& finding) {
+inline void addEvidence(GapFinding& finding) {
   finding.atlas.curves = {curve("yaw rate", "yaw rate"), curve("along", "speed x yaw rate")};
   finding.atlas.maps = {map()};
   for (int i = 0; i < 9; ++i) finding.shown.overlays.push_back(overlay(0.2 * i, 12.5 * i));
@@ -131,7 +131,7 @@ inline void addEvidence(Finding& finding) {
                     true};
 }
 
-inline void addDetails(Finding& finding) {
+inline void addDetails(GapFinding& finding) {
   finding.identified.calibrated = {{"lag", "s", 0.17, 0.16, 0.18, 0.15},
                                    {"icr_offset.offset", "m", 0.02, 0.01, 0.03, 0.0}};
   finding.identified.not_excited = {"grip_limit", "slope_pitch"};
@@ -147,8 +147,8 @@ inline void addDetails(Finding& finding) {
 }
 
 /// A finding of any verdict with everything that a report can show.
-inline Finding finding(GapVerdict verdict) {
-  Finding finding;
+inline GapFinding finding(GapVerdict verdict) {
+  GapFinding finding;
   finding.verdict = verdict;
   finding.source.seed = 7;
   finding.before = model();

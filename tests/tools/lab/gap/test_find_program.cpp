@@ -77,7 +77,7 @@ TEST_CASE("what a person accepts or rejects stands in all four files, with the n
         run("find --model " + folder.path("a/model.yaml") + " --train " +
             folder.path("drive.lcmlog") + " --accept body_inertia --out " + folder.path("b"));
     INFO(next.printed);
-    const std::vector<Decision> record =
+    const std::vector<EffectDecision> record =
         readModelDocument(folder.path("b/model.yaml")).provenance.decisions;
     REQUIRE(record.size() == 3);
     CHECK(record[0].effect == "body_inertia");

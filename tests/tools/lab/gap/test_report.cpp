@@ -118,7 +118,7 @@ TEST_CASE("what remains is told channel by channel") {
 }
 
 TEST_CASE("what is left without a name is drawn beside the headline") {
-  Finding finding = samples::finding(GapVerdict::kPartial);
+  GapFinding finding = samples::finding(GapVerdict::kPartial);
   CHECK(restPictures(finding).svg.empty());
   for (size_t i = 0; i < 5; ++i) {
     finding.atlas.curves.push_back(finding.atlas.curves.front());
@@ -131,7 +131,7 @@ TEST_CASE("what is left without a name is drawn beside the headline") {
 }
 
 TEST_CASE("after an effect stands where the wheel speeds say that it is") {
-  Finding finding = samples::finding(GapVerdict::kFound);
+  GapFinding finding = samples::finding(GapVerdict::kFound);
   const auto sentenceWith = [&](const WheelWitness& wheels) {
     finding.identified.effects[0].wheels = wheels;
     return sentencesOf(finding).front();
@@ -219,7 +219,7 @@ TEST_CASE("a report shows where, how, step by step, the parameters and what else
   CHECK(has(page, "full colour = 0.600 rad/s"));
   CHECK(has(page, "<g opacity=\"0.16\">"));
   CHECK(has(page, "full colour: 0.170 m and more"));
-  Finding blind = samples::finding(GapVerdict::kFound);
+  GapFinding blind = samples::finding(GapVerdict::kFound);
   blind.shown.places.clear();
   CHECK(has(markdownOf(reportPage(blind, samples::inputs())), "the logs have no absolute poses"));
 }
@@ -244,7 +244,7 @@ TEST_CASE("a drive that cannot tell says why and shows no numbers that were not 
 }
 
 TEST_CASE("the new model is read back with its provenance and envelope") {
-  const Finding finding = samples::finding(GapVerdict::kFound);
+  const GapFinding finding = samples::finding(GapVerdict::kFound);
   const ModelDocument model = newModel(finding, samples::inputs());
   const ModelDocument read = parseModelDocument(formatModelDocument(model), "model.yaml");
   CHECK(read.vehicle.effects.turn_power_limit == 0.8);
@@ -257,7 +257,7 @@ TEST_CASE("the new model is read back with its provenance and envelope") {
 }
 
 TEST_CASE("a covariance that rounding made unequal in its halves can be read back") {
-  Finding finding = samples::finding(GapVerdict::kFound);
+  GapFinding finding = samples::finding(GapVerdict::kFound);
   finding.identified.model.covariance.matrix[0][1] += 1e-19;
   REQUIRE(finding.identified.model.covariance.matrix[0][1] !=
           finding.identified.model.covariance.matrix[1][0]);
@@ -265,7 +265,7 @@ TEST_CASE("a covariance that rounding made unequal in its halves can be read bac
 }
 
 TEST_CASE("a term without a name is said, drawn with its band, in all files, and can be named") {
-  Finding finding = samples::finding(GapVerdict::kNotInCatalogue);
+  GapFinding finding = samples::finding(GapVerdict::kNotInCatalogue);
   UnnamedTerm term;
   term.name = "unnamed_1";
   term.condition = findTermCondition("change of |yaw rate|");
@@ -301,7 +301,7 @@ TEST_CASE("a term without a name is said, drawn with its band, in all files, and
 }
 
 TEST_CASE("working on the same log again counts the runs") {
-  Finding finding = samples::finding(GapVerdict::kFound);
+  GapFinding finding = samples::finding(GapVerdict::kFound);
   finding.before = newModel(finding, samples::inputs());
   CHECK(newModel(finding, samples::inputs()).provenance.runs == 2);
 }

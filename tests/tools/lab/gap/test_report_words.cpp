@@ -23,8 +23,8 @@ FoundEffect effect(const std::string& name, const std::vector<std::string>& as_g
   return found;
 }
 
-Finding withEffects(GapVerdict verdict, const std::vector<FoundEffect>& effects) {
-  Finding finding = samples::finding(verdict);
+GapFinding withEffects(GapVerdict verdict, const std::vector<FoundEffect>& effects) {
+  GapFinding finding = samples::finding(verdict);
   finding.identified.effects = effects;
   return finding;
 }
@@ -33,7 +33,7 @@ std::string headline(GapVerdict verdict, const std::vector<FoundEffect>& effects
   return headlineOf(withEffects(verdict, effects));
 }
 
-std::string report(const Finding& finding) {
+std::string report(const GapFinding& finding) {
   return markdownOf(reportPage(finding, samples::inputs()));
 }
 
@@ -51,8 +51,8 @@ FoundEffect sized(const std::string& path, const std::string& unit, double value
 }
 
 /// A finding whose new model has this parameter.
-Finding withSize(const FoundEffect& found) {
-  Finding finding = withEffects(GapVerdict::kFound, {found});
+GapFinding withSize(const FoundEffect& found) {
+  GapFinding finding = withEffects(GapVerdict::kFound, {found});
   const ParameterEstimate& estimate = found.parameters.front();
   *findParameter(finding.identified.model, estimate.parameter) = estimate.value;
   return finding;
@@ -80,7 +80,7 @@ TEST_CASE("a headline that leaves names open is one line, with what is sure befo
 }
 
 TEST_CASE("a name that is open is marked under PARTIAL, too, and what it could be is listed") {
-  const Finding finding =
+  const GapFinding finding =
       withEffects(GapVerdict::kPartial, {effect("slip_ratio"), samples::icrOffset()});
   CHECK(headlineOf(finding) ==
         "Found: Longitudinal slip; and Centre of rotation ahead of or behind the middle or lever "
@@ -100,7 +100,7 @@ TEST_CASE("the latency that a delay may be is not the one that the model may hav
 }
 
 TEST_CASE("two effects that may be taken for each other are one pair, whichever was found first") {
-  const Finding finding = withEffects(
+  const GapFinding finding = withEffects(
       GapVerdict::kPartial,
       {effect("yaw_pull", {"track_asymmetry"}), effect("track_asymmetry", {"yaw_pull", "crab"})});
   const std::vector<RivalPair> pairs = rivalPairs(finding);
@@ -129,7 +129,7 @@ TEST_CASE("dead reckoning is the best possible only where the model does not bea
 }
 
 TEST_CASE("where fitting the model's numbers is what makes it agree, the headline says so") {
-  Finding finding = samples::finding(GapVerdict::kNoDiscrepancy);
+  GapFinding finding = samples::finding(GapVerdict::kNoDiscrepancy);
   CHECK(has(headlineOf(finding), "agree, once the model's own numbers are fitted"));
   CHECK(has(report(finding), "That done: What the model predicts"));
   finding.gap->after = finding.gap->before;
@@ -145,7 +145,7 @@ TEST_CASE("what got worse on unseen driving is named") {
         "m now); only heading got better.");
   gap.after.yaw.median = 0.5;
   CHECK(has(worseOf(gap), "0.700 m now) and heading (median 20.5 deg before, 28.6 deg now)."));
-  Finding finding = samples::finding(GapVerdict::kFound);
+  GapFinding finding = samples::finding(GapVerdict::kFound);
   finding.gap = gap;
   // What chance moves a median by is no worsening.
   gap.by_chance = {0.04, 0.01};
@@ -171,7 +171,7 @@ TEST_CASE("what find prints at its end begins with the verdict and tells what re
 }
 
 TEST_CASE("a term on top of what the model had shows their total beside") {
-  const Finding finding = withSize(sized("actuator_lag.lag", "s", 0.2));
+  const GapFinding finding = withSize(sized("actuator_lag.lag", "s", 0.2));
   CHECK(has(sentenceOf(finding.identified.effects[0], finding.identified.model),
             "; lag in all 0.370 s."));
   CHECK(has(report(finding),
@@ -181,7 +181,7 @@ TEST_CASE("a term on top of what the model had shows their total beside") {
 }
 
 TEST_CASE("a parameter at the end of what is plausible is marked, with what to do") {
-  Finding finding = withSize(sized("lag_asymmetry.slowing", "s", -2.0));
+  GapFinding finding = withSize(sized("lag_asymmetry.slowing", "s", -2.0));
   CHECK(has(report(finding), "| -2 s (at its limit) |"));
   finding.verdict = GapVerdict::kCannotTell;
   CHECK(has(report(finding), "or leave it out: --reject lag_asymmetry."));
@@ -193,7 +193,7 @@ TEST_CASE("a parameter at the end of what is plausible is marked, with what to d
 
 TEST_CASE(
     "each effect is told by its name and in a sentence, in the report and at the end of find") {
-  const Finding finding = samples::finding(GapVerdict::kFound);
+  const GapFinding finding = samples::finding(GapVerdict::kFound);
   const std::string sentence =
       "Limit of turning power: the drive hardly turns the vehicle faster than a certain yaw rate "
       "on "
@@ -218,13 +218,13 @@ TEST_CASE("a limit is visible from the gentlest one on, and what was found is sa
 }
 
 TEST_CASE("a report says what to do after its verdict, and what its words mean") {
-  const Finding finding = samples::finding(GapVerdict::kMeasurement);
+  const GapFinding finding = samples::finding(GapVerdict::kMeasurement);
   CHECK(has(report(finding), "What to do: Mend the INS: lever arm, mounting, time stamps."));
   CHECK(has(report(finding), "| nats | unit of evidence"));
 }
 
 TEST_CASE("a number of the model that has changed is named, with the effect like it") {
-  Finding finding;
+  GapFinding finding;
   finding.identified.calibrated = {{"forward_gain", "1", 1.08, 1.07, 1.09, 1.11, true}};
   CHECK(sentencesOf(finding).back() ==
         "A number of the model has changed: forward_gain 108 % (107 to 109 %) instead of "
@@ -232,7 +232,7 @@ TEST_CASE("a number of the model that has changed is named, with the effect like
 }
 
 TEST_CASE("a term of the model that has changed is said in its natural numbers") {
-  Finding finding = samples::finding(GapVerdict::kNoDiscrepancy);
+  GapFinding finding = samples::finding(GapVerdict::kNoDiscrepancy);
   finding.identified.calibrated = {
       {"turn_power_limit.inverse_limit", "s/rad", 0.8, 0.78, 0.82, 0.5, true}};
   CHECK(sentencesOf(finding).back() ==
@@ -241,7 +241,7 @@ TEST_CASE("a term of the model that has changed is said in its natural numbers")
 }
 
 TEST_CASE("only a vehicle of which it is known what is new is to be looked at") {
-  Finding finding = samples::finding(GapVerdict::kNotInCatalogue);
+  GapFinding finding = samples::finding(GapVerdict::kNotInCatalogue);
   CHECK_FALSE(has(report(finding), "Look at the vehicle"));
   CHECK(has(report(finding), "The vehicle may be as it always was"));
   finding.before.rest.emplace();
@@ -250,7 +250,7 @@ TEST_CASE("only a vehicle of which it is known what is new is to be looked at") 
 }
 
 TEST_CASE("a search that was cut short says so in one line, and not that something is left over") {
-  Finding finding = samples::finding(GapVerdict::kPartial);
+  GapFinding finding = samples::finding(GapVerdict::kPartial);
   const std::string rest = "something more without a name";
   const std::string limit = "The search had no time left (--limit)";
   CHECK(has(closingLines(finding).front(), rest));

@@ -41,7 +41,7 @@ TEST_CASE("an effect in verdict.json has kind, parameters, group and runner-ups"
 }
 
 TEST_CASE("what the wheel speeds show of an effect is in verdict.json where they say something") {
-  Finding finding = samples::finding(GapVerdict::kFound);
+  GapFinding finding = samples::finding(GapVerdict::kFound);
   finding.identified.effects[0].wheels = WheelWitness{0.97, 0.9, 1.04};
   const Json json = verdictJson(finding, samples::inputs());
   CHECK(json["effects"][0]["wheel_speeds_show"] ==
@@ -50,7 +50,7 @@ TEST_CASE("what the wheel speeds show of an effect is in verdict.json where they
 }
 
 TEST_CASE("so is what the motor currents and the battery voltage do with it") {
-  Finding finding = samples::finding(GapVerdict::kFound);
+  GapFinding finding = samples::finding(GapVerdict::kFound);
   finding.identified.effects[0].currents = CurrentWitness{12.0, 10.0, 14.0};
   finding.identified.effects[0].voltage = VoltageWitness{0.02, 0.0, 0.04};
   const Json json = verdictJson(finding, samples::inputs());
@@ -80,7 +80,7 @@ TEST_CASE("a limit stands in verdict.json as its reciprocal and as itself") {
 }
 
 TEST_CASE("numbers in verdict.json that are not finite are null") {
-  Finding finding = samples::finding(GapVerdict::kFound);
+  GapFinding finding = samples::finding(GapVerdict::kFound);
   finding.identified.effects[0].parameters[0].low = 0.0;  // perhaps no limit at all
   finding.identified.effects[1].parameters[0].high = std::numeric_limits<double>::infinity();
   const Json json = verdictJson(finding, samples::inputs());
@@ -95,7 +95,7 @@ TEST_CASE("verdict.json holds the gap before, after and at the floor, or null") 
   CHECK(gap["before"]["position_m"]["median"] == 0.642);
   CHECK(gap["after"]["yaw_rad"]["rms"] == 0.31);
   CHECK(gap["floor"]["position_m"]["median"] == 0.29);
-  Finding without_floor = samples::finding(GapVerdict::kFound);
+  GapFinding without_floor = samples::finding(GapVerdict::kFound);
   without_floor.gap->floor.reset();
   CHECK(verdictJson(without_floor, {})["gap"]["floor"].is_null());
   gap = verdictJson(samples::finding(GapVerdict::kCannotTell), {})["gap"];

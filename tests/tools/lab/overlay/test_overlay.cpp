@@ -109,11 +109,11 @@ TEST_CASE("the model that drove a log stays on what was measured, another one le
       "measurement:\n  lever_arm_x: {offset: 0.2}\n  ins_latency: {latency: 0.2}\n");
   const Log log(hidden);
   const gap::Drive drive = driveOf(log.path());
-  const std::vector<Piece> pieces = replay(drive, {plain, hidden}, 4.0);
+  const std::vector<ComparedPiece> pieces = replay(drive, {plain, hidden}, 4.0);
   REQUIRE(pieces.size() == 9);
   const size_t last = pieces[0].measured.size() - 1;
   CHECK(last == 40);
-  for (const Piece& piece : pieces) {
+  for (const ComparedPiece& piece : pieces) {
     CHECK(piece.positionError(1, last) < 0.01);
     CHECK(piece.yawError(1, last) < 0.005);
   }
@@ -144,23 +144,23 @@ TEST_CASE("a log without INS, and a model of another kind of command, are refuse
 TEST_CASE("a model's error is zero on its own track, and does not grow with the way") {
   const ModelDocument exact = modelWith("");
   const Log log(exact);
-  const std::vector<Piece> pieces = replay(driveOf(log.path()), {exact}, 8.0);
+  const std::vector<ComparedPiece> pieces = replay(driveOf(log.path()), {exact}, 8.0);
   REQUIRE(pieces.size() == 4);
   for (size_t sample = 0; sample <= 80; sample += 20) {
     // What is left is of the kernel's steps, of 10 ms in the drive and of 20 ms here.
     CHECK(medianErrors(pieces, 0, sample).position < 0.01);
     CHECK(medianErrors(pieces, 0, sample).yaw < 0.01);
   }
-  for (const Piece& piece : pieces) {
+  for (const ComparedPiece& piece : pieces) {
     CHECK(piece.positionError(0, 0) < 1e-12);
     CHECK(piece.yawError(0, 0) < 1e-12);
   }
 }
 
 TEST_CASE("the median of pieces is the middle one, and of no piece zero") {
-  std::vector<Piece> pieces;
+  std::vector<ComparedPiece> pieces;
   for (const double off : {0.1, 5.0, 0.3}) {
-    Piece piece;
+    ComparedPiece piece;
     piece.measured = {{0.0, 0.0, 0.0}};
     piece.predicted = {{{3.0 * off, 4.0 * off, -off}}};
     pieces.push_back(piece);
@@ -173,13 +173,13 @@ TEST_CASE("the median of pieces is the middle one, and of no piece zero") {
 TEST_CASE("pieces in which the INS was silent are left out, the others stay") {
   const ModelDocument plain = modelWith("");
   const Log whole(plain);
-  const std::vector<Piece> all = replay(driveOf(whole.path()), {plain}, 4.0);
+  const std::vector<ComparedPiece> all = replay(driveOf(whole.path()), {plain}, 4.0);
   const Log gap(plain, true, [](double time) { return time > 17.0 && time < 17.5; });
-  const std::vector<Piece> some = replay(driveOf(gap.path()), {plain}, 4.0);
+  const std::vector<ComparedPiece> some = replay(driveOf(gap.path()), {plain}, 4.0);
   // Pieces begin at 3, 7, 11, 15, 19 s; each needs the 3 s before, too.
   REQUIRE(all.size() == 9);
   REQUIRE(some.size() == 7);
-  for (const Piece& piece : some) {
+  for (const ComparedPiece& piece : some) {
     CHECK(piece.begin != 15.0);
     CHECK(piece.begin != 19.0);
   }
@@ -192,10 +192,10 @@ TEST_CASE("a picture of one piece and of many is drawn, with one model and with 
   const ModelDocument plain = modelWith("");
   const ModelDocument askew = modelWith("effects:\n  track_asymmetry: {share: 0.04}\n");
   const Log log(plain);
-  const std::vector<Piece> pieces = replay(driveOf(log.path()), {askew, plain}, 4.0);
+  const std::vector<ComparedPiece> pieces = replay(driveOf(log.path()), {askew, plain}, 4.0);
   drawOverlay(folder.path("many.png"), "many", pieces, {"askew.yaml", "plain.yaml"});
   CHECK(samples::isPng(folder.text("many.png")));
-  Piece alone = pieces.front();
+  ComparedPiece alone = pieces.front();
   alone.predicted.resize(1);
   drawOverlay(folder.path("one.png"), "one", {alone}, {"askew.yaml"});
   CHECK(samples::isPng(folder.text("one.png")));

@@ -62,8 +62,8 @@ TEST_CASE("nav2's lattice gives the primitives that SBPL's file of the same set 
   CHECK(lattice.headings[3] == Approx(sbpl.headings[3]));
   REQUIRE(lattice.primitives.size() == 2);
   for (size_t i = 0; i < 2; ++i) {
-    const Primitive& ours = lattice.primitives[i];
-    const Primitive& theirs = sbpl.primitives[i];
+    const LatticePrimitive& ours = lattice.primitives[i];
+    const LatticePrimitive& theirs = sbpl.primitives[i];
     CHECK(ours.id == theirs.id);
     CHECK(ours.start_bin == theirs.start_bin);
     CHECK(ours.end_bin == theirs.end_bin);

@@ -61,7 +61,7 @@ inline DriveLog syntheticLog(const recordings::RecordedDrive& recording) {
   session.robot = "a model";
   session.surface = "ice";
   session.pose_rate = 20.0;
-  recordings::LogCounts counts;
+  recordings::ImportCounts counts;
   return replay::toLearnerLog("synthetic",
                               recordings::makeLog(recording, session, "steps", {}, counts));
 }

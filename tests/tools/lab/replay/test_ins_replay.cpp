@@ -47,7 +47,7 @@ std::vector<std::pair<int64_t, std::string>> driveOf(const std::string& source) 
   const auto emulator = emulatorOf(source);
   std::vector<std::pair<int64_t, std::string>> said;
   for (int64_t utime = 1'000'000; utime < 11'000'000; utime += 20'000) {
-    sim::InsSample sample;
+    sim::InsMeasurement sample;
     sample.utime = utime;
     sample.yaw = 1.5707963267948966;
     sample.p_map.y() = static_cast<double>(utime) * 1e-6;

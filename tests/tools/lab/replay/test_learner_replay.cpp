@@ -154,7 +154,7 @@ TEST_CASE("commands are told apart by what they ask for") {
 TEST_CASE("messages of other programs in a log are skipped and counted") {
   recordings::Session session;
   session.pose_rate = 20.0;
-  recordings::LogCounts counts;
+  recordings::ImportCounts counts;
   auto events = recordings::makeLog(syntheticRecording(kTruth, 2), session, "steps", {}, counts);
   LogEvent other;
   other.utime = events[5].utime;
@@ -185,7 +185,7 @@ TEST_CASE("real grass goes through the learner") {
     return;
   }
   const auto session = recordings::readSession(drive + "sessions.csv", "warthog_grass_20240729c");
-  recordings::LogCounts counts;
+  recordings::ImportCounts counts;
   const DriveLog log = toLearnerLog(
       session.name, recordings::makeLog(
                         recordings::readSteps(drive + "steps/warthog_grass_20240729c.csv", session),

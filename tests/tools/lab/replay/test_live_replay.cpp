@@ -147,7 +147,7 @@ std::vector<LogEvent> realDrive(const std::string& name, double seconds) {
   const std::string drive = std::string(recordings ? recordings : "") + "/drive/";
   if (!std::filesystem::exists(drive + "sessions.csv")) return {};
   const auto session = recordings::readSession(drive + "sessions.csv", name);
-  recordings::LogCounts counts;
+  recordings::ImportCounts counts;
   auto events =
       recordings::makeLog(recordings::readSteps(drive + "steps/" + name + ".csv", session), session,
                           "steps", {}, counts);
@@ -171,7 +171,7 @@ TEST_CASE("a played log gives the running learner the reports of the virtual rep
   session.name = "synthetic";
   session.surface = "ice";
   session.pose_rate = 20.0;
-  recordings::LogCounts counts;
+  recordings::ImportCounts counts;
   auto events = recordings::makeLog(syntheticRecording(plainModel(0.9, 0.5), 4), session, "steps",
                                     {}, counts);
   LiveLearner run("synthetic", std::move(events), plainModel(1.0, 1.0), "1");

@@ -323,7 +323,7 @@ TEST_CASE("between two commands that are further apart than their period allows 
     CHECK((sample.time < 5.0 || sample.time > 10.99));
   }
   REQUIRE(drive.runs.size() == 2);
-  recordings::LogCounts counts;
+  recordings::ImportCounts counts;
   recordings::Session session;
   session.pose_rate = 10.0;
   const auto executions = [&](const recordings::ExecutionLayout& layout) {

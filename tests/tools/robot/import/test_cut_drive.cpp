@@ -352,7 +352,7 @@ TEST_CASE("commands of named channels come into a log as they are") {
   const ForeignDrive read = readMappedCsv(folder.file("a.csv", runs(0.5)), readCsvMapping(reader));
   recordings::Session session;
   session.pose_rate = 10.0;
-  recordings::LogCounts counts;
+  recordings::ImportCounts counts;
   const auto events = recordings::makeLog(read.drive, session, "csv", {}, counts);
   const auto motors = tread::samples::messagesOn(kMotor, events);
   REQUIRE(motors.size() == 204);

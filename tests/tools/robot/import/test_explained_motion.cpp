@@ -101,7 +101,7 @@ std::vector<LogEvent> logOf(
   recordings::Session session;
   session.pose_rate = 20.0;
   session.baseline = mapping.baseline;
-  recordings::LogCounts counts;
+  recordings::ImportCounts counts;
   return makeLog(foreign.drive, session, "csv", {}, counts);
 }
 

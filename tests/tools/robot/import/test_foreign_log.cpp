@@ -122,7 +122,7 @@ TEST_CASE("held commands of a foreign log become executions, body speeds become 
   REQUIRE(foreign.drive.drive[40].command[1] == Approx(0.5));
   recordings::Session session;
   session.pose_rate = 50.0;
-  recordings::LogCounts counts;
+  recordings::ImportCounts counts;
   const auto events = makeLog(foreign.drive, session, "lcm", {}, counts);
   REQUIRE(counts.completed == 2);
   REQUIRE(counts.ins == 400);

@@ -26,7 +26,7 @@ struct Imported {
   std::vector<ins_t> ins;
   std::vector<motor_t> motor;
   std::vector<execution_record_t> executions;  ///< the last word on each
-  LogCounts counts;
+  ImportCounts counts;
 };
 
 Imported imported(const RecordedDrive& recording, const Session& session,

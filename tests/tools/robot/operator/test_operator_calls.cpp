@@ -152,7 +152,7 @@ TEST_CASE("a robot that another operator holds is not armed for this one, and th
 
 TEST_CASE("who is to hold a robot of another's waits until it is handed over") {
   Scene scene;
-  ArmRequest holding;
+  ArmOptions holding;
   holding.hold = true;
   ArmCall call(scene.desk, {"bob", "", "bob"}, holding, 5.0);
   const int64_t begun = scene.bus.now();
@@ -169,7 +169,7 @@ TEST_CASE("who is to hold a robot of another's waits until it is handed over") {
 TEST_CASE("a hand-over is done when the bridge names the other one, else it is refused") {
   for (const bool obeyed : {true, false}) {
     Scene scene;
-    ArmRequest request;
+    ArmOptions request;
     request.hand_over_to = "bob";
     ArmCall call(scene.desk, {"ada", "", "ada"}, request, 5.0);
     const int64_t begun = scene.bus.now();
@@ -298,7 +298,7 @@ TEST_CASE("a goal for a robot that is not armed, or that the planner has ended, 
 
 TEST_CASE("a robot that is held stays held until the program ends, which disarms it") {
   Scene scene;
-  ArmRequest holding;
+  ArmOptions holding;
   holding.hold = true;
   ArmCall call(scene.desk, {"me", ""}, holding, 5.0);
   const auto result = scene.run(call, 60.0, [&](int64_t now) {

@@ -57,7 +57,7 @@ DrivenCar driveCar(const HiddenCar& hidden, WiringDriveConfig how, uint64_t seed
   std::optional<Pose2> pose;
   for (int64_t t = 0; !chooser.done(); t += 10'000) {
     robot.advanceTo(t);
-    for (const sim::InsSample& sample : robot.takeInsSamples()) {
+    for (const sim::InsMeasurement& sample : robot.takeInsSamples()) {
       pose = Pose2{sample.p_map.x(), sample.p_map.y(), hidden.mirrored ? -sample.yaw : sample.yaw};
       driven.fixes.push_back({sample.utime, *pose});
     }

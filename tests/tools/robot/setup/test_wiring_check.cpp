@@ -67,7 +67,7 @@ Driven drive(const Hidden& hidden, const WiringDriveConfig& how, uint64_t seed) 
   std::optional<Pose2> pose;
   for (int64_t t = 0; !chooser.done(); t += 10'000) {
     robot.advanceTo(t);
-    for (const sim::InsSample& sample : robot.takeInsSamples()) {
+    for (const sim::InsMeasurement& sample : robot.takeInsSamples()) {
       const double yaw = hidden.mirrored ? -sample.yaw : sample.yaw;
       pose = Pose2{sample.p_map.x(), sample.p_map.y(), yaw};
       driven.fixes.push_back({sample.utime, *pose});

@@ -100,7 +100,7 @@ class VirtualSite::PortLink : public Link {
 };
 
 /// The nodes of a folder, on the bus until this is gone.
-class VirtualSite::Running : public RunningRobot {
+class VirtualSite::Running : public RobotSession {
  public:
   Running(VirtualSite& site, const std::string& folder, Processes which)
       : site_(site), folder_(folder) {
@@ -199,7 +199,7 @@ std::unique_ptr<Link> VirtualSite::open(const std::string& address) {
   return std::make_unique<PortLink>(nullptr, address, true);
 }
 
-std::unique_ptr<RunningRobot> VirtualSite::start(const std::string& folder, Processes which) {
+std::unique_ptr<RobotSession> VirtualSite::start(const std::string& folder, Processes which) {
   return std::make_unique<Running>(*this, folder, which);
 }
 

@@ -35,7 +35,7 @@ class VirtualSite : public Site {
   std::unique_ptr<Link> open(const std::string& address) override;
   int64_t now() override { return bus_->now(); }
   void pass(int64_t duration) override { bus_->runUntil(now() + duration); }
-  std::unique_ptr<RunningRobot> start(const std::string& folder, Processes which) override;
+  std::unique_ptr<RobotSession> start(const std::string& folder, Processes which) override;
 
   /// On its stand, or on the ground.
   void lift(bool lifted) { *lifted_ = lifted; }

@@ -23,21 +23,22 @@ constexpr size_t kLeastTraining = 60;                    // pieces
 
 /// What is left out at once, and what it is tested against.
 struct Fold {
-  LeftOut kind = LeftOut::kSession;
+  HeldOut kind = HeldOut::kSession;
   std::vector<size_t> tested, training;
 };
 
-const std::string& keyOf(const Session& session, LeftOut kind) {
-  return kind == LeftOut::kSession   ? session.name
-         : kind == LeftOut::kSurface ? session.surface
+const std::string& keyOf(const SampledSession& session, HeldOut kind) {
+  return kind == HeldOut::kSession   ? session.name
+         : kind == HeldOut::kSurface ? session.surface
                                      : session.vehicle;
 }
 
-std::vector<Fold> foldsOf(const std::vector<Session>& sessions, std::vector<std::string>& notes) {
+std::vector<Fold> foldsOf(const std::vector<SampledSession>& sessions,
+                          std::vector<std::string>& notes) {
   std::vector<Fold> folds;
-  for (const LeftOut kind : kAllLeftOut) {
+  for (const HeldOut kind : kAllLeftOut) {
     std::vector<std::string> done;
-    for (const Session& session : sessions) {
+    for (const SampledSession& session : sessions) {
       const std::string key = session.vehicle + "\n" + keyOf(session, kind);
       if (std::find(done.begin(), done.end(), key) != done.end()) continue;
       done.push_back(key);
@@ -47,7 +48,7 @@ std::vector<Fold> foldsOf(const std::vector<Session>& sessions, std::vector<std:
         const bool same_vehicle = sessions[i].vehicle == session.vehicle;
         if (same_vehicle && keyOf(sessions[i], kind) == keyOf(session, kind)) {
           fold.tested.push_back(i);
-        } else if ((same_vehicle || kind == LeftOut::kVehicle) &&
+        } else if ((same_vehicle || kind == HeldOut::kVehicle) &&
                    sessions[i].kind == session.kind) {
           fold.training.push_back(i);
           pieces += sessions[i].pieces.size();
@@ -78,7 +79,7 @@ struct Prepared {
   std::vector<std::unique_ptr<Rival>> rivals;  ///< by rule; nullptr for rules of ours
 };
 
-Prepared prepare(const std::vector<Session>& sessions, const std::vector<TermTable>& tables,
+Prepared prepare(const std::vector<SampledSession>& sessions, const std::vector<TermTable>& tables,
                  const Fold& fold, const Settings& settings) {
   const auto tablesWithout = [&](const std::string* key) {
     std::vector<const TermTable*> some;
@@ -99,7 +100,7 @@ Prepared prepare(const std::vector<Session>& sessions, const std::vector<TermTab
   for (std::vector<Sample>& session : samples)
     for (Sample& sample : session) sample.noise = prepared.noise.of(sample.meanSpeed());
   for (const size_t i : fold.training)
-    if (fold.kind != LeftOut::kVehicle)
+    if (fold.kind != HeldOut::kVehicle)
       prepared.home.push_back(knownOf(sessions[i], prepared.reference, prepared.noise));
   for (const std::string& rule : settings.rules) {
     const auto& names = rivalNames();
@@ -111,7 +112,7 @@ Prepared prepare(const std::vector<Session>& sessions, const std::vector<TermTab
 }
 
 /// Adds the errors of predictions that begin at a piece.
-void score(const Session& session, const Walker& walker, size_t piece,
+void score(const SampledSession& session, const Walker& walker, size_t piece,
            std::array<Cell, kHorizons.size()>& cells) {
   const SampledSegment& segment = session.segments[session.pieces[piece].segment];
   const size_t begin = session.pieces[piece].begin;
@@ -147,13 +148,13 @@ std::unique_ptr<Walker> walkerOf(const Settings& settings, const Prepared& prepa
   if (prepared.rivals[rule]) return rivalWalker(*prepared.rivals[rule], known);
   learner::RuleConfig config = settings.config;
   config.rule = name.substr(0, name.find(kHome));
-  History history;
+  TrainingRun history;
   if (config.rule != name)
     history = drawnHistory(prepared.home, experiment::seedOf({settings.seed, first}));
   return ruleWalker(config, history, known, first, last);
 }
 
-SessionErrors testSession(const Session& session, LeftOut kind, const Prepared& prepared,
+SessionErrors testSession(const SampledSession& session, HeldOut kind, const Prepared& prepared,
                           const Settings& settings) {
   const Known known = knownOf(session, prepared.reference, prepared.noise);
   SessionErrors errors{kind, session.name, session.vehicle, session.surface, {}};
@@ -217,20 +218,20 @@ std::vector<std::string> defaultRules() {
   return names;
 }
 
-const char* nameOf(LeftOut what) {
-  return what == LeftOut::kSession ? "session" : what == LeftOut::kSurface ? "surface" : "vehicle";
+const char* nameOf(HeldOut what) {
+  return what == HeldOut::kSession ? "session" : what == HeldOut::kSurface ? "surface" : "vehicle";
 }
 
-Errors runAdaptation(const std::vector<Session>& sessions, const Settings& settings,
-                     const Progress& progress) {
+AdaptationErrors runAdaptation(const std::vector<SampledSession>& sessions,
+                               const Settings& settings, const Progress& progress) {
   checkRules(settings.rules);
-  Errors errors;
+  AdaptationErrors errors;
   const std::vector<Fold> folds = foldsOf(sessions, errors.notes);
   if (folds.empty())
     throw std::runtime_error("nothing can be left out: " +
                              (errors.notes.empty() ? "there is no session" : errors.notes.front()));
   std::vector<TermTable> tables;
-  for (const Session& session : sessions) tables.emplace_back(session);
+  for (const SampledSession& session : sessions) tables.emplace_back(session);
   std::vector<std::vector<SessionErrors>> results(folds.size());
   std::mutex mutex;  // guards what follows
   size_t done = 0;

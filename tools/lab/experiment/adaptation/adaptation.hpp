@@ -43,11 +43,11 @@ inline constexpr const char* kHome = "_home";
 std::vector<std::string> knownRules();
 std::vector<std::string> defaultRules();
 
-enum class LeftOut { kSession, kSurface, kVehicle };
-inline constexpr std::array<LeftOut, 3> kAllLeftOut{LeftOut::kSession, LeftOut::kSurface,
-                                                    LeftOut::kVehicle};
+enum class HeldOut { kSession, kSurface, kVehicle };
+inline constexpr std::array<HeldOut, 3> kAllLeftOut{HeldOut::kSession, HeldOut::kSurface,
+                                                    HeldOut::kVehicle};
 /// "session", "surface", "vehicle".
-const char* nameOf(LeftOut what);
+const char* nameOf(HeldOut what);
 
 /// What to compare, and how.
 struct Settings {
@@ -69,13 +69,13 @@ struct Cell {
 
 /// One session that was left out.
 struct SessionErrors {
-  LeftOut kind = LeftOut::kSession;
+  HeldOut kind = HeldOut::kSession;
   std::string session, vehicle, surface;
   /// By rule, executions, horizon.
   std::vector<std::array<std::array<Cell, kHorizons.size()>, kExecutions.size()>> cells;
 };
 
-struct Errors {
+struct AdaptationErrors {
   std::vector<SessionErrors> sessions;  ///< by what was left out, then in the order of sessions
   std::vector<std::string> notes;       ///< what could not be left out, and why
 };
@@ -85,8 +85,8 @@ using Progress = std::function<void(size_t done, size_t all)>;
 /// Runs everything. Same sessions and settings, same bytes, for any number of threads.
 /** Throws std::runtime_error with one line if nothing can be left out, std::invalid_argument for a
  * rule that is not known. */
-Errors runAdaptation(const std::vector<Session>& sessions, const Settings& settings,
-                     const Progress& progress);
+AdaptationErrors runAdaptation(const std::vector<SampledSession>& sessions,
+                               const Settings& settings, const Progress& progress);
 
 /// A mean over sessions with its 95 % interval (bootstrap of sessions); NaN where there is none.
 struct Interval {
@@ -114,8 +114,8 @@ struct Standing {
 };
 
 /// One line of a summary: a rule in a group of sessions.
-struct Line {
-  LeftOut kind = LeftOut::kSession;
+struct SummaryLine {
+  HeldOut kind = HeldOut::kSession;
   std::string vehicle;
   std::string rule;
   size_t executions = 0;
@@ -125,16 +125,16 @@ struct Line {
 };
 
 /// All lines, by what was left out, vehicle, horizon, rule, executions.
-std::vector<Line> summaryOf(const Errors& errors, const std::vector<std::string>& rules,
-                            uint64_t seed);
+std::vector<SummaryLine> summaryOf(const AdaptationErrors& errors,
+                                   const std::vector<std::string>& rules, uint64_t seed);
 
 /// What a run was, for texts about it.
 struct Report {
   std::string source;
   Settings settings;
   std::vector<std::string> notes;
-  Errors errors;
-  std::vector<Line> lines;
+  AdaptationErrors errors;
+  std::vector<SummaryLine> lines;
 };
 
 /// Tables for the terminal.

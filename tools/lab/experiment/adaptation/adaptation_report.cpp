@@ -28,17 +28,17 @@ std::string both(const std::string& position, const std::string& yaw) {
   return position + " / " + yaw;
 }
 
-std::string errorCell(const Line& line) {
+std::string errorCell(const SummaryLine& line) {
   if (line.sessions == 0) return "-";
   return both(fixed(line.position.error, 3), fixed(line.yaw.error, 2));
 }
 
-std::string ratioCell(const Line& line) {
+std::string ratioCell(const SummaryLine& line) {
   if (line.sessions == 0) return "-";
   return both(ratio(line.position.ratio.mean), ratio(line.yaw.ratio.mean));
 }
 
-std::string intervalCell(const Line& line) {
+std::string intervalCell(const SummaryLine& line) {
   const auto of = [](const Interval& interval) {
     return fixed(interval.low, 2) + ".." + fixed(interval.high, 2);
   };
@@ -46,17 +46,17 @@ std::string intervalCell(const Line& line) {
   return both(of(line.position.ratio), of(line.yaw.ratio));
 }
 
-std::string worstCell(const Line& line) {
+std::string worstCell(const SummaryLine& line) {
   if (line.sessions == 0) return "-";
   return both(ratio(line.position.worst), ratio(line.yaw.worst));
 }
 
-std::string verdictCell(const Line& line) {
+std::string verdictCell(const SummaryLine& line) {
   if (line.rule == kJudged || line.position.judged == Verdict::kUnknown) return "-";
   return both(nameOf(line.position.judged), nameOf(line.yaw.judged));
 }
 
-using CellText = std::string (*)(const Line&);
+using CellText = std::string (*)(const SummaryLine&);
 
 /// A table: a row for each rule, a column for each number of executions.
 report::Table tableOf(const Group& group, const std::string& corner, CellText cell) {
@@ -96,7 +96,7 @@ std::string regionsOf(const Report& report) {
   if (judged == rules.end()) return "";
   std::map<std::string, std::pair<size_t, size_t>> surfaces;  // inside, stated
   for (const SessionErrors& session : report.errors.sessions) {
-    if (session.kind != LeftOut::kSession) continue;
+    if (session.kind != HeldOut::kSession) continue;
     const auto& of_rule = session.cells[static_cast<size_t>(judged - rules.begin())];
     for (size_t k = 0; k < kExecutions.size(); ++k)
       for (const Cell& cell : of_rule[k]) {
@@ -126,11 +126,11 @@ std::vector<std::string> findings(const std::vector<Group>& groups, const Report
   const auto& rules = report.settings.rules;
   if (std::find(rules.begin(), rules.end(), kJudged) == rules.end()) return points;
   for (const Group& group : groups) {
-    const Line& judged = group.of(kJudged, kEarly);
+    const SummaryLine& judged = group.of(kJudged, kEarly);
     if (judged.sessions == 0) continue;
     std::vector<std::string> lost;
     for (const std::string& rule : group.rules) {
-      const Line& line = group.of(rule, kEarly);
+      const SummaryLine& line = group.of(rule, kEarly);
       if (rule == kHindsight) continue;
       if (line.position.judged == Verdict::kWorse) lost.push_back(rule + " (position)");
       if (line.yaw.judged == Verdict::kWorse) lost.push_back(rule + " (yaw)");
@@ -194,15 +194,15 @@ std::string standingCsv(const Standing& standing) {
 
 }  // namespace
 
-const Line& Group::of(const std::string& rule, size_t executions) const {
-  return **std::find_if(lines.begin(), lines.end(), [&](const Line* line) {
+const SummaryLine& Group::of(const std::string& rule, size_t executions) const {
+  return **std::find_if(lines.begin(), lines.end(), [&](const SummaryLine* line) {
     return line->rule == rule && line->executions == executions;
   });
 }
 
 std::vector<Group> groupsOf(const Report& report) {
   std::vector<Group> groups;
-  for (const Line& line : report.lines) {
+  for (const SummaryLine& line : report.lines) {
     if (groups.empty() || groups.back().kind != line.kind ||
         groups.back().vehicle != line.vehicle || groups.back().horizon != line.horizon)
       groups.push_back({line.kind, line.vehicle, line.horizon, {}, {}});
@@ -211,7 +211,7 @@ std::vector<Group> groupsOf(const Report& report) {
     // Another vehicle has no history with this one: it would be the same row twice.
     const bool home = line.rule.find(kHome) != std::string::npos;
     if (group.rules.empty() || group.rules.back() != line.rule)
-      if (!home || group.kind != LeftOut::kVehicle) group.rules.push_back(line.rule);
+      if (!home || group.kind != HeldOut::kVehicle) group.rules.push_back(line.rule);
   }
   return groups;
 }
@@ -236,7 +236,7 @@ std::string csvOfLines(const Report& report) {
       "position_judged_less_this,position_standard_error,position_judged_is,yaw_deg,yaw_ratio,"
       "yaw_ratio_low,yaw_ratio_high,yaw_worst,yaw_worst_session,yaw_judged_less_this,"
       "yaw_standard_error,yaw_judged_is\n";
-  for (const Line& line : report.lines)
+  for (const SummaryLine& line : report.lines)
     text += std::string(nameOf(line.kind)) + ",\"" + line.vehicle + "\"," +
             std::to_string(line.horizon) + "," + line.rule + "," + std::to_string(line.executions) +
             "," + std::to_string(line.sessions) + standingCsv(line.position) +

@@ -23,7 +23,7 @@ bool isMeasured(const Pose2& pose) {
 }
 
 /// What no vehicle does whose fastest commands these are: the lidar's poses jumped.
-Twist2 fastest(const Session& session) {
+Twist2 fastest(const SampledSession& session) {
   constexpr double kMargin = 1.5, kJitter = 1.0;  // [1]; [m/s] and [rad/s]
   if (session.kind == CommandKind::kPower)
     return {PatternLimits::kMaxSpeed, 0.0, PatternLimits::kMaxYawRate};
@@ -69,7 +69,7 @@ SampledSegment sampled(const gap::Segment& recorded, bool entry_known) {
   return segment;
 }
 
-void cutPieces(Session& session) {
+void cutPieces(SampledSession& session) {
   session.pieces.clear();
   const Twist2 limit = fastest(session);
   for (size_t s = 0; s < session.segments.size(); ++s) {
@@ -83,7 +83,7 @@ void cutPieces(Session& session) {
       known = follows ? known + 1 : (measured ? 1 : 0);
       if (!follows) begin = measured ? t : t + 1;
       if (known <= kPieceSamples) continue;
-      Piece piece{s, begin, {}, {}};
+      SampledPiece piece{s, begin, {}, {}};
       std::vector<double> numbers;
       for (size_t i = 1; i <= kPieceSamples; ++i)
         piece.measured.push_back(between(segment.poses[begin], segment.poses[begin + i]));

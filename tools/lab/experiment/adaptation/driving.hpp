@@ -31,7 +31,7 @@ struct SampledSegment {
 };
 
 /// Two seconds of driving: poses at all samples are measured, and something moved.
-struct Piece {
+struct SampledPiece {
   size_t segment = 0;
   size_t begin = 0;             ///< sample
   std::vector<Pose2> measured;  ///< after each command, relative to the start, yaw unwrapped
@@ -39,14 +39,14 @@ struct Piece {
 };
 
 /// One recording: a vehicle on one ground.
-struct Session {
+struct SampledSession {
   std::string name;
   std::string vehicle;
   std::string surface;
   CommandKind kind = CommandKind::kTrackSpeed;
   double baseline = 1.0;  ///< [m] that turns track commands into (v, w)
   std::vector<SampledSegment> segments;
-  std::vector<Piece> pieces;  ///< in order of time
+  std::vector<SampledPiece> pieces;  ///< in order of time
 
   /// Whether piece i + 1 begins where piece i ends.
   bool goesOn(size_t i) const {
@@ -59,11 +59,11 @@ struct Session {
 SampledSegment sampled(const gap::Segment& recorded, bool entry_known);
 
 /// Cuts the segments of a session into pieces.
-void cutPieces(Session& session);
+void cutPieces(SampledSession& session);
 
 /// What was read, and a line for each recording that is of no use.
 struct Recordings {
-  std::vector<Session> sessions;  ///< with at least one piece
+  std::vector<SampledSession> sessions;  ///< with at least one piece
   std::vector<std::string> notes;
 };
 

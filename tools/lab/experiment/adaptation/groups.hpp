@@ -11,13 +11,13 @@ namespace tread::adaptation {
 
 /// Lines of a report that stand in one table: of what was left out, vehicle and horizon.
 struct Group {
-  LeftOut kind;
+  HeldOut kind;
   std::string vehicle;
   size_t horizon;
   std::vector<std::string> rules;  ///< in the order of the report
-  std::vector<const Line*> lines;
+  std::vector<const SummaryLine*> lines;
 
-  const Line& of(const std::string& rule, size_t executions) const;
+  const SummaryLine& of(const std::string& rule, size_t executions) const;
 };
 
 /// The groups in the order of the lines, which must outlive them.

@@ -37,7 +37,7 @@ void drawPanel(report::Picture& picture, const report::Box& box, const Group& gr
   for (const std::string& rule : group.rules) {
     curves.emplace_back();
     for (size_t k = 0; k < kExecutions.size(); ++k) {
-      const Line& line = group.of(rule, kExecutions[k]);
+      const SummaryLine& line = group.of(rule, kExecutions[k]);
       const double ratio = (yaw ? line.yaw : line.position).ratio.mean;
       if (!std::isfinite(ratio)) continue;
       curves.back().emplace_back(static_cast<double>(k), ratio);

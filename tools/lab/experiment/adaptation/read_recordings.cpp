@@ -160,8 +160,9 @@ std::map<std::string, double> usualBaselines(const std::vector<recordings::Sessi
   return usual;
 }
 
-Session sessionOf(const fs::path& folder, const recordings::Session& listed, double baseline) {
-  Session session;
+SampledSession sessionOf(const fs::path& folder, const recordings::Session& listed,
+                         double baseline) {
+  SampledSession session;
   session.name = listed.name;
   session.vehicle = listed.robot;
   session.surface = listed.surface;
@@ -200,7 +201,7 @@ void readLogs(const std::vector<fs::path>& logs, Recordings& found) {
     const gap::Drive drive = gap::readDrive(path.string());
     const DriveLog log = readDriveLog({path.string()});
     if (!log.problem.empty()) found.notes.push_back(path.stem().string() + ": " + log.problem);
-    Session session;
+    SampledSession session;
     session.name = path.stem().string();
     session.vehicle = "unknown vehicle";
     session.surface = log.surfaces.empty() ? "unknown" : log.surfaces.begin()->second;
@@ -231,10 +232,10 @@ Recordings readRecordings(const std::string& folder) {
     throw std::runtime_error(folder +
                              ": neither sessions.csv (drives) nor *.lcmlog (logs of drives) is "
                              "there; check --recordings");
-  for (Session& session : found.sessions) cutPieces(session);
+  for (SampledSession& session : found.sessions) cutPieces(session);
   const auto empty =
       std::stable_partition(found.sessions.begin(), found.sessions.end(),
-                            [](const Session& session) { return !session.pieces.empty(); });
+                            [](const SampledSession& session) { return !session.pieces.empty(); });
   for (auto session = empty; session != found.sessions.end(); ++session)
     found.notes.push_back(session->name + ": not two seconds of driving under known commands");
   found.sessions.erase(empty, found.sessions.end());

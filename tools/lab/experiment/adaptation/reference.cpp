@@ -51,10 +51,10 @@ Eigen::Vector3d fitted(const std::vector<Eigen::Vector3d>& terms,
 }
 
 /// Whether the commands stay the same from a second before the piece before a piece on.
-bool repeats(const Session& session, size_t piece) {
+bool repeats(const SampledSession& session, size_t piece) {
   constexpr size_t kSteady = 20;  // samples
   if (piece == 0 || !session.goesOn(piece - 1)) return false;
-  const Piece& before = session.pieces[piece - 1];
+  const SampledPiece& before = session.pieces[piece - 1];
   const std::vector<TrackCommand>& commands = session.segments[before.segment].commands;
   if (before.begin < kSteady) return false;
   const auto first = commands.begin() + static_cast<std::ptrdiff_t>(before.begin - kSteady);
@@ -117,7 +117,7 @@ Eigen::Matrix<double, 1, TermTable::kTerms> TermTable::terms(const Eigen::Vector
   return row;
 }
 
-TermTable::TermTable(const Session& session) {
+TermTable::TermTable(const SampledSession& session) {
   const auto pieces = static_cast<Eigen::Index>(session.pieces.size());
   twists_.resize(pieces, 3);
   for (Eigen::Index i = 0; i < pieces; ++i)
@@ -128,7 +128,7 @@ TermTable::TermTable(const Session& session) {
       motions.push_back(lagged(segment, session.baseline, lag));
     Eigen::MatrixXd means = Eigen::MatrixXd::Zero(pieces, kTerms);
     for (Eigen::Index i = 0; i < pieces; ++i) {
-      const Piece& piece = session.pieces[static_cast<size_t>(i)];
+      const SampledPiece& piece = session.pieces[static_cast<size_t>(i)];
       for (size_t t = 0; t < kPieceSamples; ++t)
         means.row(i) += terms(motions[piece.segment][piece.begin + t]);
     }
@@ -220,12 +220,12 @@ Sample sampleOf(const std::vector<Twist2>& twists) {
   return sample;
 }
 
-Predicted predicted(const Session& session, const Reference& reference) {
+Predicted predicted(const SampledSession& session, const Reference& reference) {
   std::vector<std::vector<Twist2>> segments;
   for (const SampledSegment& segment : session.segments)
     segments.push_back(reference.twists(segment, session.baseline));
   Predicted all;
-  for (const Piece& piece : session.pieces) {
+  for (const SampledPiece& piece : session.pieces) {
     const auto first = segments[piece.segment].begin() + static_cast<std::ptrdiff_t>(piece.begin);
     all.twists.emplace_back(first, first + kPieceSamples);
     Sample sample = sampleOf(all.twists.back());

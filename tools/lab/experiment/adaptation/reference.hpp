@@ -55,7 +55,7 @@ struct Sample {
 /// Means of the terms over each piece, for each lag: what a reference is fitted to.
 class TermTable {
  public:
-  explicit TermTable(const Session& session);
+  explicit TermTable(const SampledSession& session);
 
   static const std::vector<Lag>& lags();
   static constexpr Eigen::Index kTerms = 7;  ///< v, w, |w| v, |v| w, |v| v, |w| w, v w
@@ -95,7 +95,7 @@ struct Predicted {
   std::vector<std::vector<Twist2>> twists;  ///< by piece and sample
   std::vector<Sample> samples;              ///< by piece; their noise is not yet known
 };
-Predicted predicted(const Session& session, const Reference& reference);
+Predicted predicted(const SampledSession& session, const Reference& reference);
 
 /// Poses after each sample of twists that are held for `period` [s].
 std::vector<Pose2> integrated(const std::vector<Twist2>& twists, double period = kPeriod);

@@ -85,8 +85,8 @@ Interval intervalOf(const std::vector<double>& values, uint64_t seed) {
   return interval;
 }
 
-std::vector<Line> summaryOf(const Errors& errors, const std::vector<std::string>& rules,
-                            uint64_t seed) {
+std::vector<SummaryLine> summaryOf(const AdaptationErrors& errors,
+                                   const std::vector<std::string>& rules, uint64_t seed) {
   const auto placeOf = [&](const char* name) {
     return static_cast<size_t>(std::find(rules.begin(), rules.end(), name) - rules.begin());
   };
@@ -95,8 +95,8 @@ std::vector<Line> summaryOf(const Errors& errors, const std::vector<std::string>
   for (const SessionErrors& session : errors.sessions)
     if (std::find(vehicles.begin(), vehicles.end(), session.vehicle) == vehicles.end())
       vehicles.push_back(session.vehicle);
-  std::vector<Line> lines;
-  const auto add = [&](LeftOut kind, const std::string& vehicle, size_t h, size_t rule, size_t k) {
+  std::vector<SummaryLine> lines;
+  const auto add = [&](HeldOut kind, const std::string& vehicle, size_t h, size_t rule, size_t k) {
     Columns position, yaw;
     for (const SessionErrors& session : errors.sessions) {
       if (session.kind != kind || session.vehicle != vehicle) continue;
@@ -116,7 +116,7 @@ std::vector<Line> summaryOf(const Errors& errors, const std::vector<std::string>
     lines.push_back({kind, vehicle, rules[rule], kExecutions[k], kHorizons[h],
                      position.errors.size(), standingOf(position, seed), standingOf(yaw, seed)});
   };
-  for (const LeftOut kind : kAllLeftOut)
+  for (const HeldOut kind : kAllLeftOut)
     for (const std::string& vehicle : vehicles) {
       const bool tested =
           std::any_of(errors.sessions.begin(), errors.sessions.end(),

@@ -20,12 +20,12 @@ struct Driven {
   const Known* known;
   size_t piece;
 
-  const Piece& measured() const { return known->session.pieces[piece]; }
+  const SampledPiece& measured() const { return known->session.pieces[piece]; }
 };
 
 /// The piece as a pattern: predicted by the reference, and as exact as its noise says.
 MotionPattern patternOf(const Driven& driven, int id) {
-  const Piece& piece = driven.measured();
+  const SampledPiece& piece = driven.measured();
   const auto begin = driven.known->session.segments[piece.segment].commands.begin() +
                      static_cast<std::ptrdiff_t>(piece.begin);
   MotionPattern pattern;
@@ -109,13 +109,13 @@ class HindsightWalker : public RivalWalker {
 
 }  // namespace
 
-Known knownOf(const Session& session, const Reference& reference, const NoiseModel& noise) {
+Known knownOf(const SampledSession& session, const Reference& reference, const NoiseModel& noise) {
   Known known{session, predicted(session, reference)};
   for (Sample& sample : known.reference.samples) sample.noise = noise.of(sample.meanSpeed());
   return known;
 }
 
-History drawnHistory(const std::vector<Known>& home, uint64_t seed) {
+TrainingRun drawnHistory(const std::vector<Known>& home, uint64_t seed) {
   if (home.empty()) return {};
   std::mt19937_64 random(seed);
   const Known& known = home[experiment::drawIndex(random, home.size())];
@@ -124,7 +124,7 @@ History drawnHistory(const std::vector<Known>& home, uint64_t seed) {
   return {&known, begin, begin + length};
 }
 
-std::unique_ptr<Walker> ruleWalker(const learner::RuleConfig& config, const History& history,
+std::unique_ptr<Walker> ruleWalker(const learner::RuleConfig& config, const TrainingRun& history,
                                    const Known& known, size_t first, size_t last) {
   std::vector<Driven> pieces;
   for (size_t i = history.begin; i < history.end; ++i) pieces.push_back({history.known, i});

@@ -27,23 +27,23 @@ class Walker {
 
 /// A session, and what the reference says of it.
 struct Known {
-  const Session& session;
+  const SampledSession& session;
   Predicted reference;
 };
 
-Known knownOf(const Session& session, const Reference& reference, const NoiseModel& noise);
+Known knownOf(const SampledSession& session, const Reference& reference, const NoiseModel& noise);
 
 /// A run of pieces of a training session that a rule has driven before, drawn by chance.
 /** Empty where there is no session. */
-struct History {
+struct TrainingRun {
   const Known* known = nullptr;
   size_t begin = 0, end = 0;
 };
-History drawnHistory(const std::vector<Known>& home, uint64_t seed);
+TrainingRun drawnHistory(const std::vector<Known>& home, uint64_t seed);
 
 /// A rule of the learner in a session: its set is made of the pieces of its history, which it
 /// executes at once, and of the pieces [first, last) of the session.
-std::unique_ptr<Walker> ruleWalker(const learner::RuleConfig& config, const History& history,
+std::unique_ptr<Walker> ruleWalker(const learner::RuleConfig& config, const TrainingRun& history,
                                    const Known& known, size_t first, size_t last);
 /// A copy of a rival that was tuned beforehand.
 std::unique_ptr<Walker> rivalWalker(const Rival& fresh, const Known& known);

@@ -12,10 +12,10 @@
 namespace tread::gap {
 namespace {
 
-void add(std::vector<Decision>& decisions, const std::string& name, bool accepted,
+void add(std::vector<EffectDecision>& decisions, const std::string& name, bool accepted,
          const std::string& by) {
   const Effect& effect = effectOrGuess(name);
-  for (const Decision& other : decisions)
+  for (const EffectDecision& other : decisions)
     if (other.effect == effect.name)
       throw std::runtime_error(effect.name + (other.accepted == accepted
                                                   ? " is named twice; once is enough"
@@ -127,9 +127,9 @@ Json gapJson(const std::optional<Gap>& gap) {
           {"floor", gap->floor ? errorsJson(*gap->floor) : Json(nullptr)}};
 }
 
-Json decisionsJson(const std::vector<Decision>& decisions) {
+Json decisionsJson(const std::vector<EffectDecision>& decisions) {
   Json all = Json::array();
-  for (const Decision& decision : decisions)
+  for (const EffectDecision& decision : decisions)
     all.push_back({{"effect", decision.effect},
                    {"decision", decision.accepted ? "accepted" : "rejected"},
                    {"by", decision.by}});
@@ -157,8 +157,8 @@ void makeSymmetric(std::vector<std::vector<double>>& matrix) {
 
 }  // namespace
 
-std::vector<Decision> decisionsOf(const DecisionWords& words, const ModelDocument& model) {
-  std::vector<Decision> decisions;
+std::vector<EffectDecision> decisionsOf(const DecisionWords& words, const ModelDocument& model) {
+  std::vector<EffectDecision> decisions;
   for (const std::string& name : words.accepted) add(decisions, name, true, words.by);
   for (const std::string& name : words.rejected) {
     add(decisions, name, false, words.by);
@@ -171,7 +171,8 @@ std::vector<Decision> decisionsOf(const DecisionWords& words, const ModelDocumen
   return decisions;
 }
 
-nlohmann::ordered_json verdictJson(const Finding& finding, const std::vector<InputFile>& inputs) {
+nlohmann::ordered_json verdictJson(const GapFinding& finding,
+                                   const std::vector<InputFile>& inputs) {
   Json effects = Json::array();
   for (const FoundEffect& effect : finding.identified.effects)
     effects.push_back(effectJson(effect));
@@ -195,7 +196,7 @@ nlohmann::ordered_json verdictJson(const Finding& finding, const std::vector<Inp
           {"inputs", inputsJson(inputs)}};
 }
 
-ModelDocument newModel(const Finding& finding, const std::vector<InputFile>& inputs) {
+ModelDocument newModel(const GapFinding& finding, const std::vector<InputFile>& inputs) {
   ModelDocument model = finding.identified.model;
   makeSymmetric(model.covariance.matrix);
   const Provenance& old = finding.before.provenance;
@@ -211,19 +212,19 @@ ModelDocument newModel(const Finding& finding, const std::vector<InputFile>& inp
       provenance.runs = old.runs + 1;
   }
   provenance.decisions = finding.source.decisions;
-  for (const Decision& earlier : old.decisions)
+  for (const EffectDecision& earlier : old.decisions)
     if (std::none_of(finding.source.decisions.begin(), finding.source.decisions.end(),
-                     [&](const Decision& now) { return now.effect == earlier.effect; }))
+                     [&](const EffectDecision& now) { return now.effect == earlier.effect; }))
       provenance.decisions.push_back(earlier);
   model.provenance = provenance;
   return model;
 }
 
-bool hasNewModel(const Finding& finding) {
+bool hasNewModel(const GapFinding& finding) {
   return finding.verdict != GapVerdict::kCannotTell;
 }
 
-void writeFinding(const std::string& folder, const Finding& finding,
+void writeFinding(const std::string& folder, const GapFinding& finding,
                   const std::vector<InputFile>& inputs) {
   const Page page = reportPage(finding, inputs);
   if (hasNewModel(finding)) {

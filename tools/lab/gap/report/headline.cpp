@@ -26,7 +26,7 @@ constexpr const char* kFittedNumbers =
     "That done: ";
 
 /// Effects of the model that are other ones now.
-std::vector<std::string> movedIn(const Finding& finding) {
+std::vector<std::string> movedIn(const GapFinding& finding) {
   std::vector<std::string> names;
   for (const ParameterEstimate& estimate : finding.identified.calibrated) {
     const std::string effect = effectOfPath(estimate.parameter);
@@ -36,7 +36,7 @@ std::vector<std::string> movedIn(const Finding& finding) {
 }
 
 /// Found effects; where there are none, those that have changed.
-std::vector<std::string> namesOf(const Finding& finding) {
+std::vector<std::string> namesOf(const GapFinding& finding) {
   std::vector<std::string> names;
   names.reserve(finding.identified.effects.size());
   for (const FoundEffect& effect : finding.identified.effects)
@@ -45,7 +45,7 @@ std::vector<std::string> namesOf(const Finding& finding) {
 }
 
 /// Found effects of which this drive knows, or does not know, which one they are.
-std::vector<const FoundEffect*> found(const Finding& finding, bool sure) {
+std::vector<const FoundEffect*> found(const GapFinding& finding, bool sure) {
   std::vector<const FoundEffect*> effects;
   for (const FoundEffect& effect : finding.identified.effects)
     if (isShown(effect) && rivalsOf(effect).empty() == sure) effects.push_back(&effect);
@@ -81,7 +81,7 @@ std::string someOf(std::vector<const FoundEffect*> effects) {
 }
 
 /// One line, whatever was found: names that are sure, then those that are not.
-std::string foundWords(const Finding& finding) {
+std::string foundWords(const GapFinding& finding) {
   const std::vector<const FoundEffect*> sure = found(finding, true);
   const std::vector<const FoundEffect*> open = found(finding, false);
   if (open.empty())
@@ -94,7 +94,7 @@ std::string foundWords(const Finding& finding) {
 }
 
 /// What each effect could be instead, and what tells: one point an effect.
-void addRivals(const Finding& finding, Points& points) {
+void addRivals(const GapFinding& finding, Points& points) {
   for (const FoundEffect* effect : found(finding, false)) {
     std::vector<std::string> rivals = rivalsOf(*effect);
     for (std::string& rival : rivals) rival = rivalTitle(effect->name, rival);
@@ -104,7 +104,7 @@ void addRivals(const Finding& finding, Points& points) {
 }
 
 /// How to check the effects that bring most; those of the others stand further down.
-void addChecks(const Finding& finding, Points& points) {
+void addChecks(const GapFinding& finding, Points& points) {
   std::vector<const FoundEffect*> effects;
   for (const FoundEffect& effect : finding.identified.effects) effects.push_back(&effect);
   byGain(effects);
@@ -115,7 +115,7 @@ void addChecks(const Finding& finding, Points& points) {
 }
 
 /// What to do about effects whose size is no measurement.
-void addUnsized(const Finding& finding, Points& points) {
+void addUnsized(const GapFinding& finding, Points& points) {
   for (const FoundEffect& effect : finding.identified.effects)
     if (std::any_of(
             effect.parameters.begin(), effect.parameters.end(),
@@ -126,7 +126,7 @@ void addUnsized(const Finding& finding, Points& points) {
                              "), or leave it out: --reject " + effect.name + ".");
 }
 
-void addNext(const Finding& finding, std::vector<Block>& blocks) {
+void addNext(const GapFinding& finding, std::vector<Block>& blocks) {
   Points points;
   if (finding.verdict == GapVerdict::kCannotTell) {
     addUnsized(finding, points);
@@ -146,7 +146,7 @@ void addNext(const Finding& finding, std::vector<Block>& blocks) {
 }
 
 /// Whether model and log agree only because numbers that the model has were fitted to the log.
-bool isMadeByFit(const Finding& finding) {
+bool isMadeByFit(const GapFinding& finding) {
   constexpr double kMuch = 0.75;
   if (!finding.gap || finding.identified.calibrated.empty()) return false;
   const Gap& gap = *finding.gap;
@@ -154,7 +154,7 @@ bool isMadeByFit(const Finding& finding) {
          gap.after.yaw.median < kMuch * gap.before.yaw.median;
 }
 
-std::string opening(const Finding& finding) {
+std::string opening(const GapFinding& finding) {
   switch (finding.verdict) {
     case GapVerdict::kNoDiscrepancy:
       return std::string(isMadeByFit(finding) ? kFittedNumbers : "") +
@@ -190,7 +190,7 @@ std::string opening(const Finding& finding) {
 
 }  // namespace
 
-std::string headlineOf(const Finding& finding) {
+std::string headlineOf(const GapFinding& finding) {
   switch (finding.verdict) {
     case GapVerdict::kNoDiscrepancy:
       return std::string("Simulation and measurement agree") +
@@ -217,7 +217,7 @@ std::string headlineOf(const Finding& finding) {
 namespace {
 
 /// "FOUND: Limit of turning power": the verdict's name says what the headline begins with.
-std::string verdictLine(const Finding& finding) {
+std::string verdictLine(const GapFinding& finding) {
   const std::string found = "Found: ";
   std::string headline = headlineOf(finding);
   if (finding.verdict == GapVerdict::kFound && headline.find(found) == 0)
@@ -227,7 +227,7 @@ std::string verdictLine(const Finding& finding) {
 
 }  // namespace
 
-std::vector<std::string> closingLines(const Finding& finding) {
+std::vector<std::string> closingLines(const GapFinding& finding) {
   std::vector<std::string> lines{verdictLine(finding)};
   if (finding.search.cut_short) lines.push_back(std::string("  ") + kCutShort);
   if (finding.verdict == GapVerdict::kCannotTell) {
@@ -247,7 +247,7 @@ std::vector<std::string> closingLines(const Finding& finding) {
   return lines;
 }
 
-std::vector<Block> firstBlocks(const Finding& finding) {
+std::vector<Block> firstBlocks(const GapFinding& finding) {
   std::vector<Block> blocks;
   const std::string words = opening(finding);
   if (!words.empty()) blocks.push_back(Paragraph{words});

@@ -108,7 +108,7 @@ std::string termPicture(const UnnamedTerm& term, const UnnamedFinding& found) {
   return chart.svg();
 }
 
-Pictures restPictures(const Finding& finding) {
+Pictures restPictures(const GapFinding& finding) {
   constexpr size_t kMost = 3;
   Pictures rest{{},
                 "What is left, over what it depends on. Orange, dashed: the old model. Blue: "
@@ -273,7 +273,7 @@ size_t marked(const std::vector<AtlasCell>& cells) {
       std::count_if(cells.begin(), cells.end(), [](const AtlasCell& cell) { return cell.marked; }));
 }
 
-std::vector<std::string> mapPictures(const Finding& finding) {
+std::vector<std::string> mapPictures(const GapFinding& finding) {
   std::vector<std::string> pictures;
   for (const AtlasMap& map : finding.atlas.maps) {
     if (map.v_edges.size() < 2 || map.omega_edges.size() < 2) continue;
@@ -297,7 +297,7 @@ std::string logName(const std::vector<InputFile>& inputs, size_t drive) {
 }
 
 /// Errors over the ground, log by log, before and after in the same colours.
-std::vector<std::string> placePictures(const Finding& finding,
+std::vector<std::string> placePictures(const GapFinding& finding,
                                        const std::vector<InputFile>& inputs) {
   std::map<size_t, std::vector<PlaceError>> logs;
   for (const PlaceError& place : finding.shown.places) logs[place.drive].push_back(place);
@@ -311,7 +311,7 @@ std::vector<std::string> placePictures(const Finding& finding,
 }
 
 /// Whose model predicted the executions that are shown.
-std::string predictedBy(const Finding& finding, const std::vector<InputFile>& inputs) {
+std::string predictedBy(const GapFinding& finding, const std::vector<InputFile>& inputs) {
   if (std::any_of(inputs.begin(), inputs.end(),
                   [](const InputFile& input) { return input.role == InputFile::Role::kTest; }))
     return "they are of the test logs.";
@@ -330,7 +330,7 @@ std::string remarkOf(const SearchStep& step) {
   return text;
 }
 
-std::vector<Block> atlasBlocks(const Finding& finding) {
+std::vector<Block> atlasBlocks(const GapFinding& finding) {
   if (finding.atlas.curves.empty()) return {};
   std::vector<Block> blocks;
   size_t before = 0;
@@ -354,7 +354,8 @@ std::vector<Block> atlasBlocks(const Finding& finding) {
   return blocks;
 }
 
-std::vector<Block> executionsBlocks(const Finding& finding, const std::vector<InputFile>& inputs) {
+std::vector<Block> executionsBlocks(const GapFinding& finding,
+                                    const std::vector<InputFile>& inputs) {
   if (finding.shown.overlays.empty()) return {};
   std::vector<Block> blocks;
   constexpr size_t kTypical = 6;
@@ -381,7 +382,7 @@ std::vector<Block> executionsBlocks(const Finding& finding, const std::vector<In
   return blocks;
 }
 
-std::vector<Block> placesBlocks(const Finding& finding, const std::vector<InputFile>& inputs) {
+std::vector<Block> placesBlocks(const GapFinding& finding, const std::vector<InputFile>& inputs) {
   if (!finding.gap) return {};
   if (finding.shown.places.empty())
     return {Paragraph{"No map: the logs have no absolute poses at the executions' ends."}};
@@ -391,7 +392,7 @@ std::vector<Block> placesBlocks(const Finding& finding, const std::vector<InputF
       "driven; grey is right. Errors that gather in one place speak for the ground there."}};
 }
 
-std::vector<Block> stepsBlocks(const Finding& finding) {
+std::vector<Block> stepsBlocks(const GapFinding& finding) {
   if (finding.search.steps.empty()) return {};
   std::vector<Block> blocks;
   blocks.push_back(Paragraph{
@@ -414,7 +415,7 @@ std::vector<Block> stepsBlocks(const Finding& finding) {
 
 }  // namespace
 
-std::vector<Section> evidenceSections(const Finding& finding,
+std::vector<Section> evidenceSections(const GapFinding& finding,
                                       const std::vector<InputFile>& inputs) {
   return {{"Where simulation and measurement disagree", atlasBlocks(finding)},
           {"Executions, as measured and as predicted", executionsBlocks(finding, inputs)},

@@ -62,7 +62,7 @@ std::string witnessSentences(const FoundEffect& effect);
 
 /// One such sentence for each effect found, with what its witnesses say, behind its name, and one
 /// for each term of the model that has changed.
-std::vector<std::string> sentencesOf(const Finding& finding);
+std::vector<std::string> sentencesOf(const GapFinding& finding);
 
 /// What a term and what it acts on top of make together.
 struct Total {
@@ -78,7 +78,7 @@ std::optional<Total> totalOf(const std::string& path, const ModelDocument& model
 std::string checkOf(const FoundEffect& effect);
 
 /// Whether an estimate ran to the end of what is plausible: then it is no measurement.
-bool isAtLimit(const Finding& finding, const ParameterEstimate& estimate);
+bool isAtLimit(const GapFinding& finding, const ParameterEstimate& estimate);
 
 /// Whether a drive leaves open which of two it is.
 inline bool isAsGood(const RunnerUp& runner_up) {
@@ -108,7 +108,7 @@ struct RivalPair {
 bool driveMayTell(const RivalPair& pair);
 
 /// All pairs of a finding, each once, whichever of the two was found first.
-std::vector<RivalPair> rivalPairs(const Finding& finding);
+std::vector<RivalPair> rivalPairs(const GapFinding& finding);
 
 /// "2 s end-pose error on driving it has not seen: 0.64 -> 0.45 m, heading 20.5 -> 10.7 deg ...".
 std::string gainOf(const Gap& gap);
@@ -161,7 +161,7 @@ std::string atlasPicture(const AtlasCurve& curve);
 std::string termPicture(const UnnamedTerm& term, const UnnamedFinding& found);
 
 /// The strongest of what is unexplained, drawn; none where all is explained.
-report::Pictures restPictures(const Finding& finding);
+report::Pictures restPictures(const GapFinding& finding);
 
 /// The largest |mean| of a map before and after: equal colours need a common scale.
 double largestResidual(const AtlasMap& map);
@@ -196,13 +196,13 @@ using report::Points, report::Section, report::Table;
 
 /// The headline of a report in one line, for instance "Found: Limit of turning power"; where the
 /// drive cannot tell, "A or B: this drive cannot tell them apart".
-std::string headlineOf(const Finding& finding);
+std::string headlineOf(const GapFinding& finding);
 
 /// What find prints at its end, the verdict first.
-std::vector<std::string> closingLines(const Finding& finding);
+std::vector<std::string> closingLines(const GapFinding& finding);
 
 /// What stands on the first screen: sentences, gain, what to do next.
-std::vector<Block> firstBlocks(const Finding& finding);
+std::vector<Block> firstBlocks(const GapFinding& finding);
 
 /// good, change or doubt.
 std::string moodOf(GapVerdict verdict);
@@ -216,13 +216,14 @@ struct InputFile {
 };
 
 /// Those that show where and how well the model holds.
-std::vector<Section> evidenceSections(const Finding& finding, const std::vector<InputFile>& inputs);
+std::vector<Section> evidenceSections(const GapFinding& finding,
+                                      const std::vector<InputFile>& inputs);
 
 /// Name and version of this tool, for provenance.
 std::string toolVersion();
 
 /// The whole report.
-Page reportPage(const Finding& finding, const std::vector<InputFile>& inputs);
+Page reportPage(const GapFinding& finding, const std::vector<InputFile>& inputs);
 
 /// What a person says of effects before a search.
 struct DecisionWords {
@@ -235,7 +236,7 @@ struct DecisionWords {
 /** Throws std::runtime_error with one clear line for a name that the catalogue does not know, for
  * an effect that is accepted and rejected or named twice, for a rejected one that the model has,
  * and for a person who decides nothing. */
-std::vector<Decision> decisionsOf(const DecisionWords& words, const ModelDocument& model);
+std::vector<EffectDecision> decisionsOf(const DecisionWords& words, const ModelDocument& model);
 
 /// What verdict.json holds; numbers that are not finite are null.
 /** Keys: verdict, reason, cut_short, effects [{name, kind, parameters {name: {value, unit, low,
@@ -244,21 +245,21 @@ std::vector<Decision> decisionsOf(const DecisionWords& words, const ModelDocumen
  * gain, gain_error}], moved_terms [name], unexplained [{channel, variable}], not_excited, seed,
  * inputs {model, train, test}. A limit that the model holds as its reciprocal stands there as
  * inverse_limit and under its natural name, too. */
-nlohmann::ordered_json verdictJson(const Finding& finding, const std::vector<InputFile>& inputs);
+nlohmann::ordered_json verdictJson(const GapFinding& finding, const std::vector<InputFile>& inputs);
 
 /// The new model with where it comes from: tool, seed, logs, and how often it was worked on them.
 /** A run counts on from the model's own count if it names one of the same logs. Only training logs
  * are named: nothing of the model comes from the others. What people decided stays on record from
  * model to model, but decides nothing by itself. */
-ModelDocument newModel(const Finding& finding, const std::vector<InputFile>& inputs);
+ModelDocument newModel(const GapFinding& finding, const std::vector<InputFile>& inputs);
 
 /// Whether a finding has a new model: a drive that cannot tell gives none.
-bool hasNewModel(const Finding& finding);
+bool hasNewModel(const GapFinding& finding);
 
 /// Writes model.yaml (if there is a new model), report.md, report.html and, last, verdict.json into
 /// a folder that is there.
 /** Throws std::runtime_error with one clear line. */
-void writeFinding(const std::string& folder, const Finding& finding,
+void writeFinding(const std::string& folder, const GapFinding& finding,
                   const std::vector<InputFile>& inputs);
 
 }  // namespace tread::gap

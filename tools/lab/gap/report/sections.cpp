@@ -10,7 +10,7 @@
 namespace tread::gap {
 namespace {
 
-std::string saidRange(const Finding& finding, const ParameterEstimate& estimate) {
+std::string saidRange(const GapFinding& finding, const ParameterEstimate& estimate) {
   const auto range = plausibleBounds(finding.identified.model, estimate.parameter);
   if (!range || range->min == range->max) return "";
   const EffectParameter* parameter = findEffectParameter(estimate.parameter);
@@ -26,12 +26,12 @@ std::string saidBefore(const ParameterEstimate& estimate, const ParameterEstimat
 }
 
 /// What a parameter makes together with what it acts on top of.
-std::string saidTotal(const Finding& finding, const ParameterEstimate& estimate) {
+std::string saidTotal(const GapFinding& finding, const ParameterEstimate& estimate) {
   const auto total = totalOf(estimate.parameter, finding.identified.model);
   return total ? total->name + " " + said(total->value, total->unit) : "";
 }
 
-void addRow(const Finding& finding, const ParameterEstimate& estimate, const std::string& effect,
+void addRow(const GapFinding& finding, const ParameterEstimate& estimate, const std::string& effect,
             Table& table) {
   const ParameterEstimate natural = naturalEstimate(estimate);
   table.rows.push_back({effect, lastPart(natural.parameter), saidBefore(estimate, natural),
@@ -113,12 +113,12 @@ std::string saidDetectable(const CandidateTest& test) {
   return said(test.detectable, parameter->unit);
 }
 
-bool isFound(const Finding& finding, const std::string& name) {
+bool isFound(const GapFinding& finding, const std::string& name) {
   return std::any_of(finding.identified.effects.begin(), finding.identified.effects.end(),
                      [&](const FoundEffect& effect) { return effect.name == name; });
 }
 
-std::vector<Block> effectsBlocks(const Finding& finding) {
+std::vector<Block> effectsBlocks(const GapFinding& finding) {
   std::vector<Block> blocks;
   for (const FoundEffect& found : finding.identified.effects) {
     const Effect& effect = effectNamed(found.name);
@@ -135,7 +135,7 @@ std::vector<Block> effectsBlocks(const Finding& finding) {
   return blocks;
 }
 
-std::vector<Block> unnamedBlocks(const Finding& finding) {
+std::vector<Block> unnamedBlocks(const GapFinding& finding) {
   std::vector<Block> blocks;
   Pictures pictures{{},
                     "Dots: what the model without the term leaves, means over cells. Line: the "
@@ -155,7 +155,7 @@ std::vector<Block> unnamedBlocks(const Finding& finding) {
   return blocks;
 }
 
-std::vector<Block> parametersBlocks(const Finding& finding) {
+std::vector<Block> parametersBlocks(const GapFinding& finding) {
   std::vector<Block> blocks;
   Table table{
       {"term", "parameter", "before", "now", "95 % interval", "plausible", "in all"}, {}, 2};
@@ -175,7 +175,7 @@ std::vector<Block> parametersBlocks(const Finding& finding) {
   return blocks;
 }
 
-std::vector<Block> envelopeBlocks(const Finding& finding) {
+std::vector<Block> envelopeBlocks(const GapFinding& finding) {
   if (!finding.identified.model.envelope || finding.verdict == GapVerdict::kCannotTell) return {};
   const Envelope& envelope = *finding.identified.model.envelope;
   return {Paragraph{
@@ -185,7 +185,7 @@ std::vector<Block> envelopeBlocks(const Finding& finding) {
       "warns beyond them: there it extrapolates."}};
 }
 
-std::vector<Block> filesBlocks(const Finding& finding, const std::vector<InputFile>& inputs) {
+std::vector<Block> filesBlocks(const GapFinding& finding, const std::vector<InputFile>& inputs) {
   Table table{{"file", "as", "SHA-256"}, {}, 3};
   for (const InputFile& input : inputs) {
     const char* role = input.role == InputFile::Role::kModel   ? "model"
@@ -198,7 +198,7 @@ std::vector<Block> filesBlocks(const Finding& finding, const std::vector<InputFi
                     ". The same files and the same seed give the same report."}};
 }
 
-std::vector<Block> alternativesBlocks(const Finding& finding) {
+std::vector<Block> alternativesBlocks(const GapFinding& finding) {
   std::vector<Block> blocks;
   const std::vector<RivalPair> pairs = rivalPairs(finding);
   Points points;
@@ -219,7 +219,7 @@ std::vector<Block> alternativesBlocks(const Finding& finding) {
   return blocks;
 }
 
-std::vector<Block> notShownBlocks(const Finding& finding) {
+std::vector<Block> notShownBlocks(const GapFinding& finding) {
   std::vector<Block> blocks;
   Table table{{"effect", "what would show it"}, {}, 2};
   for (const std::string& name : finding.identified.not_excited)
@@ -236,9 +236,9 @@ std::vector<Block> notShownBlocks(const Finding& finding) {
   return blocks;
 }
 
-std::vector<Block> decisionsBlocks(const Finding& finding) {
+std::vector<Block> decisionsBlocks(const GapFinding& finding) {
   Points points;
-  for (const Decision& decision : finding.source.decisions)
+  for (const EffectDecision& decision : finding.source.decisions)
     points.items.push_back(titleOf(decision.effect) +
                            (decision.accepted
                                 ? ": accepted; in the model from the start, whatever the tests say"
@@ -248,7 +248,7 @@ std::vector<Block> decisionsBlocks(const Finding& finding) {
   return {points};
 }
 
-std::vector<Block> candidatesBlocks(const Finding& finding) {
+std::vector<Block> candidatesBlocks(const GapFinding& finding) {
   if (finding.search.candidates.empty()) return {};
   Table table{{"effect", "parameter", "score", "p", "own share", "visible from"}, {}, 2};
   std::vector<CandidateTest> tests = finding.search.candidates;
@@ -275,7 +275,7 @@ std::vector<Block> wordsBlocks() {
   return {table};
 }
 
-std::vector<Block> logsBlocks(const Finding& finding) {
+std::vector<Block> logsBlocks(const GapFinding& finding) {
   std::vector<Block> blocks;
   Points points;
   for (const LogNote& note : finding.source.log_notes)
@@ -298,7 +298,7 @@ std::string toolVersion() {
   return std::string("tread-gap ") + version();
 }
 
-Page reportPage(const Finding& finding, const std::vector<InputFile>& inputs) {
+Page reportPage(const GapFinding& finding, const std::vector<InputFile>& inputs) {
   Page page;
   page.verdict = headlineOf(finding);
   page.title = page.verdict + " - tread-gap";

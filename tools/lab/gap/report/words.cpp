@@ -203,7 +203,7 @@ std::string sentenceOf(const UnnamedFinding& found, const ModelDocument& model) 
          " nats on blocks that were not fitted.";
 }
 
-std::vector<std::string> sentencesOf(const Finding& finding) {
+std::vector<std::string> sentencesOf(const GapFinding& finding) {
   std::vector<std::string> sentences;
   for (const FoundEffect& effect : finding.identified.effects)
     sentences.push_back(shortTitleOf(effect.name) + ": " +
@@ -218,7 +218,7 @@ std::vector<std::string> sentencesOf(const Finding& finding) {
   return sentences;
 }
 
-bool isAtLimit(const Finding& finding, const ParameterEstimate& estimate) {
+bool isAtLimit(const GapFinding& finding, const ParameterEstimate& estimate) {
   const auto bounds = plausibleBounds(finding.identified.model, estimate.parameter);
   const double near = bounds ? 1e-6 * (bounds->max - bounds->min) : 0.0;
   return near > 0.0 && estimate.value != 0.0 &&
@@ -265,7 +265,7 @@ bool driveMayTell(const RivalPair& pair) {
          });
 }
 
-std::vector<RivalPair> rivalPairs(const Finding& finding) {
+std::vector<RivalPair> rivalPairs(const GapFinding& finding) {
   std::vector<RivalPair> pairs;
   for (const FoundEffect& effect : finding.identified.effects) {
     for (const std::string& member : effect.group)

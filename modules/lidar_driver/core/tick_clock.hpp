@@ -11,7 +11,7 @@ namespace tread::lidar {
 /// Host time of a device's own microsecond counter of 32 bits, which wraps after 71.6 minutes.
 /** The way from the device takes a varying time: the shortest of the last 10 to 20 s is taken for
  * the constant one. A counter that jumps against the host's clock was restarted. */
-class DeviceClock {
+class TickClock {
  public:
   /// Tells that `ticks` [us] was sent and arrived at `arrival` [us]; false if the device's counter
   /// was restarted, so that everything before it is forgotten.
