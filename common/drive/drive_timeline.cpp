@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include "common/messages/ins_messages.hpp"
@@ -17,174 +18,164 @@ constexpr double kCellReach = 8.0;    // [m] from the robot
 constexpr double kDead = 2.5;         // [s] without HEALTH, which comes every second
 constexpr double kGhostSize = 0.7;    // [m]
 constexpr double kGhostLife = 12.0;   // [s]
-constexpr double kFlickers = 0.4;        // [m] flickering beside a wall is no ghost
+constexpr double kFlickers = 0.4;     // [m] flickering beside a wall is no ghost
+
+/// Fills a timeline from the events of a log, in their order.
+class TimelineReader {
+ public:
+  TimelineReader(DriveTimeline& drive, double ins_step) : drive_(drive), ins_step_(ins_step) {}
+
+  void take(const DriveEvent& event) {
+    event_ = &event;
+    if (drive_.begun < 0) drive_.begun = event.utime;
+    now_ = {static_cast<double>(event.utime - drive_.begun) * 1e-6, drive_.messages++};
+    drive_.duration = std::max(drive_.duration, now_.time);
+    if (event.channel != kHealth.name) drive_.heard[event.channel].push_back(now_.time);
+    dispatch(
+        event, [this](const auto& message) { hear(message); }, kIns, kMotor, kPlan, kHealth,
+        kLearning, kExecution, kGoal, kMap, kMark, kConfig, kPatternSet);
+    for (Event& told : teller_.take(event)) drive_.events.push_back({now_, std::move(told)});
+  }
+
+ private:
+  void hear(const ins_t& ins) {
+    auto pose = planarPose(ins);
+    if (pose && pose->position().norm() > kFarthestPlace) pose.reset();
+    if (pose) last_ = pose;
+    const InsNote note{now_,
+                       ins.utime,
+                       ins.ins_status,
+                       pose.value_or(Pose2{}),
+                       pose.has_value(),
+                       tilt(ins).inclination,
+                       event_->wrong_time,
+                       event_->restarts};
+    odometer_.add(note);
+    drive_.distance = odometer_.distance();
+    const bool same = !drive_.ins.empty() && drive_.ins.back().status == ins.ins_status;
+    if (!same || now_.time - drive_.ins.back().time >= ins_step_) drive_.ins.push_back(note);
+  }
+
+  void hear(const motor_t& motor) {
+    MotorNote note{now_,
+                   motor.utime,
+                   motor.utime,
+                   motor.bridge_state,
+                   {stopReasonFrom(motor.state_code), motor.state_reason},
+                   commandFrom(motor)};
+    std::vector<MotorNote>& notes = drive_.motors;
+    notePermission(note);
+    if (!notes.empty() && notes.back().state == note.state && notes.back().reason == note.reason &&
+        notes.back().command == note.command)
+      notes.back().until = note.utime;
+    else
+      notes.push_back(std::move(note));
+    if (std::isfinite(motor.battery_voltage) &&
+        (drive_.battery.empty() || now_.time - drive_.battery.back().first >= kBatteryStep))
+      drive_.battery.emplace_back(now_.time, static_cast<double>(motor.battery_voltage));
+  }
+
+  void notePermission(const MotorNote& note) {
+    const int16_t before = drive_.motors.empty() ? int16_t{0} : drive_.motors.back().state;
+    const bool lost = mayDrive(before) && !mayDrive(note.state);
+    const bool stopped = note.state == motor_t::STATE_ESTOP && before != motor_t::STATE_ESTOP;
+    if (lost || stopped) drive_.losses.push_back({now_, note.state, note.reason, lost});
+  }
+
+  void hear(const plan_t& plan) {
+    PlanNote note{now_,
+                  plan.utime,
+                  plan.plan_status,
+                  {stopReasonFrom(plan.reason_code), plan.reason},
+                  plan.goal_id,
+                  true,
+                  {},
+                  0};
+    if (!drive_.plans.empty()) {
+      const PlanNote& before = drive_.plans.back();
+      // While it drives the reason tells of a stop that is planned.
+      note.news = before.state != note.state ||
+                  (note.state != plan_t::PLAN_DRIVING && before.reason != note.reason);
+    }
+    if (plan.num_patterns > 0) {
+      const auto& pose = plan.pose.front();
+      note.T_map_next = Pose2{pose[0], pose[1], pose[2]};
+      const auto known = durations_.find(plan.pattern_id.front());
+      if (known != durations_.end()) note.duration = known->second;
+    }
+    drive_.plans.push_back(std::move(note));
+  }
+
+  void hear(const pattern_set_part_t& part) {
+    durations_[part.set_pattern_id] = int64_t{part.set_period} * part.num_samples;
+  }
+
+  void hear(const health_t& health) { drive_.health[health.process].push_back({now_, health}); }
+
+  void hear(const learning_t& learning) { drive_.patterns.push_back({now_, learning}); }
+
+  void hear(const execution_t& executions) {
+    for (const execution_record_t& record : executions.records)
+      if (record.outcome != execution_record_t::OUTCOME_RUNNING &&
+          ended_.insert(keyOf(record)).second)
+        drive_.executions.push_back({now_, record});
+  }
+
+  void hear(const goal_t& goal) {
+    if (goal.goal_id == 0 ||
+        (!drive_.goals.empty() && drive_.goals.back().message.goal_id == goal.goal_id))
+      return;
+    drive_.goals.push_back({now_, goal});
+  }
+
+  void hear(const map_tile_t& message) {
+    if (!isPossibleTile(message)) return;
+    if (!drive_.map) drive_.map = std::make_unique<TileMap>(message.cell_size, message.tile_cells);
+    if (message.tile_cells != drive_.map->tileCells() ||
+        message.cell_size != drive_.map->cellSize())
+      return;
+    compare(message);
+    drive_.map->put({message.tile_x, message.tile_y, message.utime, message.cells});
+  }
+
+  /// What came and went since the tile before; unknown ground that turns out blocked is no news.
+  void compare(const map_tile_t& message) {
+    const auto known = drive_.map->tiles().find({message.tile_x, message.tile_y});
+    if (known == drive_.map->tiles().end() || !last_) return;
+    const std::vector<uint8_t>& before = known->second.cells;
+    if (before.size() != message.cells.size()) return;
+    for (size_t i = 0; i < before.size(); ++i) {
+      const bool came = isFree(before[i]) && message.cells[i] == kObstacle;
+      const bool went = before[i] == kObstacle && isFree(message.cells[i]);
+      if (!came && !went) continue;
+      const int side = message.tile_cells;
+      const Eigen::Vector2d p_map(
+          (message.tile_x * side + static_cast<int>(i) % side + 0.5) * message.cell_size,
+          (message.tile_y * side + static_cast<int>(i) / side + 0.5) * message.cell_size);
+      if ((p_map - last_->position()).norm() < kCellReach)
+        drive_.cells.push_back({now_, p_map, came});
+    }
+  }
+
+  void hear(const mark_t& mark) {
+    if (mark.mark_kind == "gap" || mark.mark_kind == "no gap")
+      drive_.gaps.push_back({now_, mark.mark_value, mark.mark_kind == "gap"});
+  }
+
+  void hear(const config_t& config) { drive_.configs[config.config_process] = config.config_text; }
+
+  DriveTimeline& drive_;
+  double ins_step_;
+  Note now_;
+  const DriveEvent* event_ = nullptr;  // that is taken
+  EventTeller teller_;
+  Odometer odometer_;
+  std::optional<Pose2> last_;
+  std::set<ExecutionKey> ended_;
+  std::map<int32_t, int64_t> durations_;  // [us] by pattern
+};
 
 }  // namespace
-
-void TimelineReader::take(const DriveEvent& event) {
-  event_ = &event;
-  if (drive_.begun < 0) drive_.begun = event.utime;
-  now_ = {static_cast<double>(event.utime - drive_.begun) * 1e-6, drive_.events++};
-  drive_.duration = std::max(drive_.duration, now_.time);
-  if (event.channel != kHealth.name) drive_.heard[event.channel].push_back(now_.time);
-  dispatch(
-      event, [this](const auto& message) { hear(message); }, kIns, kMotor, kPlan, kHealth,
-      kLearning, kExecution, kGoal, kMap, kArm, kEstop, kFence, kMark, kConfig, kPatternSet);
-}
-
-void TimelineReader::hear(const ins_t& ins) {
-  auto pose = planarPose(ins);
-  if (pose && pose->position().norm() > kFarthestPlace) pose.reset();
-  if (pose) last_ = pose;
-  const InsNote note{now_,
-                     ins.utime,
-                     ins.ins_status,
-                     pose.value_or(Pose2{}),
-                     pose.has_value(),
-                     tilt(ins).inclination,
-                     event_->wrong_time,
-                     event_->restarts};
-  odometer_.add(note);
-  drive_.distance = odometer_.distance();
-  const bool same = !drive_.ins.empty() && drive_.ins.back().status == ins.ins_status;
-  if (!same || now_.time - drive_.ins.back().time >= ins_step_) drive_.ins.push_back(note);
-}
-
-void TimelineReader::hear(const motor_t& motor) {
-  MotorNote note{now_,
-                 motor.utime,
-                 motor.utime,
-                 motor.bridge_state,
-                 {stopReasonFrom(motor.state_code), motor.state_reason},
-                 commandFrom(motor)};
-  std::vector<MotorNote>& notes = drive_.motors;
-  notePermission(note);
-  if (!notes.empty() && notes.back().state == note.state && notes.back().reason == note.reason &&
-      notes.back().command == note.command)
-    notes.back().until = note.utime;
-  else
-    notes.push_back(std::move(note));
-  if (std::isfinite(motor.battery_voltage) &&
-      (drive_.battery.empty() || now_.time - drive_.battery.back().first >= kBatteryStep))
-    drive_.battery.emplace_back(now_.time, static_cast<double>(motor.battery_voltage));
-}
-
-void TimelineReader::notePermission(const MotorNote& note) {
-  const int16_t before = drive_.motors.empty() ? int16_t{0} : drive_.motors.back().state;
-  const bool lost = mayDrive(before) && !mayDrive(note.state);
-  const bool stopped = note.state == motor_t::STATE_ESTOP && before != motor_t::STATE_ESTOP;
-  if (lost || stopped) drive_.losses.push_back({now_, note.state, note.reason, lost});
-}
-
-void TimelineReader::hear(const plan_t& plan) {
-  PlanNote note{now_,
-                plan.utime,
-                plan.plan_status,
-                {stopReasonFrom(plan.reason_code), plan.reason},
-                plan.goal_id,
-                true,
-                {},
-                0};
-  if (!drive_.plans.empty()) {
-    const PlanNote& before = drive_.plans.back();
-    // While it drives the reason tells of a stop that is planned.
-    note.news = before.state != note.state ||
-                (note.state != plan_t::PLAN_DRIVING && before.reason != note.reason);
-  }
-  if (plan.num_patterns > 0) {
-    const auto& pose = plan.pose.front();
-    note.T_map_next = Pose2{pose[0], pose[1], pose[2]};
-    const auto known = durations_.find(plan.pattern_id.front());
-    if (known != durations_.end()) note.duration = known->second;
-  }
-  drive_.plans.push_back(std::move(note));
-}
-
-void TimelineReader::hear(const pattern_set_part_t& part) {
-  durations_[part.set_pattern_id] = int64_t{part.set_period} * part.num_samples;
-}
-
-void TimelineReader::hear(const health_t& health) {
-  drive_.health[health.process].push_back({now_, health});
-}
-
-void TimelineReader::hear(const learning_t& learning) {
-  drive_.patterns.push_back({now_, learning});
-}
-
-void TimelineReader::hear(const execution_t& executions) {
-  for (const execution_record_t& record : executions.records)
-    if (record.outcome != execution_record_t::OUTCOME_RUNNING &&
-        ended_.insert(keyOf(record)).second)
-      drive_.executions.push_back({now_, record});
-}
-
-void TimelineReader::hear(const goal_t& goal) {
-  if (goal.goal_id == 0 ||
-      (!drive_.goals.empty() && drive_.goals.back().message.goal_id == goal.goal_id))
-    return;
-  drive_.goals.push_back({now_, goal});
-}
-
-void TimelineReader::hear(const map_tile_t& message) {
-  if (!isPossibleTile(message)) return;
-  if (!drive_.map) drive_.map = std::make_unique<TileMap>(message.cell_size, message.tile_cells);
-  if (message.tile_cells != drive_.map->tileCells() || message.cell_size != drive_.map->cellSize())
-    return;
-  compare(message);
-  drive_.map->put({message.tile_x, message.tile_y, message.utime, message.cells});
-}
-
-/// What came and went since the tile before; unknown ground that turns out blocked is no news.
-void TimelineReader::compare(const map_tile_t& message) {
-  const auto known = drive_.map->tiles().find({message.tile_x, message.tile_y});
-  if (known == drive_.map->tiles().end() || !last_) return;
-  const std::vector<uint8_t>& before = known->second.cells;
-  if (before.size() != message.cells.size()) return;
-  for (size_t i = 0; i < before.size(); ++i) {
-    const bool came = isFree(before[i]) && message.cells[i] == kObstacle;
-    const bool went = before[i] == kObstacle && isFree(message.cells[i]);
-    if (!came && !went) continue;
-    const int side = message.tile_cells;
-    const Eigen::Vector2d p_map(
-        (message.tile_x * side + static_cast<int>(i) % side + 0.5) * message.cell_size,
-        (message.tile_y * side + static_cast<int>(i) / side + 0.5) * message.cell_size);
-    if ((p_map - last_->position()).norm() < kCellReach)
-      drive_.cells.push_back({now_, p_map, came});
-  }
-}
-
-void TimelineReader::person(const std::string& who, const std::string& what) {
-  if (!drive_.people.empty() && drive_.people.back().who == who &&
-      drive_.people.back().what == what && now_.time - drive_.people.back().time < 2.0)
-    return;
-  drive_.people.push_back({now_, who, what});
-}
-
-void TimelineReader::hear(const arm_t& arm) {
-  person(arm.armed_by,
-         (arm.armed ? "arms" : "disarms") + (arm.arm_reason.empty() ? "" : ": " + arm.arm_reason));
-}
-
-void TimelineReader::hear(const estop_t& estop) {
-  person(estop.estop_by, (estop.engaged ? "E-stop" : "clears the E-stop") +
-                             (estop.estop_reason.empty() ? "" : ": " + estop.estop_reason));
-}
-
-void TimelineReader::hear(const fence_t& fence) {
-  person(fence.fence_by, "fence " + fence.fence_name);
-}
-
-void TimelineReader::hear(const mark_t& mark) {
-  if (mark.mark_kind == "gap" || mark.mark_kind == "no gap")
-    drive_.gaps.push_back({now_, mark.mark_value, mark.mark_kind == "gap"});
-  else
-    person("operator", mark.mark_kind + ": " + mark.mark_value);
-}
-
-void TimelineReader::hear(const config_t& config) {
-  drive_.configs[config.config_process] = config.config_text;
-}
 
 namespace {
 
@@ -283,17 +274,16 @@ std::optional<Pose2> DriveTimeline::poseAt(double time) const {
   return std::nullopt;
 }
 
-namespace {
-
-DriveTimeline timelineOf(DriveReader reader, double ins_step) {
+DriveTimeline timelineOf(DriveReader reader, double ins_step, const EachEvent& each) {
   DriveTimeline drive;
   TimelineReader timeline(drive, ins_step);
-  for (DriveEvent event; reader.next(event);) timeline.take(event);
+  for (DriveEvent event; reader.next(event);) {
+    timeline.take(event);
+    if (each) each(event, drive);
+  }
   drive.problem = reader.problem();
   return drive;
 }
-
-}  // namespace
 
 DriveTimeline readTimeline(const std::vector<std::string>& logs, double ins_step) {
   DriveTimeline drive = timelineOf(DriveReader(logs), ins_step);
@@ -301,12 +291,6 @@ DriveTimeline readTimeline(const std::vector<std::string>& logs, double ins_step
     throw std::runtime_error((logs.empty() ? std::string("no log") : logs.front()) +
                              ": holds no message of Tread; is it a robot's log?");
   drive.name = logs.front().substr(logs.front().find_last_of('/') + 1);
-  return drive;
-}
-
-DriveTimeline toTimeline(const std::string& name, std::vector<LogEvent> events) {
-  DriveTimeline drive = timelineOf(DriveReader(std::move(events)), 0.0);
-  drive.name = name;
   return drive;
 }
 

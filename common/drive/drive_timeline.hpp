@@ -4,15 +4,16 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/drive/drive_log.hpp"
+#include "common/drive/event_teller.hpp"
 #include "common/drive/odometer.hpp"
 #include "common/execution/stop_reason.hpp"
 #include "common/geometry/se2.hpp"
@@ -52,9 +53,8 @@ struct PlanNote : Note {
   int64_t duration = 0;             ///< [us] of that pattern; 0 before its set is known
 };
 
-struct PersonNote : Note {
-  std::string who;
-  std::string what;
+struct EventNote : Note {
+  Event said;
 };
 
 /// How the vehicle differs from its model from then on.
@@ -75,7 +75,7 @@ struct DriveTimeline {
   std::string problem;  ///< one clear line of what is wrong with the log; empty if nothing is
   int64_t begun = -1;   ///< [us] of the robot's clock
   double duration = 0.0;
-  size_t events = 0;
+  size_t messages = 0;
   std::map<std::string, std::vector<double>> heard;  ///< by channel, without HEALTH
   std::map<std::string, std::vector<Said<health_t>>> health;
   std::vector<MotorNote> motors;
@@ -85,8 +85,8 @@ struct DriveTimeline {
   std::vector<Said<learning_t>> patterns;            ///< how each ended, as the learner scored it
   std::vector<InsNote> ins;
   std::vector<Said<goal_t>> goals;
-  std::vector<PersonNote> people;  ///< arming, disarming, E-stops, fences, marks
-  std::vector<GapNote> gaps;       ///< what tread-gap watch found new
+  std::vector<EventNote> events;  ///< changes and what people did, in words
+  std::vector<GapNote> gaps;      ///< what tread-gap watch found new
   std::vector<CellNote> cells;
   std::vector<std::pair<double, double>> battery;  ///< [s], [V] once a second
 
@@ -141,47 +141,14 @@ auto notesBetween(const std::vector<Kind>& notes, size_t from, size_t to) {
   return std::pair(at(from), at(to));
 }
 
-/// Fills a timeline from the events of a log, in their order.
-class TimelineReader {
- public:
-  /// `ins_step` [s]: of INS messages that come faster only those with another status are noted.
-  explicit TimelineReader(DriveTimeline& drive, double ins_step = 0.0)
-      : drive_(drive), ins_step_(ins_step) {}
-  void take(const DriveEvent& event);
+/// Called behind each event with what the timeline holds so far.
+using EachEvent = std::function<void(const DriveEvent&, const DriveTimeline&)>;
 
- private:
-  void hear(const ins_t& ins);
-  void hear(const motor_t& motor);
-  void notePermission(const MotorNote& note);
-  void hear(const plan_t& plan);
-  void hear(const pattern_set_part_t& part);
-  void hear(const health_t& health);
-  void hear(const learning_t& learning);
-  void hear(const execution_t& executions);
-  void hear(const goal_t& goal);
-  void hear(const map_tile_t& message);
-  void compare(const map_tile_t& message);
-  void hear(const arm_t& arm);
-  void hear(const estop_t& estop);
-  void hear(const fence_t& fence);
-  void hear(const mark_t& mark);
-  void hear(const config_t& config);
-  void person(const std::string& who, const std::string& what);
-
-  DriveTimeline& drive_;
-  double ins_step_;
-  Note now_;
-  const DriveEvent* event_ = nullptr;  // that is taken
-  Odometer odometer_;
-  std::optional<Pose2> last_;
-  std::set<ExecutionKey> ended_;
-  std::map<int32_t, int64_t> durations_;  // [us] by pattern
-};
-
-/// Reads logs (parts of one recording, in order); throws std::runtime_error with one clear line if
-/// one cannot be read or holds no message of Tread.
+/// Reads a log to its end. `ins_step` [s]: of INS messages that come faster only those with another
+/// status are noted.
+DriveTimeline timelineOf(DriveReader reader, double ins_step = 0.0, const EachEvent& each = {});
+/// The same of files (parts of one recording, in order); throws std::runtime_error with one clear
+/// line if one cannot be read or holds no message of Tread.
 DriveTimeline readTimeline(const std::vector<std::string>& logs, double ins_step = 0.0);
-/// The same of events in memory, at the recorder's times, whatever they hold.
-DriveTimeline toTimeline(const std::string& name, std::vector<LogEvent> events);
 
 }  // namespace tread

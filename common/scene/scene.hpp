@@ -8,7 +8,7 @@
 
 #include "common/geometry/se2.hpp"
 #include "common/grid/grid.hpp"
-#include "common/scene/event_teller.hpp"
+#include "common/drive/event_teller.hpp"
 
 namespace tread {
 

@@ -328,7 +328,7 @@ std::vector<LogEvent> eventsIn(const uint8_t* bytes, size_t size) {
 /// All that the tools make of a drive's log.
 void driveLog(const uint8_t* bytes, size_t size) {
   const std::vector<LogEvent> events = eventsIn(bytes, size);
-  const DriveTimeline drive = toTimeline("log", events);
+  const DriveTimeline drive = timelineOf(DriveReader(events));
   const report::Chronicle chronicle(drive);
   chronicle.summary(0);
   chronicle.words();

@@ -34,7 +34,7 @@ ins_t insOf(const LogEvent& event) {
 }
 
 double metresIn(const std::vector<LogEvent>& events) {
-  return toTimeline("drive", events).distance;
+  return timelineOf(DriveReader(events)).distance;
 }
 
 }  // namespace

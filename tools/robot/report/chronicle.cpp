@@ -58,7 +58,7 @@ Chronicle::Chronicle(const DriveTimeline& drive) : incidents_(drive.losses) {
         silences_.push_back({times[i - 1], times[i] - times[i - 1], {channel}});
   if (incidents_.empty() || !isSevere(incidents_.back())) return;
   // A fault after an E-stop is no better an end.
-  const auto [from, to] = notesBetween(drive.motors, incidents_.back().event, drive.events);
+  const auto [from, to] = notesBetween(drive.motors, incidents_.back().event, drive.messages);
   lasts_ = std::all_of(from, to, [&](const MotorNote& note) {
     return note.state == incidents_.back().state || note.state == motor_t::STATE_FAULT;
   });

@@ -106,15 +106,14 @@ bool arrivesNow(const DriveTimeline& log) {
 }
 
 /// The richest search tree on the way to the first goal.
-void takeTree(const DriveEvent& event, DriveRecord& drive) {
+void takeTree(const DriveEvent& event, const DriveTimeline& log, std::vector<TreeEdge>& richest) {
   plan_tree_t tree;
-  if (!decode(event, kPlanTree, tree) || drive.log.goals.empty() || drive.log.ins.empty()) return;
-  const InsNote& here = drive.log.ins.back();
-  const double* const goal = drive.log.goals.back().message.goal_pose;
+  if (!decode(event, kPlanTree, tree) || log.goals.empty() || log.ins.empty()) return;
+  const InsNote& here = log.ins.back();
+  const double* const goal = log.goals.back().message.goal_pose;
   const double to_go = (here.T_map_body.position() - Eigen::Vector2d(goal[0], goal[1])).norm();
   std::vector<TreeEdge> edges = edgesOf(tree);
-  if (here.placed && to_go > kNear && edges.size() >= drive.tree.size())
-    drive.tree = std::move(edges);
+  if (here.placed && to_go > kNear && edges.size() >= richest.size()) richest = std::move(edges);
 }
 
 /// From the first goal to the arrival.
@@ -124,7 +123,7 @@ void takeFirstDrive(DriveRecord& drive) {
   const size_t begin = log.goals.front().event;
   drive.has_goal = true;
   drive.begun = drive.ended = log.goals.front().message.utime;
-  size_t end = log.events;
+  size_t end = log.messages;
   auto [plan, last] = notesBetween(log.plans, begin, end);
   for (; plan != last && !drive.arrived; ++plan) {
     if (plan->goal_id == 0) continue;
@@ -225,18 +224,15 @@ double DriveRecord::straightLine() const {
 
 DriveRecord readDrive(const std::vector<std::string>& logs) {
   DriveRecord drive;
-  TimelineReader timeline(drive.log);
-  DriveReader log(logs);
   bool arrived = false;
-  for (DriveEvent event; log.next(event);) {
-    timeline.take(event);
-    drive.latencies.add(event, event.wrong_time);
-    arrived = arrived || arrivesNow(drive.log);
-    if (!arrived) takeTree(event, drive);
-  }
-  drive.log.problem = log.problem();
+  drive.log =
+      timelineOf(DriveReader(logs), 0.0, [&](const DriveEvent& event, const DriveTimeline& log) {
+        drive.latencies.add(event, event.wrong_time);
+        arrived = arrived || arrivesNow(log);
+        if (!arrived) takeTree(event, log, drive.tree);
+      });
   // A file of another kind has nothing to tell.
-  if (drive.log.events == 0 && !drive.log.problem.empty())
+  if (drive.log.messages == 0 && !drive.log.problem.empty())
     throw std::runtime_error(drive.log.problem);
   takeFirstDrive(drive);
   takePatterns(drive);

@@ -84,7 +84,7 @@ void HandRecord::follow(const DriveTimeline& drive, const MotorNote& note, const
   if (note.command != Command{})
     moving_ += secondsOf(std::max<int64_t>(0, spans_.back().end - note.utime));
   if (next != nullptr && !isByHand(*next)) ++(mayDrive(next->state) ? given_back_ : stopped_);
-  const size_t end = next == nullptr ? drive.events : next->event;
+  const size_t end = next == nullptr ? drive.messages : next->event;
   const auto [ins, ins_end] = notesBetween(drive.ins, note.event, end);
   std::for_each(ins, ins_end, [&](const InsNote& place) { odometer_.add(place); });
   std::copy_if(ins, ins_end, std::back_inserter(places_),

@@ -142,7 +142,7 @@ class CauseSearch {
         break;
       case StopReason::kDisarmed:
         say("disarmed", main_.reason);
-        quote("disarms");
+        quote("ARM", "disarms");
         break;
       case StopReason::kControllerVoltage:
         say("battery", "the motor controller ran short of voltage: " + main_.reason);
@@ -251,21 +251,20 @@ class CauseSearch {
     if (last != nullptr && last->holds) prove(last->time, "MARK", "gap_watch: " + last->words);
   }
   /// What a person said shortly before.
-  const PersonNote* quote(const std::string& what) {
-    const PersonNote* last = nullptr;
-    for (const PersonNote& note : drive_.people)
-      if (note.time <= t_ + 0.3 && note.time > t_ - 3.0 && note.what.rfind(what, 0) == 0)
+  const Event* quote(const char* channel, const std::string& what) {
+    const EventNote* last = nullptr;
+    for (const EventNote& note : drive_.events)
+      if (note.time <= t_ + 0.3 && note.time > t_ - 3.0 && note.said.channel == channel &&
+          note.said.words.rfind(what, 0) == 0)
         last = &note;
-    if (last != nullptr)
-      prove(last->time, what == "E-stop" ? "ESTOP" : "ARM", last->who + " " + last->what);
-    return last;
+    if (last != nullptr) prove(last->time, channel, last->said.source + " " + last->said.words);
+    return last == nullptr ? nullptr : &last->said;
   }
 
   void estop() {
-    const PersonNote* const person = quote("E-stop");
-    say("estop", person != nullptr
-                     ? person->who + " pressed the emergency stop (" + person->what + ")"
-                     : main_.reason);
+    const Event* const person = quote("ESTOP", "emergency stop");
+    say("estop",
+        person == nullptr ? main_.reason : person->source + " pressed the " + person->words);
   }
 
   void controller() {

@@ -245,7 +245,7 @@ TEST_CASE("parts of one recording are one drive") {
   const DriveRecord drive = readDrive({writeLog(folder.path("a.lcmlog"), {all.begin(), middle}),
                                        writeLog(folder.path("b.lcmlog"), {middle, all.end()})});
   CHECK(resultLine(drive, {}) == resultOf(all));
-  CHECK(drive.log.events == all.size());
+  CHECK(drive.log.messages == all.size());
 }
 
 TEST_CASE("INS measurements that are not finite or have no fix are no part of the track") {

@@ -46,7 +46,7 @@ HandRecord tenSeconds(Plan&& plan, int16_t state_after) {
     if (i % 20 == 0) events.push_back(eventOf(kPlan, plan(time, 0.5 * 0.05 * i)));
   }
   events.push_back(eventOf(kMotor, motorAt(11.05, state_after)));
-  return HandRecord(toTimeline("drive", std::move(events)));
+  return HandRecord(timelineOf(DriveReader(std::move(events))));
 }
 
 }  // namespace
@@ -91,7 +91,7 @@ TEST_CASE("a planner that would have turned away does not agree, and one that sa
 }
 
 TEST_CASE("a log that nobody drove by hand says nothing of it") {
-  CHECK(HandRecord(toTimeline("drive", tenMetres())).words().empty());
+  CHECK(HandRecord(timelineOf(DriveReader(tenMetres()))).words().empty());
 }
 
 TEST_CASE("patterns that a person's driving taught are counted, those of the planner are not") {
@@ -101,7 +101,7 @@ TEST_CASE("patterns that a person's driving taught are counted, those of the pla
   events.push_back(eventOf(kLearning, planners));
   events.push_back(eventOf(kLearning, learningAt(2.0, true, 0.1, 0.0)));
   events.push_back(eventOf(kLearning, learningAt(3.0, false, 0.1, 0.0)));
-  CHECK_THAT(HandRecord(toTimeline("drive", std::move(events))).words(),
+  CHECK_THAT(HandRecord(timelineOf(DriveReader(std::move(events)))).words(),
              Catch::Contains("it taught 2 patterns, 1 of them fair"));
 }
 

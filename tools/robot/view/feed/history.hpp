@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/scene/event_teller.hpp"
+#include "common/drive/event_teller.hpp"
 
 namespace tread::view {
 

@@ -19,8 +19,9 @@ enum class Severity { kInfo, kWarning, kError };
 struct Event {
   int64_t utime = 0;  ///< [us] when it was recorded
   Severity severity = Severity::kInfo;
-  std::string source;  ///< the process or person
-  std::string words;   ///< "disarmed: the operator's lease has run out"
+  std::string channel;  ///< of the message that says so
+  std::string source;   ///< the process or person
+  std::string words;    ///< "disarmed: the operator's lease has run out"
 };
 
 /// Finds what happened among the messages: changes of state with their reasons, what people did,
@@ -47,6 +48,7 @@ class EventTeller {
   bool changes(const std::string& source, const std::string& state);
 
   int64_t now_ = 0;
+  std::string channel_;
   std::vector<Event> told_;
   std::map<std::string, std::string> states_;  ///< by source
   std::map<std::string, int64_t> boots_;       ///< by process

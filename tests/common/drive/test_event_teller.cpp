@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/messages/blank.hpp"
-#include "common/scene/event_teller.hpp"
+#include "common/drive/event_teller.hpp"
 
 using namespace tread;
 

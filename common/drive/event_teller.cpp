@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "common/scene/event_teller.hpp"
+#include "common/drive/event_teller.hpp"
 
 #include <cmath>
 
@@ -61,6 +61,7 @@ std::string withReason(const std::string& words, const std::string& reason) {
 
 std::vector<Event> EventTeller::take(const LogEvent& event) {
   now_ = event.utime;
+  channel_ = event.channel;
   told_.clear();
   if (states_.size() > kMostNames) states_.clear();
   if (boots_.size() > kMostNames) boots_.clear();
@@ -72,7 +73,7 @@ std::vector<Event> EventTeller::take(const LogEvent& event) {
 }
 
 void EventTeller::tell(Severity severity, const std::string& source, const std::string& words) {
-  told_.push_back({now_, severity, source, words});
+  told_.push_back({now_, severity, channel_, source, words});
 }
 
 bool EventTeller::changes(const std::string& source, const std::string& state) {
