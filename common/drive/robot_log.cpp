@@ -31,10 +31,9 @@ void noteSeq(const LogEvent& event, int64_t seq, std::map<std::string, int64_t>&
 }
 
 /// Leaves out what a robot with a key has not taken: unsealed messages that do not stop.
-void removeUnsealed(std::vector<TimedEvent>& events) {
+void removeUnsealed(std::vector<LogEvent>& events) {
   bool robot_has_key = false;
-  const auto refused = [&](const TimedEvent& timed) {
-    const LogEvent& event = timed.event;
+  const auto refused = [&](const LogEvent& event) {
     if (event.channel == kMotor.name) robot_has_key = event.sealed;
     bool is_stop = false;
     dispatch(
@@ -44,26 +43,24 @@ void removeUnsealed(std::vector<TimedEvent>& events) {
   events.erase(std::remove_if(events.begin(), events.end(), refused), events.end());
 }
 
-bool inVirtualTime(const std::vector<TimedEvent>& events) {
-  for (const TimedEvent& timed : events) {
-    health_t health;
-    if (decode(timed.event, kHealth, health)) return health.utc < 0;
-  }
-  return false;
-}
-
 /// What is known of the events as a whole.
 void describe(RobotLog& log) {
   removeUnsealed(log.events);
-  log.virtual_time = inVirtualTime(log.events);
   std::map<std::string, int64_t> last;
-  for (TimedEvent& timed : log.events) {
+  for (size_t i = 0; i < log.events.size(); ++i) {
+    const LogEvent& event = log.events[i];
+    const double time = 1e-6 * static_cast<double>(event.utime - log.events.front().utime);
     config_t config;
-    if (decode(timed.event, kConfig, config))
+    health_t health;
+    if (decode(event, kConfig, config))
       log.configs.emplace(config.config_process, config.config_text);
-    if (const auto number = numberOf(timed.event)) noteSeq(timed.event, *number, last, log.missing);
-    if (log.virtual_time) timed.heard += kTransportUs;
+    if (const auto number = numberOf(event)) noteSeq(event, *number, last, log.missing);
+    if (!decode(event, kHealth, health)) continue;
+    if (log.health.empty()) log.virtual_time = health.utc < 0;
+    log.health[health.process].push_back({{time, i}, health});
   }
+  if (!log.virtual_time) return;
+  for (LogEvent& event : log.events) event.utime += kTransportUs;
 }
 
 template <class Keep>
@@ -71,10 +68,7 @@ RobotLog robotLogOf(const std::string& name, DriveReader events, const Keep& kee
   RobotLog log;
   log.name = name;
   for (DriveEvent event; events.next(event);)
-    if (keep(event)) {
-      const int64_t heard = event.utime;
-      log.events.push_back({std::move(event), heard});
-    }
+    if (keep(event)) log.events.push_back(std::move(event));
   log.problem = events.problem();
   describe(log);
   return log;
@@ -86,25 +80,29 @@ RobotLog toRobotLog(const std::string& name, std::vector<LogEvent> events) {
   return robotLogOf(name, DriveReader(std::move(events)), [](const LogEvent&) { return true; });
 }
 
+const std::vector<Said<health_t>>& RobotLog::healthOf(const std::string& process) const {
+  static const std::vector<Said<health_t>> kNone;
+  const auto found = health.find(process);
+  return found == health.end() ? kNone : found->second;
+}
+
 Intake intakeOf(const RobotLog& log, const std::string& process,
                 const std::vector<std::string>& channels) {
+  using Health = const Said<health_t>*;
+  std::map<int64_t, std::pair<Health, Health>> lives;  // by boot id: the first and the last
+  for (const Said<health_t>& health : log.healthOf(process))
+    lives.try_emplace(health.message.boot_id, &health, &health).first->second.second = &health;
+  const auto at = [&](Health health) {
+    return log.events.begin() + static_cast<std::ptrdiff_t>(health->event);
+  };
   Intake intake;
-  std::map<int64_t, std::pair<health_t, int64_t>> first;  // by boot id, with the count until then
-  std::map<int64_t, std::pair<health_t, int64_t>> last;
-  int64_t count = 0;
-  for (const TimedEvent& timed : log.events) {
-    health_t health;
-    if (decode(timed.event, kHealth, health) && health.process == process) {
-      first.emplace(health.boot_id, std::make_pair(health, count));
-      last.insert_or_assign(health.boot_id, std::make_pair(health, count));
-    }
-    if (std::find(channels.begin(), channels.end(), timed.event.channel) != channels.end()) ++count;
-  }
-  for (const auto& [boot_id, end] : last) {
-    const auto& [health, count_then] = first.at(boot_id);
-    intake.heard += end.first.received - health.received;
-    intake.lost += end.first.lost - health.lost;
-    intake.in_log += end.second - count_then;
+  for (const auto& [boot_id, life] : lives) {
+    const auto [first, last] = life;
+    intake.heard += last->message.received - first->message.received;
+    intake.lost += last->message.lost - first->message.lost;
+    intake.in_log += std::count_if(at(first), at(last), [&](const LogEvent& event) {
+      return std::find(channels.begin(), channels.end(), event.channel) != channels.end();
+    });
   }
   return intake;
 }

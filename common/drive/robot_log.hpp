@@ -7,25 +7,24 @@
 #include <vector>
 
 #include "common/config/config_reader.hpp"
-#include "common/drive/drive_log.hpp"
+#include "common/drive/drive_timeline.hpp"
 
 namespace tread {
-
-/// An event and the time at which a process of the robot received it.
-struct TimedEvent {
-  LogEvent event;
-  int64_t heard = 0;  ///< [us] of the robot's clock, as utime; never decreases
-};
 
 /// The log of a running robot: what lcm-logger or tread-missions --log wrote.
 struct RobotLog {
   std::string name;  ///< file name without folder
-  std::vector<TimedEvent> events;
-  std::map<std::string, std::string> configs;  ///< by process: the first CONFIG
-  bool virtual_time = false;                   ///< HEALTH without UTC
+  /// At the times at which a process of the robot received them [us], which never decrease.
+  std::vector<LogEvent> events;
+  std::map<std::string, std::string> configs;                 ///< by process: the first CONFIG
+  std::map<std::string, std::vector<Said<health_t>>> health;  ///< by process
+  bool virtual_time = false;                                  ///< HEALTH without UTC
   std::string problem;  ///< one clear line of what is wrong with the log, see DriveReader
   /// Messages that the log misses by seq, per channel.
   std::map<std::string, int64_t> missing;
+
+  /// HEALTH of a process; empty if it sent none.
+  const std::vector<Said<health_t>>& healthOf(const std::string& process) const;
 };
 
 /// Messages that a process counted (HEALTH) and those in the log, between its first and its last

@@ -26,7 +26,7 @@ std::vector<Snapshot> snapshotsOf(const RobotLog& log) {
   int32_t next = -1;
   for (size_t i = 0; i < log.events.size(); ++i) {
     learner_state_t part;
-    if (!decode(log.events[i].event, kLearnerState, part)) continue;
+    if (!decode(log.events[i], kLearnerState, part)) continue;
     if (part.state_part == 0) {
       current = {i, part.seq, {}};
       next = 0;
@@ -53,23 +53,18 @@ std::vector<Snapshot> beginningsOf(const std::vector<Snapshot>& snapshots) {
 /// Boot id of the learner that was alive at an event: the one that its next HEALTH names, else the
 /// last one before.
 int64_t bootIdAt(const RobotLog& log, size_t event) {
-  health_t health;
-  const auto isLearners = [&](size_t i) {
-    return decode(log.events[i].event, kHealth, health) && health.process == "learner";
-  };
-  for (size_t i = event; i < log.events.size(); ++i)
-    if (isLearners(i)) return health.boot_id;
-  for (size_t i = event; i-- > 0;)
-    if (isLearners(i)) return health.boot_id;
-  return log.events[event].heard;
+  const std::vector<Said<health_t>>& health = log.healthOf("learner");
+  if (health.empty()) return log.events[event].utime;
+  const auto next = notesBetween(health, event, log.events.size()).first;
+  return (next == health.end() ? health.back() : *next).message.boot_id;
 }
 
 /// First event that a process heard which was started at `boot_id`.
 size_t firstHeard(const RobotLog& log, size_t before, int64_t boot_id) {
-  const int64_t published = log.events[before].heard;
+  const int64_t published = log.events[before].utime;
   if (boot_id > published || published - boot_id > kLongestStart) return before;
   size_t first = before;
-  while (first > 0 && log.events[first - 1].heard >= boot_id) --first;
+  while (first > 0 && log.events[first - 1].utime >= boot_id) --first;
   return first;
 }
 
@@ -78,7 +73,7 @@ std::vector<PatternSet> setsBefore(const RobotLog& log, size_t end, int64_t vers
   PatternSetAssembler assembler;
   for (size_t i = 0; i < end; ++i) {
     pattern_set_part_t part;
-    if (!decode(log.events[i].event, kPatternSet, part)) continue;
+    if (!decode(log.events[i], kPatternSet, part)) continue;
     auto set = assembler.add(part);
     if (set && set->version() < version) sets.push_back(*set);
   }
@@ -115,9 +110,9 @@ bool namesKnownSets(const RobotLog& log, const LearnerLife& life) {
   std::set<int64_t> known;
   for (const PatternSet& set : life.earlier) known.insert(set.version());
   const std::set<ExecutionKey> handled(life.state.handled.begin(), life.state.handled.end());
-  for (const TimedEvent& timed : log.events) {
+  for (const LogEvent& event : log.events) {
     execution_t message;
-    if (!decode(timed.event, kExecution, message)) continue;
+    if (!decode(event, kExecution, message)) continue;
     for (const execution_record_t& record : message.records) {
       const ExecutionKey key = keyOf(record);
       const bool is_known = known.count(record.record_set_version) > 0 ||

@@ -35,7 +35,7 @@ class InputIndex {
         places_.find({program.newest_input, program.newest_input_utime, program.newest_input_seq});
     if (found == places_.end()) return std::nullopt;
     const auto distance = [&](size_t i) {
-      return std::abs(log_.events[inputs_[i].event].heard - program.utime);
+      return std::abs(log_.events[inputs_[i].event].utime - program.utime);
     };
     return *std::min_element(found->second.begin(), found->second.end(),
                              [&](size_t a, size_t b) { return distance(a) < distance(b); });
@@ -108,7 +108,7 @@ void fillByTime(const RobotLog& log, Hearing& hearing, const std::vector<LoggedS
   size_t until = hearing.from;
   for (size_t i = 0; i < steps.size(); ++i) {
     const auto heard = [&](size_t input) {
-      return log.events[hearing.inputs[input].event].heard < steps[i].program.utime;
+      return log.events[hearing.inputs[input].event].utime < steps[i].program.utime;
     };
     if (found[i]) until = std::max(until, hearing.until[i]);
     while (!found[i] && until < limits[i] && heard(until)) ++until;
@@ -125,8 +125,8 @@ std::vector<PlannerInput> plannerInputs(const RobotLog& log, const planner::Plan
   std::vector<PlannerInput> inputs;
   for (size_t i = 0; i < log.events.size(); ++i) {
     const int64_t before = bus.statistics().received;
-    bus.setNow(log.events[i].heard);
-    bus.hear(log.events[i].event);
+    bus.setNow(log.events[i].utime);
+    bus.hear(log.events[i]);
     if (bus.statistics().received > before) inputs.push_back({i, bus.statistics().newest});
   }
   return inputs;

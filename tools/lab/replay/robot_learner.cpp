@@ -47,26 +47,23 @@ struct Published {
 
 /// When the learner published for the last time in a life; 0 if never.
 int64_t lastMessageOf(const RobotLog& log, const LearnerLife& life) {
-  for (size_t i = life.end_event; i-- > life.first_event;) {
-    const LogEvent& event = log.events[i].event;
-    health_t health;
-    if (event.channel == kLearning.name || event.channel == kPatternSet.name ||
-        event.channel == kLearnerState.name ||
-        (decode(event, kHealth, health) && health.process == "learner"))
-      return log.events[i].heard;
+  const auto [from, to] = notesBetween(log.healthOf("learner"), life.first_event, life.end_event);
+  const size_t health = from == to ? life.first_event : std::prev(to)->event;
+  for (size_t i = life.end_event; i-- > health;) {
+    const std::string& channel = log.events[i].channel;
+    if (channel == kLearning.name || channel == kPatternSet.name || channel == kLearnerState.name)
+      return log.events[i].utime;
   }
-  return 0;
+  return from == to ? 0 : log.events[health].utime;
 }
 
 /// Times at which the learner stepped, of the steps that say it: those that sent its HEALTH [us].
 std::vector<int64_t> knownSteps(const RobotLog& log, const LearnerLife& life) {
   std::vector<int64_t> steps;
-  for (size_t i = life.first_event; i < life.end_event; ++i) {
-    health_t health;
-    if (decode(log.events[i].event, kHealth, health) && health.process == "learner" &&
-        (steps.empty() || health.utime > steps.back()))
-      steps.push_back(health.utime);
-  }
+  const auto [from, to] = notesBetween(log.healthOf("learner"), life.first_event, life.end_event);
+  for (auto health = from; health != to; ++health)
+    if (steps.empty() || health->message.utime > steps.back())
+      steps.push_back(health->message.utime);
   return steps;
 }
 
@@ -78,7 +75,7 @@ void playLife(const RobotLog& log, const LearnerLife& life,
   node.resume(life.state, life.earlier);
   // What it heard just before a step and what just behind decides what it publishes: steps are
   // where it says, and a period apart between.
-  const int64_t begin = log.events[life.first_event].heard;
+  const int64_t begin = log.events[life.first_event].utime;
   const std::vector<int64_t> known = knownSteps(log, life);
   size_t next_known = 0;
   int64_t next_step = begin;
@@ -95,12 +92,12 @@ void playLife(const RobotLog& log, const LearnerLife& life,
     }
   };
   for (size_t i = life.first_event; i < life.end_event; ++i) {
-    const TimedEvent& timed = log.events[i];
-    stepUntil(timed.heard);
-    bus.setNow(timed.heard);
-    bus.hear(timed.event);
+    const LogEvent& event = log.events[i];
+    stepUntil(event.utime);
+    bus.setNow(event.utime);
+    bus.hear(event);
   }
-  if (life.end_event == log.events.size()) stepUntil(log.events.back().heard + kAfterwards);
+  if (life.end_event == log.events.size()) stepUntil(log.events.back().utime + kAfterwards);
   const int64_t late = lastMessageOf(log, life) - node.period();
   for (LogEvent& event : bus.takePublished()) {
     published.take(event, event.utime > late);
@@ -118,8 +115,7 @@ Published replayed(const RobotLog& log, const std::vector<LearnerLife>& lives,
 /// What the log holds from where the replay begins.
 Published publishedInLog(const RobotLog& log, const LearnerLife& first) {
   Published published;
-  for (size_t i = first.first_event; i < log.events.size(); ++i)
-    published.take(log.events[i].event);
+  for (size_t i = first.first_event; i < log.events.size(); ++i) published.take(log.events[i]);
   if (!first.from_start)
     for (const ExecutionKey& key : first.state.handled) published.learned.erase(key);
   auto& sets = published.sets;

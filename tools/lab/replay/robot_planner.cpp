@@ -53,8 +53,8 @@ void dropFarewell(std::vector<Step>& steps) {
 
 /// Why a log has no planner that can be replayed.
 std::string noPlanner(const RobotLog& log) {
-  for (const TimedEvent& timed : log.events)
-    if (timed.event.channel == kProgram.name)
+  for (const LogEvent& event : log.events)
+    if (event.channel == kProgram.name)
       return ": its PROGRAM is not this version's program_t (the log is older or newer); replay it "
              "with the version of Tread that recorded it";
   return ": no PROGRAM, so no planner was running";
@@ -62,15 +62,15 @@ std::string noPlanner(const RobotLog& log) {
 
 std::vector<Life> livesIn(const RobotLog& log) {
   std::vector<Life> lives;
-  for (const TimedEvent& timed : log.events) {
+  for (const LogEvent& event : log.events) {
     program_t program;
     plan_t plan;
-    if (decode(timed.event, kProgram, program)) {
+    if (decode(event, kProgram, program)) {
       if (lives.empty() || lives.back().run_id != program.run_id)
         lives.push_back({program.run_id, program.seq == 0, {}, {}});
       addLost(lives.back().steps, program);
       lives.back().steps.push_back({{program, false}, std::nullopt});
-    } else if (!lives.empty() && decode(timed.event, kPlan, plan)) {
+    } else if (!lives.empty() && decode(event, kPlan, plan)) {
       lives.back().steps.back().plan = plan;
     }
   }
@@ -119,8 +119,8 @@ class Overhearing {
   void until(size_t input, int64_t utime) {
     const bool at_end = input >= hearing_.inputs.size();
     const size_t end = at_end ? log_.events.size() : hearing_.inputs[input].event;
-    for (; next_ < end && log_.events[next_].heard < utime; ++next_) {
-      const LogEvent& event = log_.events[next_].event;
+    for (; next_ < end && log_.events[next_].utime < utime; ++next_) {
+      const LogEvent& event = log_.events[next_];
       if (bus_.overhears(event.channel) && !bus_.hears(event.channel)) bus_.overhear(event);
     }
   }
@@ -149,10 +149,10 @@ std::vector<Step> replayed(const RobotLog& log, const Life& life,
     const int64_t utime = life.steps[i].program.utime;
     for (; input < hearing.until[i]; ++input) {
       beside.until(input, INT64_MAX);
-      const TimedEvent& timed = log.events[hearing.inputs[input].event];
+      const LogEvent& event = log.events[hearing.inputs[input].event];
       const bool knows = bus.knowsTime();
-      bus.setNow(knows ? std::min(std::max(timed.heard, last), utime) : timed.heard);
-      bus.hear(timed.event);
+      bus.setNow(knows ? std::min(std::max(event.utime, last), utime) : event.utime);
+      bus.hear(event);
     }
     beside.until(input, utime);
     cut = cutOf(life.steps[i], config.deadline);

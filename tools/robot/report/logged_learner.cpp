@@ -24,9 +24,9 @@ std::optional<PatternSet> asShipped(const PatternSet& set, int64_t version) {
 
 std::optional<PatternSet> shippedInLog(const RobotLog& log, int64_t checksum) {
   PatternSetAssembler assembler;
-  for (const TimedEvent& timed : log.events) {
+  for (const LogEvent& event : log.events) {
     pattern_set_part_t part;
-    if (!decode(timed.event, kPatternSet, part)) continue;
+    if (!decode(event, kPatternSet, part)) continue;
     const auto set = assembler.add(part);
     if (!set) continue;
     for (const int64_t version : {int64_t{1}, set->content().parent_version}) {

@@ -78,8 +78,8 @@ RuleErrors errorsByRule(const std::vector<std::string>& logs, const std::string&
         readRobotLog(logs, {kScan.name, kPlanTree.name, kMap.name, kLearnerState.name});
     const learner::LearnerNodeConfig config = report::learnerConfigOf(log, patterns_folder);
     errors.driven = config.rule.rule;
-    report::ShadowLearners shadows(config, rules, log.events.front().heard);
-    for (const TimedEvent& timed : log.events) shadows.hear(timed.heard, timed.event);
+    report::ShadowLearners shadows(config, rules, log.events.front().utime);
+    for (const LogEvent& event : log.events) shadows.hear(event.utime, event);
     shadows.finish();
     errors.executions = shadows.executions();
   } catch (const std::exception& error) {

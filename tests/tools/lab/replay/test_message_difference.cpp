@@ -223,13 +223,13 @@ TEST_CASE("the robot's time follows its messages, goes on between them and never
   record(70'000, eventOf(kIns, insAt(5'060'000, 3)));
   const RobotLog log = toRobotLog("clock", events);
   CHECK_FALSE(log.virtual_time);
-  CHECK(log.events[0].heard == 4'990'000);  // before the first stamp
-  CHECK(log.events[1].heard == 5'000'000);
-  CHECK(log.events[2].heard == 5'005'000);
-  CHECK(log.events[3].heard == 5'020'000);
+  CHECK(log.events[0].utime == 4'990'000);  // before the first stamp
+  CHECK(log.events[1].utime == 5'000'000);
+  CHECK(log.events[2].utime == 5'005'000);
+  CHECK(log.events[3].utime == 5'020'000);
   for (size_t i = 1; i < log.events.size(); ++i)
-    CHECK(log.events[i].heard >= log.events[i - 1].heard);
-  CHECK(log.events.back().heard == 5'060'000);
+    CHECK(log.events[i].utime >= log.events[i - 1].utime);
+  CHECK(log.events.back().utime == 5'060'000);
 }
 
 TEST_CASE("a recipe plays to a bus of its own what the process hears, for each process") {
