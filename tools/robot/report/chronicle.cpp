@@ -48,45 +48,65 @@ std::string lineOf(const GoalStory& goal) {
          (goal.reason.empty() ? "" : ": " + goal.reason);
 }
 
-}  // namespace
+std::vector<GoalStory> goalsOf(const std::vector<PlanNote>& plans) {
+  std::vector<GoalStory> goals;
+  for (const PlanNote& plan : plans) {
+    const bool given = plan.goal_id != 0 && (goals.empty() || goals.back().id != plan.goal_id);
+    if (given) goals.push_back({plan.goal_id, plan.time, plan.time, false, ""});
+    if (goals.empty() || goals.back().arrived) continue;
+    GoalStory& goal = goals.back();
+    // Without a goal: why the planner follows the last one no more.
+    if (plan.goal_id != 0 || !plan.reason.words.empty()) goal.reason = plan.reason.words;
+    if (plan.goal_id == 0) continue;
+    goal.ended = plan.time;
+    goal.arrived = plan.state == plan_t::PLAN_ARRIVED;
+    if (goal.arrived) goal.reason.clear();
+  }
+  return goals;
+}
 
-Chronicle::Chronicle(const DriveTimeline& drive) : incidents_(drive.losses) {
-  for (const PlanNote& plan : drive.plans) follow(plan);
+/// Of one channel each, in the order of their beginnings.
+std::vector<Hole> silencesOf(const DriveTimeline& drive) {
+  std::vector<Hole> silences;
   for (const auto& [channel, times] : drive.heard)
     for (size_t i = 1; isContinuous(channel) && i < times.size(); ++i)
       if (times[i] - times[i - 1] > kHole)
-        silences_.push_back({times[i - 1], times[i] - times[i - 1], {channel}});
-  if (incidents_.empty() || !isSevere(incidents_.back())) return;
-  // A fault after an E-stop is no better an end.
-  const auto [from, to] = notesBetween(drive.motors, incidents_.back().event, drive.messages);
-  lasts_ = std::all_of(from, to, [&](const MotorNote& note) {
-    return note.state == incidents_.back().state || note.state == motor_t::STATE_FAULT;
-  });
-}
-
-void Chronicle::follow(const PlanNote& plan) {
-  if (plan.goal_id == 0) {
-    // Why the planner follows the last goal no more.
-    if (!goals_.empty() && !goals_.back().arrived && !plan.reason.words.empty())
-      goals_.back().reason = plan.reason.words;
-    return;
-  }
-  if (goals_.empty() || goals_.back().id != plan.goal_id)
-    goals_.push_back({plan.goal_id, plan.time, plan.time, false, ""});
-  GoalStory& goal = goals_.back();
-  if (goal.arrived) return;
-  goal.ended = plan.time;
-  goal.arrived = plan.state == plan_t::PLAN_ARRIVED;
-  goal.reason = goal.arrived ? "" : plan.reason.words;
-}
-
-std::vector<Hole> Chronicle::holes() const {
-  std::vector<Hole> sorted = silences_;
-  std::stable_sort(sorted.begin(), sorted.end(), [](const Hole& a, const Hole& b) {
+        silences.push_back({times[i - 1], times[i] - times[i - 1], {channel}});
+  std::stable_sort(silences.begin(), silences.end(), [](const Hole& a, const Hole& b) {
     return std::pair(a.begin, a.length) < std::pair(b.begin, b.length);
   });
-  std::vector<Hole> holes;
-  for (const Hole& silence : sorted) {
+  return silences;
+}
+
+/// Whether the last loss, a fault or E-stop, lasts to the log's end.
+bool lossLasts(const DriveTimeline& drive) {
+  if (drive.losses.empty() || !isSevere(drive.losses.back())) return false;
+  const PermissionLoss& last = drive.losses.back();
+  const auto [from, to] = notesBetween(drive.motors, last.event, drive.messages);
+  // A fault after an E-stop is no better an end.
+  return std::all_of(from, to, [&](const MotorNote& note) {
+    return note.state == last.state || note.state == motor_t::STATE_FAULT;
+  });
+}
+
+std::string countsOf(const Chronicle& log) {
+  const auto ended = [&](int16_t state) {
+    return std::count_if(log.incidents.begin(), log.incidents.end(),
+                         [&](const PermissionLoss& loss) { return loss.state == state; });
+  };
+  const auto reached = std::count_if(log.goals.begin(), log.goals.end(),
+                                     [](const GoalStory& goal) { return goal.arrived; });
+  return formatted("%td of %zu goals reached; %zu stops that needed arming ", reached,
+                   log.goals.size(), log.incidents.size()) +
+         formatted("(%td faults, %td E-stops)", ended(motor_t::STATE_FAULT),
+                   ended(motor_t::STATE_ESTOP));
+}
+
+}  // namespace
+
+Chronicle::Chronicle(const DriveTimeline& drive)
+    : goals(goalsOf(drive.plans)), incidents(drive.losses), incident_lasts(lossLasts(drive)) {
+  for (const Hole& silence : silencesOf(drive)) {
     const auto same = std::find_if(holes.begin(), holes.end(), [&](const Hole& hole) {
       return std::abs(hole.begin - silence.begin) < kTogether &&
              std::abs(hole.begin + hole.length - silence.begin - silence.length) < kTogether;
@@ -96,43 +116,25 @@ std::vector<Hole> Chronicle::holes() const {
     else
       same->channels.push_back(silence.channels.front());
   }
-  return holes;
-}
-
-int Chronicle::count(int16_t state) const {
-  return static_cast<int>(
-      std::count_if(incidents_.begin(), incidents_.end(),
-                    [&](const PermissionLoss& incident) { return incident.state == state; }));
-}
-
-int Chronicle::reached() const {
-  return static_cast<int>(std::count_if(goals_.begin(), goals_.end(),
-                                        [](const GoalStory& goal) { return goal.arrived; }));
-}
-
-std::string Chronicle::counts() const {
-  return formatted("%d of %zu goals reached; %zu stops that needed arming ", reached(),
-                   goals_.size(), incidents_.size()) +
-         formatted("(%d faults, %d E-stops)", count(motor_t::STATE_FAULT),
-                   count(motor_t::STATE_ESTOP));
 }
 
 std::string Chronicle::summary(int disarmed) const {
-  if (goals_.size() <= 1 && static_cast<int>(incidents_.size()) <= disarmed && !lasts_) return "";
-  std::string line = "in the whole log " + counts();
-  if (!goals_.empty() && !goals_.back().arrived) line += ", THE LAST GOAL NOT REACHED";
-  if (lasts_)
+  if (goals.size() <= 1 && static_cast<int>(incidents.size()) <= disarmed && !incident_lasts)
+    return "";
+  std::string line = "in the whole log " + countsOf(*this);
+  if (!goals.empty() && !goals.back().arrived) line += ", THE LAST GOAL NOT REACHED";
+  if (incident_lasts)
     line += std::string(", IT ENDS WITH ") +
-            (incidents_.back().state == motor_t::STATE_FAULT ? "A FAULT" : "AN E-STOP");
+            (incidents.back().state == motor_t::STATE_FAULT ? "A FAULT" : "AN E-STOP");
   return line;
 }
 
 std::string Chronicle::words() const {
-  const std::vector<Hole> holes = this->holes();
-  if (goals_.size() <= 1 && incidents_.empty() && holes.empty()) return "";
-  std::string words = "the whole log: " + counts() + formatted("; %zu holes\n", holes.size());
-  words += linesOf(goals_, lineOf);
-  words += linesOf(incidents_, [](const PermissionLoss& incident) {
+  if (goals.size() <= 1 && incidents.empty() && holes.empty()) return "";
+  std::string words =
+      "the whole log: " + countsOf(*this) + formatted("; %zu holes\n", holes.size());
+  words += linesOf(goals, lineOf);
+  words += linesOf(incidents, [](const PermissionLoss& incident) {
     return formatted("%7.1f s  ", incident.time) + nameOf(incident) + ": " + incident.reason.words;
   });
   words += linesOf(holes, [](const Hole& hole) {

@@ -26,33 +26,21 @@ struct Hole {
   std::vector<std::string> channels;
 };
 
-/// The whole log, beyond the first arrival: goals, incidents, holes.
-class Chronicle {
- public:
-  explicit Chronicle(const DriveTimeline& drive);
+/// The whole log, beyond the first arrival.
+struct Chronicle {
+  std::vector<GoalStory> goals;
+  std::vector<PermissionLoss> incidents;
+  std::vector<Hole> holes;      ///< channels that fell silent and came back together are one
+  bool incident_lasts = false;  ///< the last one, a fault or E-stop, to the log's end
 
-  const std::vector<GoalStory>& goals() const { return goals_; }
-  const std::vector<PermissionLoss>& incidents() const { return incidents_; }
-  /// In the order of their beginnings; channels that fell silent and came back together are one.
-  std::vector<Hole> holes() const;
+  explicit Chronicle(const DriveTimeline& drive);
   /// Whether the last goal was reached, and no fault or E-stop lasts to the log's end.
-  bool endsWell() const { return !goals_.empty() && goals_.back().arrived && !lasts_; }
+  bool endsWell() const { return !goals.empty() && goals.back().arrived && !incident_lasts; }
   /// What became of it all, for one line; empty where nothing followed the first goal but
   /// `disarmed` losses of the permission.
   std::string summary(int disarmed) const;
   /// Some lines; empty for a log with one goal at most, where nothing else happened.
   std::string words() const;
-
- private:
-  void follow(const PlanNote& plan);
-  int count(int16_t state) const;
-  int reached() const;
-  std::string counts() const;
-
-  std::vector<GoalStory> goals_;
-  std::vector<PermissionLoss> incidents_;
-  std::vector<Hole> silences_;  ///< of one channel each
-  bool lasts_ = false;          ///< the last incident, a fault or E-stop, to the log's end
 };
 
 }  // namespace tread::report

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "common/messages/pattern_messages.hpp"
 #include "common/report/text.hpp"
@@ -58,94 +59,83 @@ double percent(int part, int whole) {
   return whole == 0 ? 0.0 : 100.0 * part / whole;
 }
 
+using Places =
+    std::pair<std::vector<InsNote>::const_iterator, std::vector<InsNote>::const_iterator>;
+
+std::optional<Pose2> poseAt(const Places& places, int64_t utime) {
+  const auto next =
+      std::lower_bound(places.first, places.second, utime,
+                       [](const InsNote& place, int64_t time) { return place.utime < time; });
+  const auto placed =
+      std::find_if(next, places.second, [](const InsNote& place) { return place.placed; });
+  if (placed == places.second || placed->utime - utime > kPoseGap) return std::nullopt;
+  return placed->T_map_body;
+}
+
+/// `places`, `end` [us]: of the time in the hand.
+void compare(const PlanNote& plan, const Places& places, int64_t end, ShadowComparison& result) {
+  constexpr int64_t kLook = 1'000'000;  // [us] what a person does where the planner has no way
+  if (plan.goal_id == 0 || (plan.T_map_next && plan.duration == 0)) return;
+  const int64_t duration = plan.T_map_next ? plan.duration : kLook;
+  const std::optional<Pose2> here = poseAt(places, plan.utime);
+  const std::optional<Pose2> there = poseAt(places, plan.utime + duration);
+  if (!here || !there || plan.utime + duration > end) return;
+  ++result.plans;
+  const BodyMotion person(between(*here, *there));
+  const BodyMotion planner(plan.T_map_next ? between(*here, *plan.T_map_next) : Pose2{});
+  result.same += sameMotion(person, planner) ? 1 : 0;
+  if (planner.stands() && !person.stands()) {
+    ++result.would_stand;
+    ++result.why[plan.reason.words];
+  }
+  if (!person.travels() || !planner.travels()) return;
+  result.turned_away.push_back(std::abs(wrapAngle(person.direction - planner.direction)));
+  result.person_speed.push_back(person.length / secondsOf(duration));
+  result.planner_speed.push_back(planner.length / secondsOf(duration));
+}
+
 }  // namespace
 
 HandRecord::HandRecord(const DriveTimeline& drive) {
-  for (size_t i = 0; i < drive.motors.size(); ++i) {
-    const MotorNote& note = drive.motors[i];
-    if (!isByHand(note)) continue;
-    if (i == 0 || !isByHand(drive.motors[i - 1])) {
-      spans_.push_back({note.utime, note.utime});
-      ++(i > 0 && mayDrive(drive.motors[i - 1].state) ? taken_over_ : armed_for_hand_);
-      odometer_.interrupt();
+  const std::vector<MotorNote>& motors = drive.motors;
+  Odometer odometer;
+  for (auto note = motors.begin(); note != motors.end();) {
+    const auto first = std::find_if(note, motors.end(), isByHand);
+    note = std::find_if_not(first, motors.end(), isByHand);
+    if (first == motors.end()) break;
+    const bool was_armed = first != motors.begin() && mayDrive(std::prev(first)->state);
+    ++(was_armed ? taken_over : armed_for_hand);
+    const bool ends = note != motors.end();
+    if (ends) ++(mayDrive(note->state) ? given_back : stopped);
+    const int64_t end = ends ? note->utime : std::prev(note)->until;
+    seconds += secondsOf(end - first->utime);
+    for (auto at = first; at != note; ++at)
+      if (at->command != Command{})
+        moving += secondsOf((std::next(at) == note ? end : std::next(at)->utime) - at->utime);
+    const size_t last = ends ? note->event : drive.messages;
+    const Places places = notesBetween(drive.ins, first->event, last);
+    odometer.interrupt();
+    std::for_each(places.first, places.second, [&](const InsNote& ins) { odometer.add(ins); });
+    const auto [plan, plan_end] = notesBetween(drive.plans, first->event, last);
+    std::for_each(plan, plan_end, [&](const PlanNote& one) {
+      if (one.utime >= first->utime) compare(one, places, end, shadow);
+    });
+  }
+  distance = odometer.distance();
+  for (const auto& pattern : drive.patterns)
+    if (pattern.message.learned_run_id == 0) {
+      ++taught;
+      fair += pattern.message.accepted ? 1 : 0;
     }
-    follow(drive, note, i + 1 < drive.motors.size() ? &drive.motors[i + 1] : nullptr);
-  }
-  for (const auto& pattern : drive.patterns) {
-    if (pattern.message.learned_run_id != 0) continue;
-    ++taught_;
-    fair_ += pattern.message.accepted ? 1 : 0;
-  }
-}
-
-/// `next`: what motor_bridge did after that; nullptr = the log ends.
-void HandRecord::follow(const DriveTimeline& drive, const MotorNote& note, const MotorNote* next) {
-  spans_.back().end = next == nullptr ? note.until : next->utime;
-  if (note.command != Command{})
-    moving_ += secondsOf(std::max<int64_t>(0, spans_.back().end - note.utime));
-  if (next != nullptr && !isByHand(*next)) ++(mayDrive(next->state) ? given_back_ : stopped_);
-  const size_t end = next == nullptr ? drive.messages : next->event;
-  const auto [ins, ins_end] = notesBetween(drive.ins, note.event, end);
-  std::for_each(ins, ins_end, [&](const InsNote& place) { odometer_.add(place); });
-  std::copy_if(ins, ins_end, std::back_inserter(places_),
-               [](const InsNote& place) { return place.placed; });
-  const auto [plan, plan_end] = notesBetween(drive.plans, note.event, end);
-  std::copy_if(plan, plan_end, std::back_inserter(plans_), [](const PlanNote& shadow) {
-    return shadow.goal_id != 0 && (!shadow.T_map_next || shadow.duration > 0);
-  });
-}
-
-double HandRecord::seconds() const {
-  double sum = 0.0;
-  for (const Span& span : spans_) sum += secondsOf(span.end - span.begin);
-  return sum;
-}
-
-std::optional<Pose2> HandRecord::poseAt(int64_t utime) const {
-  const auto found =
-      std::lower_bound(places_.begin(), places_.end(), utime,
-                       [](const InsNote& place, int64_t time) { return place.utime < time; });
-  if (found == places_.end() || found->utime - utime > kPoseGap) return std::nullopt;
-  return found->T_map_body;
-}
-
-bool HandRecord::inHand(int64_t from, int64_t to) const {
-  return std::any_of(spans_.begin(), spans_.end(),
-                     [&](const Span& span) { return span.begin <= from && to <= span.end; });
-}
-
-ShadowComparison HandRecord::comparison() const {
-  constexpr int64_t kLook = 1'000'000;  // [us] what a person does where the planner has no way
-  ShadowComparison result;
-  for (const PlanNote& plan : plans_) {
-    const int64_t duration = plan.T_map_next ? plan.duration : kLook;
-    const std::optional<Pose2> here = poseAt(plan.utime);
-    const std::optional<Pose2> there = poseAt(plan.utime + duration);
-    if (!here || !there || !inHand(plan.utime, plan.utime + duration)) continue;
-    ++result.plans;
-    const BodyMotion person(between(*here, *there));
-    const BodyMotion planner(plan.T_map_next ? between(*here, *plan.T_map_next) : Pose2{});
-    result.same += sameMotion(person, planner) ? 1 : 0;
-    if (planner.stands() && !person.stands()) {
-      ++result.would_stand;
-      ++result.why[plan.reason.words];
-    }
-    if (!person.travels() || !planner.travels()) continue;
-    result.turned_away.push_back(std::abs(wrapAngle(person.direction - planner.direction)));
-    result.person_speed.push_back(person.length / secondsOf(duration));
-    result.planner_speed.push_back(planner.length / secondsOf(duration));
-  }
-  return result;
 }
 
 std::string HandRecord::words() const {
-  if (spans_.empty()) return "";
+  if (taken_over + armed_for_hand == 0) return "";
   std::string words = formatted(
       "by hand: %.1f s (%.1f s moving, %.1f m); taken over %d times, armed for the hand %d times; "
       "given back %d times, stopped %d times\n",
-      seconds(), moving_, distance(), taken_over_, armed_for_hand_, given_back_, stopped_);
-  words += formatted("  it taught %d patterns, %d of them fair\n", taught_, fair_);
-  const ShadowComparison shadow = comparison();
+      seconds, moving, distance, taken_over, armed_for_hand, given_back, stopped);
+  words += formatted("  it taught %d patterns, %d of them fair\n", taught, fair);
   if (shadow.plans == 0) return words + "  the planner had no goal meanwhile\n";
   words += formatted("  the planner would have made the same motion in %.0f %% of %d plans",
                      percent(shadow.same, shadow.plans), shadow.plans);

@@ -117,8 +117,8 @@ TEST_CASE("beyond the first arrival: goals, stops, faults and E-stops of the who
   motor(19.5, motor_t::STATE_DISARMED, "INS is stale");
   plan(19.6, 4, plan_t::PLAN_STOPPED, "motor_bridge: INS is stale");
   const DriveRecord drive = driveOf(events);
-  CHECK(Chronicle(drive.log).goals().size() == 4);
-  CHECK(Chronicle(drive.log).incidents().size() == 2);
+  CHECK(Chronicle(drive.log).goals.size() == 4);
+  CHECK(Chronicle(drive.log).incidents.size() == 2);
   const std::string report = reportOf(drive, {}, {});
   INFO(report);
   CHECK(contains(resultLine(drive, {}),
@@ -163,7 +163,7 @@ TEST_CASE("holes in a log are told with their channels, one line where all fell 
     if (!hole) events.push_back(eventOf(kMotor, motorAt(time, motor_t::STATE_ARMED)));
     if (!hole && (time < 12.0 || time > 12.9)) events.push_back(eventOf(kIns, insAt(time, 0.0)));
   }
-  const std::vector<Hole> holes = Chronicle(driveOf(events).log).holes();
+  const std::vector<Hole> holes = Chronicle(driveOf(events).log).holes;
   REQUIRE(holes.size() == 2);
   CHECK(holes[0].begin == Approx(3.0));
   CHECK(holes[0].length == Approx(2.0));

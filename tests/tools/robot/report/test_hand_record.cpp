@@ -54,22 +54,22 @@ HandRecord tenSeconds(Plan&& plan, int16_t state_after) {
 TEST_CASE("who drove how long, how often taken over and given back") {
   const auto none = [](double time, double) { return planAt(time, plan_t::PLAN_WAITING, "x"); };
   const HandRecord back = tenSeconds(none, motor_t::STATE_STOPPING);
-  CHECK(back.takenOver() == 1);
-  CHECK(back.givenBack() == 1);
-  CHECK(back.stopped() == 0);
-  CHECK(back.seconds() == Approx(10.05));
-  CHECK(back.moving() == Approx(5.0));
-  CHECK(back.distance() == Approx(5.0));
+  CHECK(back.taken_over == 1);
+  CHECK(back.given_back == 1);
+  CHECK(back.stopped == 0);
+  CHECK(back.seconds == Approx(10.05));
+  CHECK(back.moving == Approx(5.0));
+  CHECK(back.distance == Approx(5.0));
   const HandRecord stopped = tenSeconds(none, motor_t::STATE_ESTOP);
-  CHECK(stopped.givenBack() == 0);
-  CHECK(stopped.stopped() == 1);
+  CHECK(stopped.given_back == 0);
+  CHECK(stopped.stopped == 1);
   CHECK_THAT(stopped.words(), Catch::Contains("by hand: 10.0 s (5.0 s moving, 5.0 m)") &&
                                   Catch::Contains("stopped 1 times"));
 }
 
 TEST_CASE("a planner that would have gone the same way, faster, agrees") {
   const auto ahead = [](double time, double x) { return shadowAt(time, x + 1.0, 0.1); };
-  const ShadowComparison shadow = tenSeconds(ahead, motor_t::STATE_STOPPING).comparison();
+  const ShadowComparison shadow = tenSeconds(ahead, motor_t::STATE_STOPPING).shadow;
   CHECK(shadow.plans == 10);  // what came of the last one is not known
   CHECK(shadow.same == 10);
   CHECK(shadow.would_stand == 0);
@@ -80,12 +80,12 @@ TEST_CASE("a planner that would have gone the same way, faster, agrees") {
 
 TEST_CASE("a planner that would have turned away does not agree, and one that saw no way stands") {
   const auto aside = [](double time, double x) { return shadowAt(time, x, 1.0); };
-  CHECK(tenSeconds(aside, motor_t::STATE_STOPPING).comparison().same == 0);
+  CHECK(tenSeconds(aside, motor_t::STATE_STOPPING).shadow.same == 0);
   const auto none = [](double time, double) {
     return planAt(time, plan_t::PLAN_WAITING, "driven by hand by ada; no way: boxed in");
   };
   const HandRecord record = tenSeconds(none, motor_t::STATE_STOPPING);
-  CHECK(record.comparison().would_stand == record.comparison().plans);
+  CHECK(record.shadow.would_stand == record.shadow.plans);
   CHECK_THAT(record.words(),
              Catch::Contains("would have stood in 100 %") && Catch::Contains("no way: boxed in"));
 }
