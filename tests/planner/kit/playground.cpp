@@ -3,6 +3,7 @@
 #include "tests/planner/kit/playground.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -55,23 +56,41 @@ void markNear(const std::vector<Box>& boxes, double distance, Grid& grid) {
   }
 }
 
-std::vector<Eigen::Vector2d> rim(const Box& box, double step) {
-  std::vector<Eigen::Vector2d> points;
-  const auto side = [&](double x0, double y0, double x1, double y1) {
-    const int pieces = std::max(1, static_cast<int>(std::hypot(x1 - x0, y1 - y0) / step));
-    for (int i = 0; i < pieces; ++i) {
-      const double share = static_cast<double>(i) / pieces;
-      points.push_back(box.T_map_box *
-                       Eigen::Vector2d(x0 + share * (x1 - x0), y0 + share * (y1 - y0)));
-    }
-  };
+using Corners = std::array<Eigen::Vector2d, 4>;
+
+Corners cornersOf(const Box& box) {
   const double l = box.half_length;
   const double w = box.half_width;
-  side(-l, -w, l, -w);
-  side(l, -w, l, w);
-  side(l, w, -l, w);
-  side(-l, w, -l, -w);
-  return points;
+  return {box.T_map_box * Eigen::Vector2d(-l, -w), box.T_map_box * Eigen::Vector2d(l, -w),
+          box.T_map_box * Eigen::Vector2d(l, w), box.T_map_box * Eigen::Vector2d(-l, w)};
+}
+
+/// Largest gap between a box and the corners of another along the first one's axes; negative if
+/// they overlap along both.
+double gapAlongAxes(const Box& box, const Corners& others) {
+  const Pose2 T_box_map = inverse(box.T_map_box);
+  Eigen::Array2d least = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Array2d most = -least;
+  for (const Eigen::Vector2d& corner : others) {
+    const Eigen::Array2d p = (T_box_map * corner).array();
+    least = least.min(p);
+    most = most.max(p);
+  }
+  const Eigen::Array2d half(box.half_length, box.half_width);
+  return (least - half).max(-half - most).maxCoeff();
+}
+
+/// Distance between two boxes; how far they overlap, negative, where they touch. The nearest points
+/// of two boxes apart are a corner of one of them and a point of the other.
+double distanceBetween(const Box& a, const Box& b) {
+  const Corners of_a = cornersOf(a);
+  const Corners of_b = cornersOf(b);
+  const double gap = std::max(gapAlongAxes(a, of_b), gapAlongAxes(b, of_a));
+  if (gap <= 0.0) return gap;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector2d& corner : of_a) least = std::min(least, distanceTo(b, corner));
+  for (const Eigen::Vector2d& corner : of_b) least = std::min(least, distanceTo(a, corner));
+  return least;
 }
 
 }  // namespace
@@ -102,8 +121,7 @@ double Playground::clearance(const FootprintSize& size, const Pose2& T_map_body)
   double least = std::numeric_limits<double>::infinity();
   for (const Box& box : boxes_) {
     if (distanceTo(box, p) > 3.0) continue;
-    for (const Eigen::Vector2d& at : rim(body, 0.02)) least = std::min(least, distanceTo(box, at));
-    for (const Eigen::Vector2d& at : rim(box, 0.02)) least = std::min(least, distanceTo(body, at));
+    least = std::min(least, distanceBetween(body, box));
   }
   return least;
 }

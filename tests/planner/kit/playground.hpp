@@ -31,7 +31,7 @@ class Playground {
   bool isObstacle(const Eigen::Vector2d& p_map) const;
   /// Distance to the nearest box along a ray; `range` if there is none.
   double castRay(const Eigen::Vector2d& p_map, double angle, double range) const;
-  /// Least distance between the footprint's rim and any box [m]; 0 or less when it touches one.
+  /// Least distance between the footprint and any box [m]; 0 or less when it touches one.
   double clearance(const FootprintSize& size, const Pose2& T_map_body) const;
   /// The whole truth as a grid over a rectangle: a cell with any obstacle in it is one.
   Grid paint(double cell_size, const Eigen::Vector2d& lower, const Eigen::Vector2d& upper) const;
