@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // What each real program tells systemd, or whoever else started it.
+#include <algorithm>
 #include <csignal>
-#include <filesystem>
+#include <functional>
+#include <memory>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -13,58 +16,110 @@
 namespace tread::testing {
 namespace {
 
-/// One program's life; `pass50ms` lets 50 ms pass.
-void checkLife(Starter& starter, Process& process, const std::function<void()>& pass50ms) {
-  const int pid = process.pid();
-  const auto pass = [&](double seconds) {
-    for (double passed = 0.0; passed < seconds; passed += 0.05) {
-      pass50ms();
-      starter.count(pid, "");  // its queue holds ten
+/// A program of its own life, on a bus of its own.
+struct Life {
+  std::string name;
+  Process& process;
+  int beats = 0;  ///< when they were last looked at
+};
+
+/// The lives of programs beside each other; `pass_a_moment` lets some 50 ms pass.
+class Lives {
+ public:
+  Lives(Starter& starter, std::vector<Life> lives, std::function<void()> pass_a_moment)
+      : starter_(starter), lives_(std::move(lives)), pass_a_moment_(std::move(pass_a_moment)) {}
+
+  void check() {
+    for (int i = 0; i < 200 && !allReady(); ++i) pass(0.05);
+    forEach([&](Life& life) { REQUIRE(count(life, "READY=1") == 1); });
+    pass(2.0);
+    forEach([&](Life& life) {
+      const int in_two_seconds = newBeats(life);
+      CHECK(in_two_seconds >= 4);
+      CHECK(in_two_seconds <= 12);
+      CHECK(count(life, "READY=1") == 1);
+      CHECK(count(life, "STATUS=") >= 1);
+      CHECK(starter_.longestSilence(life.process.pid()) < 1.0);
+      life.process.signal(SIGSTOP);
+    });
+    pass(0.2);
+    forEach([&](Life& life) { newBeats(life); });
+    pass(1.0);
+    forEach([&](Life& life) {
+      CHECK(newBeats(life) == 0);
+      life.process.signal(SIGCONT);
+    });
+    pass(0.7);
+    forEach([&](Life& life) {
+      CHECK(newBeats(life) > 0);
+      CHECK(count(life, "STOPPING=1") == 0);
+      life.process.signal(SIGINT);
+    });
+    for (int i = 0; i < 100 && anyRuns(); ++i) pass(0.05);
+    forEach([&](Life& life) {
+      CHECK_FALSE(life.process.running());
+      CHECK(life.process.exitCode() == 0);
+      CHECK(count(life, "STOPPING=1") == 1);
+    });
+  }
+
+ private:
+  int count(const Life& life, const std::string& start) {
+    return starter_.count(life.process.pid(), start);
+  }
+  int newBeats(Life& life) {
+    const int before = life.beats;
+    life.beats = count(life, "WATCHDOG=1");
+    return life.beats - before;
+  }
+  bool allReady() {
+    const bool ready = std::all_of(lives_.begin(), lives_.end(),
+                                   [&](const Life& life) { return count(life, "READY=1") > 0; });
+    if (ready) forEach([&](Life& life) { newBeats(life); });
+    return ready;
+  }
+  bool anyRuns() {
+    return std::any_of(lives_.begin(), lives_.end(),
+                       [](const Life& life) { return life.process.running(); });
+  }
+  void forEach(const std::function<void(Life& life)>& look) {
+    for (Life& life : lives_) {
+      INFO(life.name);
+      look(life);
     }
-  };
-  const auto beats = [&] { return starter.count(pid, "WATCHDOG=1"); };
-  for (int i = 0; i < 200 && starter.count(pid, "READY=1") == 0; ++i) pass(0.05);
-  REQUIRE(starter.count(pid, "READY=1") == 1);
-  pass(2.0);
-  CHECK(beats() >= 4);
-  CHECK(beats() <= 12);
-  CHECK(starter.count(pid, "READY=1") == 1);
-  CHECK(starter.count(pid, "STATUS=") >= 1);
-  CHECK(starter.longestSilence(pid) < 1.0);
-  process.signal(SIGSTOP);
-  pass(0.2);
-  const int before = beats();
-  pass(1.0);
-  CHECK(beats() == before);
-  process.signal(SIGCONT);
-  pass(0.7);
-  CHECK(beats() > before);
-  CHECK(starter.count(pid, "STOPPING=1") == 0);
-  process.signal(SIGINT);
-  CHECK(process.waitFor(5.0));
-  CHECK(process.exitCode() == 0);
-  CHECK(starter.count(pid, "STOPPING=1") == 1);
-}
+  }
+  void pass(double seconds) {
+    const int64_t end = hostNow() + static_cast<int64_t>(seconds * 1e6);
+    while (hostNow() < end) {
+      pass_a_moment_();
+      starter_.count(0, "");  // its queue holds ten
+    }
+  }
+
+  Starter& starter_;
+  std::vector<Life> lives_;
+  std::function<void()> pass_a_moment_;
+};
 
 }  // namespace
 
 TEST_CASE(
-    "each process tells its starter when it is ready, that it lives, how it is, and its end") {
-  for (const std::string& name : RobotRun::names()) {
-    INFO(name);
-    Starter starter;
-    RobotRun run(kYard, "[-6, 0, 0]");
-    run.start(name);
-    checkLife(starter, run.process(name), [&] { run.wait(0.05); });
-  }
-}
-
-TEST_CASE("the logger tells its starter the same") {
+    "each process, and the logger, tells its starter when it is ready, that it lives, how it is, "
+    "and its end") {
   Starter starter;
-  const std::string folder = "/tmp/tread_life_" + std::to_string(getpid());
+  std::vector<std::unique_ptr<RobotRun>> runs;
+  std::vector<Life> lives;
+  for (const std::string& name : RobotRun::names()) {
+    runs.push_back(std::make_unique<RobotRun>(kYard, "[-6, 0, 0]"));
+    runs.back()->start(name);
+    lives.push_back({name, runs.back()->process(name)});
+  }
+  const std::string folder = runs.front()->folder() + "/log";
   Process logger("tread-logger", {folder + "/x.lcmlog", "--lcm-url", ownLcmUrl()});
-  checkLife(starter, logger, [] { std::this_thread::sleep_for(std::chrono::milliseconds(50)); });
-  std::filesystem::remove_all(folder);
+  lives.push_back({"logger", logger});
+  Lives(starter, std::move(lives), [&] {
+    for (const auto& run : runs) run->wait(0.005);
+  }).check();
 }
 
 TEST_CASE("a process that cannot start never says that it is ready") {
