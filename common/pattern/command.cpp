@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "common/pattern/command.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tread {
@@ -67,6 +68,26 @@ CommandChannels carChannels(CommandKind kind) {
   const double angle = commandLimit(CommandKind::kSteeringAngle);
   return {{kind == CommandKind::kPower ? "throttle" : "speed", kind, -drive, drive},
           {"steering", CommandKind::kSteeringAngle, -angle, angle}};
+}
+
+const char* nameOf(VehicleLayout layout) {
+  return layout == VehicleLayout::kTracks ? "two tracks"
+         : layout == VehicleLayout::kCar  ? "a car"
+                                          : "a holonomic base";
+}
+
+VehicleLayout layoutOf(const std::vector<CommandKind>& kinds) {
+  if (kinds.size() > 2) return VehicleLayout::kOmni;
+  const bool steered = kinds.size() == 2 && kinds[1] == CommandKind::kSteeringAngle;
+  return steered ? VehicleLayout::kCar : VehicleLayout::kTracks;
+}
+
+double driveOf(VehicleLayout layout, const Command& command) {
+  if (layout == VehicleLayout::kCar) return std::abs(command[0]);
+  double largest = 0.0;
+  for (size_t channel = 0; channel < Command::kMaxChannels; ++channel)
+    largest = std::max(largest, std::abs(command[channel]));
+  return largest;
 }
 
 TrackCommand rearWheels(double speed, double angle, double wheelbase, double gauge) {

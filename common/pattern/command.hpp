@@ -91,6 +91,20 @@ class Command {
   std::array<double, kMaxChannels> values_{};
 };
 
+/// What moves a vehicle, and so what its commands are.
+enum class VehicleLayout {
+  kTracks = 1,  ///< left and right
+  kCar = 2,     ///< throttle or speed, and a steering angle
+  kOmni = 4     ///< each wheel of a holonomic base
+};
+
+/// "two tracks", "a car", "a holonomic base".
+const char* nameOf(VehicleLayout layout);
+/// The layout whose commands have channels of these kinds.
+VehicleLayout layoutOf(const std::vector<CommandKind>& kinds);
+/// The largest channel that moves the vehicle, without its sign; 0 = it is told to stand.
+double driveOf(VehicleLayout layout, const Command& command);
+
 /// The two rear wheels of a car that moves by Ackermann's law: `speed` in the middle of the rear
 /// axle (in any unit), steering angle [rad] in the middle of the front axle, wheelbase and gauge
 /// [m].

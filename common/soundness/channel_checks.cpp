@@ -19,15 +19,11 @@ constexpr double kClearCommand = 0.5;  // of the largest one: nobody stands stil
 constexpr double kSilence = 1.5;       // [s] of the INS
 constexpr double kSecondKind = 0.01;   // of the commands
 
-double sizeOf(const TrackCommand& command) {
-  return std::max(std::abs(command.left), std::abs(command.right));
-}
-
 double largestCommand(const std::vector<HeardSpan>& spans) {
   double largest = 0.0;
   for (const HeardSpan& span : spans)
     for (const CommandSample& sample : span.commands.commands)
-      largest = std::max(largest, sizeOf(sample.command));
+      largest = std::max(largest, driveOf(span.commands.layout, sample.command));
   return largest;
 }
 
@@ -38,7 +34,7 @@ double drivenBetween(const CommandSpan& span, double begin, double end, double l
     const double from = std::max(begin, span.commands[i].time);
     const double to =
         std::min(end, i + 1 < span.commands.size() ? span.commands[i + 1].time : span.end);
-    if (to > from && sizeOf(span.commands[i].command) >= least) sum += to - from;
+    if (to > from && driveOf(span.layout, span.commands[i].command) >= least) sum += to - from;
   }
   return sum;
 }

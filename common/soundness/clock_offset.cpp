@@ -71,7 +71,7 @@ Grid commandGrid(const std::vector<HeardSpan>& spans, double step) {
   Grid grid(spans.front().commands.begin(), spans.back().commands.end, step);
   for (const HeardSpan& span : spans)
     for (double time = span.commands.begin(); time < span.commands.end; time += step) {
-      const TrackCommand command = commandAt(span.commands, time);
+      const TrackCommand command = sidesOf(span.commands.layout, commandAt(span.commands, time));
       grid.put(time, step, 0.5 * (command.left + command.right), command.right - command.left);
     }
   return grid;

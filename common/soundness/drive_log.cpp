@@ -31,18 +31,6 @@ CommandKind kindOf(const SortedLog& log) {
   return counts[speed] > counts[power] ? CommandKind::kTrackSpeed : CommandKind::kPower;
 }
 
-void refuseOthers(const SortedLog& log, const std::string& name) {
-  for (const motor_t& motor : log.motor) {
-    if (motor.channel_kind[1] == static_cast<int16_t>(CommandKind::kSteeringAngle))
-      throw std::runtime_error(name +
-                               ": its commands steer a car; tread-gap takes two tracks only");
-    if (motor.channel_kind[2] != 0)
-      throw std::runtime_error(name +
-                               ": its commands drive the wheels of a holonomic base; tread-gap "
-                               "takes two tracks only");
-  }
-}
-
 std::vector<HeardSpan> heardSpans(const SortedLog& log) {
   std::vector<HeardSpan> spans;
   for (CommandSpan& span : knownCommands(log)) {
@@ -127,25 +115,25 @@ std::optional<ImportNote> importNoteOf(const config_t& config) {
 
 Drive toDrive(const DriveLog& messages) {
   const SortedLog log(messages);
-  refuseOthers(log, messages.name);
   const std::vector<HeardSpan> spans = heardSpans(log);
   Drive drive;
   drive.name = messages.name;
   drive.kind = kindOf(log);
+  drive.layout = log.layout;
   for (const config_t& config : messages.configs)
     if (auto note = importNoteOf(config)) drive.imported = std::move(note);
   drive.voltage = voltageSamples(log);
   drive.encoders = encoderSamples(log);
   drive.currents = currentSamples(log);
   drive.segments = segmentsOf(spans, drive.encoders);
-  drive.executions = executionsOf(drive.segments, recordsOf(log));
+  drive.executions = executionsOf(drive.layout, drive.segments, recordsOf(log));
   Diagnostics notes(drive.name);
   for (const std::string& note : messages.notes) notes.note(note);
   checkPublishers(log, notes);
   checkOffset(log, spans, notes);
   checkClocks(log, drive.imported ? Numbering::kByImport : Numbering::kByRobot, notes);
   checkChannels(log, spans, notes);
-  takeOutBroken(drive, notes);
+  if (drive.layout != VehicleLayout::kOmni) takeOutBroken(drive, notes);
   drive.notes = notes.notes();
   const std::vector<LogNote> rest = validateLog(drive);
   drive.notes.insert(drive.notes.end(), rest.begin(), rest.end());
@@ -194,7 +182,11 @@ void requireSameRobot(const Drive& first, const Drive& second) {
 
 Drive readDriveFor(const ModelDocument& model, const std::string& path) {
   Drive drive = readDrive(path);
-  requireSameGauge(drive, model.vehicle.gauge);
+  const VehicleLayout layout = model.vehicle.layout();
+  if (!drive.segments.empty() && drive.layout != layout)
+    throw std::runtime_error(path + ": its commands are those of " + nameOf(drive.layout) +
+                             ", the model is of " + nameOf(layout) + "; give a model of this robot");
+  if (layout == VehicleLayout::kTracks) requireSameGauge(drive, model.vehicle.gauge);
   if (drive.segments.empty() || drive.kind == model.vehicle.kind) return drive;
   const bool power = drive.kind == CommandKind::kPower;
   throw std::runtime_error(path + ": its commands are " + (power ? "powers" : "track speeds") +

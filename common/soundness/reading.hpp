@@ -18,6 +18,7 @@ struct SortedLog {
   const DriveLog& drive;
   std::vector<motor_t> motor;
   std::vector<ins_t> ins;
+  VehicleLayout layout = VehicleLayout::kTracks;
   int64_t origin = 0;  ///< [us] utime of the first INS or MOTOR; time 0 of the drive
 
   /// Seconds since time 0.
@@ -33,19 +34,20 @@ inline bool isNext(int64_t seq, int64_t before) {
 struct CommandSpan {
   std::vector<CommandSample> commands;  ///< changes only, the first one at the begin; not empty
   double end = 0.0;                     ///< [s]
+  VehicleLayout layout = VehicleLayout::kTracks;
   bool after_silence = false;           ///< MOTOR messages before it are missing
 
   double begin() const { return commands.front().time; }
 };
 
 /// What the machine obeys at a MOTOR message; nothing where that is unknown.
-std::optional<TrackCommand> obeyed(const motor_t& motor);
+std::optional<Command> obeyed(const motor_t& motor);
 
 /// The spans of a log, at least a second long, in order of time.
 std::vector<CommandSpan> knownCommands(const SortedLog& log);
 
 /// The command that acts at a time [s] within a span (the first one before it).
-TrackCommand commandAt(const CommandSpan& span, double time);
+Command commandAt(const CommandSpan& span, double time);
 
 /// Whether the span commands zero from `from` to `to` [s].
 bool standsBetween(const CommandSpan& span, double from, double to);
@@ -98,7 +100,7 @@ std::vector<Segment> segmentsOf(const std::vector<HeardSpan>& spans,
                                 const std::vector<EncoderSample>& encoders);
 
 /// The executions to be predicted; `records` in seconds, in order of time.
-std::vector<Execution> executionsOf(const std::vector<Segment>& segments,
+std::vector<Execution> executionsOf(VehicleLayout layout, const std::vector<Segment>& segments,
                                     const std::vector<Execution>& records);
 
 inline constexpr int64_t kOvertaking = 200'000;  ///< [us] by which messages may come out of order

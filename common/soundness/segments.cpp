@@ -133,13 +133,15 @@ class Cutter {
     if (segment.entry_speeds) {
       segment.command_before = wentOnAtOnce(span, *segment.entry_speeds)
                                    ? before_->commands.back().command
-                                   : *segment.entry_speeds;
+                               : span.layout == VehicleLayout::kTracks
+                                   ? Command(*segment.entry_speeds)
+                                   : span.commands.front().command;
       return;
     }
     const bool stood =
         !span.after_silence ||
         (before_ != nullptr && standsBetween(*before_, before_->end - 1.0, before_->end) &&
-         span.commands.front().command == TrackCommand{});
+         driveOf(span.layout, span.commands.front().command) == 0.0);
     if (stood) return;
     auto& ins = segment.ins;
     ins.erase(
@@ -175,12 +177,12 @@ void cut(size_t segment, double begin, double end, std::vector<Execution>& piece
 }
 
 /// Whether anything is commanded in a piece or in the second before it.
-bool drives(const Segment& segment, const Execution& piece) {
+bool drives(VehicleLayout layout, const Segment& segment, const Execution& piece) {
   for (size_t i = 0; i < segment.commands.size(); ++i) {
     const double begin = segment.commands[i].time;
     const double end = i + 1 < segment.commands.size() ? segment.commands[i + 1].time : segment.end;
     if (begin < piece.end && end > piece.begin - 1.0 &&
-        segment.commands[i].command != TrackCommand{})
+        driveOf(layout, segment.commands[i].command) != 0.0)
       return true;
   }
   return false;
@@ -211,7 +213,7 @@ std::vector<Segment> segmentsOf(const std::vector<HeardSpan>& spans,
   return cutter.finished();
 }
 
-std::vector<Execution> executionsOf(const std::vector<Segment>& segments,
+std::vector<Execution> executionsOf(VehicleLayout layout, const std::vector<Segment>& segments,
                                     const std::vector<Execution>& records) {
   std::vector<Execution> all;
   for (size_t index = 0; index < segments.size(); ++index) {
@@ -226,7 +228,7 @@ std::vector<Execution> executionsOf(const std::vector<Segment>& segments,
       cut(index, from, segment.end, pieces);
     }
     for (const Execution& piece : pieces)
-      if (drives(segment, piece)) all.push_back(piece);
+      if (drives(layout, segment, piece)) all.push_back(piece);
   }
   return all;
 }

@@ -29,14 +29,14 @@ double usualPeriod(const SortedLog& log) {
 
 class SpanFinder {
  public:
-  explicit SpanFinder(double period) : period_(period) {}
+  SpanFinder(VehicleLayout layout, double period) : layout_(layout), period_(period) {}
 
-  void add(double time, const std::optional<TrackCommand>& command) {
+  void add(double time, const std::optional<Command>& command) {
     if (open_ && time - last_ > kLongestSilence) close(last_ + period_, true);
     if (open_ && !command) close(time, false);
     if (!command) after_silence_ = false;
     if (!command) return;
-    if (!open_) spans_.push_back({{{time, *command}}, time, after_silence_});
+    if (!open_) spans_.push_back({{{time, *command}}, time, layout_, after_silence_});
     open_ = true;
     last_ = time;
     std::vector<CommandSample>& commands = spans_.back().commands;
@@ -56,6 +56,7 @@ class SpanFinder {
     after_silence_ = by_silence;
   }
 
+  VehicleLayout layout_;
   double period_;
   std::vector<CommandSpan> spans_;
   bool after_silence_ = false;
@@ -131,6 +132,14 @@ class Reader {
   bool jumped_ = false;
 };
 
+/// What the channels of a message's commands are; empty while none are played.
+std::vector<CommandKind> kindsIn(const motor_t& motor) {
+  std::vector<CommandKind> kinds;
+  for (const int16_t kind : motor.channel_kind)
+    if (kind != 0) kinds.push_back(static_cast<CommandKind>(kind));
+  return kinds;
+}
+
 template <class Message>
 void sortByTime(std::vector<Message>& messages) {
   std::stable_sort(messages.begin(), messages.end(),
@@ -143,38 +152,42 @@ SortedLog::SortedLog(const DriveLog& drive_log)
     : drive(drive_log), motor(drive_log.motor), ins(drive_log.ins) {
   sortByTime(motor);
   sortByTime(ins);
+  for (const motor_t& message : motor)
+    if (!kindsIn(message).empty()) layout = layoutOf(kindsIn(message));
   if (!motor.empty()) origin = motor.front().utime;
   if (!ins.empty())
     origin = motor.empty() ? ins.front().utime : std::min(origin, ins.front().utime);
 }
 
-std::optional<TrackCommand> obeyed(const motor_t& motor) {
+std::optional<Command> obeyed(const motor_t& motor) {
   switch (motor.bridge_state) {
     case motor_t::STATE_DRIVING:
     case motor_t::STATE_MANUAL: {
-      const TrackCommand command{static_cast<double>(motor.command[0]),
-                                 static_cast<double>(motor.command[1])};
-      if (!std::isfinite(command.left) || !std::isfinite(command.right)) return std::nullopt;
+      Command command;
+      for (size_t channel = 0; channel < std::max<size_t>(2, kindsIn(motor).size()); ++channel) {
+        command[channel] = static_cast<double>(motor.command[channel]);
+        if (!std::isfinite(command[channel])) return std::nullopt;
+      }
       return command;
     }
     case motor_t::STATE_ARMED:
     case motor_t::STATE_STOPPING:
-      return TrackCommand{};
+      return Command{};
     case motor_t::STATE_DISARMED:
       if (stopReasonFrom(motor.state_code) == StopReason::kOperatorDrives) return std::nullopt;
-      return TrackCommand{};
+      return Command{};
     default:
       return std::nullopt;
   }
 }
 
 std::vector<CommandSpan> knownCommands(const SortedLog& log) {
-  SpanFinder finder(usualPeriod(log));
+  SpanFinder finder(log.layout, usualPeriod(log));
   for (const motor_t& motor : log.motor) finder.add(log.seconds(motor.utime), obeyed(motor));
   return finder.finished();
 }
 
-TrackCommand commandAt(const CommandSpan& span, double time) {
+Command commandAt(const CommandSpan& span, double time) {
   auto next =
       std::upper_bound(span.commands.begin(), span.commands.end(), time,
                        [](double t, const CommandSample& sample) { return t < sample.time; });
@@ -182,26 +195,29 @@ TrackCommand commandAt(const CommandSpan& span, double time) {
 }
 
 bool standsBetween(const CommandSpan& span, double from, double to) {
-  if (commandAt(span, from) != TrackCommand{}) return false;
+  if (driveOf(span.layout, commandAt(span, from)) != 0.0) return false;
   auto sample = std::upper_bound(span.commands.begin(), span.commands.end(), from,
                                  [](double t, const CommandSample& c) { return t < c.time; });
   for (; sample != span.commands.end() && sample->time < to; ++sample)
-    if (sample->command != TrackCommand{}) return false;
+    if (driveOf(span.layout, sample->command) != 0.0) return false;
   return true;
 }
 
 std::vector<EncoderSample> encoderSamples(const SortedLog& log) {
   std::vector<EncoderSample> samples;
+  if (log.layout == VehicleLayout::kOmni) return samples;
+  const size_t right = log.layout == VehicleLayout::kCar ? 0 : 1;
   for (const motor_t& motor : log.motor)
-    if (std::isfinite(motor.measured[0]) && std::isfinite(motor.measured[1]))
+    if (std::isfinite(motor.measured[0]) && std::isfinite(motor.measured[right]))
       samples.push_back(
           {log.seconds(motor.utime),
-           {static_cast<double>(motor.measured[0]), static_cast<double>(motor.measured[1])}});
+           {static_cast<double>(motor.measured[0]), static_cast<double>(motor.measured[right])}});
   return samples;
 }
 
 std::vector<CurrentSample> currentSamples(const SortedLog& log) {
   std::vector<CurrentSample> samples;
+  if (log.layout != VehicleLayout::kTracks) return samples;
   for (const motor_t& motor : log.motor)
     if (std::isfinite(motor.current[0]) && std::isfinite(motor.current[1]))
       samples.push_back({log.seconds(motor.utime), static_cast<double>(motor.current[0]),

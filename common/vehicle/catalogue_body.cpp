@@ -65,7 +65,7 @@ std::vector<Effect> inertiaEffects() {
 std::vector<Effect> sideEffects() {
   using V = EffectValues;
   return {
-      {"centrifugal_drift",
+      only(kOfTracks | kOfCars, {"centrifugal_drift",
        "Centrifugal drift",
        "y",
        "In curves it is carried outwards, more the faster and tighter.",
@@ -76,7 +76,7 @@ std::vector<Effect> sideEffects() {
        "everywhere.",
        "Drive the same circle slowly and fast and compare the angle between heading and path.",
        {strength("time", "s", -0.5, 1.0, 0.15, &V::centrifugal_drift)},
-       "In curves it is carried inwards, more the faster and tighter"},
+       "In curves it is carried inwards, more the faster and tighter"}),
       {"slope_pitch",
        "Slope along the track",
        "x",

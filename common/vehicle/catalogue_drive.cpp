@@ -92,6 +92,7 @@ Effect oneSided(const std::string& side, double EffectValues::*value) {
   effect.negative_sentence =
       "The " + side + " track gives more than it is asked for, by the same share at all speeds";
   effect.search = inPlace();
+  effect.layouts = kOfTracks;
   return effect;
 }
 
@@ -126,7 +127,7 @@ std::vector<Effect> powerEffects() {
        {strength("loss", "1", 0.0, 0.9, 0.15, &V::thermal_derating),
         fitted(shape(strength("time_constant", "s", 10.0, 3600.0, 240.0, &V::thermal_time,
                               {60.0, 240.0, 900.0})))}},
-      {"track_asymmetry",
+      only(kOfTracks, {"track_asymmetry",
        "Left-right asymmetry",
        "xw",
        "One track runs a little faster than the other at the same command.",
@@ -137,7 +138,7 @@ std::vector<Effect> powerEffects() {
        "gyro bias does not; drive it both ways: a slope to the side flips in the body.",
        "Drive 20 m along a line with equal commands, then back in reverse; measure both misses.",
        {withSigns(strength("share", "1", -0.3, 0.3, 0.03, &V::track_asymmetry),
-                  "the left track is the faster one", "the right track is the faster one")}},
+                  "the left track is the faster one", "the right track is the faster one")}}),
       oneSided("left", &V::left_track_loss),
       oneSided("right", &V::right_track_loss),
   };
@@ -182,7 +183,7 @@ std::vector<Effect> lagEffects() {
        "Steps of three sizes: with a lag the time does not depend on the size.",
        "Step from rest to a third, two thirds and all of full speed and time each.",
        {inverseLimit("s2/m", 20.0, 0.5, &V::slew_limit, {0.2, 0.4, 0.8, 1.6}, "limit", "m/s2")}},
-      {"track_backlash",
+      only(kOfTracks, {"track_backlash",
        "Track slack, backlash",
        "xw",
        "After a reversal a track does not pull until its slack is taken up.",
@@ -192,7 +193,7 @@ std::vector<Effect> lagEffects() {
        "not the same time.",
        "Reversals at two speeds: the time lost halves when the speed doubles.",
        "Rock the vehicle by hand, or turn the sprocket back and forth and measure the play.",
-       {strength("slack", "m", 0.0, 0.3, 0.04, &V::track_backlash, {0.02, 0.06})}},
+       {strength("slack", "m", 0.0, 0.3, 0.04, &V::track_backlash, {0.02, 0.06})}}),
   };
 }
 

@@ -66,7 +66,7 @@ std::vector<Effect> slipEffects() {
 std::vector<Effect> turningEffects() {
   using V = EffectValues;
   return {
-      {"track_width",
+      only(kOfTracks | kOfOmni, {"track_width",
        "Effective track width, steering efficiency",
        "w",
        "The vehicle turns as if its tracks were further apart than they are.",
@@ -79,8 +79,8 @@ std::vector<Effect> turningEffects() {
        {withTotal({"effective width", "m", effectiveWidth},
                   strength("widening", "1", -0.9, 4.0, 0.3, &V::track_width))},
        "The vehicle turns as if its tracks were closer together than they are",
-       {{"yaw_gain", "gauge"}, 2}},
-      {"yaw_rate_skid",
+       {{"yaw_gain", "gauge"}, 2}}),
+      only(kOfTracks, {"yaw_rate_skid",
        "Skid that grows with the yaw rate",
        "w",
        "The faster it turns, the larger the share of turning that is lost.",
@@ -89,8 +89,8 @@ std::vector<Effect> turningEffects() {
        "Three or more yaw rates on the spot: a width loses the same share at each.",
        "Turn on the spot at a quarter, a half and all of the power and compare the shares lost.",
        {strength("skid", "s", -0.3, 2.0, 0.15, &V::yaw_rate_skid)},
-       "The faster it turns, the further it turns beyond what its tracks ask"},
-      {"yaw_breakaway",
+       "The faster it turns, the further it turns beyond what its tracks ask"}),
+      only(kOfTracks, {"yaw_breakaway",
        "Break-away of turning, dry friction in yaw",
        "w",
        "Turning begins only above a certain difference of the tracks and lacks it ever after.",
@@ -99,8 +99,8 @@ std::vector<Effect> turningEffects() {
        "Small differences of the tracks at speed (0.1 to 0.6 m/s): a deadband of the motors does "
        "not show there, a width loses little.",
        "Drive at half speed and raise the difference of the tracks slowly until it turns.",
-       {strength("rate", "rad/s", 0.0, 0.5, 0.1, &V::yaw_breakaway, {0.03, 0.1, 0.2})}},
-      {"turn_power_limit",
+       {strength("rate", "rad/s", 0.0, 0.5, 0.1, &V::yaw_breakaway, {0.03, 0.1, 0.2})}}),
+      only(kOfTracks, {"turn_power_limit",
        "Limit of turning power",
        "w",
        "The drive hardly turns the vehicle faster than a certain yaw rate on this ground.",
@@ -113,14 +113,14 @@ std::vector<Effect> turningEffects() {
        "Turn on the spot at 60, 80 and 100 % and compare the yaw rates.",
        {inverseLimit("s/rad", 10.0, 0.7, &V::turn_power_limit, {0.25, 0.4, 0.6, 0.9, 1.4}, "limit",
                      "rad/s", LimitedQuantity::kYawRate),
-        beyond(&V::turn_power_beyond)}},
+        beyond(&V::turn_power_beyond)}}),
   };
 }
 
 std::vector<Effect> turningChangeEffects() {
   using V = EffectValues;
   return {
-      {"speed_understeer",
+      only(kOfTracks | kOfCars, {"speed_understeer",
        "Understeer with speed",
        "w",
        "The same difference of the tracks turns less the faster it drives.",
@@ -129,8 +129,8 @@ std::vector<Effect> turningChangeEffects() {
        "The same difference of the tracks at three forward speeds.",
        "Drive the same difference of the tracks at walking pace and at full speed.",
        {strength("gain", "s2/m2", -0.1, 2.0, 0.05, &V::speed_understeer)},
-       "The same difference of the tracks turns more the faster it drives"},
-      {"reverse_yaw_gain",
+       "The same difference of the tracks turns more the faster it drives"}),
+      only(kOfTracks | kOfCars, {"reverse_yaw_gain",
        "Turning unlike in reverse",
        "w",
        "It turns more willingly in one direction of travel than in the other.",
@@ -140,7 +140,7 @@ std::vector<Effect> turningChangeEffects() {
        "The same arcs forwards and backwards.",
        "Drive one circle forwards and one backwards.",
        {withSigns(strength("gain", "s/m", -0.5, 0.5, 0.08, &V::reverse_yaw_gain),
-                  "it turns more forwards", "it turns more backwards")}},
+                  "it turns more forwards", "it turns more backwards")}}),
       {"payload_change",
        "Change of payload or centre of mass",
        "xyw",
@@ -166,7 +166,7 @@ std::vector<Effect> turningChangeEffects() {
 std::vector<Effect> gripEffects() {
   using V = EffectValues;
   return {
-      {"grip_limit",
+      only(kOfTracks | kOfCars, {"grip_limit",
        "Grip limit, shear failure",
        "w",
        "The ground gives hardly more sideways force than its friction; fast curves get wider.",
@@ -178,8 +178,8 @@ std::vector<Effect> gripEffects() {
        "Drive one circle faster and faster until it widens.",
        {inverseLimit("1", 20.0, 4.0, &V::grip_limit, {1.5, 3.0, 6.0, 12.0}, "friction", "1",
                      LimitedQuantity::kLateralAcceleration),
-        beyond(&V::grip_beyond)}},
-      {"yaw_pull",
+        beyond(&V::grip_beyond)}}),
+      only(kOfTracks | kOfOmni, {"yaw_pull",
        "Yaw pull",
        "w",
        "It pulls to one side in proportion to its speed.",
@@ -193,8 +193,8 @@ std::vector<Effect> gripEffects() {
        {withSigns(strength("pull", "rad/m", -0.5, 0.5, 0.05, &V::yaw_pull), "it pulls to the left",
                   "it pulls to the right")},
        "",
-       inWheels({"left_track_loss", "right_track_loss", "track_asymmetry"})},
-      {"yaw_rate_offset",
+       inWheels({"left_track_loss", "right_track_loss", "track_asymmetry"})}),
+      only(kOfTracks | kOfOmni, {"yaw_rate_offset",
        "Constant turning",
        "w",
        "The vehicle turns by itself at a constant rate, whatever the tracks do.",
@@ -205,14 +205,14 @@ std::vector<Effect> gripEffects() {
        {withSigns(strength("rate", "rad/s", -0.5, 0.5, 0.03, &V::yaw_rate_offset),
                   "it turns to the left", "it turns to the right")},
        "",
-       secondName()},
+       secondName()}),
   };
 }
 
 std::vector<Effect> speedLossEffects() {
   using V = EffectValues;
   return {
-      {"turn_speed_loss",
+      only(kOfTracks | kOfCars, {"turn_speed_loss",
        "Loss of speed in turns",
        "x",
        "Turning costs forward speed.",
@@ -221,8 +221,8 @@ std::vector<Effect> speedLossEffects() {
        "The same mean track speed at several yaw rates.",
        "Time a full circle and a straight of the same length at equal mean command.",
        {strength("loss", "s", -0.5, 2.0, 0.15, &V::turn_speed_loss)},
-       "In turns it is faster than its tracks"},
-      {"reverse_speed_gain",
+       "In turns it is faster than its tracks"}),
+      only(kOfTracks | kOfCars, {"reverse_speed_gain",
        "Speed unlike in reverse",
        "x",
        "It is faster in one direction of travel than in the other.",
@@ -232,7 +232,7 @@ std::vector<Effect> speedLossEffects() {
        "The same straight forwards and backwards.",
        "Time 10 m forwards and 10 m backwards.",
        {withSigns(strength("gain", "1", -0.5, 0.5, 0.05, &V::reverse_speed_gain),
-                  "it is faster forwards", "it is faster backwards")}},
+                  "it is faster forwards", "it is faster backwards")}}),
       {"quadratic_drag",
        "Drag that grows with speed",
        "x",

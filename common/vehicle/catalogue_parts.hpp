@@ -16,6 +16,9 @@ namespace tread {
 std::vector<Effect> commandEffects();               ///< of a command on its way to the motor
 std::vector<Effect> powerEffects();                 ///< power that fades or differs by side
 std::vector<Effect> lagEffects();                   ///< lags and play of the drive
+std::vector<Effect> steeringEffects();              ///< of a car's steering
+std::vector<Effect> wheelEffects();                 ///< of the wheels of a holonomic base
+std::vector<Effect> sidewaysEffects();              ///< of how a holonomic base moves sideways
 std::vector<Effect> slipEffects();                  ///< slip and changes of the ground
 std::vector<Effect> turningEffects();               ///< resistance to turning
 std::vector<Effect> turningChangeEffects();         ///< turning with speed, direction and payload
@@ -27,6 +30,16 @@ std::vector<Effect> timingEffects();                ///< of the INS: latencies a
 std::vector<Effect> mountingEffects();              ///< of the INS: lever arm, alignment, bias
 std::vector<ConfoundedGroup> groupsOfEveryDrive();  ///< that no drive tells apart
 std::vector<ConfoundedGroup> groupsOfPoorDrives();  ///< that a better drive tells apart
+
+inline constexpr VehicleLayouts kOfTracks = static_cast<VehicleLayouts>(VehicleLayout::kTracks);
+inline constexpr VehicleLayouts kOfCars = static_cast<VehicleLayouts>(VehicleLayout::kCar);
+inline constexpr VehicleLayouts kOfOmni = static_cast<VehicleLayouts>(VehicleLayout::kOmni);
+
+/// An effect that only vehicles of these layouts have.
+inline Effect only(VehicleLayouts layouts, Effect effect) {
+  effect.layouts = layouts;
+  return effect;
+}
 
 /// Search settings of an effect that another one is under a second name.
 inline EffectSearch secondName() {

@@ -13,8 +13,8 @@ namespace {
 std::deque<Effect> allEffects() {
   std::deque<Effect> all;
   for (auto part :
-       {commandEffects, powerEffects, lagEffects, slipEffects, turningEffects, turningChangeEffects,
-        gripEffects, speedLossEffects, inertiaEffects, sideEffects, timingEffects, mountingEffects})
+       {commandEffects, powerEffects, lagEffects, steeringEffects, wheelEffects, slipEffects, turningEffects, turningChangeEffects,
+        gripEffects, speedLossEffects, inertiaEffects, sideEffects, sidewaysEffects, timingEffects, mountingEffects})
     for (Effect& effect : part()) all.push_back(std::move(effect));
   return all;
 }
@@ -47,6 +47,7 @@ void addEffect(Effect effect, std::vector<ConfoundedGroup> groups) {
   if (all.added + effect.parameters.size() > kMostAdded)
     throw std::runtime_error("effects that are added have at most " + std::to_string(kMostAdded) +
                              " parameters together; leave some out");
+  effect.layouts = kOfTracks | kOfCars;
   for (EffectParameter& parameter : effect.parameters) parameter.added = all.added++;
   all.effects.push_back(std::move(effect));
   for (ConfoundedGroup& group : groups) all.groups.push_back(std::move(group));

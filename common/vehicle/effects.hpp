@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "common/pattern/command.hpp"
+
 namespace tread {
 
 struct AddedLaw;          // added_effects.hpp
@@ -99,7 +101,11 @@ struct EffectSearch {
   std::vector<std::string> in_wheels{};
 };
 
-/// A named departure from the nominal two-track model.
+/// Which layouts of vehicles have an effect: bits of VehicleLayout.
+using VehicleLayouts = unsigned;
+inline constexpr VehicleLayouts kEveryLayout = ~0U;
+
+/// A named departure from the nominal model.
 /** A new effect is one more entry of the catalogue and its value and line in model.hpp (or
  * kernel.hpp), or a file (effect_file.hpp); files, search, tests and reports learn of it from the
  * catalogue. */
@@ -118,7 +124,13 @@ struct Effect {
   EffectSearch search{};
   /// What to check first where its first parameter is negative; the size follows. May be empty.
   std::string negative_check{};
+  VehicleLayouts layouts = kEveryLayout;
   std::shared_ptr<const AddedLaw> law{};  ///< of an added effect; else it is in the kernel
+
+  /// Whether a vehicle of such a layout can have it.
+  bool isOf(VehicleLayout layout) const {
+    return (layouts & static_cast<VehicleLayouts>(layout)) != 0;
+  }
 
   /// What its parameters belong to.
   EffectKind kind() const {

@@ -25,7 +25,7 @@ struct EntryState {
   TrackCommand heat{};  ///< [1] low-pass of the duty of each side's motor, see thermal_derating
   /// [m/s] that the drives are asked for by their ramps, see slew_limit; else their speeds.
   std::optional<TrackCommand> ramps = std::nullopt;
-  std::optional<double> steering = std::nullopt;  ///< [rad] of a car; else that of the command
+  std::optional<Steering> steering = std::nullopt;  ///< of a car; else that of the command
   /// Of unnamed terms; else as after a long time in the motion at the start, turns forgotten.
   std::optional<TermMemory> memory = std::nullopt;
   AddedMemory added_memory{};  ///< of added effects of the same model; else as after a long time
@@ -89,7 +89,7 @@ class VehicleKernel {
   void hold(double duration);
   void advance(double duration);
   void integrateStep(const TrackCommand& asked, double dt);
-  /// Moves a car's steering on by dt; returns its mean angle meanwhile [rad].
+  /// Moves a car's steering on by dt; returns the mean angle of its wheels meanwhile [rad].
   double steer(double dt);
   /// Forward speed and yaw rate of a body that follows the tracks over dt; its mean meanwhile.
   PlaneMotion moveBody(const ChangesInForce& changes, const PlaneMotion& mean, double dt);
@@ -114,7 +114,7 @@ class VehicleKernel {
   Pose2 T_start_body_;
   TrackState left_;
   TrackState right_;
-  double steering_;         ///< [rad] of a car
+  Steering steering_;       ///< of a car
   TrackCommand on_ground_;  ///< [m/s] mean speeds of the tracks in the last step of integration
   PlaneMotion body_;
   TermMemory memory_;  ///< of unnamed terms

@@ -188,6 +188,17 @@ void renameTerm(ModelDocument& document, const std::string& from, const std::str
   term->name = to;
 }
 
+std::vector<std::string> calibratedNumbers(VehicleLayout layout) {
+  std::vector<std::string> numbers{"lag", "delay", "forward_gain"};
+  if (layout == VehicleLayout::kCar) {
+    numbers.insert(numbers.end(), {"steering_gain", "steering_lag"});
+    return numbers;
+  }
+  numbers.push_back("yaw_gain");
+  if (layout == VehicleLayout::kOmni) numbers.push_back("sideways_gain");
+  return numbers;
+}
+
 double* findParameter(ModelDocument& document, const std::string& path) {
   static const std::map<std::string, double VehicleModel::*> nominal{
       {"lag", &VehicleModel::lag},
@@ -195,7 +206,10 @@ double* findParameter(ModelDocument& document, const std::string& path) {
       {"gauge", &VehicleModel::gauge},
       {"full_speed", &VehicleModel::full_speed},
       {"forward_gain", &VehicleModel::forward_gain},
-      {"yaw_gain", &VehicleModel::yaw_gain}};
+      {"yaw_gain", &VehicleModel::yaw_gain},
+      {"sideways_gain", &VehicleModel::sideways_gain},
+      {"steering_gain", &VehicleModel::steering_gain},
+      {"steering_lag", &VehicleModel::steering_lag}};
   const auto number = nominal.find(path);
   if (number != nominal.end()) return &(document.vehicle.*number->second);
   if (const auto term = restTermOf(path))
@@ -211,7 +225,7 @@ const double* findParameter(const ModelDocument& document, const std::string& pa
 
 std::string unitOf(const std::string& path) {
   if (const EffectParameter* parameter = findEffectParameter(path)) return parameter->unit;
-  if (path == "lag" || path == "delay") return "s";
+  if (path == "lag" || path == "delay" || path == "steering_lag") return "s";
   if (path == "full_speed") return "m/s";
   return path == "gauge" ? "m" : "1";
 }

@@ -32,6 +32,8 @@ inline constexpr size_t kMostAdded = 32;  ///< parameters of all added effects
  *       -> added effects of tracks (added_effects.hpp)
  *       -> the drive follows: slew_limit, then lag + actuator_lag (lag_asymmetry when slowing);
  *          track_backlash
+ *     a car's steering angle -> the servo follows: steering_rate, then lag + slow_steering
+ *       -> steering_play, gain + steering_ratio, steering_offset, steering_limit
  *     track speeds on the ground
  *       -> slip_ratio, terrain_change (slip), gains and gauge of the nominal model
  *       -> yaw rate: track_width and terrain_change (width), yaw_rate_skid, yaw_breakaway and
@@ -60,6 +62,18 @@ struct EffectValues {
   double lag_asymmetry = 0.0;         ///< [s]
   double slew_limit = 0.0;            ///< [s2/m], 1 / greatest acceleration
   double track_backlash = 0.0;        ///< [m]
+  // Of a car's steering.
+  double steering_ratio = 0.0;   ///< [1], added to the model's gain
+  double steering_offset = 0.0;  ///< [rad]
+  double slow_steering = 0.0;    ///< [s], added to the model's lag of steering
+  double steering_rate = 0.0;    ///< [s/rad], 1 / greatest rate
+  double steering_limit = 0.0;   ///< [1/rad], 1 / greatest angle
+  double steering_play = 0.0;    ///< [rad]
+  // Of the wheels of a holonomic base, in their order.
+  double wheel_1_loss = 0.0;  ///< [1]
+  double wheel_2_loss = 0.0;  ///< [1]
+  double wheel_3_loss = 0.0;  ///< [1]
+  double wheel_4_loss = 0.0;  ///< [1]
   // What the ground makes of the tracks.
   double slip_ratio = 0.0;           ///< [1]
   double terrain_time_1 = 0.0;       ///< [s], shape
@@ -97,6 +111,10 @@ struct EffectValues {
   double centrifugal_drift = 0.0;  ///< [s]
   double slope_pitch = 0.0;        ///< [s]
   double slope_roll = 0.0;         ///< [s]
+  // What a holonomic base does sideways.
+  double sideways_loss = 0.0;  ///< [1], off the model's gain
+  double sideways_lag = 0.0;   ///< [s]
+  double sideways_turn = 0.0;  ///< [rad/m]
   // What files describe.
   std::array<double, kMostAdded> added{};
 };
@@ -142,6 +160,7 @@ struct VehicleModel {
   double delay = 0.0;       ///< [s] before a command begins to act
   double gauge = 1.0;       ///< [m] between the middles of the tracks, of a car's rear wheels
   double wheelbase = 0.0;   ///< [m] of a car, whose body origin is on its rear axle; 0 = two tracks
+  double steering_gain = 1.0;  ///< [1] of a car: angle of the wheels over that of the command
   double steering_lag = 0.0;   ///< [s] time constant of a car's steering
   double forward_gain = 1.0;   ///< [1] ground speed over mean track speed
   double yaw_gain = 1.0;       ///< [1] yaw rate over that of the track speeds
@@ -155,6 +174,9 @@ struct VehicleModel {
 
   bool isCar() const { return wheelbase > 0.0; }
   bool isOmni() const { return !wheels.empty(); }
+  VehicleLayout layout() const {
+    return isOmni() ? VehicleLayout::kOmni : isCar() ? VehicleLayout::kCar : VehicleLayout::kTracks;
+  }
   /// What its commands consist of, each channel in its whole range.
   CommandChannels channels() const {
     if (isOmni()) return omniChannels(kind, wheels.size());
@@ -162,15 +184,18 @@ struct VehicleModel {
   }
   /// Track speeds that a command asks for, left and right [m/s]; of a car those of its drive.
   TrackCommand trackSpeeds(const TrackCommand& command) const {
-    const double unit = kind == CommandKind::kTrackSpeed ? 1.0 : full_speed;
-    return {unit * command.left, unit * (isCar() ? command.left : command.right)};
+    return {unit() * command.left, unit() * (isCar() ? command.left : command.right)};
   }
+  /// Speed that a command of 1 asks for [m/s].
+  double unit() const { return kind == CommandKind::kTrackSpeed ? 1.0 : full_speed; }
   /// Speeds of tracks on the ground that turn so fast; a car's by its steering angle [rad].
   TrackCommand onGround(const TrackCommand& driven, double steering) const {
     if (!isCar()) return driven;
     const TrackCommand share = rearWheels(1.0, steering, wheelbase, gauge);
     return {driven.left * share.left, driven.right * share.right};
   }
+  /// Lag of a car's steering with the effect on it [s].
+  double steeringLag() const { return std::max(0.0, steering_lag + effects.slow_steering); }
   /// Delay of commands with the effect on it [s].
   double commandDelay() const { return std::max(0.0, delay + effects.command_delay); }
   /// Lag of the drive with the effect on it [s].
@@ -215,6 +240,13 @@ struct TrackState {
   double ramp = 0.0;   ///< [m/s] that the drive is asked for, see slew_limit
   double taken = 0.0;  ///< [m] slack: 0 = taken up forwards, slack = taken up backwards
   double heat = 0.0;   ///< [1] low-pass of the duty, see thermal_derating
+};
+
+/// What a car's steering remembers.
+struct Steering {
+  double ramp = 0.0;     ///< [rad] that the servo is asked for, see steering_rate
+  double servo = 0.0;    ///< [rad] after its lag
+  double linkage = 0.0;  ///< [rad] behind its play
 };
 
 /// How much of a change is in force, 0..1 each: averages over a short step of time.
@@ -309,6 +341,32 @@ inline double driveTarget(const EffectValues& effects, double supplied, double s
   const double loss = side > 0.0 ? effects.left_track_loss : effects.right_track_loss;
   if (loss != 0.0) target *= 1.0 - loss;
   return target;
+}
+
+/// Angle of a car's wheels [rad] for one of its linkage.
+inline double wheelAngle(const VehicleModel& model, double linkage) {
+  const EffectValues& effects = model.effects;
+  return limited((model.steering_gain + effects.steering_ratio) * linkage + effects.steering_offset,
+                 effects.steering_limit, 0.0);
+}
+
+/// Moves a car's steering on by dt towards a command [rad]; returns the wheels' mean angle.
+inline double steer(const VehicleModel& model, double command, double dt, Steering& steering) {
+  const EffectValues& effects = model.effects;
+  const Followed servo = followRamp(steering.servo, steering.ramp, command, effects.steering_rate,
+                                    model.steeringLag(), dt);
+  steering.servo = servo.end;
+  if (effects.steering_play == 0.0) {
+    steering.linkage = servo.end;
+    return wheelAngle(model, servo.mean);
+  }
+  const double half = 0.5 * effects.steering_play;
+  const double before = steering.linkage;
+  const auto follows = [half](double behind, double angle) {
+    return std::clamp(behind, angle - half, angle + half);
+  };
+  steering.linkage = follows(before, servo.end);
+  return wheelAngle(model, follows(before, servo.mean));
 }
 
 /// Mean speed behind the slack, of which the drive takes up or gives back what it moves.

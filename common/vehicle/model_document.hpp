@@ -101,6 +101,9 @@ inline bool isOn(const Effect& effect, const ModelDocument& document) {
 double* findParameter(ModelDocument& document, const std::string& path);
 const double* findParameter(const ModelDocument& document, const std::string& path);
 
+/// Numbers of the nominal model that a calibration of such a vehicle estimates.
+std::vector<std::string> calibratedNumbers(VehicleLayout layout);
+
 /// The path of a term of the rest, and the term that a path names; nothing for another path.
 std::string restPath(size_t term);
 std::optional<size_t> restTermOf(const std::string& path);

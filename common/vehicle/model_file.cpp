@@ -28,7 +28,7 @@ constexpr size_t kMostUnnamedTerms = 16;
 
 /// Of a holonomic base, whose wheels stand where robot.yaml says.
 void readOmni(ConfigReader& reader, VehicleModel& model) {
-  for (const char* key : {"gauge", "wheelbase", "effects"})
+  for (const char* key : {"gauge", "wheelbase"})
     if (reader.has(key))
       throw reader.error(key, "is of a vehicle with two tracks; a model with wheels has none");
   model.wheels = readOmniWheels(reader);
@@ -52,7 +52,10 @@ void readTracks(ConfigReader& reader, VehicleModel& model) {
   }
   if (reader.has("steering_lag") && !model.isCar())
     throw reader.error("steering_lag", "is for a car; give its wheelbase, too");
-  reader.number("steering_lag", model.steering_lag, {0.0, 2.0}, "s");
+  reader.number("steering_lag", model.steering_lag, {0.0, 3.0}, "s");
+  if (reader.has("steering_gain") && !model.isCar())
+    throw reader.error("steering_gain", "is for a car; give its wheelbase, too");
+  reader.number("steering_gain", model.steering_gain, kGain, "");
   reader.number("lag", model.lag, {0.0, 5.0}, "s");
   reader.number("delay", model.delay, {0.0, 2.0}, "s");
   reader.number("forward_gain", model.forward_gain, kGain, "");
@@ -236,6 +239,15 @@ std::optional<Envelope> readEnvelope(ConfigReader& reader) {
   return envelope;
 }
 
+/// An effect that such a vehicle cannot have would do nothing, or something else.
+void refuseOthers(ConfigReader& effects, const VehicleModel& model) {
+  for (const Effect& effect : effectCatalogue())
+    if (effect.kind() == EffectKind::kVehicle && isOn(effect, model.effects, {}) &&
+        !effect.isOf(model.layout()))
+      throw effects.error(effect.name, std::string("is no effect of ") + nameOf(model.layout()) +
+                                           ", which this model is of; leave it out");
+}
+
 ModelDocument readDocument(ConfigReader reader) {
   ModelDocument document;
   VehicleModel& model = document.vehicle;
@@ -244,6 +256,7 @@ ModelDocument readDocument(ConfigReader reader) {
   for (ConfigReader& entry : reader.sections("catalogue")) addEntry(readEffectEntry(entry), entry);
   ConfigReader effects = reader.section("effects");
   readEffects(effects, model.effects);
+  refuseOthers(effects, model);
   readMeasurement(reader.section("measurement"), document.measurement);
   ConfigReader spread = reader.section("spread");
   spread.number("forward", model.spread.forward, kSpread, "");
@@ -338,12 +351,14 @@ void writeNominal(std::ostringstream& out, const VehicleModel& model) {
     writeWheels(out, model.wheels);
     line(out, "sideways_gain", model.sideways_gain, "ground speed over that of the rims");
   } else {
-    line(out, "gauge", model.gauge, "m, between the middles of the tracks");
+    line(out, "gauge", model.gauge,
+         model.isCar() ? "m, between the rear wheels" : "m, between the middles of the tracks");
   }
   if (model.isCar()) {
     line(out, "wheelbase", model.wheelbase,
          "m, of a car; the second command is its steering angle");
     line(out, "steering_lag", model.steering_lag, "s, time constant of the steering");
+    line(out, "steering_gain", model.steering_gain, "angle of the wheels over the commanded one");
   }
   line(out, "lag", model.lag, "s, time constant of the track speeds");
   line(out, "delay", model.delay, "s, before a command begins to act");

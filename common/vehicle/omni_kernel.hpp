@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <array>
 #include <deque>
 
 #include "common/geometry/se2.hpp"
@@ -11,25 +12,34 @@
 namespace tread {
 
 /// Drives the model of a holonomic base through commands; deterministic, without a clock.
-/** The commands act after the model's delay; the rims follow them with its lag, all alike, so that
- * the twist which they lead to does; on the ground
+/** The commands act after the model's delay; each rim follows its own with the model's lag, and
+ * what the effects do to a track's drive they do to a wheel's. To the rims belongs the body twist
+ * v' of least squares; on the ground
  *
  *     v_x = forward_gain v_x',  v_y = sideways_gain v_y',  omega = yaw_gain omega'
  *
- * Chance scales and turns the translation, and scales the yaw rate. The effects of the catalogue
- * are of two tracks: a model with wheels has none. */
+ * and then the effects that such a base has (Effect::isOf()) act as on tracks, those of the speed
+ * on its size in whatever direction. Chance scales and turns the translation, and scales the yaw
+ * rate. */
 class OmniKernel {
  public:
   /// `entry`: the command that was held for long.
-  OmniKernel(const VehicleModel& model, const Command& entry, const ExecutionNoise& noise = {});
+  OmniKernel(const VehicleModel& model, const Command& entry, const ExecutionNoise& noise = {},
+             const DriveContext& context = {});
 
-  /// Holds a command for `duration` [s].
+  /// Holds a command for `duration` [s]; the context stays, session time goes on.
   void step(const Command& command, double duration);
+  /// Gives a command; it acts from the model's delay on until the next one does.
+  void give(const Command& command);
+  /// Goes on for `duration` [s] with what was given; the context is that of the beginning.
+  void hold(double duration, const DriveContext& context);
 
   /// Pose relative to the start, yaw unwrapped.
   const Pose2& pose() const { return T_start_body_; }
   /// Body twist at this moment.
-  Twist2 twist() const { return onGround(driven_); }
+  Twist2 twist() const;
+  /// Changes the noise from now on, for noise that varies along a drive.
+  void setNoise(const ExecutionNoise& noise) { noise_ = noise; }
 
  private:
   struct Waiting {
@@ -37,15 +47,24 @@ class OmniKernel {
     Command command;
   };
 
+  void hold(double duration);
   void advance(double duration);
-  Twist2 asked(const Command& command) const;
-  Twist2 onGround(const Twist2& driven) const;
+  void integrateStep(double dt);
+  /// What a wheel's drive is asked for, and what of it is supplied [m/s].
+  double supplied(size_t wheel) const;
+  double target(size_t wheel, double supply) const;
+  /// Steady twist that rims lead to, before the body's inertia.
+  Twist2 onGround(const Command& rims, const ChangesInForce& changes) const;
+  /// The body twist of a motion: what it does to the side, and slopes.
+  Twist2 bodyTwist(const Twist2& motion, const ChangesInForce& changes, double fastest) const;
 
   VehicleModel model_;
   ExecutionNoise noise_;
+  DriveContext context_;
   Pose2 T_start_body_;
-  Twist2 driven_;  ///< of the rims, behind their lag, as if nothing slipped
-  Twist2 asked_;   ///< of the command that acts
+  std::array<TrackState, Command::kMaxChannels> rims_;
+  Twist2 body_;  ///< of the body behind its inertia
+  Command acting_;
   std::deque<Waiting> waiting_;
   double time_ = 0.0;
 };

@@ -35,7 +35,7 @@ inline std::vector<EncoderSample> encodersOf(const ModelDocument& tracks, const 
     // Wheels turn faster than the ground passes, by the slip that the factor stands for.
     const TrackCommand speed = kernel.trackSpeeds();
     encoders.push_back({commands[i].time + late, {1.1 * speed.left, 1.1 * speed.right}});
-    kernel.step(commands[i].command, 0.05);
+    kernel.step(commands[i].command.tracks(), 0.05);
   }
   return encoders;
 }

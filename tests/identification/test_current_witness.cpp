@@ -70,7 +70,7 @@ std::optional<CurrentWitness> currentWitnessOf(const Values& hidden, const Draw&
   drive.currents = currentsOf(hidden, drive, draw);
   if (change != nullptr)
     for (size_t i = 0; i < drive.currents.size(); ++i)
-      change(drive.currents[i], drive.segments.front().commands[i].command);
+      change(drive.currents[i], drive.segments.front().commands[i].command.tracks());
   std::vector<std::string> names;
   for (const auto& [path, value] : hidden) names.push_back(effectOf(path));
   const auto said = currentWitnesses(rig.fitter, rig.fitted(hidden), names);

@@ -58,6 +58,7 @@ class Checker {
 
   MotionCheck run() {
     checkPlausible();
+    if (drive_.layout == VehicleLayout::kOmni) return std::move(result_);
     if (result_.problems.empty()) checkHeading();
     describe();
     if (!result_.problems.empty()) return std::move(result_);
@@ -129,7 +130,7 @@ class Checker {
     if (turn > kPlausibleTurn)
       problem("the heading turns by up to " + digits(turn) +
               " rad/s, and no ground vehicle does: are these degrees?");
-    if (speed > kPlausibleSpeed)
+    if (speed > std::max(kPlausibleSpeed, fastestOf(drive_.layout)))
       problem("the positions go by up to " + digits(speed) +
               " m/s, and no ground vehicle does: are these mm or cm, or is the time in another "
               "unit?");
@@ -188,7 +189,8 @@ class Checker {
     turn_ = turn.best(0, increments_.size(), 1.0, -kEarlier, kLongestLag);
     const bool speed_commands = drive_.kind == CommandKind::kTrackSpeed;
     const double gauge = drive_.imported ? drive_.imported->baseline : 0.0;
-    gauge_ = speed_commands && gauge > 0.0 ? gauge : 0.0;
+    const bool car = drive_.layout == VehicleLayout::kCar;
+    gauge_ = speed_commands && !car && gauge > 0.0 ? gauge : 0.0;
     const auto line = [&](const char* what, const LagTable& of,
                           const std::optional<LagMatch>& match, const std::string& gain) {
       if (!match)
@@ -208,6 +210,8 @@ class Checker {
                         : digits(v, 2) + " m/s at full power");
     line("turn", turn, turn_,
          gauge_ > 0.0     ? "measured is " + digits(w * gauge_, 3) + " of the commanded"
+         : car            ? digits(w, 2) + " rad/s at " + (speed_commands ? "1 m/s" : "full power") +
+                                " for a tangent of the steering angle of 1"
          : speed_commands ? digits(w, 3) + " rad/s for each m/s of right over left"
                           : digits(2.0 * w, 2) + " rad/s at full power of both against each other");
   }
@@ -258,7 +262,7 @@ class Checker {
     const Rate sides[] = {[](const TrackCommand& c) { return c.left; },
                           [](const TrackCommand& c) { return c.right; }};
     constexpr double kBodyClear = 0.9, kBodyClearer = 0.4;
-    if (differentCommands(drive_) < 10) return;
+    if (drive_.layout != VehicleLayout::kTracks || differentCommands(drive_) < 10) return;
     const double as_sides = correlation(speed, 1.0) + correlation(turn, 1.0);
     for (const int speed_side : {0, 1}) {
       const double along = correlation(table(v, sides[speed_side]), 1.0);

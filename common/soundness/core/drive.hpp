@@ -28,7 +28,7 @@ inline double quantile(std::vector<double> values, double share = 0.5) {
 /// A command that acts on the motors until the next one.
 struct CommandSample {
   double time = 0.0;  ///< [s] since the log's first message
-  TrackCommand command{};
+  Command command{};
 };
 
 /// One reading of the INS.
@@ -56,7 +56,7 @@ struct Segment {
   /// Track speeds at the beginning where encoders say them; else a vehicle at rest is assumed.
   std::optional<TrackCommand> entry_speeds;
   /// What was commanded before, until its delay is over; zero for a vehicle that stood.
-  TrackCommand command_before{};
+  Command command_before{};
 
   double begin() const { return commands.front().time; }
 };
@@ -83,7 +83,7 @@ inline bool isMeasured(const std::vector<VoltageSample>& voltage) {
 }
 
 /// Track speeds as encoders say: for the error floor, entry speeds and as witnesses of what was
-/// found, never for the fit.
+/// found, never for the fit. Of a car both are the speed of its drive.
 struct EncoderSample {
   double time = 0.0;  ///< [s]
   TrackCommand speed{};
@@ -113,11 +113,20 @@ struct ImportNote {
   std::string options;    ///< of the import, in words; empty = not said
 };
 
+/// Two tracks that drive and turn as a command does, in the sense if not by as much: a car's with
+/// wheelbase and gauge 1. Of a holonomic base, whose wheels no log describes, they stand.
+inline TrackCommand sidesOf(VehicleLayout layout, const Command& command) {
+  if (layout == VehicleLayout::kOmni) return {};
+  return layout == VehicleLayout::kCar ? rearWheels(command[0], command[1], 1.0, 1.0)
+                                       : command.tracks();
+}
+
 /// What a log says about one drive of one vehicle, ready for the gap workflow.
 struct Drive {
   std::string name;    ///< file name of the log
   std::string sha256;  ///< of the file
   CommandKind kind = CommandKind::kPower;
+  VehicleLayout layout = VehicleLayout::kTracks;
   std::vector<Segment> segments;        ///< in order of time
   std::vector<Execution> executions;    ///< in order of time; 2 s pieces where the log names none
   std::vector<VoltageSample> voltage;   ///< empty = not measured
@@ -126,6 +135,8 @@ struct Drive {
   std::optional<ImportNote> imported;   ///< nothing where the robot itself wrote the log
   std::string lost;                     ///< what of a damaged file could not be read; empty = whole
   std::vector<LogNote> notes;           ///< what the reader noticed, and validateLog()
+
+  TrackCommand sides(const Command& command) const { return sidesOf(layout, command); }
 
   /// Seconds of driving.
   double driven() const {

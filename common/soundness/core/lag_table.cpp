@@ -123,7 +123,7 @@ RunningSums commandSums(const Drive& drive,
     for (size_t i = 0; i < segment.commands.size(); ++i) {
       const bool last = i + 1 == segment.commands.size();
       sum.add(segment.commands[i].time, last ? segment.end : segment.commands[i + 1].time,
-              rate(segment.commands[i].command));
+              rate(drive.sides(segment.commands[i].command)));
     }
     sums.push_back(std::move(sum));
   }

@@ -136,6 +136,13 @@ inline std::string digits(double value, int decimals = 1) {
   return zero && text[0] == '-' ? text.substr(1) : text;
 }
 
+/// [m/s] beyond which a pose has jumped.
+inline double fastestOf(VehicleLayout layout) {
+  return layout == VehicleLayout::kCar ? 70.0 : 8.0;
+}
+
+/// The largest of the commands that move the vehicle.
+double largestCommand(const Drive& drive);
 /// Different commands, to a hundredth of the largest one.
 size_t differentCommands(const Drive& drive);
 

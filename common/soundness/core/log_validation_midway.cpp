@@ -159,20 +159,12 @@ void checkCourses(const std::vector<PoseIncrement>& increments, const std::vecto
                 "turned; cut the log there");
 }
 
-double largestCommand(const Drive& drive) {
-  double largest = 0.0;
-  for (const Segment& segment : drive.segments)
-    for (const CommandSample& sample : segment.commands)
-      largest = std::max({largest, std::abs(sample.command.left), std::abs(sample.command.right)});
-  return largest;
-}
-
 /// How long between two times commands were given that move the robot [s].
-double drivenBetween(const Segment& segment, double from, double to, double least) {
+double drivenBetween(VehicleLayout layout, const Segment& segment, double from, double to,
+                     double least) {
   double sum = 0.0;
   for (size_t i = 0; i < segment.commands.size(); ++i) {
-    const TrackCommand& command = segment.commands[i].command;
-    if (std::max(std::abs(command.left), std::abs(command.right)) <= least) continue;
+    if (driveOf(layout, segment.commands[i].command) <= least) continue;
     const double end = i + 1 < segment.commands.size() ? segment.commands[i + 1].time : segment.end;
     sum += std::max(0.0, std::min(to, end) - std::max(from, segment.commands[i].time));
   }
@@ -216,7 +208,7 @@ void checkFrozen(const Drive& drive, Diagnostics& notes) {
     Frozen run;
     const auto told = [&] {
       if (run.rows < kFrozenRows || run.pose == nullptr ||
-          drivenBetween(segment, run.first->time, run.last->time, least) < kFrozen)
+          drivenBetween(drive.layout, segment, run.first->time, run.last->time, least) < kFrozen)
         return false;
       notes.fatal("the INS is frozen: it says the same " + std::to_string(run.rows) +
                   " times from " + digits(run.first->time) + " to " + digits(run.last->time) +
@@ -253,7 +245,7 @@ void checkMidway(const Drive& drive, const std::vector<PoseIncrement>& increment
   check(omega, turnCommandSums(drive), 1.5, command, false,
         "the heading turns against the commands");
   check(v, driveCommandSums(drive), 1.5, command, false, "the robot goes against the commands");
-  checkCourses(increments, windows, notes);
+  if (drive.layout != VehicleLayout::kOmni) checkCourses(increments, windows, notes);
 }
 
 }  // namespace tread::gap

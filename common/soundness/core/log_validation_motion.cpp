@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "common/soundness/core/log_validation.hpp"
@@ -8,7 +9,6 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kFastest = 8.0;         // [m/s] of a vehicle of this kind
 constexpr double kJump = 0.5;            // [m]
 constexpr double kTooManyJumps = 0.05;   // of the pose steps
 constexpr double kSettled = 3.0;         // [s] after which a vehicle stands; tracks recoil
@@ -26,6 +26,7 @@ struct PoseSteps {
 
 PoseSteps poseSteps(const Drive& drive) {
   PoseSteps steps;
+  const double fastest = fastestOf(drive.layout);
   for (const Segment& segment : drive.segments) {
     const InsSample* last = nullptr;
     steps.readings += segment.ins.size();
@@ -35,7 +36,7 @@ PoseSteps poseSteps(const Drive& drive) {
         const double duration = sample.time - last->time;
         const double way = (sample.T_map_body.position() - last->T_map_body.position()).norm();
         steps.durations.push_back(duration);
-        if (way > kJump && way > kFastest * duration) {
+        if (way > kJump && way > fastest * duration) {
           if (steps.jumps++ == 0) steps.first_jump = sample.time;
           steps.fastest_jump = std::max(steps.fastest_jump, way / duration);
         }
@@ -66,12 +67,15 @@ void checkCourse(const std::vector<PoseIncrement>& increments, Diagnostics& note
 }
 
 /// Times in which a segment has commanded zero for long.
-std::vector<std::pair<double, double>> standstills(const Segment& segment) {
+std::vector<std::pair<double, double>> standstills(VehicleLayout layout, const Segment& segment) {
   std::vector<std::pair<double, double>> times;
+  const auto stands = [&](size_t i) {
+    return driveOf(layout, segment.commands[i].command) == 0.0;
+  };
   for (size_t i = 0; i < segment.commands.size(); ++i) {
-    if (segment.commands[i].command != TrackCommand{}) continue;
+    if (!stands(i)) continue;
     const double begin = segment.commands[i].time;
-    while (i < segment.commands.size() && segment.commands[i].command == TrackCommand{}) ++i;
+    while (i < segment.commands.size() && stands(i)) ++i;
     const double end = i < segment.commands.size() ? segment.commands[i].time : segment.end;
     if (end - begin > kSettled + 1.0) times.push_back({begin + kSettled, end});
   }
@@ -115,7 +119,8 @@ size_t reversals(const Drive& drive) {
   for (const Segment& segment : drive.segments) {
     double last = 0.0;
     for (const CommandSample& sample : segment.commands) {
-      const double drive_command = sample.command.left + sample.command.right;
+      const TrackCommand sides = drive.sides(sample.command);
+      const double drive_command = sides.left + sides.right;
       if (drive_command * last < 0.0) ++count;
       if (drive_command != 0.0) last = drive_command;
     }
@@ -137,17 +142,24 @@ std::string slopes(const Drive& drive) {
 
 }  // namespace
 
-size_t differentCommands(const Drive& drive) {
+double largestCommand(const Drive& drive) {
   double largest = 0.0;
   for (const Segment& segment : drive.segments)
     for (const CommandSample& sample : segment.commands)
-      largest = std::max({largest, std::abs(sample.command.left), std::abs(sample.command.right)});
-  std::vector<std::pair<long, long>> all;
+      largest = std::max(largest, driveOf(drive.layout, sample.command));
+  return largest;
+}
+
+size_t differentCommands(const Drive& drive) {
+  const double largest = largestCommand(drive);
+  std::vector<std::array<long, Command::kMaxChannels>> all;
   if (!(largest > 0.0)) return 1;
   for (const Segment& segment : drive.segments)
-    for (const CommandSample& sample : segment.commands)
-      all.push_back({std::lround(100.0 * sample.command.left / largest),
-                     std::lround(100.0 * sample.command.right / largest)});
+    for (const CommandSample& sample : segment.commands) {
+      std::array<long, Command::kMaxChannels>& rounded = all.emplace_back();
+      for (size_t channel = 0; channel < rounded.size(); ++channel)
+        rounded[channel] = std::lround(100.0 * sample.command[channel] / largest);
+    }
   std::sort(all.begin(), all.end());
   return static_cast<size_t>(std::unique(all.begin(), all.end()) - all.begin());
 }
@@ -164,21 +176,21 @@ void checkPoses(const Drive& drive, const std::vector<PoseIncrement>& increments
              " % of the INS messages have none");
   if (steps.jumps > 0) {
     const std::string what = std::to_string(steps.jumps) +
-                             " pose jumps faster than 8 m/s, first at " + digits(steps.first_jump) +
-                             " s, fastest " + digits(steps.fastest_jump) + " m/s";
+                             " pose jumps faster than " + digits(fastestOf(drive.layout), 0) +
+                             " m/s, first at " + digits(steps.first_jump) + " s, fastest " + digits(steps.fastest_jump) + " m/s";
     if (steps.jumps >= 10 && static_cast<double>(steps.jumps) > kTooManyJumps * count)
       notes.fatal(what + ": too many for one robot's INS; two robots, or no fix?");
     else
       notes.note(what + "; a heavy-tailed likelihood bears them");
   }
-  checkCourse(increments, notes);
+  if (drive.layout != VehicleLayout::kOmni) checkCourse(increments, notes);
 }
 
 void describeStandstill(const Drive& drive, Diagnostics& notes) {
   Spread gyro, x, y, yaw;
   double seconds = 0.0;
   for (const Segment& segment : drive.segments)
-    for (const auto& [from, to] : standstills(segment)) {
+    for (const auto& [from, to] : standstills(drive.layout, segment)) {
       seconds += to - from;
       for (const InsSample& sample : segment.ins) {
         if (sample.time < from || sample.time >= to) continue;

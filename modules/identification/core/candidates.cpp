@@ -110,7 +110,7 @@ std::vector<std::string> freedWith(const Effect& effect, const std::string& stre
 /// Whether a strength of an effect can be switched on in this model.
 bool isOpen(const Effect& effect, const EffectParameter& parameter, const ModelDocument& model,
             const Excitation& most) {
-  if (parameter.role == ParameterRole::kShape) return false;
+  if (parameter.role == ParameterRole::kShape || !effect.isOf(model.vehicle.layout())) return false;
   // A battery whose voltage is measured shows by it how empty it is.
   const bool by_voltage = std::any_of(effect.parameters.begin(), effect.parameters.end(),
                                       [](const EffectParameter& one) { return one.needs_voltage; });
@@ -213,9 +213,8 @@ Excitation excitationOf(const Observations& data, const ModelDocument& model) {
       most.begin = std::min(most.begin, segment.begin());
       most.end = std::max(most.end, segment.end);
       for (const CommandSample& sample : segment.commands) {
-        const TrackCommand asked = model.vehicle.trackSpeeds(sample.command);
-        most.track_speed =
-            std::max({most.track_speed, std::abs(asked.left), std::abs(asked.right)});
+        most.track_speed = std::max(
+            most.track_speed, model.vehicle.unit() * driveOf(model.vehicle.layout(), sample.command));
       }
     }
   }

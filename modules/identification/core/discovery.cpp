@@ -73,10 +73,12 @@ FoundEffect foundEffect(const std::string& name, const FoundTerms& result,
   effect.gain_error = evidence.gain.error;
   effect.accepted = contains(settings.accepted, name);
   if (effect.accepted) return effect;  // decided: nothing else is in its place
+  const VehicleLayout layout = result.state.model.vehicle.layout();
   std::vector<std::string> group = confoundedEffects(name, result.state.model.measurement);
   for (const std::string& pair : evidence.replaced) group.push_back(pair);
   for (const std::string& other : group)
-    if (!contains(settings.rejected, other) && !contains(evidence.told_from, other))
+    if (!contains(settings.rejected, other) && !contains(evidence.told_from, other) &&
+        effectNamed(other).isOf(layout))
       effect.group.push_back(other);
   // What came in beside it later does not stand in its place.
   for (const RunnerUp& other : evidence.runner_ups)
@@ -506,7 +508,8 @@ GapFinding findGap(const GapTask& task, const Progress& say) {
   // What a person has rejected, or what was seen and does not matter, would come back without its
   // name.
   const bool all_kept = result.state.free.size() == tested.free.size();
-  if (!task.named_only && settings.rejected.empty() && all_kept)
+  const bool has_terms = !before.vehicle.isOmni();  // its kernel knows none
+  if (has_terms && !task.named_only && settings.rejected.empty() && all_kept)
     addUnnamedTerms({fitter, settings, say, result}, kAdequacyAlpha, finding.adequacy, unnamed);
   finding.search.cut_short = result.record.cut_short;
   // A rest in which nothing is new stays what it was.

@@ -31,7 +31,7 @@ double valueOf(const ModelDocument& model, const std::string& path) {
 }
 
 FreeParameter nominalNumber(const std::string& path, double value) {
-  if (path == "lag") return {path, 0.0, 3.0, 0.005, value};
+  if (path == "lag" || path == "steering_lag") return {path, 0.0, 3.0, 0.005, value};
   if (path == "delay") return {path, 0.0, 2.0, 0.005, value};
   if (path == "gauge") return {path, 0.05, 10.0, 0.01, value};
   return {path, 0.02, 5.0, 0.01, value};  // gains and full speed

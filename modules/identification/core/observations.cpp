@@ -6,6 +6,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "common/vehicle/omni_kernel.hpp"
+
 namespace tread::gap {
 namespace {
 
@@ -78,6 +80,14 @@ double yawAt(const std::vector<MotionSample>& motion, double time, size_t& i) {
          (to.T_map_body.yaw - from.T_map_body.yaw) * (time - from.time) / (to.time - from.time);
 }
 
+void giveTo(VehicleKernel& kernel, const Command& command) {
+  kernel.give(command.tracks());
+}
+
+void giveTo(OmniKernel& kernel, const Command& command) {
+  kernel.give(command);
+}
+
 Pose2 saidPose(const std::vector<MotionSample>& motion, const MeasurementModel& ins, double time) {
   return measuredPose(motion, ins, time, poseAt(motion, time - ins.ins_latency));
 }
@@ -112,7 +122,7 @@ SegmentPlan::SegmentPlan(const Drive& drive, const Segment& segment, double piec
   for (size_t i = 0; i < segment.commands.size(); ++i) {
     const double from = segment.commands[i].time;
     const double to = i + 1 < segment.commands.size() ? segment.commands[i + 1].time : segment.end;
-    std::optional<TrackCommand> command = segment.commands[i].command;
+    std::optional<Command> command = segment.commands[i].command;
     const double settled = to - from > 1.5 * kTransient ? from + kTransient : to;
     for (const auto& [begin, end, longest] :
          {std::tuple{from, settled, piece}, std::tuple{settled, to, kSlowly * piece}}) {
@@ -133,7 +143,7 @@ SegmentPlan::SegmentPlan(const Drive& drive, const Segment& segment, double piec
 }
 
 EntryState SegmentPlan::entryFor(const VehicleModel& vehicle) const {
-  EntryState entry = steadyEntry(vehicle, command_before_, pieces_.front().context);
+  EntryState entry = steadyEntry(vehicle, command_before_.tracks(), pieces_.front().context);
   if (entry_speeds_) entry.track_speeds = *entry_speeds_;
   return entry;
 }
@@ -141,13 +151,19 @@ EntryState SegmentPlan::entryFor(const VehicleModel& vehicle) const {
 std::vector<MotionSample> SegmentPlan::simulate(const VehicleModel& vehicle) const {
   VehicleModel model = vehicle;
   model.step = longest_;  // lags and ramps are exact within one
-  VehicleKernel kernel(model, entryFor(model));
+  if (model.isOmni())
+    return motionOf(OmniKernel(model, command_before_, {}, pieces_.front().context));
+  return motionOf(VehicleKernel(model, entryFor(model)));
+}
+
+template <class Kernel>
+std::vector<MotionSample> SegmentPlan::motionOf(Kernel kernel) const {
   std::vector<MotionSample> motion;
   motion.reserve(pieces_.size() + 1);
   double time = begin_;
   motion.push_back({time, kernel.pose()});
   for (const Piece& piece : pieces_) {
-    if (piece.command) kernel.give(*piece.command);
+    if (piece.command) giveTo(kernel, *piece.command);
     kernel.hold(piece.duration, piece.context);
     time += piece.duration;
     motion.push_back({time, kernel.pose()});
@@ -163,7 +179,7 @@ std::vector<TermSample> SegmentPlan::termInputs(const VehicleModel& vehicle) con
   samples.reserve(pieces_.size());
   double time = begin_;
   for (const Piece& piece : pieces_) {
-    if (piece.command) kernel.give(*piece.command);
+    if (piece.command) giveTo(kernel, *piece.command);
     kernel.hold(piece.duration, piece.context);
     samples.push_back({time, time + piece.duration, kernel.termInputs()});
     time += piece.duration;

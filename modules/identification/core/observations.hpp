@@ -40,7 +40,7 @@ class SegmentPlan {
  private:
   struct Piece {
     double duration;                      ///< [s]
-    std::optional<TrackCommand> command;  ///< given at its beginning; none = the last one holds
+    std::optional<Command> command;  ///< given at its beginning; none = the last one holds
     DriveContext context;
   };
 
@@ -49,12 +49,15 @@ class SegmentPlan {
                                          const std::vector<double>& cuts);
 
   EntryState entryFor(const VehicleModel& vehicle) const;
+  /// Poses of a kernel that stands at the beginning of the segment.
+  template <class Kernel>
+  std::vector<MotionSample> motionOf(Kernel kernel) const;
 
   double begin_ = 0.0;
   double longest_ = 1e-3;  ///< piece [s]
   std::vector<Piece> pieces_;
   std::optional<TrackCommand> entry_speeds_;
-  TrackCommand command_before_;
+  Command command_before_;
 };
 
 /// True motions of all segments of some drives, drive after drive.

@@ -22,11 +22,11 @@ using Changes = Eigen::Matrix<double, static_cast<int>(kWatched), 1>;
 using Derivatives = Eigen::Matrix<double, Eigen::Dynamic, static_cast<int>(kWatched)>;
 
 /// The drive of a vehicle whose commands arrive scaled on one side.
-Drive scaled(const Drive& drive, double TrackCommand::*side, double factor) {
+Drive scaled(const Drive& drive, size_t side, double factor) {
   Drive other = drive;
   for (Segment& segment : other.segments) {
-    for (CommandSample& sample : segment.commands) sample.command.*side *= factor;
-    segment.command_before.*side *= factor;
+    for (CommandSample& sample : segment.commands) sample.command[side] *= factor;
+    segment.command_before[side] *= factor;
   }
   return other;
 }
@@ -49,8 +49,8 @@ Derivatives derivatives(const Drive& drive, const ModelDocument& model,
     change(other.vehicle);
     return other;
   };
-  put(Watched::kLeft, scaled(drive, &TrackCommand::left, 1.0 + kStep), model);
-  put(Watched::kRight, scaled(drive, &TrackCommand::right, 1.0 + kStep), model);
+  put(Watched::kLeft, scaled(drive, 0, 1.0 + kStep), model);
+  put(Watched::kRight, scaled(drive, 1, 1.0 + kStep), model);
   put(Watched::kTurning, drive, with([](VehicleModel& v) { v.yaw_gain *= 1.0 + kStep; }));
   put(Watched::kDelay, drive, with([](VehicleModel& v) { v.delay += kStep; }));
   return all;

@@ -142,6 +142,7 @@ class EffectSelection {
     for (const Effect* effect : nuisanceEffects()) {
       // Numbers of the nominal model that are free do the same.
       if (settings_.calibrate && !effect->search.nominal.empty()) continue;
+      if (!effect->isOf(state().model.vehicle.layout())) continue;
       if (contains(settings_.rejected, effect->name)) continue;
       if (isOn(*effect, state().model)) continue;
       FreeParameter parameter =
@@ -372,7 +373,7 @@ FreeParameter heldParameter(const ModelDocument& model, const std::string& path)
 std::vector<FreeParameter> givenParameters(const ModelDocument& model, bool calibrate) {
   std::vector<FreeParameter> free;
   if (calibrate)
-    for (const char* number : {"lag", "delay", "forward_gain", "yaw_gain"})
+    for (const std::string& number : calibratedNumbers(model.vehicle.layout()))
       free.push_back(freeParameter(model, number));
   const ParameterCovariance& known = model.covariance;
   for (const std::string& path : known.parameters) {

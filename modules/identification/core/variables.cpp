@@ -94,10 +94,10 @@ Commands::const_iterator commandAfter(const Commands& commands, double time) {
                           [](double t, const CommandSample& sample) { return t < sample.time; });
 }
 
-TrackCommand meanCommand(const Segment& segment, double from, double to) {
+TrackCommand meanCommand(const Drive& drive, const Segment& segment, double from, double to) {
   auto next = commandAfter(segment.commands, from);
-  TrackCommand now =
-      next == segment.commands.begin() ? segment.command_before : std::prev(next)->command;
+  TrackCommand now = drive.sides(
+      next == segment.commands.begin() ? segment.command_before : std::prev(next)->command);
   TrackCommand sum{0.0, 0.0};
   for (double time = from; time < to;) {
     const bool changes = next != segment.commands.end() && next->time < to;
@@ -105,7 +105,7 @@ TrackCommand meanCommand(const Segment& segment, double from, double to) {
     sum.left += now.left * (until - time);
     sum.right += now.right * (until - time);
     time = until;
-    if (changes) now = (next++)->command;
+    if (changes) now = drive.sides((next++)->command);
   }
   return {sum.left / (to - from), sum.right / (to - from)};
 }
@@ -115,10 +115,9 @@ double sinceCommand(const Segment& segment, double time) {
   while (at != segment.commands.begin()) {
     const CommandSample& sample = *--at;
     if (time - sample.time >= kLongSince) break;
-    const TrackCommand& before =
+    const Command& before =
         at == segment.commands.begin() ? segment.command_before : std::prev(at)->command;
-    if (before.left != sample.command.left || before.right != sample.command.right)
-      return time - sample.time;
+    if (before != sample.command) return time - sample.time;
   }
   return kLongSince;
 }
@@ -163,8 +162,8 @@ Conditions conditionsOf(const Observations& data, const Observation& row, double
   }
   conditions.voltage = voltageDrop(drive.voltage, middle);
   conditions.inner = std::abs(now.v_x) - 0.5 * gauge * std::abs(now.omega);
-  conditions.command = meanCommand(segment, row.begin, row.end);
-  conditions.command_before = meanCommand(segment, row.begin - kBefore, row.begin);
+  conditions.command = meanCommand(drive, segment, row.begin, row.end);
+  conditions.command_before = meanCommand(drive, segment, row.begin - kBefore, row.begin);
   conditions.since_command = sinceCommand(segment, row.begin);
   const auto sample =
       std::upper_bound(motion.begin(), motion.end(), row.begin,

@@ -59,7 +59,7 @@ TEST_CASE(
   REQUIRE(segment.end == Approx(21.0));
   REQUIRE(segment.commands.size() == 2);
   REQUIRE(segment.commands[1].time == Approx(1.0));
-  REQUIRE(segment.commands[1].command.right == Approx(1.4));
+  REQUIRE(segment.commands[1].command[1] == Approx(1.4));
   REQUIRE_FALSE(segment.entry_speeds);
   REQUIRE(segment.command_before == TrackCommand{});
   REQUIRE(segment.ins.back().T_map_body.yaw == Approx(0.8 * 19.9));
@@ -134,7 +134,7 @@ TEST_CASE("a jump or a silence of the INS begins a segment whose commands begin 
   REQUIRE(result.segments[0].ins.back().time == Approx(9.95));
   REQUIRE(result.segments[1].begin() == Approx(7.0));
   REQUIRE(result.segments[1].ins.front().time == Approx(10.0));
-  REQUIRE(result.segments[1].command_before.left == 1.0);
+  REQUIRE(result.segments[1].command_before[0] == 1.0);
   REQUIRE(result.segments[2].begin() == Approx(17.0));
   REQUIRE(result.segments[2].ins.front().time == Approx(20.0));
   for (const Execution& execution : result.executions) {
@@ -239,9 +239,9 @@ TEST_CASE(
   const Drive all = importedSteps(2, true, recordings::Gyro::kAll);
   // 1.9 and 3.9 rad/s at 0.5 m, commanded 2 and 4 rad/s.
   REQUIRE(all.segments[0].entry_speeds->left == Approx(0.95));
-  REQUIRE(all.segments[0].command_before.left == Approx(0.95));
+  REQUIRE(all.segments[0].command_before[0] == Approx(0.95));
   REQUIRE(all.segments[1].entry_speeds->right == Approx(1.95));
-  REQUIRE(all.segments[1].command_before.right == Approx(2.0));
+  REQUIRE(all.segments[1].command_before[1] == Approx(2.0));
 }
 
 TEST_CASE("all readings of the gyro: fixes stay what they were, and no reading is said twice") {

@@ -188,8 +188,10 @@ TEST_CASE("a model of a holonomic base is written as it is read, and has no effe
   CHECK(again.vehicle.sideways_gain == 0.95);
   const std::string head = "name: x\nkind: track_speed\n" + kThree;
   CHECK_THROWS_WITH(parseModelDocument(head + "gauge: 0.6\n", "m"), Contains("gauge"));
-  CHECK_THROWS_WITH(parseModelDocument(head + "effects: {slip_ratio: {slip: 0.1}}\n", "m"),
-                    Contains("effects") && Contains("two tracks"));
+  CHECK(parseModelDocument(head + "effects: {slip_ratio: {slip: 0.1}}\n", "m")
+            .vehicle.effects.slip_ratio == 0.1);
+  CHECK_THROWS_WITH(parseModelDocument(head + "effects: {track_asymmetry: {share: 0.1}}\n", "m"),
+                    Contains("track_asymmetry") && Contains("holonomic base"));
   CHECK_THROWS_WITH(readTrackModelDocument(kFolder + "model.yaml"),
                     Contains("model.yaml") && Contains("holonomic base"));
 }

@@ -99,7 +99,7 @@ void sayWhere(const std::string& folder, const GapFinding& finding) {
 /// What find and repeat read.
 GapTask taskOf(const FindOptions& options, std::vector<InputFile>& inputs) {
   GapTask task;
-  task.model = readTrackModelDocument(options.model);
+  task.model = readModelDocument(options.model);
   task.decisions = decisionsOf({options.accepted, options.rejected, options.by}, task.model);
   inputs.push_back(
       {InputFile::Role::kModel, fileName(options.model), sha256(readText(options.model))});
@@ -179,7 +179,7 @@ struct CompareOptions {
 };
 
 int compare(const CompareOptions& options) {
-  const ModelDocument model = readTrackModelDocument(options.model);
+  const ModelDocument model = readModelDocument(options.model);
   const Drive first = readSoundDriveFor(model, options.first);
   const Drive second = readSoundDriveFor(model, options.second);
   if (first.sha256 == second.sha256)

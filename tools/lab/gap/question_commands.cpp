@@ -168,7 +168,8 @@ int plan(const PlanOptions& options) {
   if (options.truth == options.rival)
     throw std::runtime_error("plan: twice " + options.truth + "; name two effects");
   DesignTask task;
-  task.model = readTrackModelDocument(options.model);
+  task.model = options.patterns.empty() ? readTwoTracks(options.model, "plan")
+                                        : readTrackModelDocument(options.model);
   task.first = options.truth;
   task.second = options.rival;
   if (options.speed > 0.0 && task.model.vehicle.kind == CommandKind::kPower)
@@ -236,10 +237,14 @@ void whatIf(const WhatIfOptions& options) {
   const bool svg = endsWith(options.out, ".svg");
   if (!options.out.empty() && !svg && !endsWith(options.out, ".html"))
     throw std::runtime_error(options.out + ": what kind of file? end it with .html or .svg");
-  const ModelDocument model = readTrackModelDocument(options.model);
+  // Only on a log do other vehicles than those of the manoeuvres drive.
+  const ModelDocument model = options.log.empty() ? readTwoTracks(options.model, "what-if without --log")
+                                                  : readModelDocument(options.model);
   const ModelDocument other = changed(model, options.change);
+  const bool tracks = model.vehicle.layout() == VehicleLayout::kTracks;
   const std::vector<ManoeuvreComparison> comparisons =
-      compareModels(model, other, circumstancesOf(options));
+      tracks ? compareModels(model, other, circumstancesOf(options))
+             : std::vector<ManoeuvreComparison>{};
   std::vector<LogComparison> on_log;
   std::string lost;
   if (!options.log.empty()) {
@@ -319,6 +324,14 @@ void addWhatIf(CLI::App& app) {
   addCircumstances(*command, *options);
   addEffectsOption(*command);
   command->callback([options] { whatIf(*options); });
+}
+
+ModelDocument readTwoTracks(const std::string& path, const std::string& command) {
+  ModelDocument model = readModelDocument(path);
+  const VehicleLayout layout = model.vehicle.layout();
+  if (layout == VehicleLayout::kTracks) return model;
+  throw std::runtime_error(path + ": is a model of " + nameOf(layout) + "; tread-gap " + command +
+                           " drives two tracks only");
 }
 
 }  // namespace tread::gap

@@ -83,7 +83,7 @@ void addWatch(CLI::App& app, int& status) {
   command->add_option("--lcm-url", options->lcm_url, "LCM provider");
   addKeyOption(*command, options->key);
   command->callback([options, &status] {
-    const ModelDocument model = readTrackModelDocument(options->model);
+    const ModelDocument model = readTwoTracks(options->model, "watch");
     status = options->logs.empty() ? watchRobot(*options, model) : watchLogs(*options, model);
   });
 }

@@ -46,7 +46,7 @@ bool isPossible(const Pose2& from, const Pose2& to, const Twist2& limit) {
 
 SampledSegment sampled(const gap::Segment& recorded, bool entry_known) {
   SampledSegment segment;
-  segment.before = recorded.command_before;
+  segment.before = recorded.command_before.tracks();
   segment.entry_known = entry_known;
   const double begin = recorded.begin();
   const auto samples = static_cast<size_t>((recorded.end - begin) / kPeriod + 1e-3);
@@ -56,7 +56,7 @@ SampledSegment sampled(const gap::Segment& recorded, bool entry_known) {
     while (command + 1 < recorded.commands.size() &&
            recorded.commands[command + 1].time <= time + 0.1 * kPeriod)
       ++command;
-    if (t < samples) segment.commands.push_back(recorded.commands[command].command);
+    if (t < samples) segment.commands.push_back(recorded.commands[command].command.tracks());
     while (next < recorded.ins.size() && recorded.ins[next].time < time) ++next;
     segment.poses.push_back(Pose2{kNone, kNone, kNone});
     if (next == 0 || next == recorded.ins.size()) continue;
