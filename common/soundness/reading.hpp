@@ -19,6 +19,7 @@ struct SortedLog {
   std::vector<motor_t> motor;
   std::vector<ins_t> ins;
   VehicleLayout layout = VehicleLayout::kTracks;
+  size_t channels = 2;  ///< of its commands
   int64_t origin = 0;  ///< [us] utime of the first INS or MOTOR; time 0 of the drive
 
   /// Seconds since time 0.

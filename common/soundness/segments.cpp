@@ -17,7 +17,7 @@ constexpr size_t kFewest = 3;          // readings of which something can be lea
 constexpr double kStepSilence[] = {1.8, 3.2};  // [s] between steps of an imported recording
 
 /// Track speeds at a time, if the encoders speak of it.
-std::optional<TrackCommand> speedAt(const std::vector<EncoderSample>& encoders, double time) {
+std::optional<Command> speedAt(const std::vector<EncoderSample>& encoders, double time) {
   const auto next =
       std::lower_bound(encoders.begin(), encoders.end(), time - 1e-6,
                        [](const EncoderSample& sample, double t) { return sample.time < t; });
@@ -26,7 +26,7 @@ std::optional<TrackCommand> speedAt(const std::vector<EncoderSample>& encoders, 
 }
 
 /// Track speeds before a time, if the encoders speak of it.
-std::optional<TrackCommand> speedBefore(const std::vector<EncoderSample>& encoders, double time) {
+std::optional<Command> speedBefore(const std::vector<EncoderSample>& encoders, double time) {
   const auto next =
       std::lower_bound(encoders.begin(), encoders.end(), time,
                        [](const EncoderSample& sample, double t) { return sample.time < t; });
@@ -133,9 +133,9 @@ class Cutter {
     if (segment.entry_speeds) {
       segment.command_before = wentOnAtOnce(span, *segment.entry_speeds)
                                    ? before_->commands.back().command
-                               : span.layout == VehicleLayout::kTracks
-                                   ? Command(*segment.entry_speeds)
-                                   : span.commands.front().command;
+                               : span.layout == VehicleLayout::kCar
+                                   ? span.commands.front().command
+                                   : *segment.entry_speeds;
       return;
     }
     const bool stood =
@@ -151,13 +151,14 @@ class Cutter {
   }
 
   /// Whether this is the next step of an imported recording, which the import set apart.
-  bool wentOnAtOnce(const CommandSpan& span, const TrackCommand& speed) const {
+  bool wentOnAtOnce(const CommandSpan& span, const Command& speed) const {
     if (before_ == nullptr || !span.after_silence) return false;
     const double silence = span.begin() - before_->end;
     const auto previous = speedBefore(encoders_, before_->end);
-    return previous && silence >= kStepSilence[0] && silence <= kStepSilence[1] &&
-           std::abs(previous->left - speed.left) <= kSameSpeed &&
-           std::abs(previous->right - speed.right) <= kSameSpeed;
+    if (!previous || silence < kStepSilence[0] || silence > kStepSilence[1]) return false;
+    for (size_t channel = 0; channel < Command::kMaxChannels; ++channel)
+      if (!(std::abs((*previous)[channel] - speed[channel]) <= kSameSpeed)) return false;
+    return true;
   }
 
   const std::vector<EncoderSample>& encoders_;

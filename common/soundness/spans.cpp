@@ -153,7 +153,10 @@ SortedLog::SortedLog(const DriveLog& drive_log)
   sortByTime(motor);
   sortByTime(ins);
   for (const motor_t& message : motor)
-    if (!kindsIn(message).empty()) layout = layoutOf(kindsIn(message));
+    if (const auto kinds = kindsIn(message); !kinds.empty()) {
+      layout = layoutOf(kinds);
+      channels = std::max<size_t>(2, kinds.size());
+    }
   if (!motor.empty()) origin = motor.front().utime;
   if (!ins.empty())
     origin = motor.empty() ? ins.front().utime : std::min(origin, ins.front().utime);
@@ -205,13 +208,16 @@ bool standsBetween(const CommandSpan& span, double from, double to) {
 
 std::vector<EncoderSample> encoderSamples(const SortedLog& log) {
   std::vector<EncoderSample> samples;
-  if (log.layout == VehicleLayout::kOmni) return samples;
-  const size_t right = log.layout == VehicleLayout::kCar ? 0 : 1;
-  for (const motor_t& motor : log.motor)
-    if (std::isfinite(motor.measured[0]) && std::isfinite(motor.measured[right]))
-      samples.push_back(
-          {log.seconds(motor.utime),
-           {static_cast<double>(motor.measured[0]), static_cast<double>(motor.measured[right])}});
+  for (const motor_t& motor : log.motor) {
+    EncoderSample sample{log.seconds(motor.utime), {}};
+    bool whole = true;
+    for (size_t wheel = 0; wheel < log.channels; ++wheel) {
+      const size_t of = log.layout == VehicleLayout::kCar ? 0 : wheel;
+      sample.speed[wheel] = static_cast<double>(motor.measured[of]);
+      whole = whole && std::isfinite(motor.measured[of]);
+    }
+    if (whole) samples.push_back(sample);
+  }
   return samples;
 }
 

@@ -22,11 +22,11 @@ double lossOf(const EffectValues& effects, size_t wheel) {
 }  // namespace
 
 OmniKernel::OmniKernel(const VehicleModel& model, const Command& entry, const ExecutionNoise& noise,
-                       const DriveContext& context)
+                       const DriveContext& context, const std::optional<Command>& known)
     : model_(model), noise_(noise), context_(context), acting_(entry) {
   Command rims;
   for (size_t wheel = 0; wheel < model_.wheels.size(); ++wheel) {
-    rims[wheel] = target(wheel, supplied(wheel));
+    rims[wheel] = known ? (*known)[wheel] : target(wheel, supplied(wheel));
     rims_[wheel] = {rims[wheel], rims[wheel], 0.0, 0.0};
   }
   body_ = onGround(rims, changesAt(model_.effects, context_.session_time, 0.0));

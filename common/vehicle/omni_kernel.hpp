@@ -4,6 +4,7 @@
 
 #include <array>
 #include <deque>
+#include <optional>
 
 #include "common/geometry/se2.hpp"
 #include "common/pattern/command.hpp"
@@ -23,9 +24,10 @@ namespace tread {
  * rate. */
 class OmniKernel {
  public:
-  /// `entry`: the command that was held for long.
+  /// `entry`: the command that was held for long; `rims`: their speeds [m/s], where others are
+  /// known.
   OmniKernel(const VehicleModel& model, const Command& entry, const ExecutionNoise& noise = {},
-             const DriveContext& context = {});
+             const DriveContext& context = {}, const std::optional<Command>& rims = {});
 
   /// Holds a command for `duration` [s]; the context stays, session time goes on.
   void step(const Command& command, double duration);

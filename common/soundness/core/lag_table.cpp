@@ -107,7 +107,7 @@ RunningSums gyroSums(const Drive& drive) {
 RunningSums encoderSums(const Drive& drive,
                         const std::function<double(const TrackCommand&)>& rate) {
   return heldSums(drive, drive.encoders,
-                  [&rate](const EncoderSample& sample) { return rate(sample.speed); });
+                  [&rate](const EncoderSample& sample) { return rate(sample.speed.tracks()); });
 }
 
 RunningSums currentSums(const Drive& drive, double CurrentSample::*side) {

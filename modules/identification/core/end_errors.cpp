@@ -408,7 +408,7 @@ class Reckoner {
 }  // namespace
 
 std::optional<Reckoning> fitReckoning(const Drive& drive) {
-  if (drive.encoders.empty()) return std::nullopt;
+  if (drive.encoders.empty() || drive.layout == VehicleLayout::kOmni) return std::nullopt;
   const auto increments = poseIncrements(drive);
   const std::vector<double> v = ratesOf(increments, &PoseIncrement::v);
   const std::vector<double> omega = ratesOf(increments, &PoseIncrement::omega);

@@ -144,7 +144,7 @@ SegmentPlan::SegmentPlan(const Drive& drive, const Segment& segment, double piec
 
 EntryState SegmentPlan::entryFor(const VehicleModel& vehicle) const {
   EntryState entry = steadyEntry(vehicle, command_before_.tracks(), pieces_.front().context);
-  if (entry_speeds_) entry.track_speeds = *entry_speeds_;
+  if (entry_speeds_) entry.track_speeds = entry_speeds_->tracks();
   return entry;
 }
 
@@ -152,7 +152,8 @@ std::vector<MotionSample> SegmentPlan::simulate(const VehicleModel& vehicle) con
   VehicleModel model = vehicle;
   model.step = longest_;  // lags and ramps are exact within one
   if (model.isOmni())
-    return motionOf(OmniKernel(model, command_before_, {}, pieces_.front().context));
+    return motionOf(
+        OmniKernel(model, command_before_, {}, pieces_.front().context, entry_speeds_));
   return motionOf(VehicleKernel(model, entryFor(model)));
 }
 

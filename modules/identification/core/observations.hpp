@@ -56,7 +56,7 @@ class SegmentPlan {
   double begin_ = 0.0;
   double longest_ = 1e-3;  ///< piece [s]
   std::vector<Piece> pieces_;
-  std::optional<TrackCommand> entry_speeds_;
+  std::optional<Command> entry_speeds_;
   Command command_before_;
 };
 

@@ -25,18 +25,22 @@ constexpr size_t kLeastRows = 100;  // with wheel speeds
 class WheelSpeeds {
  public:
   WheelSpeeds(const Drive& drive, double gauge)
-      : speed_(encoderSums(drive, [](const TrackCommand& c) { return 0.5 * (c.left + c.right); })),
+      : turns_(drive.layout == VehicleLayout::kTracks),
+        speed_(encoderSums(drive, [](const TrackCommand& c) { return 0.5 * (c.left + c.right); })),
         turn_(encoderSums(drive,
                           [gauge](const TrackCommand& c) { return (c.right - c.left) / gauge; })) {}
 
   std::optional<double> speed(const Observation& row, double late) const {
     return speed_[row.segment].mean(row.begin - late, row.end - late);
   }
+  /// Of a car's wheels only the speed of the drive is measured.
   std::optional<double> turn(const Observation& row, double late) const {
+    if (!turns_) return std::nullopt;
     return turn_[row.segment].mean(row.begin - late, row.end - late);
   }
 
  private:
+  bool turns_;
   RunningSums speed_;
   RunningSums turn_;
 };
@@ -176,7 +180,9 @@ std::map<std::string, WheelWitness> wheelWitnesses(const Fitter& fitter, const F
                                                    const std::vector<std::string>& effects) {
   const std::vector<Drive>& drives = fitter.data().drives();
   if (std::all_of(drives.begin(), drives.end(),
-                  [](const Drive& drive) { return drive.encoders.empty(); }))
+                  [](const Drive& drive) {
+                    return drive.encoders.empty() || drive.layout == VehicleLayout::kOmni;
+                  }))
     return {};
   std::vector<std::vector<std::string>> asked;
   std::vector<std::string> lags;

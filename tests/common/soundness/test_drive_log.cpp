@@ -238,9 +238,9 @@ TEST_CASE(
     "an imported step begins with its encoders, after the step before it if it went on at once") {
   const Drive all = importedSteps(2, true, recordings::Gyro::kAll);
   // 1.9 and 3.9 rad/s at 0.5 m, commanded 2 and 4 rad/s.
-  REQUIRE(all.segments[0].entry_speeds->left == Approx(0.95));
+  REQUIRE(all.segments[0].entry_speeds->tracks().left == Approx(0.95));
   REQUIRE(all.segments[0].command_before[0] == Approx(0.95));
-  REQUIRE(all.segments[1].entry_speeds->right == Approx(1.95));
+  REQUIRE(all.segments[1].entry_speeds->tracks().right == Approx(1.95));
   REQUIRE(all.segments[1].command_before[1] == Approx(2.0));
 }
 
