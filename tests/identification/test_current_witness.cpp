@@ -54,8 +54,8 @@ std::vector<CurrentSample> currentsOf(const Values& hidden, const Drive& drive, 
     before = moves;
     DriveContext context;
     context.session_time = command.time;
-    vehicle.step(command.command, 0.05, context);
-    sound.step(command.command, 0.05, context);
+    vehicle.step(command.command.tracks(), 0.05, context);
+    sound.step(command.command.tracks(), 0.05, context);
   }
   return currents;
 }

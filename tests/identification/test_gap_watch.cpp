@@ -46,9 +46,9 @@ std::vector<NoticedGap> watched(const Drive& drive, const ModelDocument& model) 
 }
 
 /// What is commanded from a time on is more than what the simulated vehicle got.
-void weaken(Drive& drive, double TrackCommand::*side, double from, double gain) {
+void weaken(Drive& drive, size_t side, double from, double gain) {
   for (CommandSample& sample : drive.segments.front().commands)
-    if (sample.time >= from) sample.command.*side /= gain;
+    if (sample.time >= from) sample.command[side] /= gain;
 }
 
 /// Readings of one part that scatter about a mean, all others about 0.
@@ -65,7 +65,7 @@ WatchReading scattered(double begin, size_t part, double mean, std::mt19937_64& 
 TEST_CASE("a drive that gives less is noticed within minutes, with its size and since when") {
   const ModelDocument model = syntheticVehicle();
   Drive drive = syntheticDrive(model, 900.0, 5);
-  weaken(drive, &TrackCommand::left, 300.0, 0.92);
+  weaken(drive, 0, 300.0, 0.92);
   const std::vector<NoticedGap> gaps = watched(drive, model);
   REQUIRE(gaps.size() == 1);
   CHECK(gaps[0].part == ChangedPart::kLeftDrive);
@@ -79,8 +79,8 @@ TEST_CASE("a drive that gives less is noticed within minutes, with its size and 
 TEST_CASE("what both drives give less is told as one change of both") {
   const ModelDocument model = syntheticVehicle();
   Drive drive = syntheticDrive(model, 700.0, 6);
-  weaken(drive, &TrackCommand::left, 200.0, 0.9);
-  weaken(drive, &TrackCommand::right, 200.0, 0.9);
+  weaken(drive, 0, 200.0, 0.9);
+  weaken(drive, 1, 200.0, 0.9);
   const std::vector<NoticedGap> gaps = watched(drive, model);
   REQUIRE(gaps.size() == 1);
   CHECK(gaps[0].part == ChangedPart::kBothDrives);

@@ -13,7 +13,7 @@ using namespace tread::gap;
 namespace {
 
 /// What is found with a model on a drive of its vehicle in which numbers were changed.
-Finding findWith(const ModelDocument& model, const samples::Values& hidden, uint64_t seed) {
+GapFinding findWith(const ModelDocument& model, const samples::Values& hidden, uint64_t seed) {
   ModelDocument truth = model;
   for (const auto& [path, value] : hidden) *findParameter(truth, path) = value;
   GapTask task;
@@ -23,7 +23,7 @@ Finding findWith(const ModelDocument& model, const samples::Values& hidden, uint
   return findGap(task, samples::kSilent);
 }
 
-void checkFound(const Finding& finding, GapVerdict verdict, const std::string& name, double size) {
+void checkFound(const GapFinding& finding, GapVerdict verdict, const std::string& name, double size) {
   CHECK(finding.verdict == verdict);
   REQUIRE(finding.identified.effects.size() == 1);
   const FoundEffect& found = finding.identified.effects.front();

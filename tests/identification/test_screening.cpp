@@ -51,7 +51,7 @@ TEST_CASE("what a drive demands is the most that it commands and that the model 
   const Excitation most = excitationOf(rig.data, syntheticVehicle());
   double fastest = 0.0;
   for (const CommandSample& sample : drive.segments[0].commands) {
-    const TrackCommand asked = syntheticVehicle().vehicle.trackSpeeds(sample.command);
+    const TrackCommand asked = syntheticVehicle().vehicle.trackSpeeds(sample.command.tracks());
     fastest = std::max({fastest, std::abs(asked.left), std::abs(asked.right)});
   }
   CHECK(most.track_speed == fastest);

@@ -15,16 +15,17 @@ class ActingCommand {
   ActingCommand(const Segment& segment, const VehicleModel& vehicle)
       : commands_(segment.commands),
         vehicle_(vehicle),
-        asked_(segment.command_before),
-        before_(segment.command_before),
+        asked_(segment.command_before.tracks()),
+        before_(segment.command_before.tracks()),
         began_(segment.begin() - kLongAgo) {}
 
   DrivenPiece at(double time) {
     for (; next_ < commands_.size() && commands_[next_].time + vehicle_.commandDelay() <= time;
          ++next_) {
-      if (commands_[next_].command == asked_) continue;
+      const TrackCommand command = commands_[next_].command.tracks();
+      if (command == asked_) continue;
       before_ = asked_;
-      asked_ = commands_[next_].command;
+      asked_ = command;
       began_ = commands_[next_].time + vehicle_.commandDelay();
     }
     const TrackCommand now = vehicle_.trackSpeeds(asked_);
