@@ -185,7 +185,8 @@ Drive readDriveFor(const ModelDocument& model, const std::string& path) {
   const VehicleLayout layout = model.vehicle.layout();
   if (!drive.segments.empty() && drive.layout != layout)
     throw std::runtime_error(path + ": its commands are those of " + nameOf(drive.layout) +
-                             ", the model is of " + nameOf(layout) + "; give a model of this robot");
+                             ", the model is of " + nameOf(layout) +
+                             "; give a model of this robot");
   if (layout == VehicleLayout::kTracks) requireSameGauge(drive, model.vehicle.gauge);
   if (drive.segments.empty() || drive.kind == model.vehicle.kind) return drive;
   const bool power = drive.kind == CommandKind::kPower;

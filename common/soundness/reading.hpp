@@ -20,7 +20,7 @@ struct SortedLog {
   std::vector<ins_t> ins;
   VehicleLayout layout = VehicleLayout::kTracks;
   size_t channels = 2;  ///< of its commands
-  int64_t origin = 0;  ///< [us] utime of the first INS or MOTOR; time 0 of the drive
+  int64_t origin = 0;   ///< [us] utime of the first INS or MOTOR; time 0 of the drive
 
   /// Seconds since time 0.
   double seconds(int64_t utime) const { return 1e-6 * static_cast<double>(utime - origin); }
@@ -36,7 +36,7 @@ struct CommandSpan {
   std::vector<CommandSample> commands;  ///< changes only, the first one at the begin; not empty
   double end = 0.0;                     ///< [s]
   VehicleLayout layout = VehicleLayout::kTracks;
-  bool after_silence = false;           ///< MOTOR messages before it are missing
+  bool after_silence = false;  ///< MOTOR messages before it are missing
 
   double begin() const { return commands.front().time; }
 };

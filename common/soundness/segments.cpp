@@ -133,9 +133,8 @@ class Cutter {
     if (segment.entry_speeds) {
       segment.command_before = wentOnAtOnce(span, *segment.entry_speeds)
                                    ? before_->commands.back().command
-                               : span.layout == VehicleLayout::kCar
-                                   ? span.commands.front().command
-                                   : *segment.entry_speeds;
+                               : span.layout == VehicleLayout::kCar ? span.commands.front().command
+                                                                    : *segment.entry_speeds;
       return;
     }
     const bool stood =

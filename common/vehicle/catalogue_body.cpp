@@ -65,18 +65,20 @@ std::vector<Effect> inertiaEffects() {
 std::vector<Effect> sideEffects() {
   using V = EffectValues;
   return {
-      only(kOfTracks | kOfCars, {"centrifugal_drift",
-       "Centrifugal drift",
-       "y",
-       "In curves it is carried outwards, more the faster and tighter.",
-       "v_y -> v_y - time v omega",
-       "The lateral residual is proportional to speed times yaw rate, outwards; nothing on the "
-       "spot.",
-       "Another surface: drift changes with the grip, a latency of the heading is the same "
-       "everywhere.",
-       "Drive the same circle slowly and fast and compare the angle between heading and path.",
-       {strength("time", "s", -0.5, 1.0, 0.15, &V::centrifugal_drift)},
-       "In curves it is carried inwards, more the faster and tighter"}),
+      only(
+          kOfTracks | kOfCars,
+          {"centrifugal_drift",
+           "Centrifugal drift",
+           "y",
+           "In curves it is carried outwards, more the faster and tighter.",
+           "v_y -> v_y - time v omega",
+           "The lateral residual is proportional to speed times yaw rate, outwards; nothing on the "
+           "spot.",
+           "Another surface: drift changes with the grip, a latency of the heading is the same "
+           "everywhere.",
+           "Drive the same circle slowly and fast and compare the angle between heading and path.",
+           {strength("time", "s", -0.5, 1.0, 0.15, &V::centrifugal_drift)},
+           "In curves it is carried inwards, more the faster and tighter"}),
       {"slope_pitch",
        "Slope along the track",
        "x",
@@ -225,6 +227,12 @@ std::vector<ConfoundedGroup> groupsOfEveryDrive() {
        true,
        &MeasurementModel::ins_latency_gyro,
        " of poses and gyro alike"},
+      {"translation",
+       {"translation_loss", "position_scale"},
+       "",
+       "of a holonomic base a loss is a scale of -loss",
+       "Drive a surveyed distance; on another ground a scale stays.",
+       true},
       {"scale",
        {"position_scale", "slip_ratio", "track_width"},
        "",

@@ -127,18 +127,22 @@ std::vector<Effect> powerEffects() {
        {strength("loss", "1", 0.0, 0.9, 0.15, &V::thermal_derating),
         fitted(shape(strength("time_constant", "s", 10.0, 3600.0, 240.0, &V::thermal_time,
                               {60.0, 240.0, 900.0})))}},
-      only(kOfTracks, {"track_asymmetry",
-       "Left-right asymmetry",
-       "xw",
-       "One track runs a little faster than the other at the same command.",
-       "u_left -> u_left (1 + share), u_right -> u_right (1 - share)",
-       "Driving straight it turns to the side of the slower track, by an angle per metre; the yaw "
-       "rate residual is proportional to the speed and flips in reverse.",
-       "Drive the same line forwards and backwards: asymmetry flips the sign of the yaw rate, a "
-       "gyro bias does not; drive it both ways: a slope to the side flips in the body.",
-       "Drive 20 m along a line with equal commands, then back in reverse; measure both misses.",
-       {withSigns(strength("share", "1", -0.3, 0.3, 0.03, &V::track_asymmetry),
-                  "the left track is the faster one", "the right track is the faster one")}}),
+      only(kOfTracks,
+           {"track_asymmetry",
+            "Left-right asymmetry",
+            "xw",
+            "One track runs a little faster than the other at the same command.",
+            "u_left -> u_left (1 + share), u_right -> u_right (1 - share)",
+            "Driving straight it turns to the side of the slower track, by an angle per metre; the "
+            "yaw "
+            "rate residual is proportional to the speed and flips in reverse.",
+            "Drive the same line forwards and backwards: asymmetry flips the sign of the yaw rate, "
+            "a "
+            "gyro bias does not; drive it both ways: a slope to the side flips in the body.",
+            "Drive 20 m along a line with equal commands, then back in reverse; measure both "
+            "misses.",
+            {withSigns(strength("share", "1", -0.3, 0.3, 0.03, &V::track_asymmetry),
+                       "the left track is the faster one", "the right track is the faster one")}}),
       oneSided("left", &V::left_track_loss),
       oneSided("right", &V::right_track_loss),
   };
@@ -183,17 +187,20 @@ std::vector<Effect> lagEffects() {
        "Steps of three sizes: with a lag the time does not depend on the size.",
        "Step from rest to a third, two thirds and all of full speed and time each.",
        {inverseLimit("s2/m", 20.0, 0.5, &V::slew_limit, {0.2, 0.4, 0.8, 1.6}, "limit", "m/s2")}},
-      only(kOfTracks, {"track_backlash",
-       "Track slack, backlash",
-       "xw",
-       "After a reversal a track does not pull until its slack is taken up.",
-       "no motion of a track until its drive has gone slack metres after a change of direction; a "
-       "track at rest is taken up forwards",
-       "Residuals only after the sign of a track's command has changed: always the same distance, "
-       "not the same time.",
-       "Reversals at two speeds: the time lost halves when the speed doubles.",
-       "Rock the vehicle by hand, or turn the sprocket back and forth and measure the play.",
-       {strength("slack", "m", 0.0, 0.3, 0.04, &V::track_backlash, {0.02, 0.06})}}),
+      only(kOfTracks,
+           {"track_backlash",
+            "Track slack, backlash",
+            "xw",
+            "After a reversal a track does not pull until its slack is taken up.",
+            "no motion of a track until its drive has gone slack metres after a change of "
+            "direction; a "
+            "track at rest is taken up forwards",
+            "Residuals only after the sign of a track's command has changed: always the same "
+            "distance, "
+            "not the same time.",
+            "Reversals at two speeds: the time lost halves when the speed doubles.",
+            "Rock the vehicle by hand, or turn the sprocket back and forth and measure the play.",
+            {strength("slack", "m", 0.0, 0.3, 0.04, &V::track_backlash, {0.02, 0.06})}}),
   };
 }
 

@@ -77,8 +77,7 @@ std::vector<Effect> steeringEffects() {
         "Steering steps of three sizes at constant speed: a limit of the rate takes longer for "
         "larger ones.",
         "Film the wheels during a step of the steering while it stands.",
-        {addedTo(&VehicleModel::steering_lag,
-                 {"lag of the steering in all", "s", totalSteeringLag},
+        {addedTo(&VehicleModel::steering_lag, {"lag of the steering in all", "s", totalSteeringLag},
                  strength("lag", "s", -2.0, 3.0, 0.15, &V::slow_steering))},
         "The wheels take up a new angle sooner than the model says",
         {{"steering_lag"}, 7}},
@@ -125,7 +124,17 @@ std::vector<Effect> sidewaysEffects() {
   using V = EffectValues;
   return on(
       kOfOmni,
-      {{"sideways_loss",
+      {{"translation_loss",
+        "Driving unlike turning",
+        "xy",
+        "In every direction it gets less far than its rims by the same share; turns are right.",
+        "v_x -> v_x (1 - loss), v_y -> v_y (1 - loss)",
+        "Too slow by the same share in all directions and at all speeds; the yaw rate is right.",
+        "A surveyed distance: an INS whose positions are too short looks the same.",
+        "Drive between two surveyed marks, and compare the way with the INS and with the wheels.",
+        {strength("loss", "1", -0.5, 0.9, 0.08, &V::translation_loss)},
+        "In every direction it gets further than its rims by the same share; turns are right"},
+       {"sideways_loss",
         "Sideways unlike forward",
         "y",
         "Sideways it gets less far than its rims, forward it does not.",

@@ -13,8 +13,9 @@ namespace {
 std::deque<Effect> allEffects() {
   std::deque<Effect> all;
   for (auto part :
-       {commandEffects, powerEffects, lagEffects, steeringEffects, wheelEffects, slipEffects, turningEffects, turningChangeEffects,
-        gripEffects, speedLossEffects, inertiaEffects, sideEffects, sidewaysEffects, timingEffects, mountingEffects})
+       {commandEffects, powerEffects, lagEffects, steeringEffects, wheelEffects, slipEffects,
+        turningEffects, turningChangeEffects, gripEffects, speedLossEffects, inertiaEffects,
+        sideEffects, sidewaysEffects, timingEffects, mountingEffects})
     for (Effect& effect : part()) all.push_back(std::move(effect));
   return all;
 }

@@ -98,7 +98,8 @@ VehicleKernel::VehicleKernel(const VehicleModel& model, const EntryState& entry,
                          entry.ramps.value_or(entry.track_speeds).left, entry.heat.left)),
       right_(enteredTrack(model.effects, entry.track_speeds.right,
                           entry.ramps.value_or(entry.track_speeds).right, entry.heat.right)),
-      steering_(entry.steering.value_or(Steering{entry.command.right, entry.command.right, entry.command.right})),
+      steering_(entry.steering.value_or(
+          Steering{entry.command.right, entry.command.right, entry.command.right})),
       on_ground_(model.onGround(entry.track_speeds, wheelAngle(model, steering_.linkage))),
       acting_(entry.command) {
   setNoise(noise);
@@ -229,7 +230,8 @@ PlaneMotion VehicleKernel::moveBody(const ChangesInForce& changes, const PlaneMo
   const bool gradual = model_.driveLag() >= dt && effects.track_backlash == 0.0;
   const PlaneMotion begin = gradual ? led_to_ : mean;
   const PlaneMotion end =
-      gradual ? groundMotion(model_, noise_, changes, model_.onGround(trackSpeeds(), wheelAngle(model_, steering_.linkage)))
+      gradual ? groundMotion(model_, noise_, changes,
+                             model_.onGround(trackSpeeds(), wheelAngle(model_, steering_.linkage)))
               : mean;
   const Followed v = follow(body_.v, {begin.v, mean.v, end.v}, effects.body_inertia, dt);
   const Followed omega =
@@ -243,7 +245,9 @@ Twist2 VehicleKernel::twist() const {
   const EffectValues& effects = model_.effects;
   const ChangesInForce changes = changesAt(effects, context_.session_time, 0.0);
   const TrackCommand tracks =
-      effects.track_backlash == 0.0 ? model_.onGround(trackSpeeds(), wheelAngle(model_, steering_.linkage)) : on_ground_;
+      effects.track_backlash == 0.0
+          ? model_.onGround(trackSpeeds(), wheelAngle(model_, steering_.linkage))
+          : on_ground_;
   PlaneMotion motion = groundMotion(model_, noise_, changes, tracks);
   if (effects.body_inertia > 0.0) motion.v = body_.v;
   if (effects.yaw_inertia > 0.0) motion.omega = body_.omega;

@@ -112,9 +112,10 @@ struct EffectValues {
   double slope_pitch = 0.0;        ///< [s]
   double slope_roll = 0.0;         ///< [s]
   // What a holonomic base does sideways.
-  double sideways_loss = 0.0;  ///< [1], off the model's gain
-  double sideways_lag = 0.0;   ///< [s]
-  double sideways_turn = 0.0;  ///< [rad/m]
+  double translation_loss = 0.0;  ///< [1]
+  double sideways_loss = 0.0;     ///< [1], off the model's gain
+  double sideways_lag = 0.0;      ///< [s]
+  double sideways_turn = 0.0;     ///< [rad/m]
   // What files describe.
   std::array<double, kMostAdded> added{};
 };

@@ -41,7 +41,7 @@ void readTracks(ConfigReader& reader, VehicleModel& model) {
   reader.choice("kind", kind, {"power", "track_speed"}, true);
   model.kind = kind == "power" ? CommandKind::kPower : CommandKind::kTrackSpeed;
   if (model.kind == CommandKind::kPower)
-    reader.number("full_speed", model.full_speed, {0.01, 20.0}, "m/s", true);
+    reader.number("full_speed", model.full_speed, {0.01, 100.0}, "m/s", true);
   else if (reader.has("full_speed"))
     throw reader.error("full_speed", "is for power commands; track_speed commands are in m/s");
   if (reader.has("wheels")) {

@@ -50,11 +50,12 @@ Twist2 OmniKernel::onGround(const Command& rims, const ChangesInForce& changes) 
   const Twist2 driven = model_.wheels.twist(rims);
   const double grip =
       1.0 - effects.slip_ratio - on(effects.terrain_slip_1, effects.terrain_slip_2, changes);
-  const double forward = noise_.forward * grip * model_.forward_gain;
-  const double sideways = noise_.forward * grip * (model_.sideways_gain - effects.sideways_loss);
+  const double moved = noise_.forward * grip * (1.0 - effects.translation_loss);
+  const double forward = moved * model_.forward_gain;
+  const double sideways = moved * (model_.sideways_gain - effects.sideways_loss);
   Twist2 motion{forward * driven.v_x, sideways * driven.v_y, 0.0};
-  motion.omega = turned(effects, changes, motion.v_x,
-                        noise_.yaw * grip * model_.yaw_gain * driven.omega);
+  motion.omega =
+      turned(effects, changes, motion.v_x, noise_.yaw * grip * model_.yaw_gain * driven.omega);
   motion.omega += effects.yaw_pull * motion.v_x + effects.sideways_turn * motion.v_y;
   motion.omega += effects.yaw_rate_offset;
   const double speed = std::hypot(motion.v_x, motion.v_y);
@@ -139,8 +140,7 @@ void OmniKernel::integrateStep(double dt) {
   const ChangesInForce changes = changesAt(effects, context_.session_time, dt);
   const Twist2 steady = onGround(rims, changes);
   const Followed x = follow(body_.v_x, steady.v_x, effects.body_inertia, dt);
-  const Followed y =
-      follow(body_.v_y, steady.v_y, effects.body_inertia + effects.sideways_lag, dt);
+  const Followed y = follow(body_.v_y, steady.v_y, effects.body_inertia + effects.sideways_lag, dt);
   const Followed turn = follow(body_.omega, steady.omega, effects.yaw_inertia, dt);
   body_ = {x.end, y.end, turn.end};
   T_start_body_ =

@@ -31,9 +31,11 @@ class RandomCase {
 
   /// Switches some effects of the catalogue on, at .2 to 1.5 times their typical sizes.
   void turnOn(ModelDocument& model, size_t most) {
-    const std::deque<Effect>& all = effectCatalogue();
+    std::vector<const Effect*> all;
+    for (const Effect& effect : effectCatalogue())
+      if (effect.isOf(model.vehicle.layout())) all.push_back(&effect);
     for (size_t i = below(most + 1); i > 0; --i) {
-      const Effect& effect = all[below(all.size())];
+      const Effect& effect = *all[below(all.size())];
       for (const EffectParameter& parameter : effect.parameters) {
         const double sign = parameter.min < 0.0 && below(2) == 0 ? -1.0 : 1.0;
         const double size = parameter.role == ParameterRole::kStrength

@@ -82,7 +82,8 @@ TEST_CASE("candidates are of effects that are off, under their first name, that 
           return parameter.needs_voltage || parameter.role == ParameterRole::kShape;
         });
     CHECK((without.count(effect.name) != 0) ==
-          (!on && !effect.search.second_name && !effect.search.in_place && !needs_voltage));
+          (!on && effect.isOf(VehicleLayout::kTracks) && !effect.search.second_name &&
+           !effect.search.in_place && !needs_voltage));
   }
 }
 

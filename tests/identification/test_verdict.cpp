@@ -56,6 +56,14 @@ TEST_CASE("a term of the vehicle that moved is a finding if the end error falls 
   CHECK(judged(findingWith({width}, 1.0)) == GapVerdict::kNoDiscrepancy);
 }
 
+TEST_CASE("of a vehicle that the best model is far from nothing is named") {
+  GapFinding finding = findingWith({moved("track_width.widening", 0.2, 0.4)}, 0.8);
+  finding.gap->way = 10.0;
+  CHECK(judged(finding) == GapVerdict::kFound);
+  finding.gap->way = 3.0;
+  CHECK(judged(finding) == GapVerdict::kCannotTell);
+}
+
 TEST_CASE("a term that moved is a finding if the end error would fall were the new model right") {
   GapFinding finding = findingWith({moved("track_width.widening", 0.2, 0.4)}, 1.0);
   finding.gap->apart.yaw.median = 0.1;  // of an error of 1: it would be 1.005

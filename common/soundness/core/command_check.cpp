@@ -209,9 +209,9 @@ class Checker {
          speed_commands ? "measured is " + digits(v, 3) + " of the commanded"
                         : digits(v, 2) + " m/s at full power");
     line("turn", turn, turn_,
-         gauge_ > 0.0     ? "measured is " + digits(w * gauge_, 3) + " of the commanded"
-         : car            ? digits(w, 2) + " rad/s at " + (speed_commands ? "1 m/s" : "full power") +
-                                " for a tangent of the steering angle of 1"
+         gauge_ > 0.0 ? "measured is " + digits(w * gauge_, 3) + " of the commanded"
+         : car        ? digits(w, 2) + " rad/s at " + (speed_commands ? "1 m/s" : "full power") +
+                     " for a tangent of the steering angle of 1"
          : speed_commands ? digits(w, 3) + " rad/s for each m/s of right over left"
                           : digits(2.0 * w, 2) + " rad/s at full power of both against each other");
   }

@@ -53,7 +53,8 @@ struct Segment {
   std::vector<CommandSample> commands;  ///< in order of time, not empty
   double end = 0.0;                     ///< [s] until when the last command acts
   std::vector<InsSample> ins;           ///< in order of time, within the commands' time
-  /// Speeds of tracks or wheels at the beginning where encoders say them; else a vehicle at rest is assumed.
+  /// Speeds of tracks or wheels at the beginning where encoders say them; else a vehicle at rest is
+  /// assumed.
   std::optional<Command> entry_speeds;
   /// What was commanded before, until its delay is over; zero for a vehicle that stood.
   Command command_before{};
@@ -86,7 +87,7 @@ inline bool isMeasured(const std::vector<VoltageSample>& voltage) {
 /// found, never for the fit. Of a car both are the speed of its drive.
 struct EncoderSample {
   double time = 0.0;  ///< [s]
-  Command speed{};  ///< [m/s] of each track or wheel
+  Command speed{};    ///< [m/s] of each track or wheel
 };
 
 /// Motor currents as the controller says them, for witnesses of what was found.

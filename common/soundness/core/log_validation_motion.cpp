@@ -69,9 +69,7 @@ void checkCourse(const std::vector<PoseIncrement>& increments, Diagnostics& note
 /// Times in which a segment has commanded zero for long.
 std::vector<std::pair<double, double>> standstills(VehicleLayout layout, const Segment& segment) {
   std::vector<std::pair<double, double>> times;
-  const auto stands = [&](size_t i) {
-    return driveOf(layout, segment.commands[i].command) == 0.0;
-  };
+  const auto stands = [&](size_t i) { return driveOf(layout, segment.commands[i].command) == 0.0; };
   for (size_t i = 0; i < segment.commands.size(); ++i) {
     if (!stands(i)) continue;
     const double begin = segment.commands[i].time;
@@ -175,9 +173,10 @@ void checkPoses(const Drive& drive, const std::vector<PoseIncrement>& increments
              digits(100.0 * (1.0 - (count + 1.0) / static_cast<double>(steps.readings)), 0) +
              " % of the INS messages have none");
   if (steps.jumps > 0) {
-    const std::string what = std::to_string(steps.jumps) +
-                             " pose jumps faster than " + digits(fastestOf(drive.layout), 0) +
-                             " m/s, first at " + digits(steps.first_jump) + " s, fastest " + digits(steps.fastest_jump) + " m/s";
+    const std::string what = std::to_string(steps.jumps) + " pose jumps faster than " +
+                             digits(fastestOf(drive.layout), 0) + " m/s, first at " +
+                             digits(steps.first_jump) + " s, fastest " +
+                             digits(steps.fastest_jump) + " m/s";
     if (steps.jumps >= 10 && static_cast<double>(steps.jumps) > kTooManyJumps * count)
       notes.fatal(what + ": too many for one robot's INS; two robots, or no fix?");
     else

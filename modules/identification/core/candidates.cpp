@@ -213,8 +213,9 @@ Excitation excitationOf(const Observations& data, const ModelDocument& model) {
       most.begin = std::min(most.begin, segment.begin());
       most.end = std::max(most.end, segment.end);
       for (const CommandSample& sample : segment.commands) {
-        most.track_speed = std::max(
-            most.track_speed, model.vehicle.unit() * driveOf(model.vehicle.layout(), sample.command));
+        most.track_speed =
+            std::max(most.track_speed,
+                     model.vehicle.unit() * driveOf(model.vehicle.layout(), sample.command));
       }
     }
   }

@@ -224,6 +224,21 @@ GapVerdict verdictOf(const GapFinding& finding, const std::vector<FoundEffect>& 
   return measurement && !moved ? GapVerdict::kMeasurement : GapVerdict::kFound;
 }
 
+constexpr double kUndescribed = 0.15;  // of the way: an error beyond it is that of another vehicle
+constexpr double kLeastWay = 1.0;      // [m], else noise and patches of ground may be so large
+
+/// What effects on a model explain that is far from the vehicle are no names.
+void refuseUndescribed(GapFinding& finding) {
+  if (!finding.gap || exitStatus(finding.verdict) == 0) return;
+  const double off = finding.gap->after.position.median;
+  const double way = finding.gap->way;
+  if (!(way > kLeastWay && off > kUndescribed * way)) return;
+  finding.verdict = GapVerdict::kCannotTell;
+  finding.reason = "the best model is " + digits(off, 2) + " m off after " +
+                   digits(finding.gap->horizon, 0) + " s that lead " + digits(way, 1) +
+                   " m away: this vehicle is not what the model describes";
+}
+
 /// A size at the end of what is plausible is no measurement.
 void refuseOnBound(const ParameterEstimate& estimate, GapFinding& finding) {
   if (!runsToBound(finding.identified.model, freeParameter(finding.before, estimate.parameter)))
@@ -338,6 +353,7 @@ void judge(GapFinding& finding, double adequacy_alpha, double least_gain) {
     refuseOnBound(estimate, finding);
   for (const FoundEffect& effect : finding.identified.effects)
     for (const ParameterEstimate& estimate : effect.parameters) refuseOnBound(estimate, finding);
+  refuseUndescribed(finding);
 }
 
 namespace {
@@ -345,11 +361,28 @@ namespace {
 constexpr int kLeastHalf = 10;           // blocks from which effects can be chosen, too
 constexpr double kAdequacyAlpha = 0.01;  // of the variables; of smooth functions half of it more
 
+constexpr double kFastestCar = 15.0;    // [m/s]
+constexpr double kNearlyAlways = 0.98;  // of the driving
+
+/// What drives so that the model's equations are not those of such a vehicle; empty if none does.
+std::string beyondTheModel(const GapTask& task) {
+  if (!task.model.vehicle.isCar()) return "";
+  std::vector<double> speeds;
+  for (const Drive& drive : task.train)
+    for (const PoseIncrement& increment : poseIncrements(drive))
+      speeds.push_back(std::abs(increment.v()));
+  const double fastest = speeds.empty() ? 0.0 : quantile(std::move(speeds), kNearlyAlways);
+  if (fastest <= kFastestCar) return "";
+  return "it drives at up to " + digits(fastest, 1) + " m/s: beyond " + digits(kFastestCar, 0) +
+         " m/s a car is gears, tyres and load transfer, which the model does not have";
+}
+
 /// Why nothing can be concluded; empty if something can.
 std::string reasonNotToTell(const GapTask& task, const Observations& data) {
   for (const LogNote& note : task.log_notes)
     if (note.fatal) return note.log + ": " + note.what;
-  return tooLittleDriving(data);
+  const std::string beyond = beyondTheModel(task);
+  return beyond.empty() ? tooLittleDriving(data) : beyond;
 }
 
 SearchSettings settingsOf(const GapTask& task) {
@@ -390,6 +423,7 @@ UnseenErrors errorsOnTest(const GapTask& task, const Observations& test,
   UnseenErrors unseen;
   const std::vector<ExecutionError> old = endErrors(test, task.model);
   unseen.gap.before = summaryOf(old);
+  unseen.gap.way = medianWay(old);
   unseen.parts.push_back({&test, after, endErrors(test, after), task.train.size()});
   unseen.gap.after = summaryOf(unseen.parts.back().errors);
   unseen.gap.by_chance = chanceOfMedians(old, unseen.parts.back().errors);
@@ -406,6 +440,7 @@ UnseenErrors errorsOnHalves(const ModelDocument& before, const Fitter& fitter,
   nested = data.measuredBlocks() >= 2 * kLeastHalf && !result.record.cut_short;
   const std::vector<ExecutionError> old = endErrors(data, before);
   unseen.gap.before = summaryOf(old);
+  unseen.gap.way = medianWay(old);
   std::vector<std::vector<TermChannel>> channels;
   for (const UnnamedFinding& term : unnamed)
     channels.push_back({termOfPath(result.state.model, term.name + ".0")->channel});

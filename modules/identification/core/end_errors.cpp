@@ -179,6 +179,7 @@ std::optional<ExecutionError> errorOf(
   error.position = scale * (predicted->position() - measured.position()).norm();
   error.yaw = scale * std::abs(predicted->yaw - measured.yaw);
   error.predicted = *predicted;
+  error.way = scale * measured.position().norm();
   error.scale = scale;
   return error;
 }
@@ -216,6 +217,12 @@ EndErrors summaryOf(const std::vector<ExecutionError>& errors) {
     yaw.push_back(error.yaw);
   }
   return {figureOf(std::move(position)), figureOf(std::move(yaw)), errors.size()};
+}
+
+double medianWay(const std::vector<ExecutionError>& errors) {
+  std::vector<double> ways;
+  for (const ExecutionError& error : errors) ways.push_back(error.way);
+  return ways.empty() ? 0.0 : quantile(std::move(ways));
 }
 
 MedianChance chanceOfMedians(const std::vector<ExecutionError>& one,

@@ -19,6 +19,7 @@ struct ExecutionError {
   double position = 0.0;  ///< [m], scaled to the horizon
   double yaw = 0.0;       ///< [rad], scaled to the horizon, not wrapped
   Pose2 predicted{};      ///< where it ends, not scaled
+  double way = 0.0;       ///< [m] that it really led away, scaled to the horizon
   double scale = 1.0;     ///< the horizon over the time between the fixes
 };
 
@@ -43,6 +44,9 @@ std::optional<ExecutionError> errorOf(
 
 /// Median and root mean square.
 EndErrors summaryOf(const std::vector<ExecutionError>& errors);
+
+/// Median of the ways of executions [m]; 0 of none.
+double medianWay(const std::vector<ExecutionError>& errors);
 
 /// Bootstrap over blocks, in pairs: what is hard to predict is so for both models. Deterministic.
 MedianChance chanceOfMedians(const std::vector<ExecutionError>& one,

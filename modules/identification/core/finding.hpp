@@ -173,6 +173,7 @@ struct Gap {
   std::optional<EndErrors> floor;  ///< dead reckoning with encoders and gyro, where those exist
   bool structure_nested = true;    ///< the effects, too, were chosen without these executions
   MedianChance by_chance{};        ///< of the medians' change from before to after
+  double way = 0.0;                ///< [m] that an execution leads away, median
 };
 
 /// One cell of the residual atlas.

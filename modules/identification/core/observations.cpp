@@ -152,8 +152,7 @@ std::vector<MotionSample> SegmentPlan::simulate(const VehicleModel& vehicle) con
   VehicleModel model = vehicle;
   model.step = longest_;  // lags and ramps are exact within one
   if (model.isOmni())
-    return motionOf(
-        OmniKernel(model, command_before_, {}, pieces_.front().context, entry_speeds_));
+    return motionOf(OmniKernel(model, command_before_, {}, pieces_.front().context, entry_speeds_));
   return motionOf(VehicleKernel(model, entryFor(model)));
 }
 

@@ -39,7 +39,7 @@ class SegmentPlan {
 
  private:
   struct Piece {
-    double duration;                      ///< [s]
+    double duration;                 ///< [s]
     std::optional<Command> command;  ///< given at its beginning; none = the last one holds
     DriveContext context;
   };

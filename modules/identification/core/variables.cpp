@@ -96,8 +96,8 @@ Commands::const_iterator commandAfter(const Commands& commands, double time) {
 
 TrackCommand meanCommand(const Drive& drive, const Segment& segment, double from, double to) {
   auto next = commandAfter(segment.commands, from);
-  TrackCommand now = drive.sides(
-      next == segment.commands.begin() ? segment.command_before : std::prev(next)->command);
+  TrackCommand now = drive.sides(next == segment.commands.begin() ? segment.command_before
+                                                                  : std::prev(next)->command);
   TrackCommand sum{0.0, 0.0};
   for (double time = from; time < to;) {
     const bool changes = next != segment.commands.end() && next->time < to;

@@ -179,10 +179,9 @@ bool isScale(const Effect& effect) {
 std::map<std::string, WheelWitness> wheelWitnesses(const Fitter& fitter, const FitState& state,
                                                    const std::vector<std::string>& effects) {
   const std::vector<Drive>& drives = fitter.data().drives();
-  if (std::all_of(drives.begin(), drives.end(),
-                  [](const Drive& drive) {
-                    return drive.encoders.empty() || drive.layout == VehicleLayout::kOmni;
-                  }))
+  if (std::all_of(drives.begin(), drives.end(), [](const Drive& drive) {
+        return drive.encoders.empty() || drive.layout == VehicleLayout::kOmni;
+      }))
     return {};
   std::vector<std::vector<std::string>> asked;
   std::vector<std::string> lags;

@@ -192,6 +192,20 @@ const Advice& adviceFor(GapVerdict verdict) {
                        [verdict](const Advice& advice) { return advice.verdict == verdict; });
 }
 
+namespace {
+
+/// Which vehicles have an effect; empty where all do.
+std::string vehiclesWith(const Effect& effect) {
+  std::vector<std::string> names;
+  const auto all = {VehicleLayout::kTracks, VehicleLayout::kCar, VehicleLayout::kOmni};
+  for (const VehicleLayout layout : all)
+    if (effect.isOf(layout)) names.emplace_back(nameOf(layout));
+  if (names.size() == all.size()) return "";
+  return names.size() == 1 ? names.front() : names.front() + " and " + names.back();
+}
+
+}  // namespace
+
 std::string explanation(const Effect& effect) {
   std::string text =
       effect.title + " - " + effect.name + ", " +
@@ -203,6 +217,8 @@ std::string explanation(const Effect& effect) {
     text += entry(heading, parameterWords(parameter));
     heading.clear();
   }
+  if (const std::string vehicles = vehiclesWith(effect); !vehicles.empty())
+    text += entry("vehicles", vehicles);
   text += entry("changes", channelWords(effect.channels));
   text += entry("looks like", effect.looks_like);
   text += entry("tell it apart", effect.separates);

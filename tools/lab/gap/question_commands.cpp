@@ -238,8 +238,9 @@ void whatIf(const WhatIfOptions& options) {
   if (!options.out.empty() && !svg && !endsWith(options.out, ".html"))
     throw std::runtime_error(options.out + ": what kind of file? end it with .html or .svg");
   // Only on a log do other vehicles than those of the manoeuvres drive.
-  const ModelDocument model = options.log.empty() ? readTwoTracks(options.model, "what-if without --log")
-                                                  : readModelDocument(options.model);
+  const ModelDocument model = options.log.empty()
+                                  ? readTwoTracks(options.model, "what-if without --log")
+                                  : readModelDocument(options.model);
   const ModelDocument other = changed(model, options.change);
   const bool tracks = model.vehicle.layout() == VehicleLayout::kTracks;
   const std::vector<ManoeuvreComparison> comparisons =

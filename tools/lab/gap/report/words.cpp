@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <utility>
 
 namespace tread::gap {
 namespace {
@@ -18,6 +19,20 @@ std::string plainSentence(const FoundEffect& effect) {
   const Effect& known = effectNamed(effect.name);
   return isNegative(effect) && !known.negative_sentence.empty() ? known.negative_sentence
                                                                 : withoutStop(known.sentence);
+}
+
+/// A sentence about two tracks, said of a vehicle on wheels.
+std::string ofVehicle(VehicleLayout layout, std::string text) {
+  static constexpr std::pair<const char*, const char*> kWords[] = {
+      {"difference of the tracks", "steering angle"},
+      {"Both tracks", "All wheels"},
+      {"both tracks", "all wheels"},
+      {"track", "wheel"}};
+  if (layout == VehicleLayout::kTracks) return text;
+  for (const auto& [of_tracks, of_wheels] : kWords)
+    for (size_t at = text.find(of_tracks); at != std::string::npos; at = text.find(of_tracks, at))
+      text.replace(at, std::string(of_tracks).size(), of_wheels);
+  return text;
 }
 
 std::string directionOf(const ParameterEstimate& estimate) {
@@ -167,7 +182,7 @@ std::string sentenceOf(const FoundEffect& effect, const ModelDocument& model) {
   for (const ParameterEstimate& estimate : effect.parameters)
     if (const auto total = totalOf(estimate.parameter, model))
       totals.push_back(total->name + " " + said(total->value, total->unit));
-  return withNumbers(effect, totals);
+  return ofVehicle(model.vehicle.layout(), withNumbers(effect, totals));
 }
 
 std::optional<Total> totalOf(const std::string& path, const ModelDocument& model) {
