@@ -24,9 +24,8 @@ double distanceTo(const Box& box, const Eigen::Vector2d& p_map) {
   return outside + std::min(std::max(dx, dy), 0.0);
 }
 
-/// Distance along a ray until it enters a box; infinite if it does not.
-double enter(const Box& box, const Eigen::Vector2d& p_map, double angle) {
-  const Eigen::Vector2d p = inverse(box.T_map_box) * p_map;
+/// Distance along a ray from a point of a box's own frame until it enters; infinite if it does not.
+double enter(const Box& box, const Eigen::Vector2d& p, double angle) {
   const double heading = angle - box.T_map_box.yaw;
   const double direction[2] = {std::cos(heading), std::sin(heading)};
   const double half[2] = {box.half_length, box.half_width};
@@ -108,8 +107,14 @@ bool Playground::isObstacle(const Eigen::Vector2d& p_map) const {
                      [&](const Box& box) { return distanceTo(box, p_map) <= 0.0; });
 }
 
-double Playground::castRay(const Eigen::Vector2d& p_map, double angle, double range) const {
-  for (const Box& box : boxes_) range = std::min(range, enter(box, p_map, angle));
+Sight::Sight(const Playground& ground, const Eigen::Vector2d& p_map, double range) : range_(range) {
+  for (const Box& box : ground.boxes())
+    if (distanceTo(box, p_map) <= range) near_.push_back({box, inverse(box.T_map_box) * p_map});
+}
+
+double Sight::cast(double angle) const {
+  double range = range_;
+  for (const auto& [box, p_box] : near_) range = std::min(range, enter(box, p_box, angle));
   return range;
 }
 
@@ -193,9 +198,10 @@ std::vector<Tile> ToyMapping::scan(const Playground& ground, const Pose2& T_map_
   std::normal_distribution<double> noise(0.0, 0.01);
   const Eigen::Vector2d p = T_map_body * Eigen::Vector2d(0.4, 0.0);
   const Grid lattice(kCell, {}, 0, 0);
+  const Sight sight(ground, p, 10.0);
   for (double bearing = -135.0; bearing <= 135.0; bearing += 0.5) {
     const double angle = T_map_body.yaw + bearing * kPi / 180.0;
-    const double range = ground.castRay(p, angle, 10.0);
+    const double range = sight.cast(angle);
     const double measured = range < 10.0 ? range + noise(random_) : range;
     const Eigen::Vector2d along(std::cos(angle), std::sin(angle));
     const CellIndex hit = lattice.indexOf(p + measured * along);

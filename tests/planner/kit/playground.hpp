@@ -29,8 +29,6 @@ class Playground {
   const std::vector<Box>& boxes() const { return boxes_; }
 
   bool isObstacle(const Eigen::Vector2d& p_map) const;
-  /// Distance to the nearest box along a ray; `range` if there is none.
-  double castRay(const Eigen::Vector2d& p_map, double angle, double range) const;
   /// Least distance between the footprint and any box [m]; 0 or less when it touches one.
   double clearance(const FootprintSize& size, const Pose2& T_map_body) const;
   /// The whole truth as a grid over a rectangle: a cell with any obstacle in it is one.
@@ -40,6 +38,24 @@ class Playground {
 
  private:
   std::vector<Box> boxes_;
+};
+
+/// The boxes that a range finder at one place can see.
+class Sight {
+ public:
+  Sight(const Playground& ground, const Eigen::Vector2d& p_map, double range);
+
+  /// Distance to the nearest box along a ray; the range if there is none.
+  double cast(double angle) const;
+
+ private:
+  struct Near {
+    Box box;
+    Eigen::Vector2d p_box;  ///< the range finder in the box's own frame
+  };
+
+  double range_;
+  std::vector<Near> near_;
 };
 
 /// A place and a task in it.
