@@ -206,7 +206,8 @@ TEST_CASE("surfaces do not collapse: eight grounds stay eight, also after a very
   REQUIRE(swallowed / seeds < 0.18);
 }
 
-TEST_CASE("executions of two grounds are never blended into one remembered surface") {
+TEST_CASE("executions of two grounds are never blended into one remembered surface",
+          "[statistics]") {
   // The ground changes in the middle of the first ten executions. The rule before predicted, ten
   // executions later, the mean of both rather than the ground it was on in 34, 39 and 25 of 100.
   const GroundEffect before{0.9, 1.2, 0.0, 0.0};
@@ -632,7 +633,7 @@ TEST_CASE("a part that is all of a pattern is the whole pattern") {
   REQUIRE(fed.rule().memory() == pupil.rule().memory());
 }
 
-TEST_CASE("parts of a single sample do no harm, even many of them") {
+TEST_CASE("parts of a single sample do no harm, even many of them", "[statistics]") {
   const DrawnWorld world;
   double before = 0.0;
   double behind = 0.0;

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "modules/motor_bridge/core/failsafe.hpp"
+#include "tests/helpers.hpp"
 
 using namespace tread;
 using namespace tread::motor;
@@ -255,7 +256,7 @@ TEST_CASE("any sequence of inputs keeps the promises (ten hours of random scenar
   };
   Rig rig;
   int64_t good_since = 0;
-  for (int step = 0; step < 3'600'000; ++step) {
+  for (int step = 0; step < testing::effort(3'600'000); ++step) {
     const State before = rig.failsafe.state();
     bool good = true;
     for (const Cause& cause : kCauses) {
