@@ -17,9 +17,9 @@ using operators::CallResult;
 constexpr int64_t kPeriod = 20'000;      // [us] of MANUAL
 constexpr int64_t kArmRepeat = 100'000;  // [us]
 constexpr int64_t kArmPatience = 3'000'000;
-constexpr int64_t kGiveBack = 300'000;  // [us] for which it is told
+constexpr int64_t kGiveBack = 300'000;  // [us] for which the request is repeated
 constexpr int64_t kSilent = 500'000;    // [us] MOTOR older than this shows nothing
-constexpr int kRepeat = 3;              // of what must not be lost
+constexpr int kRepeat = 3;              // repetitions of a message that must not be lost
 
 bool sameShare(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
@@ -81,7 +81,7 @@ CallResult DriveCall::step(int64_t utime) {
 }
 
 void DriveCall::serveButtons(int64_t utime) {
-  // What is armed may be stopped again: it is not armed anew by an old press.
+  // A robot that was armed may have been stopped since: an old button press must not arm it again.
   const bool by_itself = armed() && motor_.message().bridge_state != motor_t::STATE_MANUAL;
   const bool disarms = wishes_.disarm || (wishes_.stop && by_itself);
   if (armed() || disarms || wishes_.stop) arms_until_ = 0;
@@ -134,7 +134,7 @@ std::string DriveCall::describe(int64_t utime) const {
   if (std::isfinite(motor.battery_voltage)) words += formatted("  %.1f V", motor.battery_voltage);
   words += wishes_.hold ? "  held" : "  not held";
   if (std::isnan(wishes_.forward) || std::isnan(wishes_.turn))
-    words += "  the stick was not seen at rest: move it to all sides once and let it go";
+    words += "  stick not yet seen at rest: move it in all directions once and let it go";
   return words + "  " + motor.state_reason + operators::keyWords(bus_);
 }
 

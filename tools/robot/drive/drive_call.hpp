@@ -11,8 +11,8 @@
 namespace tread::drive {
 
 /// A person at the stick: MANUAL at 50 Hz, OPERATOR, and ARM at the press of a button.
-/** Ends when the stick is gone, or its recording over. A robot that is in the hand then is
- * disarmed: it moves no more before somebody arms it. */
+/** Ends when the device is unplugged or its recording is over. A robot under manual control is then
+ * disarmed and stands until it is armed again. */
 class DriveCall : public operators::Call {
  public:
   DriveCall(Bus& bus, const operators::Requester& requester, std::unique_ptr<Stick> stick);
@@ -35,7 +35,7 @@ class DriveCall : public operators::Call {
   Latest<motor_t> motor_;
   Wishes wishes_;
   Wishes told_;
-  std::string gone_;        ///< why the stick is gone; empty = it is there
+  std::string gone_;        ///< why the stick cannot be read; empty = it can
   int64_t arms_until_ = 0;  ///< [us]
   int64_t gives_back_until_ = 0;
   int64_t next_arm_ = 0;

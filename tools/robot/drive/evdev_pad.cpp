@@ -51,7 +51,7 @@ struct EvdevPad::Device {
 
 namespace {
 
-/// Paths of /dev/input, in the order of their numbers.
+/// Paths of the event devices in /dev/input, ordered by number.
 std::vector<std::string> eventFiles() {
   std::vector<std::string> paths;
   std::error_code none;
@@ -71,7 +71,7 @@ std::unique_ptr<EvdevPad::Device> EvdevPad::first() {
       auto device = std::make_unique<Device>(path);
       if (device->isPad()) return device;
     } catch (const std::exception&) {
-      continue;  // not ours to read
+      continue;  // no permission to read it
     }
   }
   return nullptr;
@@ -94,7 +94,7 @@ EvdevPad::EvdevPad(const std::string& path)
         "name it with --device, or drive with --keyboard");
   if (!device_->isPad())
     throw std::runtime_error(path + ": " + libevdev_get_name(device_->evdev) +
-                             " is no gamepad or joystick");
+                             " is not a gamepad or joystick");
   for (const int axis : kSticks) {
     const input_absinfo* info = libevdev_get_abs_info(device_->evdev, static_cast<unsigned>(axis));
     state_.setRange(axis, info->minimum, info->maximum);
@@ -110,7 +110,7 @@ Wishes EvdevPad::read(int64_t /*now*/) {
     input_event event{};
     const int result = libevdev_next_event(device_->evdev, flag, &event);
     if (result == LIBEVDEV_READ_STATUS_SYNC) {
-      flag = LIBEVDEV_READ_FLAG_SYNC;  // events were lost: what follows brings the state back
+      flag = LIBEVDEV_READ_FLAG_SYNC;  // events were lost: resynchronize
     } else if (result == -EAGAIN && flag == LIBEVDEV_READ_FLAG_SYNC) {
       flag = LIBEVDEV_READ_FLAG_NORMAL;
       continue;

@@ -46,7 +46,7 @@ void KeyState::move(double forward, double turn, int64_t now) {
 }
 
 void KeyState::press(char key, int64_t now) {
-  const double share = key >= 'A' && key <= 'Z' ? 1.0 : 0.5;  // of the full stick
+  const double share = key >= 'A' && key <= 'Z' ? 1.0 : 0.5;  // of the full deflection
   switch (key) {
     case 'w':
     case 'W':
@@ -78,7 +78,7 @@ void KeyState::press(char key, int64_t now) {
     case 'g':
       gives_back_until_ = now + kHeld;
       return;
-    default:  // the space bar, and every key that means nothing, stops
+    default:  // space and every unassigned key stop
       moves_until_ = holds_until_ = now;
       stops_until_ = now + kHeld;
   }
@@ -88,7 +88,7 @@ Wishes KeyState::wishes(int64_t now) const {
   Wishes wishes;
   const bool escaped = escapedAlone(now);
   const bool moves = now < moves_until_ && !escaped;
-  // No key pressed is a measurement.
+  // "No key pressed" is a valid measurement.
   wishes.forward = moves ? forward_ : 0.0;
   wishes.turn = moves ? turn_ : 0.0;
   wishes.hold = moves || (now < holds_until_ && !escaped);
@@ -105,12 +105,12 @@ struct Keyboard::Terminal {
 
 Keyboard::Keyboard() : terminal_(std::make_unique<Terminal>()) {
   if (::tcgetattr(STDIN_FILENO, &terminal_->before) != 0)
-    throw std::runtime_error("the keyboard is read from a terminal, and standard input is none");
+    throw std::runtime_error("the keyboard is read from a terminal, but standard input is not one");
   termios raw = terminal_->before;
   raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
   raw.c_cc[VMIN] = 0;
   raw.c_cc[VTIME] = 0;
-  // Neither stopped in the background nor dumped: it would leave the terminal as it is now.
+  // Disable Ctrl-Z and Ctrl-\: both would leave the terminal without echo.
   raw.c_cc[VSUSP] = raw.c_cc[VQUIT] = _POSIX_VDISABLE;
   if (::tcsetattr(STDIN_FILENO, TCSANOW, &raw) != 0)
     throw std::runtime_error(std::string("the terminal: ") + std::strerror(errno));

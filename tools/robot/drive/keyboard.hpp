@@ -9,24 +9,27 @@
 
 namespace tread::drive {
 
-/// What the keys of a terminal say, which tells no release: a key counts as held as long as its
-/// repetitions come.
+/// State of a terminal's keys. A terminal reports no key release, so a key counts as held as long
+/// as it repeats.
 class KeyState {
  public:
   void take(std::string_view bytes, int64_t now);
   Wishes wishes(int64_t now) const;
 
  private:
-  static constexpr int64_t kHeld = 200'000;      ///< [us] without a repetition
-  static constexpr int64_t kArming = 2'500'000;  ///< [us] that an arming by hand takes at most
-  static constexpr int64_t kEscape = 50'000;     ///< [us] after which ESC was a key of its own
-  /// Whether ESC was a key of its own: an arrow's other bytes would have come.
+  /// [us] a key counts as held after its last repetition
+  static constexpr int64_t kHeld = 200'000;
+  /// [us] longest duration of an arming for manual control
+  static constexpr int64_t kArming = 2'500'000;
+  static constexpr int64_t kEscape = 50'000;  ///< [us] after which a lone ESC byte is the ESC key
+  /// Whether the ESC byte was the ESC key: the other bytes of an arrow key would have arrived by
+  /// now.
   bool escapedAlone(int64_t now) const { return escape_ != 0 && now - escaped_at_ >= kEscape; }
   void press(char key, int64_t now);
   void move(double forward, double turn, int64_t now);
 
-  int escape_ = 0;          ///< characters of an escape sequence so far; 3: more than an arrow has
-  int64_t escaped_at_ = 0;  ///< [us] of its first one
+  int escape_ = 0;          ///< bytes of an escape sequence so far; 3: longer than an arrow key's
+  int64_t escaped_at_ = 0;  ///< [us] of its first byte
   double forward_ = 0.0;
   double turn_ = 0.0;
   int64_t moves_until_ = 0;  ///< [us]
@@ -37,11 +40,10 @@ class KeyState {
   int64_t gives_back_until_ = 0;
 };
 
-/// The terminal that the program runs in, without echo and line by line reading as long as this
-/// lives.
+/// The terminal of this process, without echo and line buffering while this object lives.
 class Keyboard : public Stick {
  public:
-  /// Throws std::runtime_error where standard input is no terminal.
+  /// Throws std::runtime_error if standard input is not a terminal.
   Keyboard();
   ~Keyboard() override;
 

@@ -34,10 +34,11 @@ std::unique_ptr<Stick> openStick(const StickOptions& options) {
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Drives the robot by hand, with a gamepad, a joystick or the keyboard. A moved stick takes "
+      "Drives the robot by hand, with a gamepad, a joystick or the keyboard. Moving the stick "
+      "takes "
       "the "
-      "robot over from the planner; it is given back by a button. Ctrl-C ends, and disarms what is "
-      "in the hand.",
+      "robot over from the planner; a button gives it back. Ctrl-C ends, and disarms a robot "
+      "under manual control.",
       "tread-drive"};
   operators::CommandOptions options;
   options.holds = true;
@@ -49,7 +50,7 @@ int main(int argc, char** argv) {
                                 "input device, as /dev/input/event7; else the first gamepad or "
                                 "joystick, else the keyboard");
   auto* events =
-      app.add_option("--events", sticks.events, "plays what evemu-record has recorded of a device");
+      app.add_option("--events", sticks.events, "plays a device recording by evemu-record");
   auto* keyboard = app.add_flag("--keyboard", sticks.keyboard, "drive with the keyboard");
   device->excludes(events)->excludes(keyboard);
   events->excludes(keyboard);

@@ -14,7 +14,7 @@
 namespace tread::drive {
 namespace {
 
-constexpr double kDeadZone = 0.12;  // of the way from the middle
+constexpr double kDeadZone = 0.12;  // of the deflection from the centre
 
 }  // namespace
 
@@ -122,7 +122,7 @@ Wishes RecordedPad::read(int64_t now) {
   if (begun_ < 0) begun_ = now;
   for (; next_ < events_.size() && events_[next_].time <= now - begun_; ++next_) {
     const Event& event = events_[next_];
-    // What it begins with is what the kernel told when the device was opened.
+    // The kernel reports the state at opening first.
     if (event.time == 0)
       state_.begin(event.type, event.code, event.value);
     else

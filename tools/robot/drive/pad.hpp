@@ -18,12 +18,12 @@ namespace tread::drive {
  * button; START arms, SELECT disarms, the upper or left of the four buttons gives back. */
 class PadState {
  public:
-  /// Numbers that an axis (ABS_X, ABS_Y) counts from and to.
+  /// Range of an axis (ABS_X, ABS_Y) in counts.
   void setRange(int code, int least, int most);
-  /// What the device says at first of an axis or button. For an axis that is no measurement: until
-  /// it is moved the kernel tells 0, or where it was when nobody looked.
+  /// Initial value of an axis or button. For an axis it is not a measurement: the kernel reports 0
+  /// or a stale position until the axis moves.
   void begin(int type, int code, int value);
-  /// An event. An axis counts from the first one that tells another value than it began with.
+  /// Processes an event. An axis is valid from the first event that differs from its initial value.
   void take(int type, int code, int value);
   Wishes wishes() const;
 
@@ -34,7 +34,7 @@ class PadState {
     std::optional<int> value;
     bool measured = false;
   };
-  /// -1..1, and 0 around the middle; NaN where it has not been measured.
+  /// -1..1, 0 in the dead zone; NaN before the first measurement.
   static double share(const Axis& axis);
   bool anyPressed(std::initializer_list<int> buttons) const;
 
@@ -42,7 +42,7 @@ class PadState {
   std::map<int, bool> pressed_;
 };
 
-/// A recording of a device by evemu-record, played at its own speed from the first read() on.
+/// A recording by evemu-record, played in real time from the first read() on.
 class RecordedPad : public Stick {
  public:
   /// Throws std::runtime_error with one clear line, path:line.
@@ -70,7 +70,7 @@ class RecordedPad : public Stick {
 /// A device of /dev/input.
 class EvdevPad : public Stick {
  public:
-  /// An empty path finds the first gamepad or joystick. Throws std::runtime_error with one clear
+  /// An empty path selects the first gamepad or joystick. Throws std::runtime_error with one clear
   /// line.
   explicit EvdevPad(const std::string& path);
   ~EvdevPad() override;

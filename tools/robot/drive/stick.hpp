@@ -10,20 +10,20 @@
 
 namespace tread::drive {
 
-/// What a person wants at one moment.
+/// State of the controls at one time.
 struct Wishes {
-  /// [1] -1..1, turn + to the left; NaN: where the stick is has not been measured.
+  /// [1] -1..1, turn + to the left; NaN: the stick has not been measured.
   double forward = std::numeric_limits<double>::quiet_NaN();
   double turn = std::numeric_limits<double>::quiet_NaN();
   bool hold = false;  ///< the dead-man's button is pressed
-  bool arm = false;   ///< ... and these buttons
+  bool arm = false;   ///< this and the next three: a button is pressed
   bool disarm = false;
   bool give_back = false;
-  bool stop = false;   ///< whoever drives: a robot that drives by itself is disarmed
-  bool ended = false;  ///< nothing will come any more, in good order
+  bool stop = false;   ///< also disarms a robot that drives by itself
+  bool ended = false;  ///< end of the recording, without an error
 };
 
-/// Something that a person moves the robot with.
+/// A device for manual control.
 class Stick {
  public:
   virtual ~Stick() = default;
@@ -31,8 +31,8 @@ class Stick {
   Stick(const Stick&) = delete;
   Stick& operator=(const Stick&) = delete;
 
-  /// Takes in what has come by now [us]. Throws std::runtime_error with one clear line when the
-  /// device is gone.
+  /// Reads the events that have arrived by `now` [us]. Throws std::runtime_error with one clear
+  /// line when the device is gone.
   virtual Wishes read(int64_t now) = 0;
   /// "gamepad Xbox, /dev/input/event7".
   virtual std::string name() const = 0;
@@ -40,8 +40,8 @@ class Stick {
   virtual std::string keys() const = 0;
 };
 
-/// Shares of the largest command for both tracks, -1..1; a turn keeps its radius where one of them
-/// would be larger. Where forward or turn is not known, neither track is (NaN).
+/// Commands of both tracks as shares of the largest, -1..1. Where one would exceed 1 both are
+/// scaled, which keeps the turn radius. Both are NaN if forward or turn is NaN.
 TrackCommand mixed(double forward, double turn);
 
 }  // namespace tread::drive

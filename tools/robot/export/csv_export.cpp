@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Values of a field whose length is always the same; 0 = it varies.
+/// Number of values of a field of fixed length; 0 = variable length.
 size_t fixedCount(const MessageField& field) {
   size_t count = 1;
   for (const std::string& length : field.lengths) {
@@ -22,7 +22,8 @@ size_t fixedCount(const MessageField& field) {
   return count;
 }
 
-/// Numbers stand apart, messages are opened, and what varies in length stays together.
+/// A number or text has one column, a fixed array one column per value, a message one per field, a
+/// variable array one in all.
 enum class Layout { kOne, kEach, kMessage, kTogether };
 
 Layout layoutOf(const MessageField& field) {
@@ -47,7 +48,7 @@ void addNames(const MessageType& type, const std::string& prefix, std::string& r
   }
 }
 
-/// A text as a cell (RFC 4180).
+/// Quotes a text as a CSV cell (RFC 4180).
 std::string cellOf(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string cell = "\"";
@@ -72,7 +73,7 @@ void addCells(const MessageType& type, const Json& message, std::string& row) {
   }
 }
 
-/// The files of a folder, one a channel.
+/// One CSV file per channel in a folder.
 class CsvExport {
  public:
   explicit CsvExport(const std::string& folder) : folder_(folder) {}

@@ -15,35 +15,36 @@
 
 namespace tread::exporting {
 
-/// What of a log is wanted.
+/// Which part of a log to export.
 struct Selection {
   std::set<std::string> channels;  ///< empty = all
   double from = 0.0;               ///< [s] since the log began
   double to = std::numeric_limits<double>::infinity();
 };
 
-/// What became of the messages.
+/// Counts of exported and skipped messages.
 struct ExportCounts {
   std::map<std::string, int64_t> written;   ///< messages by channel
-  std::map<std::string, int64_t> left_out;  ///< by what they are: of another type, broken
-  std::string problem;  ///< one clear line of what is wrong with the log; the rest was exported
+  std::map<std::string, int64_t> left_out;  ///< by reason: foreign type, damaged
+  std::string problem;  ///< damage of the log in one line; the rest was exported
 };
 
-/// The event's message as JSON, counted; nothing, counted too, if it is none of Tread's.
+/// Decodes an event to JSON and counts it. nullopt, also counted, if the type is unknown or the
+/// message damaged.
 struct JsonMessage {
   const MessageType* type = nullptr;
   std::string json;
 };
 std::optional<JsonMessage> countedJson(const LogEvent& event, ExportCounts& counts);
 
-/// Reads the events of logs (parts of one recording, in order) that are wanted.
+/// Reads the selected events of several logs, which are parts of one recording in order.
 class SelectedEvents {
  public:
   SelectedEvents(std::vector<std::string> logs, Selection selection)
       : logs_(std::move(logs)), selection_(std::move(selection)) {}
 
-  /// Calls `take` for each; returns the logs' problem, empty if nothing is wrong. Throws
-  /// std::runtime_error with one clear line if a log cannot be read.
+  /// Calls `take` for each event. Returns the damage of the logs in one line, empty if there is
+  /// none. Throws std::runtime_error with one clear line if a log cannot be read.
   template <class Take>
   std::string forEach(const Take& take) {
     DriveReader log(logs_);
@@ -60,13 +61,13 @@ class SelectedEvents {
   int64_t begun_ = -1;  ///< [us]
 };
 
-/// Writes an MCAP file: each channel as JSON with its type as JSON Schema, and beside them what
-/// Foxglove and Lichtblick draw by themselves (see common/scene), unless `scene` is off.
+/// Writes an MCAP file: each channel as JSON with its JSON Schema and, if `scene` is set, the
+/// drawings for Foxglove and Lichtblick (common/scene).
 ExportCounts exportMcap(const std::vector<std::string>& logs, const Selection& selection,
                         const std::string& path, bool scene);
 
-/// Writes a CSV file for each channel into a folder: when it was recorded, by the robot's clock; a
-/// column for each number and text, an array of varying length as JSON in one column.
+/// Writes one CSV file per channel: the time of recording by the robot's clock, one column per
+/// number or text; an array of variable length is one column of JSON.
 ExportCounts exportCsv(const std::vector<std::string>& logs, const Selection& selection,
                        const std::string& folder);
 

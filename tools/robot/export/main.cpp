@@ -65,13 +65,13 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"mcap", "csv"}));
   std::vector<std::string> names;
   for (const ChannelSpec& channel : kChannels) names.push_back(channel.name);
-  app.add_option("--channels", arguments.channels, "only these: INS,MOTOR")
+  app.add_option("--channels", arguments.channels, "only these channels, for instance INS,MOTOR")
       ->delimiter(',')
       ->check(CLI::IsMember(names));
   app.add_option("--from", arguments.selection.from, "[s] since the log began");
   app.add_option("--to", arguments.selection.to, "[s] since the log began");
   app.add_flag("--no-scene", arguments.no_scene,
-               "MCAP without what viewers draw: robot, map, plan, events");
+               "MCAP without the drawings for viewers: robot, map, plan, events");
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   return runProgram("tread-export", [&] { return run(arguments); });
 }

@@ -17,7 +17,7 @@ void requireUnit(const CsvTable& table, const std::string& column,
   const std::string unit = table.unit(column);
   if (std::find(others.begin(), others.end(), unit) != others.end())
     throw table.headerError("column " + column + " is in " + unit +
-                            " by the row below the header, but not by the mapping; correct the "
+                            " in the row below the header, but not in the mapping; correct the "
                             "unit of the column there");
 }
 

@@ -6,9 +6,9 @@
 
 namespace tread::import {
 
-/// Throws RecordingError where the units below a table's header are not the mapping's, and where a
-/// spreadsheet has taken the last digits away: times must be finer than rows are apart, positions
-/// than 1 m.
+/// Throws RecordingError if the unit row below a table's header contradicts the mapping, or if a
+/// spreadsheet has rounded the values: times need a resolution below the row period, positions
+/// below 1 m.
 void checkTable(const recordings::CsvTable& table, const CsvSource& source);
 
 }  // namespace tread::import

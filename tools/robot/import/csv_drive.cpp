@@ -25,14 +25,14 @@ using recordings::kUnknown;
 using recordings::RecordedDrive;
 using recordings::RecordingError;
 
-/// Speeds, voltages and rates that are older say nothing of now [s].
+/// Speeds, voltages and rates expire after this age [s].
 constexpr double kSpeedAge = 0.3;
 constexpr double kBatteryAge = 3.0;
 constexpr double kRateAge = 0.02;
-/// A course is that between two fixes, no further apart [s].
+/// Course over ground needs two fixes within this time [s].
 constexpr double kCourseGap = 1.0;
 
-/// What a column measured, in order of time.
+/// Measurements of one column, ordered by time.
 class Series {
  public:
   void add(double time, double value, size_t line) { samples_.push_back({time, value, line}); }
@@ -43,13 +43,13 @@ class Series {
   size_t size() const { return samples_.size(); }
   double time(size_t i) const { return samples_[i].time; }
   size_t line(size_t i) const { return samples_[i].line; }
-  /// Between two of them, as a rule [s].
+  /// Typical sampling period [s].
   double period() const {
     std::vector<double> times;
     for (const Sample& sample : samples_) times.push_back(sample.time);
     return usualPeriod(times);
   }
-  /// The newest one at a time, NaN if it is older than `age` [s].
+  /// The newest value at `time`, NaN if it is older than `age` [s].
   double at(double time, double age) const {
     const auto after =
         std::upper_bound(samples_.begin(), samples_.end(), time,
@@ -67,7 +67,7 @@ class Series {
   std::vector<Sample> samples_;
 };
 
-/// What a number that is too large for a vehicle may be instead.
+/// A guess at the real unit of a value that no vehicle reaches.
 std::string unitHint(const std::string& quantity, double limit) {
   if (quantity == "yaw_rate") return "; are these degrees per second?";
   const bool channel = quantity.find("_command") != std::string::npos ||
@@ -85,7 +85,7 @@ class CsvContent {
     for (const CsvSource& source : mapping.sources) {
       const bool folder = std::filesystem::is_directory(place);
       if (folder && source.file.empty())
-        throw RecordingError(path + ": is a folder; its tables need a file each in the mapping");
+        throw RecordingError(path + ": is a folder; name the file of each table in the mapping");
       const std::filesystem::path parent = folder ? place : place.parent_path();
       read(source.file.empty() ? path : (parent / source.file).string(), source);
     }
@@ -102,9 +102,9 @@ class CsvContent {
   double at(const std::string& quantity, double time, double age) const {
     return of(quantity).at(time, age);
   }
-  /// The grounds that the tables name, each where it begins.
+  /// Surface names from the tables, each with its start time.
   const std::vector<recordings::TimedGround>& grounds() const { return grounds_; }
-  /// Whether another drive begins after one time and not after another.
+  /// Whether a drive ends between the two times.
   bool isApart(double time, double later) const {
     const auto next = std::upper_bound(drives_.begin(), drives_.end(), time);
     return next != drives_.end() && *next <= later;
@@ -151,7 +151,7 @@ class CsvContent {
     if (!rows.empty()) begin_ = std::min(begin_, rows.front().time);
   }
 
-  /// The rows as they stand in the table, those of a drive behind the ones of the drive before.
+  /// Rows in the order of the table, sorted by drive.
   std::vector<Row> rowsOf(const CsvTable& table, const std::string& file, const CsvSource& source) {
     std::vector<Row> rows;
     size_t others = 0;
@@ -169,13 +169,13 @@ class CsvContent {
       if (!rows.empty()) follow(rows.back().time, drive);
       rows.insert(rows.end(), drive.begin(), drive.end());
     }
-    if (others > 0) result_.left_out[file + ": rows that are not asked for"] += others;
+    if (others > 0) result_.left_out[file + ": rows excluded by the mapping (only:)"] += others;
     if (rows.empty() && others > 0)
-      throw table.headerError("no row has what the mapping asks for (only:)");
+      throw table.headerError("no row passes the mapping's filter (only:)");
     return rows;
   }
 
-  /// Times of a drive go on, after a silence, from those of the drive before.
+  /// Shifts a drive's times so that it follows the previous one after a silence.
   void follow(double last, std::vector<Row>& drive) {
     const double shift = last + silence_ - drive.front().time;
     for (Row& row : drive) row.time += shift;
@@ -196,7 +196,7 @@ class CsvContent {
     });
   }
 
-  /// Of one drive.
+  /// Checks the times of one drive.
   static void checkTimes(const CsvTable& table, const CsvSource& source,
                          const std::vector<Row>& rows) {
     std::vector<double> raw;
@@ -214,7 +214,7 @@ class CsvContent {
       if (row.time < newest - kOvertaking)
         throw table.error(row.row, "column " + source.time + " goes back by " +
                                        formatNumber(newest - row.time) +
-                                       " s; are these two drives? cut the file there, or name "
+                                       " s; are these two drives? split the file there, or name "
                                        "the column that tells them apart (run:)");
       newest = std::max(newest, row.time);
     }
@@ -240,7 +240,7 @@ class CsvContent {
     series_[quantity].add(place.time, value, table.line(row));
   }
 
-  /// "ice", or "ice/ice/gravel" where wheels stand on several.
+  /// "ice", or "ice/ice/gravel" if the wheels are on several surfaces.
   void takeGround(const CsvTable& table, const Row& row, const CsvSource& source) {
     if (source.ground.empty()) return;
     std::string name = table.text(row.row, source.ground.front()), of_all = name;
@@ -259,11 +259,11 @@ class CsvContent {
   std::map<std::string, std::string> files_;
   std::vector<recordings::TimedGround> grounds_;
   double silence_;              ///< [s] between the drives of a table
-  std::vector<double> drives_;  ///< [s] where drives begin, the first one left out
+  std::vector<double> drives_;  ///< [s] start times of the drives but the first
   double begin_ = std::numeric_limits<double>::max();
 };
 
-/// Positions in the map.
+/// Transforms positions into the map frame.
 class Placing {
  public:
   Placing(const CsvContent& content, const CsvMapping& mapping)
@@ -271,7 +271,7 @@ class Placing {
     if (mapping.origin) use(*mapping.origin);
   }
 
-  /// p_map of the fix at this time; NaN where a part of it was not measured.
+  /// p_map of the fix at this time; NaN where a coordinate is missing.
   Eigen::Vector3d at(double time) {
     const auto part = [&](const char* name) { return content_.at(name, time, 0.0); };
     const char* const up = degrees_ ? "height" : "z";
@@ -299,7 +299,7 @@ class Placing {
   std::optional<ins::LocalFrame> frame_;
 };
 
-/// Attitude of a fix from its columns; a yaw of NaN where it was not measured.
+/// Sets the attitude of a fix from its columns; yaw is NaN if it was not measured.
 void setAttitude(const CsvContent& content, const CsvMapping& mapping, Fix& fix) {
   const auto part = [&](const char* name) { return content.at(name, fix.time, 0.0); };
   if (mapping.has("qw")) {
@@ -317,7 +317,7 @@ void setAttitude(const CsvContent& content, const CsvMapping& mapping, Fix& fix)
   fix.pitch = part("pitch");
 }
 
-/// Heading from the fixes before and after; NaN at low speed.
+/// Heading as course over ground between the neighbouring fixes; NaN at low speed.
 double courseAt(const std::vector<Fix>& fixes, size_t i, const CsvContent& content,
                 double course_above) {
   const bool ends = i + 1 == fixes.size() || fixes[i + 1].new_track;
@@ -339,14 +339,14 @@ void takePoses(const CsvContent& content, const CsvMapping& mapping, ForeignDriv
   const Series& times = content.of(along);
   Placing placing(content, mapping);
   std::vector<Fix> fixes;
-  std::vector<size_t> measured;  // whose positions they are
+  std::vector<size_t> measured;  // fixes with a measured position
   for (size_t i = 0; i < times.size(); ++i) {
     Fix fix;
     fix.time = times.time(i);
     const Eigen::Vector3d p_map = placing.at(fix.time);
     if (!p_map.allFinite()) continue;
     if (content.at("pose_new", fix.time, 0.0) == 0.0) {
-      ++result.left_out["poses that are the one before (pose_new: 0)"];
+      ++result.left_out["poses that repeat the one before (pose_new: 0)"];
       continue;
     }
     if (p_map.head<2>().norm() > kFarthest)
@@ -378,7 +378,7 @@ void takePoses(const CsvContent& content, const CsvMapping& mapping, ForeignDriv
   }
 }
 
-/// What the columns of all channels say at a time, no older than `age` [s]: "speed" and so on.
+/// Values of all channels' columns of one kind ("speed", ...) at a time, no older than `age` [s].
 Command channelsAt(const CsvContent& content, const CommandChannels& channels, const char* what,
                    double time, double age) {
   Command values;
@@ -387,7 +387,7 @@ Command channelsAt(const CsvContent& content, const CommandChannels& channels, c
   return values;
 }
 
-/// Commands as they came: each time one of the channels got a new one.
+/// One sample for each time at which a channel got a new command.
 std::vector<DriveSample> commandsOf(const CsvContent& content, const CommandChannels& channels,
                                     double hold) {
   std::vector<double> times;
@@ -410,7 +410,7 @@ std::vector<DriveSample> commandsOf(const CsvContent& content, const CommandChan
 }
 
 void takeCommands(const CsvContent& content, const CsvMapping& mapping, RecordedDrive& drive) {
-  // Where nothing is commanded the log is as of a vehicle with tracks.
+  // A log without commands gets the channels of a tracked vehicle.
   if (!mapping.channels.empty()) drive.channels = mapping.channels;
   const CommandChannels& channels = drive.channels;
   const double period = content.of(channels.front().name + "_command").period();
@@ -432,7 +432,7 @@ ForeignDrive readMappedCsv(const std::string& path, const CsvMapping& mapping) {
   ForeignDrive result;
   const CsvContent content(path, mapping, result);
   if (mapping.course_above)
-    result.poses = "headings are the course over ground: slip to the side is not in them";
+    result.poses = "headings are the course over ground: they do not show sideslip";
   takePoses(content, mapping, result);
   takeCommands(content, mapping, result.drive);
   result.drive.grounds = content.grounds();

@@ -9,9 +9,9 @@
 
 namespace tread::import {
 
-/// Reads a recording in CSV: one file, or a folder of several, as the mapping says.
-/** Time 0 is the earliest row. Empty fields and "nan" are no measurements and are counted. Where
- * the course is the heading, poses of a robot that is slow or turns on the spot are left out and
+/// Reads a recording in CSV: one file, or a folder of several, as described by the mapping.
+/** Time 0 is the earliest row. Empty fields and "nan" are no measurements and are counted. If the
+ * heading is the course over ground, poses at low speed and of turns on the spot are dropped and
  * counted. Throws RecordingError with one line that names file, line and column. */
 ForeignDrive readMappedCsv(const std::string& path, const CsvMapping& mapping);
 

@@ -11,7 +11,7 @@
 namespace tread::import {
 namespace {
 
-/// Units that a column may be in, with their factors; the first is the one that is not named.
+/// Allowed units of a column with their factors; the first is the default.
 struct Unit {
   std::string name;
   double factor;
@@ -50,7 +50,7 @@ const std::map<std::string, Quantity>& quantities() {
 
 const std::string kCommandOf = "_command";
 
-/// What stands before an ending; nothing where that is not the ending or nothing stands before it.
+/// The name without its ending; nullopt if the ending is another one or the rest is empty.
 std::optional<std::string> channelBefore(const std::string& name, const std::string& ending) {
   if (name.size() <= ending.size() ||
       name.compare(name.size() - ending.size(), ending.size(), ending) != 0)
@@ -62,7 +62,7 @@ bool isSide(const std::string& channel) {
   return channel == "left" || channel == "right";
 }
 
-/// Of a channel of the commands, by the ending of its name, or one of quantities().
+/// Quantity of a name: that of a command channel by its ending, else from quantities().
 std::optional<Quantity> quantityNamed(const std::string& name) {
   const Quantity speed{{{"m/s", 1.0}, {"rad/s", 1.0}, {"rpm", 2.0 * kPi / 60.0}}, 100.0};
   const auto found = quantities().find(name);
@@ -80,7 +80,7 @@ std::optional<Quantity> quantityNamed(const std::string& name) {
   return command;
 }
 
-/// What a command in a unit commands.
+/// Kind of command for a unit.
 CommandKind kindIn(const std::string& unit) {
   if (unit == "rad" || unit == "deg") return CommandKind::kSteeringAngle;
   return unit == "1" || unit == "percent" ? CommandKind::kPower : CommandKind::kTrackSpeed;
@@ -139,7 +139,7 @@ class MappingReader {
     origin.numbers("at", at, 3, {-1.1e7, 1.1e7}, "m m m, or deg deg m");
     if (!at.empty()) mapping_.origin = Eigen::Vector3d(at[0], at[1], at[2]);
     if (mapping_.origin && mapping_.origin_at_first_fix)
-      throw origin.error("at", "the origin is at the first fix already; give one of them");
+      throw origin.error("at", "the origin is already set to the first fix; give one of them");
   }
 
   void readHeading(ConfigReader heading) {
@@ -176,7 +176,7 @@ class MappingReader {
       if (!quantityNamed(quantity)) {
         std::vector<std::string> known{"NAME_command", "NAME_speed", "NAME_current"};
         for (const auto& [name, what] : quantities()) known.push_back(name);
-        throw columns.error(quantity, "is no quantity; known are " + joinWords(known));
+        throw columns.error(quantity, "is not a quantity; known are " + joinWords(known));
       }
       if (mapping_.has(quantity)) throw columns.error(quantity, "is in another table, too");
       source.columns[quantity] = readColumn(columns.section(quantity), quantity);
@@ -186,7 +186,7 @@ class MappingReader {
     return source;
   }
 
-  /// By these the header is found.
+  /// The header row is recognized by these columns.
   static void nameColumns(CsvSource& source) {
     std::vector<std::string>& names = source.layout.columns;
     if (!source.time.empty()) names.push_back(source.time);
@@ -240,7 +240,7 @@ class MappingReader {
     return column;
   }
 
-  /// Left and right come first, wherever they stand; the others in the order of their columns.
+  /// Left and right first, then the other channels in the order of their columns.
   void orderChannels() {
     const auto place = [](const CommandChannel& channel) {
       return channel.name == "left" ? 0 : channel.name == "right" ? 1 : 2;
@@ -253,7 +253,7 @@ class MappingReader {
     if (!good) throw reader_.error("tables", problem);
   }
 
-  /// What must be there together.
+  /// Checks that all required entries are present.
   void check() const {
     const auto both = [&](const std::string& a, const std::string& b) {
       require(mapping_.has(a) == mapping_.has(b), a + " and " + b + " come together");
@@ -266,7 +266,7 @@ class MappingReader {
     for (const char* part : {"qx", "qy", "qz"}) both("qw", part);
     const bool metres = mapping_.has("x");
     const bool degrees = mapping_.has("latitude");
-    require(!(metres && degrees), "x and latitude: positions come once");
+    require(!(metres && degrees), "x and latitude: give positions in one of the two");
     const int headings = (mapping_.has("yaw") ? 1 : 0) + (mapping_.has("qw") ? 1 : 0) +
                          (mapping_.course_above ? 1 : 0);
     require(
@@ -276,18 +276,17 @@ class MappingReader {
       for (const auto& [quantity, column] : source.columns) requireChannelOf(quantity);
     require(
         !mapping_.course_above || mapping_.has("left_command") || mapping_.has("left_speed"),
-        "heading.course_above needs commands or speeds, which tell whether it drives backwards");
+        "heading.course_above needs commands or speeds, which show whether it drives backwards");
     require(metres || degrees || !mapping_.channels.empty(), "neither positions nor commands");
     for (const CsvSource& source : mapping_.sources) {
       require(mapping_.sources.size() == 1 || source.rate == 0.0,
-              "rows without a time of their own cannot be placed beside those of another table");
+              "rows without a time column cannot be combined with another table");
       require(mapping_.sources.size() == 1 || source.run.empty(),
-              "run: drives of one table cannot be placed beside those of another");
+              "run: a table with several drives cannot be combined with another table");
     }
   }
 
-  /// A speed or current of a channel is its own where that channel is commanded. Speeds of two
-  /// sides are known without, too.
+  /// Speed and current of a channel require its command, except for the speeds of left and right.
   void requireChannelOf(const std::string& quantity) const {
     for (const char* ending : {"_speed", "_current"}) {
       const std::optional<std::string> channel = channelBefore(quantity, ending);

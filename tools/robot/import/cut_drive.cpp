@@ -24,15 +24,17 @@ using recordings::kPeriod;
 using recordings::RecordedDrive;
 using recordings::RecordingError;
 
-constexpr double kSameInstant = 1e-6;   // [s]
-constexpr double kTrackOrigin = 100.0;  // [s] a track has no negative times; a fix may be early
-constexpr double kSameCommand = 1e-4;   // [1] of the largest: what rounding makes of one command
+constexpr double kSameInstant = 1e-6;  // [s]
+// [s] added, because a track has no negative times and a fix may be early
+constexpr double kTrackOrigin = 100.0;
+// [1] of the largest command: rounding noise within one command
+constexpr double kSameCommand = 1e-4;
 
 int64_t trackTime(double seconds) {
   return std::llround((seconds + kTrackOrigin) * 1e6);
 }
 
-/// Rounded to micrometres, microradians: files are for people, too.
+/// Rounded to micrometres or microradians, to keep files readable.
 double inMicro(double value) {
   return std::round(value * 1e6) / 1e6 + 0.0;
 }
@@ -65,7 +67,7 @@ class Cutter {
     surface_.seconds += lasts;
     const double steady = lasts - layout_.settle;
     if (steady < layout_.length - kSameInstant)
-      return leaveOut("of commands that last for no piece", lasts);
+      return leaveOut("of commands shorter than a piece", lasts);
     if (layout_.settle > 0.0) leaveOut("after a change of command", layout_.settle);
     const auto pieces = static_cast<size_t>(std::floor(steady / layout_.length + kSameInstant));
     for (size_t i = 0; i < pieces; ++i)
@@ -90,8 +92,7 @@ class Cutter {
       piece.poses.push_back(between(*T_map_begin, *T_map_body));
     }
     if (piece.poses.size() < samples_)
-      return leaveOut("with poses that are missing, jump, or are more than 0.3 s apart",
-                      layout_.length);
+      return leaveOut("with poses missing, jumping, or more than 0.3 s apart", layout_.length);
     surface_.pieces.push_back(std::move(piece));
   }
 
@@ -103,7 +104,7 @@ class Cutter {
     return after == drive_.drive.begin() ? drive_.drive.end() : std::prev(after);
   }
 
-  /// Why the commands of a piece are not one that is held; empty if they are.
+  /// Why a piece has no constant command; empty if it has.
   std::string commandProblem(double begin) const {
     const double end = begin + layout_.length - kPeriod / 2.0;
     const auto first = sampleAt(begin);
@@ -125,7 +126,7 @@ class Cutter {
   const CutLayout& layout_;
   CutSurface& surface_;
   size_t samples_;
-  size_t run_ = 0;  ///< being cut
+  size_t run_ = 0;  ///< index of the current run
   TrackHistory history_{INT64_MAX / 2};
 };
 
@@ -137,7 +138,8 @@ Eigen::Vector3d vectorOf(const Twist2& twist) {
   return {twist.v_x, twist.v_y, twist.omega};
 }
 
-/// The largest difference of two commands over the channels [1], each over its channel's largest.
+/// Largest difference of two commands over the channels [1], relative to each channel's largest
+/// command.
 double difference(const Command& a, const Command& b, const Command& largest) {
   double most = 0.0;
   for (size_t c = 0; c < Command::kMaxChannels; ++c)
@@ -174,7 +176,8 @@ Eigen::MatrixXd twistOfCommands(const CutSurface& surface) {
   return commands.completeOrthogonalDecomposition().solve(twists).transpose();
 }
 
-/// A piece as it were with another command: its twists changed by what the difference makes.
+/// A piece corrected to another command: B times the difference of the commands is added to its
+/// twists.
 Execution corrected(const CutPiece& piece, const Command& wanted, const Eigen::MatrixXd& B) {
   Eigen::VectorXd change(B.cols());
   for (Eigen::Index c = 0; c < B.cols(); ++c)
@@ -193,7 +196,7 @@ Execution corrected(const CutPiece& piece, const Command& wanted, const Eigen::M
   return poses;
 }
 
-/// Sorts pieces to patterns.
+/// Groups pieces into patterns.
 class PatternMaker {
  public:
   PatternMaker(const std::vector<CutSurface>& surfaces, const CutLayout& layout,
@@ -215,7 +218,7 @@ class PatternMaker {
   }
 
  private:
-  /// The pattern whose command is nearest; nothing if none is near enough.
+  /// The pattern with the nearest command; nullopt if none is near enough.
   std::optional<size_t> patternOf(const Command& command) const {
     std::optional<size_t> best;
     double nearest = std::max(layout_.alike, kSameCommand);
@@ -238,8 +241,7 @@ class PatternMaker {
   void takeKnown() {
     const PatternSetContent& content = known_->content();
     const auto refuse = [](const std::string& why) {
-      throw RecordingError("patterns.yaml that is there already " + why +
-                           "; write to another folder");
+      throw RecordingError("existing patterns.yaml " + why + "; write to another folder");
     };
     if (content.channels != surfaces_.front().channels)
       refuse("has commands " + describe(content.channels) + ", not " +
@@ -275,7 +277,7 @@ class PatternMaker {
     if (moved > 0)
       notes_.push_back(surface.name + ": " + std::to_string(moved) + " of " +
                        std::to_string(surface.pieces.size()) +
-                       " pieces are of commands nearby, corrected to the pattern's");
+                       " pieces are of similar commands, corrected to the pattern's");
     if (other_pieces > 0)
       notes_.push_back(surface.name + ": left out " + std::to_string(other_pieces) + " pieces of " +
                        std::to_string(others.size()) + " commands that no pattern has");
@@ -285,7 +287,7 @@ class PatternMaker {
     executions_.push_back(std::move(executions));
   }
 
-  /// The surface on which a command has fewest pieces.
+  /// The surface with the fewest pieces of a pattern.
   size_t scarcest(size_t p) const {
     size_t scarcest = 0;
     for (size_t s = 1; s < executions_.size(); ++s)
@@ -293,7 +295,7 @@ class PatternMaker {
     return scarcest;
   }
 
-  /// Takes the commands out that a surface has too few pieces of, and notes them.
+  /// Drops commands with too few pieces on a surface, and notes them.
   void keepCommon() {
     std::vector<std::string> few;
     size_t kept = 0;
@@ -322,7 +324,7 @@ class PatternMaker {
     if (kept == 0)
       throw RecordingError(line +
                            "; no pattern is left: drive commands for longer or more often, "
-                           "cut shorter pieces, or take commands nearby as one (--alike)");
+                           "cut shorter pieces, or merge similar commands (--alike)");
     notes_.push_back(line);
   }
 
@@ -334,7 +336,7 @@ class PatternMaker {
                       " executions; tread-experiment needs eight");
   }
 
-  /// Mean over the surfaces of the mean twist of a pattern's executions.
+  /// A pattern's mean twist: mean over the surfaces of the mean over its executions.
   Twist2 twistOf(size_t p) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const auto& executions : executions_)

@@ -18,17 +18,17 @@ using recordings::RecordedDrive;
 
 namespace {
 
-/// Whether no ground vehicle goes from one pose to the other in the time between them.
+/// Whether two poses are farther apart than a ground vehicle can drive in the time between them.
 bool isBeyondReach(const Fix& a, const Fix& b) {
   return !isWithinReach(a.T_map_body.position(), b.T_map_body.position(), b.time - a.time);
 }
 
-/// Whether the i-th pose is beyond reach from the one before, with which it is connected.
+/// Whether the i-th pose is out of reach from its predecessor in the same track.
 bool jumps(const std::vector<Fix>& poses, size_t i) {
   return i > 0 && i < poses.size() && !poses[i].new_track && isBeyondReach(poses[i - 1], poses[i]);
 }
 
-/// Whether the i-th pose alone lies apart: the ones before and after it are near each other.
+/// Whether only the i-th pose is an outlier: its neighbours agree with each other.
 bool isAlone(const std::vector<Fix>& poses, size_t i) {
   return jumps(poses, i) && jumps(poses, i + 1) && !isBeyondReach(poses[i - 1], poses[i + 1]);
 }
@@ -66,9 +66,10 @@ void takeJumpsOut(std::vector<Fix>& poses, const std::function<std::string(size_
   size_t all = 0, alone = 0, first_alone = 0, tracks = 0, first_track = 0;
   for (size_t i = 1; i < poses.size(); ++i) all += jumps(poses, i);
   if (all * 10 > poses.size() && all > 2) {
-    result.notes.push_back(std::to_string(all) + " of " + std::to_string(poses.size()) +
-                           " poses are farther from the one before than a ground vehicle can go; "
-                           "are the units of positions and times right?");
+    result.notes.push_back(
+        std::to_string(all) + " of " + std::to_string(poses.size()) +
+        " poses are farther from the one before than a ground vehicle can drive; "
+        "are the units of positions and times right?");
     return;
   }
   std::vector<Fix> kept;
@@ -84,13 +85,14 @@ void takeJumpsOut(std::vector<Fix>& poses, const std::function<std::string(size_
     if (tracks++ == 0) first_track = i;
   }
   if (alone > 0)
-    result.lose("farther from both neighbours than a ground vehicle can go, the first at " +
+    result.lose("farther from both neighbours than a ground vehicle can drive, the first at " +
                     place(first_alone),
                 alone, poses.size(), "poses");
   if (tracks > 0)
-    result.notes.push_back("poses jump farther than a ground vehicle can go: a new track begins " +
-                           std::to_string(tracks) + (tracks == 1 ? " time" : " times") +
-                           ", the first at " + place(first_track));
+    result.notes.push_back(
+        "poses jump farther than a ground vehicle can drive: a new track begins " +
+        std::to_string(tracks) + (tracks == 1 ? " time" : " times") + ", the first at " +
+        place(first_track));
   poses = std::move(kept);
 }
 

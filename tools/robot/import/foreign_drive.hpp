@@ -13,49 +13,50 @@
 
 namespace tread::import {
 
-/// What should have been taken from a recording and could not be.
+/// Data that could not be read from a recording.
 struct Loss {
   std::string what;
   double lost = 0.0;
-  double of = 0.0;   ///< all that there were; 0 = not known
+  double of = 0.0;   ///< total, in the same unit; 0 = unknown
   std::string unit;  ///< of both: "rows of a.csv", "poses", "bytes", "s"
 };
 
-/// Commands in an order of no meaning, for maps.
+/// Orders commands lexicographically, for use as map keys.
 struct CommandOrder {
   bool operator()(const Command& a, const Command& b) const;
 };
 
-/// The largest share that was lost: the losses of a unit together.
+/// Largest lost share; losses of the same unit are added.
 double largestShare(const std::vector<Loss>& losses);
-/// "1234 of 5678 rows (22 %): the same time as the one before".
+/// One line, for instance "1234 of 5678 rows (22 %): the same time as the one before".
 std::string lineOf(const Loss& loss);
 
-/// What was found in a recording of another robot.
+/// Contents of another robot's recording.
 struct ForeignDrive {
   recordings::RecordedDrive drive;
-  std::string poses;                       ///< whose poses were taken, in words
-  std::map<std::string, size_t> left_out;  ///< what is no part of a drive, and why
+  std::string poses;                       ///< source of the poses, in words
+  std::map<std::string, size_t> left_out;  ///< counts of what is not part of a drive, by reason
   std::vector<Loss> losses;
-  std::vector<std::string> notes;  ///< what else is unusual about it, a line each
+  std::vector<std::string> notes;  ///< unusual facts, one per line
 
   void lose(const std::string& what, size_t lost, size_t of, const std::string& unit) {
     if (lost > 0) losses.push_back({what, double(lost), double(of), unit});
   }
 };
 
-/// No pose of these robots is farther out [m].
+/// Largest plausible distance of a pose from the origin [m].
 inline constexpr double kFarthest = 100'000.0;
-/// Recordings last no longer [s].
+/// Longest plausible recording [s].
 inline constexpr double kLongest = 7.0 * 86'400.0;
-/// A command is gone if none came for so long, whatever its period [s].
+/// A command expires after this age [s], whatever its period.
 inline constexpr double kCommandAge = 0.5;
-/// Messages and rows may overtake each other by so much [s].
+/// Messages and rows may be out of order by this much [s].
 inline constexpr double kOvertaking = 0.2;
 
-/// Sorts what came by its time, each of which comes once.
-/** What is older than overtaking allows belongs to a clock that went back; what has the time of the
- * one before and says something else contradicts it: both are lost. What repeats it is not. */
+/// Sorts items by time and removes duplicates.
+/** An item that is later than overtaking allows comes from a clock that went back; an item with the
+ * time of its predecessor and other content contradicts it. Both count as lost, an exact duplicate
+ * does not. */
 template <class Item, class Same>
 void sortByTime(std::vector<Item>& items, const std::string& unit, const Same& same,
                 ForeignDrive& result) {
@@ -87,36 +88,35 @@ void sortByTime(std::vector<Item>& items, const std::string& unit, const Same& s
   result.lose("the same time as the one before", other, all, unit);
 }
 
-/// Leaves out each pose to which no ground vehicle can have gone and come back, and begins a new
-/// track at both ends of what lies apart for longer; both are counted and told.
-/** `place` says where the i-th of the poses stands. Where more than a tenth of them are so far from
- * each other, units or times are wrong: they stay as they are, and that is told. */
+/// Removes single poses that no ground vehicle can have reached, and starts a new track at both
+/// ends of a longer outlier. Both are counted and reported.
+/** `place` names the position of the i-th pose in the file. If more than a tenth of the poses jump,
+ * units or times are wrong: nothing is removed, and that is reported. */
 void takeJumpsOut(std::vector<recordings::Fix>& poses,
                   const std::function<std::string(size_t)>& place, ForeignDrive& result);
 
-/// The usual time between two of these times, which are in order; 0 of fewer than two.
+/// Median difference of sorted times; 0 for fewer than two.
 double usualPeriod(const std::vector<double>& times);
 
-/// Whether a clock that counts from 1970 shows this in one of the years 2008 to 2039 [s].
+/// Whether a time since 1970 [s] lies in the years 2008 to 2039.
 constexpr bool isCalendar(double seconds) {
   return seconds > 1.2e9 && seconds < 2.2e9;
 }
 
-/// Why times cannot be in a unit [s], and in which they are instead; nothing where they can.
-/** Measurements of vehicles are .1 ms to 20 s apart, and no clock shows a later century. */
+/// Why the times cannot be in `unit` [s], and their likely unit; nullopt if they can.
+/** Vehicle data are sampled every .1 ms to 20 s, and no clock shows a later century. */
 std::optional<std::string> timeUnitProblem(std::vector<double> times, double unit);
 
-/// How long a command is known to hold where none follows: three of its periods, but .3 s at least
-/// and kCommandAge at most.
+/// How long a command holds where none follows: three of its periods, at least .3 s and at most
+/// kCommandAge.
 double holdOf(double period);
 
-/// Commands as they came, in order of time, become a sample every 50 ms: the newest command.
-/** Between two that are further apart than `hold` [s] nothing is known, so that there are no
- * samples from one `period` after the first on. */
+/// Resamples commands to every 50 ms: each sample is the newest command.
+/** In a gap longer than `hold` [s] there are no samples after one `period`. */
 void holdCommands(const std::vector<recordings::DriveSample>& commands, double period, double hold,
                   recordings::RecordedDrive& drive);
 
-/// Runs of one command other than zero; equal commands have equal numbers.
+/// Finds runs of one non-zero command; equal commands get equal numbers.
 void findRuns(recordings::RecordedDrive& drive);
 
 }  // namespace tread::import

@@ -19,7 +19,7 @@ using recordings::foreignTypes;
 using recordings::RecordedDrive;
 using recordings::RecordingError;
 
-/// Nearer returns are the laser's own housing [m].
+/// Closer returns hit the laser's own housing [m].
 constexpr double kNearestReturn = 0.1;
 constexpr double kLongestScan = 1.0;  // [s]
 
@@ -41,20 +41,20 @@ bool finite(const Timed& message) {
   return true;
 }
 
-/// Bytes of a log that belong to no whole event, and how long they last.
+/// Damaged bytes of a log and the time that they span.
 class Damage {
  public:
-  /// An event was read from the bytes [from, to).
+  /// Adds an event that was read from the bytes [from, to).
   void add(uint64_t from, uint64_t to, const LogEvent& event) {
     constexpr uint64_t kHeader = 28;  // [bytes] of an event
     const uint64_t bytes = kHeader + event.channel.size() + event.bytes.size();
-    // Behind a sealed event stands its seal, too.
+    // A sealed event is followed by its seal.
     if (!event.sealed && to - from > bytes) add(from, to - from - bytes, event.utime);
     if (!first_) first_ = event.utime;
     last_ = event.utime;
   }
 
-  /// No more events: the rest of the file is damaged, too.
+  /// End of the file: the remaining bytes are damaged.
   void finish(uint64_t from, uint64_t size, ForeignDrive& result) {
     if (size > from) add(from, size - from, last_);
     if (places_ == 0) return;
@@ -77,7 +77,7 @@ class Damage {
     if (first_) seconds_ += 1e-6 * static_cast<double>(until - last_);
   }
 
-  std::optional<int64_t> first_;  // [us] of the whole events
+  std::optional<int64_t> first_;  // [us] of the first undamaged event
   int64_t last_ = 0;              // [us]
   int64_t since_ = 0;             // [us] last event before the first damage
   size_t places_ = 0;
@@ -86,11 +86,11 @@ class Damage {
   double seconds_ = 0.0;
 };
 
-/// Times of a log: those of its messages, and when the recorder wrote them; an LCM log has both
-/// in us.
+/// Time stamps of a log: of the messages and of the recorder. An LCM log has both in us.
 class LogTimes {
  public:
-  /// When an event was recorded [us]. Of a recorder that counts ns, which its dates show, in us.
+  /// Time of recording of an event [us]. A recorder that counts ns is recognized by its dates and
+  /// converted.
   int64_t recorded(const LogEvent& event) {
     ++events_;
     if (!isCalendar(1e-9 * static_cast<double>(event.utime))) return event.utime;
@@ -104,7 +104,7 @@ class LogTimes {
     own_[channel].push_back(own);
   }
 
-  /// Throws where messages or recorder count another unit.
+  /// Throws if messages or recorder use another unit.
   void check(const std::string& path, ForeignDrive& result) const {
     if (2 * in_ns_ > events_)
       result.notes.push_back("the recorder's times are ns, not us; read as such");
@@ -112,17 +112,18 @@ class LogTimes {
     const bool own_is_date = isCalendar(1e-6 * first_->first);
     if (const auto pace = thousands())
       throw RecordingError(path +
-                           (own_is_date ? ": its recorder counts time in " + unitOf(-*pace) +
-                                              ", its messages in us; let the recorder count us"
-                                        : ": its messages count time in " + unitOf(*pace) +
-                                              ", their types say us; let their sender say us") +
+                           (own_is_date
+                                ? ": its recorder counts time in " + unitOf(-*pace) +
+                                      ", its messages in us; make the recorder count us"
+                                : ": its messages count time in " + unitOf(*pace) +
+                                      ", but their types prescribe us; make the sender count us") +
                            ", or correct the log");
     const auto& [channel, times] = *std::max_element(
         own_.begin(), own_.end(),
         [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
     if (const auto problem = timeUnitProblem(times, 1e-6))
       throw RecordingError(path + ": " + channel + ": " + *problem +
-                           "; let the sender count us, or correct the log");
+                           "; make the sender count us, or correct the log");
   }
 
  private:
@@ -130,10 +131,9 @@ class LogTimes {
     return thousands == 1 ? "ns" : thousands == -1 ? "ms" : "s";
   }
 
-  /// How many times a thousandfold the messages' times go as fast as the recorder's; nothing where
-  /// both count one unit.
+  /// Power of 1000 between the units of message and recorder times; nullopt if they agree.
   std::optional<int> thousands() const {
-    constexpr double kLeast = 1e5;  // of which a pace can be told
+    constexpr double kLeast = 1e5;  // shortest span for a comparison
     const double own = last_.first - first_->first;
     const double recorded = last_.second - first_->second;
     if (std::max(own, recorded) < kLeast || recorded <= 0.0) return std::nullopt;
@@ -143,8 +143,8 @@ class LogTimes {
   }
 
   size_t events_ = 0;
-  size_t in_ns_ = 0;                                // of these
-  std::optional<std::pair<double, double>> first_;  // [us] of a message, and when it was recorded
+  size_t in_ns_ = 0;                                // of the events, with times in ns
+  std::optional<std::pair<double, double>> first_;  // [us] of a message, and its time of recording
   std::pair<double, double> last_;
   std::map<std::string, std::vector<double>> own_;  // [us] by channel
 };
@@ -209,7 +209,8 @@ class LogContent {
     auto content = numbersOf(foreignTypes(), *type, event.bytes);
     ++events_;
     if (!content) return void(++broken_[event.channel + ": broken"]);
-    // Some senders leave the time empty; then the logger's clock is moved to the senders'.
+    // Some senders leave the time empty; then the logger's time is used, shifted to the senders'
+    // clock.
     const double utime = content->at("utime").at(0);
     if (utime > 0.0 && !offset_) offset_ = utime - static_cast<double>(event.utime);
     if (utime > 0.0) times_.add(event.channel, utime, static_cast<double>(event.utime));
@@ -227,7 +228,7 @@ class LogContent {
   ForeignDrive& result_;
   std::map<std::string, std::vector<Timed>> by_type_;
   size_t events_ = 0;                     // of known types
-  std::map<std::string, size_t> broken_;  // of these, and how
+  std::map<std::string, size_t> broken_;  // damaged events, by reason
   std::optional<double> offset_;          // [us] of the senders' clock from the logger's
   std::optional<double> begin_;           // [us] of the first message
   LogTimes times_;
@@ -266,7 +267,7 @@ void takeCommands(std::vector<DriveSample> commands, ForeignDrive& result) {
   findRuns(result.drive);
 }
 
-/// Commands as they came; which of the types there are decides their kind.
+/// Commands as recorded; the message types in the log determine their kind.
 std::vector<DriveSample> commandsOf(const std::string& path, LogContent& log, double baseline,
                                     CommandKind& kind) {
   std::vector<DriveSample> samples;
@@ -299,7 +300,7 @@ std::vector<DriveSample> commandsOf(const std::string& path, LogContent& log, do
   return samples;
 }
 
-/// One turn of the laser as points; its sender says the time of each beam in us or in ms.
+/// One revolution of the laser as points. Senders stamp the beams in us or in ms.
 std::optional<recordings::TimedScan> scanOf(const Timed& laser, double height) {
   auto scan = blank<scan_t>();
   scan.sensor_position[0] = scan.sensor_position[1] = 0.0;
@@ -315,7 +316,7 @@ std::optional<recordings::TimedScan> scanOf(const Timed& laser, double height) {
                              static_cast<float>(-ranges[i] * std::sin(angles[i])), 0.0F});
   if (scan.points.empty()) return std::nullopt;
   scan.num_points = static_cast<int32_t>(scan.points.size());
-  // No turn takes less than 2 ms.
+  // No revolution takes less than 2 ms, so shorter ones are in ms.
   double turn = times.back() - times.front();
   if (turn < 2000.0) turn *= 1000.0;
   scan.duration = static_cast<int32_t>(std::clamp(turn, 0.0, kLongestScan * 1e6));

@@ -8,17 +8,18 @@
 
 namespace tread::import {
 
-/// What a log of another robot does not say itself.
+/// Facts that another robot's log does not contain.
 struct ForeignRobot {
-  std::string pose_channel;   ///< whose poses become INS; empty: the only one that holds poses
-  double baseline = 0.0;      ///< [m] between the wheels; 0 = unknown
-  double lidar_height = 0.2;  ///< [m] of the range finder above the ground, over the body origin
+  std::string pose_channel;  ///< channel of the poses; empty: the only one with poses
+  double baseline = 0.0;     ///< [m] between the wheels; 0 = unknown
+  /// [m] of the range finder above the ground; it is assumed over the body origin
+  double lidar_height = 0.2;
 };
 
-/// Reads an LCM log of a robot with the types of foreign_types.hpp, whatever its channels' names.
+/// Reads another robot's LCM log with the types of foreign_types.hpp; channel names do not matter.
 /** Poses (odometry or SLAM) become fixes, motor commands drive samples every 50 ms and runs of the
- *  same command, laser scans points. Angles of these lasers count clockwise. Times are the
- *  messages' own; where a message has none, when it was logged. Throws RecordingError with one
+ *  same command, laser scans points. Angles of these lasers count clockwise. A message
+ *  without a time stamp gets its time of logging. Throws RecordingError with one
  *  line. */
 ForeignDrive readForeignLog(const std::string& path, const ForeignRobot& robot);
 

@@ -37,8 +37,8 @@ struct Arguments {
   std::vector<std::string> overrides;
   bool decimal_comma = false;
   std::vector<std::string> files;
-  std::string csv;    ///< the one of them that is read
-  std::string input;  ///< `csv`, or what was packed in it
+  std::string csv;    ///< the recording to read
+  std::string input;  ///< `csv`, or its unpacked copy
   std::string log;    ///< or a folder of recordings
   import::CutLayout cut;
   bool cuts = false;
@@ -57,12 +57,12 @@ RecordedDrive read(const Arguments& arguments, const Session& session) {
 
 constexpr const char* kUnknownSurface = "unknown";
 
-/// Of robots that the project's own recordings are not of.
+/// Whether the format is one that the project's own recordings do not use.
 bool isForeign(const std::string& format) {
   return format == "lcm" || format == "rawlog" || format == "csv";
 }
 
-/// Aligned files hold neither the gyro nor the times at which poses were logged.
+/// Aligned files contain neither the gyro nor the logging times of the poses.
 void checkFormat(const Arguments& arguments) {
   if (!isForeign(arguments.format) && arguments.sessions.empty())
     throw RecordingError("--sessions is needed with --format " + arguments.format);
@@ -72,7 +72,7 @@ void checkFormat(const Arguments& arguments) {
     throw RecordingError("--keep-lag and --gyro all: not in aligned files; take --format steps");
 }
 
-/// Of a recording by that of its file or folder.
+/// Name of a recording, from its file or folder.
 std::string nameOf(std::filesystem::path path) {
   if (!path.has_filename()) path = path.parent_path();
   return (path.extension() == ".gz" ? path.stem() : path).stem().string();
@@ -86,7 +86,7 @@ Session sessionOf(const Arguments& arguments) {
   return session;
 }
 
-/// A command is held for a period of the recording, so an execution is a whole number of them.
+/// A command holds for one period of the recording, so an execution must be a multiple of it.
 void checkLength(const char* option, double length) {
   const double commands = length / kPeriod;
   if (std::abs(commands - std::round(commands)) > 1e-6)
@@ -94,7 +94,7 @@ void checkLength(const char* option, double length) {
                          " s is no multiple of 0.05 s, the recordings' period");
 }
 
-/// What a foreign recording does not say about its session.
+/// Session data that a foreign recording does not contain.
 Session foreignSession(const Arguments& arguments, const RecordedDrive& recording) {
   Session session;
   session.name = nameOf(arguments.csv);
@@ -109,7 +109,7 @@ Session foreignSession(const Arguments& arguments, const RecordedDrive& recordin
   return session;
 }
 
-/// What was read, and what of it is lost.
+/// A recording, and what was lost of it.
 struct Reading {
   RecordedDrive drive;
   std::vector<import::Loss> losses;
@@ -117,13 +117,13 @@ struct Reading {
 
 Reading taken(import::ForeignDrive foreign) {
   for (const auto& [what, count] : foreign.left_out)
-    std::printf("left out: %zu of %s\n", count, what.c_str());
+    std::printf("left out: %zu %s\n", count, what.c_str());
   if (!foreign.poses.empty()) std::printf("poses: %s\n", foreign.poses.c_str());
   for (const std::string& note : foreign.notes) std::printf("%s\n", note.c_str());
   return {std::move(foreign.drive), std::move(foreign.losses)};
 }
 
-/// More than a hundredth lost is no good import: what is left may be another drive.
+/// Above 1 % of loss the import fails: the rest may not represent the drive.
 int verdictOn(const std::vector<import::Loss>& losses, const Arguments& arguments) {
   constexpr double kMostLost = 0.01;
   for (const import::Loss& loss : losses) std::printf("lost: %s\n", lineOf(loss).c_str());
@@ -135,14 +135,14 @@ int verdictOn(const std::vector<import::Loss>& losses, const Arguments& argument
   return 1;
 }
 
-/// The file beside which a mapping's tables lie: they are inputs, too.
+/// Refuses an output that would overwrite an input table: they are next to the mapping.
 void refuseTables(const Arguments& arguments, const import::CsvMapping& mapping) {
   const std::filesystem::path parent = std::filesystem::path(arguments.csv).parent_path();
   for (const import::CsvSource& source : mapping.sources)
     refuseToReplace(arguments.log, {(parent / source.file).string()});
 }
 
-/// Says how the motion follows the commands, as tread-gap will see it; 1 if they cannot explain it.
+/// Prints how well the commands explain the motion, by tread-gap's own check; 1 if they do not.
 int verdictOnMotion(const std::vector<LogEvent>& events, const Arguments& arguments) {
   std::vector<LogEvent> driven;
   for (const LogEvent& event : events)
@@ -170,7 +170,8 @@ void tellHoles(const std::vector<CommandHole>& holes) {
     longest = std::max(longest, hole.end - hole.begin);
   }
   std::printf(
-      "no commands: %zu times, %.1f s in all, longest %.2f s, first from %.2f to %.2f s; no MOTOR "
+      "gaps in the commands: %zu, %.1f s in all, longest %.2f s, first from %.2f to %.2f s; no "
+      "MOTOR "
       "is there\n",
       holes.size(), sum, longest, holes.front().begin, holes.front().end);
 }
@@ -204,7 +205,7 @@ Reading readDrive(const Arguments& arguments, Session& session) {
   return {read(arguments, session), {}};
 }
 
-/// Messages as they are, not a drive made of samples.
+/// Converts messages directly, without resampling.
 int takeMcap(const Arguments& arguments) {
   LogWriter writer(arguments.log);
   const mcap::McapCounts counts = mcap::writeLog(arguments.input, writer);
@@ -249,7 +250,7 @@ int writeLog(const Arguments& arguments) {
 /// Surfaces in the order in which they were first driven on.
 using CutSurfaces = std::vector<import::CutSurface>;
 
-/// A surface is named by the mapping, by sessions.csv, or as its file is.
+/// The surface is named by the mapping, by sessions.csv, or by the file name.
 int cutInto(CutSurfaces& surfaces, const Arguments& arguments) {
   Session session;
   const Reading reading = readDrive(arguments, session);
@@ -275,7 +276,7 @@ void tellLeftOut(const CutSurfaces& surfaces, double length) {
   }
 }
 
-/// Patterns of recordings that are there already stay, so that surfaces can be added.
+/// Keeps the patterns of existing recordings, so that surfaces can be added.
 void writeCut(const Arguments& arguments, const CutSurfaces& surfaces) {
   const std::filesystem::path patterns = std::filesystem::path(arguments.log) / "patterns.yaml";
   std::optional<PatternSet> known;
@@ -283,7 +284,7 @@ void writeCut(const Arguments& arguments, const CutSurfaces& surfaces) {
   const import::CutRecordings cut = import::recordingsOf(surfaces, arguments.cut, known);
   for (const std::string& note : cut.notes) std::printf("%s\n", note.c_str());
   OutputFolder folder(arguments.log);
-  // A file of the same patterns keeps the comments that people wrote into it.
+  // Unchanged patterns: keep the file with its comments.
   if (known)
     std::filesystem::copy_file(patterns, std::filesystem::path(folder.path()) / "patterns.yaml");
   writeRecordings(folder.path(), cut.recordings);
@@ -293,10 +294,11 @@ void writeCut(const Arguments& arguments, const CutSurfaces& surfaces) {
     for (const auto& of_pattern : surface.executions) executions += of_pattern.size();
   std::printf("%s: %zu executions of %zu patterns on %zu surfaces%s\n", arguments.log.c_str(),
               executions, cut.recordings.patterns.patterns().size(), surfaces.size(),
-              known ? ", the patterns as they were there" : "");
+              known ? ", existing patterns kept" : "");
 }
 
-/// Tables of a mapping are unpacked one by one, rawlogs by MRPT.
+/// Reads the recordings; packed tables of a mapping are unpacked one at a time, MRPT unpacks
+/// rawlogs.
 template <class Take>
 int unpacked(Arguments arguments, const std::string& name, const Take& take) {
   arguments.csv = arguments.input = name;
@@ -330,8 +332,7 @@ int cutFiles(const Arguments& arguments) {
 
 int run(const Arguments& arguments) {
   if (arguments.format == "mcap" && arguments.cuts)
-    throw RecordingError(
-        "--cut: an MCAP file holds messages, not a drive; cut what it was made of");
+    throw RecordingError("--cut: an MCAP file holds messages, not a drive; cut its original log");
   if (arguments.format != "mcap") checkFormat(arguments);
   if (arguments.cuts) return cutFiles(arguments);
   if (arguments.files.size() > 1)
@@ -346,32 +347,34 @@ int parseAndRun(int argc, char** argv) {
   Arguments arguments;
   CLI::App app{
       "Turns a recording of a drive (CSV, an LCM log of a MAEBot or MBot, or an MRPT rawlog) into "
-      "an LCM log: INS, MOTOR, SCAN, EXECUTION, MARK; or an MCAP file of tread-export into the log "
-      "that it was made of. With --cut: drives under commands that stay for a while into "
+      "an LCM log: INS, MOTOR, SCAN, EXECUTION, MARK. Turns an MCAP file of tread-export back into "
+      "its log. With --cut: turns drives with piecewise constant commands into "
       "recordings of patterns, for tread-experiment"};
   app.add_option("--format", arguments.format,
-                 "which kind of file: mcap; lcm; rawlog; csv as --mapping says; or one with "
+                 "kind of file: mcap; lcm; rawlog; csv, described by --mapping; or one with "
                  "--sessions")
       ->required()
       ->check(CLI::IsMember({"steps", "aligned", "continuous", "lcm", "rawlog", "csv", "mcap"}));
   app.add_option("--mapping", arguments.mapping,
-                 "csv: what its columns mean, as config/imports/example.yaml does");
+                 "csv: file with the meaning of the columns, like config/imports/example.yaml");
   app.add_option("--set", arguments.overrides,
-                 "csv: KEY=VALUE in the place of what the mapping says: wheel_radius=0.18")
+                 "csv: KEY=VALUE overrides the mapping, for instance wheel_radius=0.18")
       ->expected(1)
       ->take_all()
       ->allow_extra_args(false);
-  app.add_flag("--decimal-comma", arguments.decimal_comma,
-               "csv: numbers are 0,5 in all tables, as with decimal_comma: true in the mapping");
-  app.add_option("--sessions", arguments.sessions,
-                 "sessions.csv: radius, baseline, pose lag; not with lcm, rawlog and csv");
+  app.add_flag(
+      "--decimal-comma", arguments.decimal_comma,
+      "csv: all tables use a decimal comma (0,5), like decimal_comma: true in the mapping");
+  app.add_option(
+      "--sessions", arguments.sessions,
+      "sessions.csv with wheel radius, baseline and pose lag; not for lcm, rawlog and csv");
   app.add_option("--pose-channel", arguments.robot.pose_channel,
-                 "lcm: whose poses become INS, if several channels hold poses");
+                 "lcm: channel of the poses that become INS, if several hold poses");
   app.add_option("--baseline", arguments.robot.baseline,
-                 "lcm: between the wheels [m]; needed where commands are body speeds")
+                 "lcm: distance between the wheels [m]; needed if commands are body speeds")
       ->check(CLI::Range(0.01, 10.0));
   app.add_option("--lidar-height", arguments.robot.lidar_height,
-                 "lcm: range finder above the ground [m]")
+                 "lcm: height of the range finder above the ground [m]")
       ->check(CLI::Range(0.0, 10.0))
       ->capture_default_str();
   app.add_option("--session", arguments.session, "row of sessions.csv; default: the file's name");
@@ -382,18 +385,20 @@ int parseAndRun(int argc, char** argv) {
   Outputs(app)
       .fileOrFolder("-o,--output", arguments.log,
                     "LCM log to write; with --cut a folder: patterns.yaml and a SURFACE.csv for "
-                    "each surface, named by `surface` or as its file; with --force patterns and "
-                    "surfaces that are there already stay")
+                    "each surface, named by `surface` in the mapping or after its file; with "
+                    "--force existing patterns and "
+                    "surfaces are kept")
       ->required();
-  auto* const length = app.add_option("--length", arguments.layout.length, "of an execution [s]")
-                           ->check(CLI::Range(0.1, 50.0))
-                           ->capture_default_str();
+  auto* const length =
+      app.add_option("--length", arguments.layout.length, "duration of an execution [s]")
+          ->check(CLI::Range(0.1, 50.0))
+          ->capture_default_str();
   auto* const executions =
       app.add_option("--executions", arguments.layout.executions, "per command")
           ->check(CLI::Range(1, 9))
           ->capture_default_str();
   auto* const cut = app.add_option("--cut", arguments.cut.length,
-                                   "recordings of patterns in the place of a log: pieces of so "
+                                   "write recordings of patterns instead of a log: pieces of so "
                                    "many seconds under one command")
                         ->check(CLI::Range(0.1, 50.0))
                         ->excludes(length)
@@ -403,21 +408,21 @@ int parseAndRun(int argc, char** argv) {
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str();
   app.add_option("--alike", arguments.cut.alike,
-                 "--cut: commands that differ by this share of the largest count as one; pieces "
+                 "--cut: merge commands that differ by at most this share of the largest; pieces "
                  "are corrected for the difference [1]")
       ->check(CLI::Range(0.0, 0.5))
       ->capture_default_str()
       ->needs(cut);
   app.add_option("--fewest", arguments.cut.fewest,
-                 "--cut: pieces of a command on each surface that make it a pattern")
+                 "--cut: least pieces of a command on each surface that make it a pattern")
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str()
       ->needs(cut);
   app.add_flag("--allow-loss", arguments.allow_loss,
                "exit status 0 even where more than 1 % of the recording is lost");
   app.add_flag("--keep-lag", arguments.keep_lag,
-               "poses at the time at which they were logged, not when they were measured");
-  app.add_option("--gyro", arguments.gyro, "readings of the gyro: at fixes, or all")
+               "stamp poses with the time of logging, not of measurement");
+  app.add_option("--gyro", arguments.gyro, "gyro readings: at fixes, or all")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, Gyro>{{"fixes", Gyro::kAtFixes}, {"all", Gyro::kAll}}))
       ->default_str("fixes");

@@ -9,8 +9,8 @@
 namespace tread::import {
 
 /// Reads an MRPT rawlog: odometry becomes poses, planar range scans and Velodyne's become scans.
-/** Time 0 is that of the first record. A damaged file gives what stands before the damage, and says
- *  so among what was left out. Throws RecordingError with one line if there is nothing to take. */
+/** Time 0 is that of the first record. Of a damaged file the part before the damage is read, and
+ * the rest reported as left out. Throws RecordingError with one line if no record is usable. */
 ForeignDrive readRawlog(const std::string& path);
 
 }  // namespace tread::import

@@ -23,9 +23,9 @@ using namespace mrpt::obs;
 
 using Take = std::function<void(const RawlogRecord&)>;
 
-/// More are not in one sweep.
+/// A sweep has fewer returns.
 constexpr size_t kMostReturns = 1'000'000;
-/// Returns of one message: a tenth of a turn of the larger devices.
+/// Returns per message: a tenth of a revolution of the larger devices.
 constexpr size_t kSlice = 10'000;
 
 void setSensorPose(const mrpt::poses::CPose3D& pose, scan_t& scan) {
@@ -102,7 +102,7 @@ class RawlogReading {
     scan.range_max = sweep.maxRange;
     scan.num_beams = static_cast<int32_t>(beams);
     for (size_t i = 0; i < beams; ++i) {
-      // A range that does not count says "nothing hit" only where it says the greatest range.
+      // An invalid range means "no hit" only if it is the maximum range.
       const float range = sweep.getScanRange(i);
       const bool counts = sweep.getScanRangeValidity(i);
       scan.ranges.push_back(counts                    ? range
@@ -115,7 +115,7 @@ class RawlogReading {
   void points(const CObservationVelodyneScan& packets) {
     if (packets.scan_packets.empty() || packets.calibration.empty())
       return lose(packets, "without packets or calibration");
-    // Generating points writes into the observation.
+    // Computing the points modifies the observation, so it works on a copy.
     CObservationVelodyneScan working = packets;
     CObservationVelodyneScan::TGeneratePointCloudParameters parameters;
     parameters.generatePerPointTimestamp = true;
@@ -158,9 +158,9 @@ void readRawlogObjects(const std::string& path, const Take& take) {
       ++objects;
     }
   } catch (const mrpt::serialization::CExceptionEOF&) {
-    // MRPT sees the end of the file only by reading on.
+    // MRPT detects the end of the file only by reading past it.
   } catch (const std::exception& e) {
-    // The first line holds MRPT's place in its source, the last ones a trace of calls.
+    // MRPT's own message is a source position and a stack trace.
     take(RawlogProblem{"object " + std::to_string(objects + 1) + " cannot be read"});
   }
 }

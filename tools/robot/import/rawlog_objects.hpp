@@ -9,8 +9,8 @@
 
 namespace tread::import {
 
-/// The objects of a rawlog in their order, by MRPT; may crash on a damaged file, so that it runs in
-/// a process of its own (see readRawlogRecords). Throws nothing.
+/// Reads a rawlog's objects in order with MRPT. It may crash on a damaged file, so
+/// readRawlogRecords() runs it in a child process. Throws nothing.
 void readRawlogObjects(const std::string& path,
                        const std::function<void(const RawlogRecord&)>& take);
 

@@ -8,7 +8,7 @@ namespace tread::import {
 void readRawlogObjects(const std::string& /*path*/,
                        const std::function<void(const RawlogRecord&)>& take) {
   take(RawlogProblem{
-      "this program was built without MRPT, which reads rawlogs; type: tools/setup import, and "
+      "this program was built without MRPT, which reads rawlogs; run tools/setup import and "
       "build it again"});
 }
 

@@ -22,7 +22,7 @@ namespace {
 using recordings::RecordingError;
 
 constexpr rlim_t kMostMemory = rlim_t{4} << 30U;  // [bytes] of the reader
-constexpr int kLongestSilence = 30'000;           // [ms] that the reader may take for one object
+constexpr int kLongestSilence = 30'000;           // [ms] for reading one object
 constexpr uint32_t kLongestRecord = 64U << 20U;   // [bytes]
 
 enum class Kind : uint32_t { kPose, kScan, kLeftOut, kProblem, kEnd };
@@ -38,7 +38,7 @@ void writeAll(int pipe, const void* data, size_t size) {
   while (size > 0) {
     const ssize_t written = ::write(pipe, at, size);
     if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) ::_exit(1);  // nobody listens any longer
+    if (written <= 0) ::_exit(1);  // the reader of the pipe is gone
     at += written;
     size -= static_cast<size_t>(written);
   }
@@ -71,13 +71,13 @@ struct Sender {
   }
 };
 
-/// The process that reads; it never returns.
+/// The child process; never returns.
 [[noreturn]] void readAndSend(const std::string& path, int pipe) {
   const rlimit memory{kMostMemory, kMostMemory};
   ::setrlimit(RLIMIT_AS, &memory);
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
-  // MRPT tells of damage in many lines; ours is one.
+  // MRPT prints many lines about damage; we report one.
   const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   ::dup2(nowhere, STDOUT_FILENO);
   ::dup2(nowhere, STDERR_FILENO);
@@ -86,7 +86,7 @@ struct Sender {
   ::_exit(0);
 }
 
-/// Reads `size` bytes; false at the end of the pipe and when nothing comes.
+/// Reads `size` bytes; false at the end of the pipe and after a timeout, which sets `silent`.
 bool readAll(int pipe, void* data, size_t size, bool& silent) {
   auto* at = static_cast<char*>(data);
   while (size > 0) {
@@ -115,7 +115,7 @@ RawlogRecord recordOf(const Header& header, const std::vector<uint8_t>& bytes) {
   }
   std::array<double, 3> numbers{};
   if (header.kind != Kind::kPose || bytes.size() != sizeof numbers)
-    return RawlogProblem{"its reader sent what is no record"};
+    return RawlogProblem{"its reader sent an invalid record"};
   std::memcpy(numbers.data(), bytes.data(), sizeof numbers);
   return OdometryPose{header.time, {numbers[0], numbers[1], numbers[2]}};
 }

@@ -19,29 +19,29 @@ struct OdometryPose {
   Pose2 T_odom_body;
 };
 
-/// One sweep of a range finder, or a slice of points.
+/// One sweep of a range finder, or a slice of one.
 struct RawlogScan {
   double time = 0.0;  ///< [s] since 1970
   scan_t message;     ///< without utime and seq
 };
 
-/// What is not taken, and why.
+/// A skipped object and the reason.
 struct LeftOut {
   std::string what;
-  bool lost = false;  ///< it is a part of the drive, but unusable
+  bool lost = false;  ///< belongs to the drive but is unusable
 };
 
-/// The reader cannot go on.
+/// Reading stopped here.
 struct RawlogProblem {
   std::string what;
 };
 
 using RawlogRecord = std::variant<OdometryPose, RawlogScan, LeftOut, RawlogProblem>;
 
-/// Reads the objects of an MRPT rawlog in a process of its own and hands over what they hold.
-/** MRPT's reader checks neither lengths nor counts: on a damaged file it writes out of bounds, asks
- * for all memory or hangs. That process may die; then the last record says so.
- * Throws RecordingError if the file cannot be opened or no process be started. */
+/// Reads an MRPT rawlog in a child process and passes each record on.
+/** MRPT's reader checks neither lengths nor counts: on a damaged file it writes out of bounds,
+ * allocates without limit or hangs. The child process may crash; the last record then reports
+ * that. Throws RecordingError if the file cannot be opened or no process can be started. */
 void readRawlogRecords(const std::string& path, const std::function<void(RawlogRecord)>& take);
 
 }  // namespace tread::import

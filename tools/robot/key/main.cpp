@@ -11,14 +11,15 @@
 namespace {
 
 constexpr const char* kFooter =
-    "With a key a robot takes only messages that were sealed with it: nobody else on the network\n"
-    "arms it or drives it, and a recorded message does nothing. Stopping stays open to everybody.\n"
-    "Name the file as key: in the launch file, and with --key or TREAD_KEY for the commands of "
+    "A robot with a key accepts only messages that were sealed with it: nobody else on the "
+    "network\n"
+    "can arm or drive it, and a recorded message has no effect. Anybody can still stop it.\n"
+    "Name the file as key: in the launch file, and by --key or TREAD_KEY for the commands of "
     "the\n"
-    "operator. It is read once, at the start of each process.";
+    "operator. Each process reads it once, at its start.";
 
 int run(int argc, char** argv) {
-  CLI::App app{"Makes and checks the key that a robot and its operators share.", "tread-key"};
+  CLI::App app{"Creates and checks the key that a robot and its operators share.", "tread-key"};
   app.footer(kFooter);
   app.require_subcommand(1);
   std::string path;
@@ -27,9 +28,9 @@ int run(int argc, char** argv) {
     command->add_option("FILE", path, "the key's file")->required();
     return command;
   };
-  const CLI::App* make = addCommand("new", "Makes a new key in a new file that only you can read.");
+  const CLI::App* make = addCommand("new", "Creates a key in a new file that only you can read.");
   const CLI::App* show = addCommand("show", "Prints the key's fingerprint, never the key itself.");
-  addCommand("check", "Says whether the robot's processes would take this file.");
+  addCommand("check", "Checks whether the robot's processes would accept this file.");
   if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   if (make->parsed()) tread::writeNewKey(path);
   const std::string fingerprint = tread::fingerprint(tread::readKey(path));

@@ -15,9 +15,9 @@
 namespace tread::launch {
 namespace {
 
-constexpr int64_t kWantedSpace = 2'000'000'000;  // an hour or so of logs
-constexpr int64_t kNeededSpace = 20'000'000;     // for the states and some lines of log
-constexpr int kMostNames = 4;                    // of patterns in one line
+constexpr int64_t kWantedSpace = 2'000'000'000;  // about an hour of logs
+constexpr int64_t kNeededSpace = 20'000'000;     // for the states and a short log
+constexpr int kMostNames = 4;                    // pattern names in one line
 constexpr const char* kRouteRemedy =
     "ip link set lo up multicast on; ip route replace 224.0.0.0/4 dev lo  (as root)";
 constexpr const char* kRemedyWithoutRoot = "; or without root: --lcm-url tcpq://127.0.0.1:7668";
@@ -31,8 +31,8 @@ bool isUtf8(const std::string& text) {
   return following == 0;
 }
 
-/// What of a path the processes' arguments, YAML and addresses of links, would misread; empty if
-/// nothing.
+/// Characters of a path that process arguments, YAML or link addresses would misread; empty if
+/// none.
 std::string unusable(const std::string& path) {
   if (std::any_of(path.begin(), path.end(), [](unsigned char c) { return c < ' ' || c == 127; }))
     return "a control character";
@@ -70,7 +70,7 @@ std::string routeDevice(const std::string& answer) {
 
 namespace {
 
-/// What is wrong with the multicast to the group; empty if nothing.
+/// Problem with multicast to the LCM group; empty if none.
 std::string multicastProblem(const LcmAddress& address, const NetworkFacts& facts) {
   if (facts.can_ask && facts.route_device.empty())
     return "there is no route for LCM's multicast group " + address.group;
@@ -99,7 +99,7 @@ HostFinding smallBuffer(int64_t granted, int64_t wanted) {
 }  // namespace
 
 std::string urlRemedy(bool simulated) {
-  // A simulated robot has another port than the real one.
+  // A simulated robot uses another port than a real one.
   return "--lcm-url udpm://239.255.76.67:" + std::string(simulated ? "7668" : "7667") + "?ttl=0";
 }
 
@@ -213,7 +213,7 @@ std::string deviceOf(const std::vector<std::string>& arguments, const std::strin
     if (address.kind != LinkAddress::Kind::kTty) return "";
     return address.path.rfind(run + "/", 0) == 0 ? "" : address.path;
   } catch (const std::invalid_argument&) {
-    return "";  // the program's own --check tells what is wrong with it
+    return "";  // the program's own --check reports the problem
   }
 }
 

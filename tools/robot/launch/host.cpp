@@ -41,7 +41,7 @@ struct flock wholeFile() {
   return range;
 }
 
-/// Reads what a command says until it ends or the time is over.
+/// Reads a command's output until it ends or the time is over.
 std::string readAll(int descriptor, std::chrono::steady_clock::time_point deadline) {
   std::string output;
   char piece[1024];
@@ -68,14 +68,14 @@ bool isProgram(const std::string& path) {
   return fs::is_regular_file(path, none) && access(path.c_str(), X_OK) == 0;
 }
 
-/// The address in a configuration file, whatever else stands there; empty if none can be read.
+/// The address in a configuration file, other keys ignored; empty if none can be read.
 std::string configuredAddress(const std::string& path) {
   std::string address;
   try {
     ConfigReader reader = ConfigReader::fromFile(path);
     reader.text("address", address);
   } catch (const ConfigError&) {
-    return "";  // the program's own --check tells what is wrong with the file
+    return "";  // the program's own --check reports the problem
   }
   return address;
 }
@@ -105,7 +105,7 @@ ProcessFacts processFacts(const LaunchProcess& process, const std::string& lcm_u
   return facts;
 }
 
-/// A socket that closes itself.
+/// A socket that is closed by its destructor.
 class Socket {
  public:
   Socket() : descriptor_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)) {}
@@ -120,8 +120,8 @@ class Socket {
   int descriptor_;
 };
 
-/// Whether a datagram to the group, sent as LCM sends it, comes back within a second; a busy
-/// host may need a good part of it.
+/// Whether a datagram to the group, sent as LCM sends it, comes back within 1 s; a busy host may
+/// need most of that.
 bool delivered(const LcmAddress& address) {
   const Socket socket;
   sockaddr_in place{};
@@ -145,7 +145,7 @@ bool delivered(const LcmAddress& address) {
   return poll(&waiting, 1, 1000) == 1;
 }
 
-/// Of this process's network namespace; sysfs may show another one.
+/// Flags in this process's network namespace; sysfs may show another one.
 unsigned int loopbackFlags() {
   const Socket socket;
   ifreq request{};
@@ -154,7 +154,7 @@ unsigned int loopbackFlags() {
   return static_cast<unsigned short>(request.ifr_flags);
 }
 
-/// How much of a wanted receive buffer the kernel grants; it doubles what it is asked for.
+/// Receive buffer that the kernel grants of a wanted size; Linux reports twice the size.
 int64_t grantedBuffer(int64_t wanted) {
   const Socket socket;
   int size = static_cast<int>(std::min<int64_t>(wanted, 1 << 30));
@@ -164,7 +164,7 @@ int64_t grantedBuffer(int64_t wanted) {
   return size / 2;
 }
 
-/// What is wrong with the robot's key; nothing if there is none.
+/// Problems of the robot's key; empty if there are none.
 std::vector<HostFinding> checkKey(const LaunchFile& launch) {
   if (launch.key.empty() && !launch.simulated)
     return {{false, "without a key every program of this host can arm and drive the robot",
@@ -181,7 +181,7 @@ std::vector<HostFinding> checkKey(const LaunchFile& launch) {
   }
 }
 
-/// tread-launch itself listens where messages go over TCP.
+/// With TCP tread-launch itself is the server.
 std::vector<HostFinding> checkRelay(const LcmAddress& address) {
   if (address.provider != "tcpq") return {};
   try {
@@ -194,7 +194,7 @@ std::vector<HostFinding> checkRelay(const LcmAddress& address) {
   }
 }
 
-/// Asks this host about multicast; sends one datagram to the group, on a port of its own.
+/// Determines the host's multicast settings; sends one datagram to the group on a separate port.
 NetworkFacts networkFacts(const LcmAddress& address, bool sealed) {
   NetworkFacts facts;
   facts.sealed = sealed;
@@ -320,7 +320,7 @@ std::string findProgram(const std::string& word, const std::string& bin) {
   return "";
 }
 
-/// By trying: permissions do not tell of a file system that is read-only or has no place for names.
+/// Tests by creating a file: permissions do not show a read-only or full file system.
 bool takesFiles(const std::string& folder) {
   try {
     checkOutputs({{folder + "/trial"}}, {}, true);
@@ -330,7 +330,7 @@ bool takesFiles(const std::string& folder) {
   }
 }
 
-/// What another user's run has left, root's for instance.
+/// Files that another user's run has left, for instance root's.
 void findForeign(const std::string& folder, FolderFacts& facts) {
   std::error_code none;
   for (const auto& entry : fs::recursive_directory_iterator(folder, none)) {
@@ -348,7 +348,7 @@ FolderFacts folderFacts(const RunPaths& paths) {
   FolderFacts facts;
   facts.path = paths.folder;
   facts.longest_socket = paths.life.size();
-  // A folder that is not there yet counts as writable if its nearest parent is.
+  // A missing folder counts as writable if its nearest existing parent is.
   fs::path nearest = paths.folder;
   std::error_code none;
   const auto isThere = [&] { return fs::exists(fs::symlink_status(nearest, none)); };
@@ -364,7 +364,7 @@ FolderFacts folderFacts(const RunPaths& paths) {
   return facts;
 }
 
-/// Of the configurations that hold, as the programs' --check prints them.
+/// Checks across processes, on the effective configurations that --check prints.
 std::vector<HostFinding> checkTogether(const std::string& mapping, const std::string& learner) {
   try {
     double marking_range = 0.0;

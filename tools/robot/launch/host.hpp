@@ -10,45 +10,46 @@
 
 namespace tread::launch {
 
-/// The folder of the program that runs.
+/// Folder of the running executable.
 std::string ownFolder();
 
 /// $XDG_STATE_HOME/tread/NAME or ~/.local/state/tread/NAME; throws std::runtime_error without HOME.
 std::string defaultRunFolder(const std::string& name);
 
-/// An executable file: a path as it is, a name beside our programs or in PATH; empty if none.
+/// Path of an executable: a path as given, a name next to our programs or in PATH; empty if none.
 std::string findProgram(const std::string& word, const std::string& bin);
 
-/// The start-up checks of a launch: all that is missing on this host.
+/// Start-up checks: everything that is missing on this host.
 std::vector<HostFinding> checkHost(const LaunchFile& launch, const LaunchSettings& settings);
 
-/// For a run folder without asking for its owner.
+/// State of a run folder, without its owner.
 FolderFacts folderFacts(const RunPaths& paths);
 
-/// Becomes this program, looked up in PATH; returns only if it cannot be started.
+/// Replaces this process by the program, which is looked up in PATH; returns only on failure.
 void becomeProgram(std::vector<std::string> words);
 
-/// How a command ended and what it said on both outputs.
+/// Exit code and output (both streams) of a command.
 struct CommandOutcome {
-  int code = -1;  ///< 127 = could not be started, 124 = took too long
+  int code = -1;  ///< 127 = not started, 124 = timed out
   std::string output;
 };
 
-/// Runs a command to its end, at most so many seconds.
+/// Runs a command for at most so many seconds.
 CommandOutcome runCommand(const std::vector<std::string>& words, double seconds);
 
-/// The processes take TREAD_KEY where the launch file names no key.
+/// Takes TREAD_KEY if the launch file names no key.
 void takeNamedKey(LaunchFile& launch);
-/// Makes the key of a robot that has none yet, and says in a line where it is and how a station
-/// gets it; empty where the launch has none. Throws as readKey() does.
+/// Creates the key of a robot that has none, and returns a line with its path and how a station
+/// gets it; empty if the launch has no key. Throws as readKey() does.
 std::string provideKey(const LaunchFile& launch);
 
-/// The lock of a run folder: held by tread-launch and by its supervisor.
-/** Two locks on one file. The one of flock(2) is passed on to the supervisor and is free only when
- * both have gone, also by SIGKILL; the one of fcntl(2) is tread-launch's own and tells its pid. */
+/// Lock of a run folder, held by tread-launch and its supervisor.
+/** There are two locks on one file. The supervisor inherits that of flock(2), which is free when
+ * both processes have ended, also by SIGKILL. That of fcntl(2) belongs to tread-launch and yields
+ * its pid. */
 class RunLock {
  public:
-  /// Takes the lock; throws std::runtime_error with one line if it is held or cannot be made.
+  /// Throws std::runtime_error with one line if the lock is held or cannot be created.
   explicit RunLock(const std::string& path);
   ~RunLock();
   RunLock(const RunLock&) = delete;
@@ -57,30 +58,30 @@ class RunLock {
   int descriptor() const { return descriptor_; }
 
   static bool isHeld(const std::string& path);
-  /// The pid of the tread-launch that holds it; 0 if none does.
+  /// Pid of the tread-launch that holds it; 0 if none.
   static int owner(const std::string& path);
 
  private:
   int descriptor_ = -1;
 };
 
-/// A process with the words that start it.
+/// A process and its command line.
 struct SupervisedProcess {
   LaunchProcess process;
   std::vector<std::string> command;
 };
 
-/// Runs the processes until they are stopped; tells on standard output what happens. Returns the
-/// exit code of tread-launch.
-/** They are children of a supervisor, a process of its own (ProcessKeeper). Where `watch` is set,
- * processes that hang are aborted, and told there and in the file paths.hung. SIGINT, SIGTERM and
- * SIGHUP stop everything in order. If the supervisor dies, its processes become our children
- * (PR_SET_CHILD_SUBREAPER): they are asked to end, and killed after the longest stop_time. If we
- * die, the supervisor gets SIGTERM and stops everything in order. */
+/// Runs the processes until they are stopped and prints events on standard output. Returns the exit
+/// code of tread-launch.
+/** They are children of a supervisor process (ProcessKeeper). If `watch` is set, hanging processes
+ * are aborted, reported and written to paths.hung. SIGINT, SIGTERM and SIGHUP stop everything in
+ * order. If the supervisor dies, its processes become our children (PR_SET_CHILD_SUBREAPER) and
+ * get SIGTERM, after the longest stop_time SIGKILL. If we die, the supervisor gets SIGTERM and
+ * stops everything in order. */
 int supervise(const std::string& name, const std::vector<SupervisedProcess>& processes,
               const RunPaths& paths, const RunLock& lock, bool watch);
 
-/// Asks the tread-launch that runs in this folder to stop, and waits for it.
+/// Asks the tread-launch that runs in this folder to stop, and waits until it has.
 int stopRun(const std::string& name, const RunPaths& paths);
 
 }  // namespace tread::launch

@@ -14,10 +14,11 @@ namespace fs = std::filesystem;
 
 using Placeholders = std::map<std::string, std::string>;
 
-/// LCM's own group and port; the buffer holds a burst of maps (net.core.rmem_max allowing).
+/// LCM's default group and port; the buffer holds a burst of map tiles if net.core.rmem_max allows
+/// it.
 constexpr const char* kDefaultUrl = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=2097152";
 
-/// A sign of life comes every 0.25 s, on a busy host later.
+/// Signs of life come every 0.25 s, on a busy host later.
 constexpr double kShortestWatchdog = 1.0;
 
 bool isName(const std::string& text) {
@@ -41,7 +42,7 @@ std::string known(const Placeholders& placeholders) {
   return words;
 }
 
-/// Replaces the placeholders of a text that stands under `key`.
+/// Replaces the placeholders in the text of `key`.
 std::string replaced(const ConfigReader& reader, const std::string& key, const std::string& text,
                      const Placeholders& placeholders) {
   std::string result;
@@ -68,7 +69,7 @@ std::string absolutePath(const std::string& path, const std::string& folder) {
   return (fs::path(folder) / path).lexically_normal().string();
 }
 
-/// The file's own placeholders, with those of the command line put in.
+/// Reads the file's own placeholders; those of the command line override them.
 void readValues(ConfigReader& reader, const LaunchSettings& settings, const std::string& folder,
                 Placeholders& placeholders) {
   ConfigReader values = reader.section("values");
@@ -78,7 +79,7 @@ void readValues(ConfigReader& reader, const LaunchSettings& settings, const std:
     values.text(key, value, true);
     checkName(values, key, key);
     if (!placeholders.emplace(key, value).second)
-      throw values.error(key, "has a meaning already; choose another name");
+      throw values.error(key, "is a built-in placeholder; choose another name");
     names += (names.empty() ? "" : ", ") + key;
   }
   for (const auto& [key, value] : settings.values) {
@@ -87,7 +88,8 @@ void readValues(ConfigReader& reader, const LaunchSettings& settings, const std:
                         (names.empty() ? "are none" : "is " + names));
     placeholders[key] = value;
   }
-  // What names a file, seen from this one, does so wherever the process runs.
+  // A value that names a file relative to the launch file becomes absolute, so that processes find
+  // it from any folder.
   for (const std::string& key : values.keys()) {
     const std::string path = absolutePath(placeholders[key], folder);
     if (placeholders[key].find('/') != std::string::npos && fs::exists(path))
@@ -109,10 +111,11 @@ LaunchProcess readProcess(ConfigReader& reader, const Placeholders& placeholders
   reader.number("start_time", process.start_time, {1, 600}, "s");
   reader.number("watchdog", process.watchdog, {0, 600}, "s");
   if (process.external && !process.config.empty())
-    throw reader.error("config", "is for programs of Tread; an external one takes it in arguments");
+    throw reader.error("config",
+                       "is for programs of Tread; give it to an external one in arguments");
   for (const char* key : {"start_time", "watchdog"})
     if (process.external && reader.has(key))
-      throw reader.error(key, "is for programs of Tread; an external one gives no signs of life");
+      throw reader.error(key, "is for programs of Tread; an external one sends no signs of life");
   if (process.watchdog > 0.0 && process.watchdog < kShortestWatchdog)
     throw reader.error("watchdog", formatted("is %g s; allowed 0 (not watched) or from %g s on",
                                              process.watchdog, kShortestWatchdog));
@@ -127,7 +130,7 @@ LaunchProcess readProcess(ConfigReader& reader, const Placeholders& placeholders
   return process;
 }
 
-/// An empty path would be a robot that takes messages from everybody, without a word.
+/// An empty path would silently start a robot without a key.
 std::string keyPath(const ConfigReader& reader, const std::string& text,
                     const Placeholders& placeholders, const std::string& folder) {
   const std::string path = replaced(reader, "key", text, placeholders);
@@ -165,7 +168,8 @@ LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings) 
   reader.text("pre_drive", launch.pre_drive);
   launch.pre_drive = replaced(reader, "pre_drive", launch.pre_drive, placeholders);
   if (!launch.pre_drive.empty()) launch.pre_drive = absolutePath(launch.pre_drive, folder);
-  std::set<std::string> names{"supervisor"};  // whose log is beside theirs
+  std::set<std::string> names{
+      "supervisor"};  // reserved: supervisor.log is next to the processes' logs
   for (ConfigReader& item : reader.sections("processes", true)) {
     launch.processes.push_back(readProcess(item, placeholders, folder));
     if (!names.insert(launch.processes.back().name).second)

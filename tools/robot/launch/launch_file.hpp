@@ -11,78 +11,78 @@
 
 namespace tread::launch {
 
-/// One process of a launch file; every {placeholder} is replaced already.
+/// One process of a launch file, placeholders replaced.
 struct LaunchProcess {
   std::string name;
-  std::string program;                 ///< a path if it has a slash, else looked up (findProgram)
-  std::string config;                  ///< absolute path for --config; empty = none
-  std::vector<std::string> arguments;  ///< further words
-  /// Not a program of ours: no --config, --lcm-url, --with-parent and --check are given to it.
+  std::string program;  ///< a path if it contains a slash, else a name for findProgram
+  std::string config;   ///< absolute path for --config; empty = none
+  std::vector<std::string> arguments;  ///< additional arguments
+  /// Another project's program: it gets no --config, --lcm-url, --with-parent and --check.
   bool external = false;
-  std::string stop_signal = "INT";  ///< asks it to end
-  int64_t stop_time = 5;            ///< s until it is killed
-  double start_time = 30.0;         ///< s until it must be ready
-  double watchdog = 2.0;  ///< s without a sign of life after which it is ended; 0 = not watched
+  std::string stop_signal = "INT";  ///< asks the process to end
+  int64_t stop_time = 5;            ///< s until SIGKILL
+  double start_time = 30.0;         ///< s within which it must be ready
+  double watchdog = 2.0;  ///< s without a sign of life until it is aborted; 0 = not watched
 };
 
-/// A launch file: what runs together, in the order of starting; stopped in the reverse order.
+/// A launch file: its processes in starting order; they are stopped in reverse order.
 struct LaunchFile {
   std::string name;
   std::string lcm_url;
   std::string key;         ///< absolute path of the robot's key; empty = messages are not sealed
-  bool makes_key = false;  ///< it is made at the first start
-  bool simulated = false;  ///< no robot: what only a robot's network needs is an advice
+  bool makes_key = false;  ///< created at the first start
+  bool simulated = false;  ///< no real robot: requirements on a robot's network are only advice
   std::string
       pre_drive;  ///< folder of the robot whose wiring is tried before the start; empty: none
   std::vector<LaunchProcess> processes;
 };
 
-/// What the command line says; all paths absolute.
+/// Settings of the command line; all paths absolute.
 struct LaunchSettings {
   std::string file;     ///< the launch file
-  std::string run;      ///< run folder; empty = defaultRunFolder() of the file's name
+  std::string run;      ///< run folder; empty = defaultRunFolder() of the launch's name
   std::string bin;      ///< folder of our programs
-  std::string lcm_url;  ///< empty = the file's own
-  std::map<std::string, std::string> values;  ///< replace values of the file
+  std::string lcm_url;  ///< empty = that of the file
+  std::map<std::string, std::string> values;  ///< override values of the file
 };
 
 /// Name of a launch, for the default run folder; throws ConfigError.
 std::string readLaunchName(const std::string& file);
 
 /// Reads a launch file; throws ConfigError with file:line.
-/** Without a key the file is a robot's, whose key is made in its run folder, or a simulated one;
- * `key: none` is a robot that takes messages from everybody. Keys: name, lcm_url, key, simulated,
- * pre_drive, values (further placeholders with their defaults) and processes, a list of maps: name,
- * program, config, arguments, external, stop_signal, stop_time, start_time, watchdog. Placeholders
- * in key, pre_drive, program, config and arguments: {run}, {lcm_url}, {bin}, {here} (the file's
- * folder) and those in `values`. Paths are relative to the file's folder. A value that names a file
- * or folder there becomes its absolute path. */
+/** If `key` is absent, a robot's key is created in its run folder, and a simulated launch has none.
+ * `key: none` accepts messages from everybody. Keys: name, lcm_url, key, simulated, pre_drive,
+ * values (further placeholders with their defaults) and processes, a list of maps: name, program,
+ * config, arguments, external, stop_signal, stop_time, start_time, watchdog. Placeholders in key,
+ * pre_drive, program, config and arguments: {run}, {lcm_url}, {bin}, {here} (the file's folder)
+ * and the names in `values`. Paths are relative to the file's folder. A value that names a file or
+ * folder there becomes its absolute path. */
 LaunchFile readLaunchFile(ConfigReader& reader, const LaunchSettings& settings);
 
-/// The words that start a process: ours get --config, --lcm-url, --with-parent and, where there is
-/// one, --key; external ones run under setpriv, so that neither outlives a killed supervisor.
+/// Command line of a process. Ours get --config, --lcm-url, --with-parent and, if there is one,
+/// --key; external ones run under setpriv. Neither outlives a killed supervisor.
 std::vector<std::string> startCommand(const LaunchProcess& process, const std::string& program,
                                       const std::string& lcm_url, const std::string& key = "");
 
-/// The words that make a program of ours check its configuration; empty for external ones.
+/// Command line that checks a configuration; empty for external programs.
 std::vector<std::string> checkCommand(const LaunchProcess& process, const std::string& program,
                                       const std::string& lcm_url);
 
-/// Where things of one run lie.
+/// Paths of one run.
 struct RunPaths {
   explicit RunPaths(const std::string& run);
 
   std::string folder;
-  std::string lock;    ///< held while something runs here
+  std::string lock;    ///< held while the launch runs
   std::string life;    ///< socket for signs of life
-  std::string hung;    ///< which processes have hung since the start, one a line; may be absent
-  std::string status;  ///< how the processes are, one a line; there while something runs here
+  std::string hung;    ///< processes that have hung since the start, one per line; may be absent
+  std::string status;  ///< state of the processes, one per line; exists while the launch runs
   std::string pid;     ///< of the supervisor
-  std::string logs;    ///< folder with one NAME.log a process
+  std::string logs;    ///< folder with NAME.log for each process
   std::string supervisor_log;
 };
 
-/// A unix socket's path may have so many bytes.
+/// Longest path of a unix socket [byte].
 constexpr size_t kMaxSocketPath = 107;
 
 }  // namespace tread::launch

@@ -7,7 +7,7 @@
 namespace tread::launch {
 namespace {
 
-constexpr double kAbortTime = 1.0;  // s until an aborted process is killed
+constexpr double kAbortTime = 1.0;  // s from SIGABRT to SIGKILL
 
 bool contains(const std::string& text, const char* part) {
   return text.find(part) != std::string::npos;
@@ -28,7 +28,7 @@ void Liveness::hear(int pid, const std::string& lines) {
   for (auto& [name, watched] : running_) {
     if (watched.pid != pid) continue;
     watched.silence = 0.0;
-    // READY=1 may have been lost, but nobody beats before it.
+    // READY=1 may have been lost, but a heartbeat implies it.
     watched.ready |= contains(lines, "READY=1") || contains(lines, "WATCHDOG=1");
     watched.stopping |= contains(lines, "STOPPING=1");
   }
@@ -50,7 +50,7 @@ std::vector<Liveness::Hung> Liveness::judge(const std::string& name, Watched& wa
     watched.silence = 0.0;
     return {{name, watched.pid, true, name + " does not end and is killed"}};
   }
-  // Without a watchdog it may be silent, but whoever ends must come to its end.
+  // Without a watchdog a process may be silent, but a stop must still complete in time.
   if (process.watchdog == 0.0 && !watched.stopping) return {};
   const double limit = watched.stopping ? static_cast<double>(process.stop_time)
                        : watched.ready  ? process.watchdog

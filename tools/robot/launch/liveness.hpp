@@ -10,30 +10,31 @@
 
 namespace tread::launch {
 
-/// Which processes hang: those that run, but have given no sign of life (LifeSign) for too long.
-/** They are aborted, which may leave a core (halted ones are killed at once), and killed a second
- * later if they are still there; what restarts crashed processes restarts them, too. */
+/// Detects processes that hang: they run without a sign of life (LifeSign) for too long.
+/** They get SIGABRT, which may leave a core dump (halted ones get SIGKILL at once), and SIGKILL a
+ * second later. The supervisor restarts them like crashed processes. */
 class Liveness {
  public:
-  /// External processes give no signs and are not watched.
+  /// External processes send no signs of life and are not watched.
   explicit Liveness(const std::vector<LaunchProcess>& processes);
 
   void started(const std::string& process, int pid);
   void ended(const std::string& process) { running_.erase(process); }
-  /// What the process of this pid has said.
+  /// Handles signs of life of the process `pid`.
   void hear(int pid, const std::string& lines);
 
   struct Hung {
     std::string process;
     int pid;
-    bool kill;         ///< it was aborted before
-    std::string line;  ///< what to tell people
+    bool kill;         ///< SIGKILL: SIGABRT was sent before
+    std::string line;  ///< message for people
   };
-  /// Time passes [s], in which the signs of life were listened to; returns who is to be ended.
+  /// Advances the time by `seconds` in which signs of life could arrive; returns the processes to
+  /// end.
   std::vector<Hung> pass(double seconds);
 
  private:
-  /// A process that runs.
+  /// A running process.
   struct Watched {
     int pid;
     bool ready = false;
@@ -41,7 +42,7 @@ class Liveness {
     bool aborted = false;
     double silence = 0.0;  ///< [s]
   };
-  /// Nothing while it may be silent for longer.
+  /// nullopt while the process may still be silent.
   std::vector<Hung> judge(const std::string& process, Watched& watched) const;
 
   std::map<std::string, LaunchProcess> processes_;

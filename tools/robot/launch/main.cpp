@@ -57,31 +57,30 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--lcm-url", options.settings.lcm_url, "LCM provider, instead of the file's");
   app.add_option(
          "--set", options.values,
-         "KEY=VALUE: replaces one of the file's values; where it is a relative path, program "
-         "and config take it from the file's folder, arguments from the run folder")
+         "KEY=VALUE: overrides one of the file's values; a relative path is resolved from the "
+         "file's folder in program and config, from the run folder in arguments")
       ->expected(1)
       ->take_all();
-  auto* check = app.add_flag("--check", options.check, "only the start-up checks");
-  auto* status = app.add_flag("--status", options.status, "what runs in the run folder");
-  auto* stop = app.add_flag("--stop", options.stop, "stops what runs in the run folder");
+  auto* check = app.add_flag("--check", options.check, "run only the start-up checks");
+  auto* status = app.add_flag("--status", options.status, "show what runs in the run folder");
+  auto* stop = app.add_flag("--stop", options.stop, "stop what runs in the run folder");
   auto* only = app.add_option("--only", options.only,
-                              "becomes this one process, without a supervisor (for systemd)");
+                              "run only this process, without a supervisor (for systemd)");
   app.add_flag("--no-watchdog", options.no_watchdog,
-               "ends no process that gives no sign of life: for a debugger, which halts it");
+               "do not end processes without a sign of life: for a debugger, which halts them");
   app.add_flag(
       "--pre-drive", options.pre_drive,
-      "yes to the drive of 10 s by which the file's pre_drive tries the wiring; else asks");
-  app.add_option(
-         "--timing", options.timing,
-         "measures for so many seconds, or until it is stopped, how long this machine keeps "
-         "a process waiting; exit status 3 above --longest")
+      "agree to the 10 s drive that tests the wiring (pre_drive in the file); else it asks");
+  app.add_option("--timing", options.timing,
+                 "measure for so many seconds (0: until stopped) how long this machine keeps "
+                 "a process waiting; exit status 3 if longer than --longest")
       ->check(CLI::Range(0.0, 86400.0))
       ->excludes(check)
       ->excludes(status)
       ->excludes(stop)
       ->excludes(only);
   app.add_option("--longest", options.longest_ms,
-                 "[ms] for --timing; above 100 ms motor_bridge stops the motors")
+                 "limit for --timing [ms]; motor_bridge stops the motors above 100 ms")
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();
   check->excludes(status)->excludes(stop)->excludes(only);
@@ -119,7 +118,7 @@ std::vector<SupervisedProcess> withCommands(const LaunchFile& launch,
   throw std::runtime_error(words.front() + ": cannot be started");
 }
 
-/// The checks on the screen; false if starting makes no sense.
+/// Prints the start-up checks; false if a critical one fails.
 bool checksPass(const LaunchFile& launch, const LaunchSettings& settings) {
   const std::vector<HostFinding> findings = checkHost(launch, settings);
   for (const HostFinding& finding : findings)
@@ -127,22 +126,24 @@ bool checksPass(const LaunchFile& launch, const LaunchSettings& settings) {
   return !anyCritical(findings);
 }
 
-/// Whether the robot may move before anything watches over it: only somebody who stands by knows.
+/// Asks for permission to move: nothing watches for obstacles yet, so a person must stand by.
 bool mayMove(const LaunchFile& launch, bool agreed) {
   if (agreed) return true;
   if (isatty(STDIN_FILENO) == 0) {
-    std::cout << launch.name << ": wiring not tried: nobody here to say yes, see --pre-drive"
+    std::cout << launch.name
+              << ": wiring not tested: no terminal to ask for permission, see --pre-drive"
               << std::endl;
     return false;
   }
-  std::cout << launch.name << ": tries the wiring: 10 s to and fro within a metre, nothing sees "
+  std::cout << launch.name
+            << ": tests the wiring: 10 s back and forth within a metre, nothing detects "
             << "obstacles. Emergency stop at hand, go? [y/N] " << std::flush;
   std::string answer;
   std::getline(std::cin, answer);
   return answer == "y" || answer == "yes";
 }
 
-/// Tries the robot's wiring; false if something is wrong with it.
+/// Tries the robot's wiring; false if there is a fault.
 bool preDrivePasses(const LaunchFile& launch, const Options& options) {
   constexpr double kLongest = 120.0;  // [s]
   if (options.pre_drive && launch.pre_drive.empty())
@@ -152,7 +153,7 @@ bool preDrivePasses(const LaunchFile& launch, const Options& options) {
   const CommandOutcome outcome = runCommand({program, "--pre-drive", launch.pre_drive}, kLongest);
   std::cout << outcome.output << std::flush;
   if (outcome.code == 0) return true;
-  std::cerr << launch.name << ": nothing is started: the wiring is not right" << std::endl;
+  std::cerr << launch.name << ": nothing is started: the wiring is wrong" << std::endl;
   return false;
 }
 
@@ -162,7 +163,7 @@ int start(const LaunchFile& launch, const Options& options) {
   const RunPaths paths(settings.run);
   std::filesystem::create_directories(paths.logs);
   const RunLock lock(paths.lock);
-  // A run that lost its power has left them.
+  // Files of a run that ended by a power failure.
   std::error_code none;
   for (const std::string& old : {paths.status, paths.pid}) std::filesystem::remove(old, none);
   if (const std::string line = provideKey(launch); !line.empty()) std::cout << line << std::endl;
@@ -189,8 +190,8 @@ int only(const LaunchFile& launch, const Options& options) {
   throw std::runtime_error(options.settings.file + ": has no process '" + options.only + "'");
 }
 
-/// What the processes say of themselves in HEALTH within a little more than its period; those that
-/// are well say nothing.
+/// Problems that the processes report in HEALTH within a little more than one period; healthy ones
+/// are absent.
 std::map<std::string, std::string> troubles(const LaunchFile& launch) {
   constexpr int64_t kListen = 1'200'000;  // [us]
   std::map<std::string, std::string> lines;
@@ -202,15 +203,16 @@ std::map<std::string, std::string> troubles(const LaunchFile& launch) {
     });
     for (const int64_t end = hostNow() + kListen; hostNow() < end;) bus.handle(50);
   } catch (const std::exception& error) {
-    lines["HEALTH"] = std::string(" cannot be heard: ") + wordsOf(error);
+    lines["HEALTH"] = std::string(" cannot be received: ") + wordsOf(error);
   }
   return lines;
 }
 
-/// Processes to which messages came late: of one it may be its own fault, of several the machine's.
+/// Processes that receive messages late. A single one may be at fault itself; several point to the
+/// machine.
 class LateMessages {
  public:
-  /// An empty URL: nobody is listened to.
+  /// An empty URL: no messages are received.
   LateMessages(const std::string& lcm_url, const std::string& key) {
     if (lcm_url.empty()) return;
     bus_.emplace(BusAccess{lcm_url, hostSealer(key)}, TimeSource::kHost);
@@ -232,7 +234,8 @@ class LateMessages {
   std::map<std::string, bool> late_;
 };
 
-/// Whether this machine keeps real time: no process waits for long, and messages come in time.
+/// Measures whether this machine keeps real time: no process waits long, and messages arrive in
+/// time.
 int timing(const LaunchFile& launch, const Options& options) {
   constexpr int64_t kMostLate = 1;
   constexpr int kLookMs = 20;

@@ -32,7 +32,7 @@ namespace tread::launch {
 namespace {
 
 constexpr timespec kLookEvery{0, 50'000'000};
-constexpr double kLongestLook = 0.25;  // [s] that may pass between two looks at signs of life
+constexpr double kLongestLook = 0.25;  // [s] between two checks of the signs of life
 constexpr double kTrimEvery = 1.0;     // [s]
 constexpr uintmax_t kLargestLog = 5'000'000;
 constexpr int kOldLogs = 3;
@@ -56,7 +56,7 @@ int signalOf(const std::string& name) {
   return kNumbers.at(name);
 }
 
-/// Whether it was halted by a signal or a debugger.
+/// Whether a signal or a debugger has halted the process.
 bool isHalted(pid_t pid) {
   std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
   const std::string stat{std::istreambuf_iterator<char>(file), {}};
@@ -65,7 +65,7 @@ bool isHalted(pid_t pid) {
   return stat[name_end + 2] == 'T' || stat[name_end + 2] == 't';
 }
 
-/// A line for the terminal, if it takes one: who watches the robot never waits for who reads.
+/// Prints a line unless the terminal blocks: supervision must not wait for a reader.
 void say(int terminal, const std::string& line) {
   pollfd ready{terminal, POLLOUT, 0};
   if (poll(&ready, 1, 0) != 1 || (ready.revents & POLLOUT) == 0) return;
@@ -73,13 +73,13 @@ void say(int terminal, const std::string& line) {
   [[maybe_unused]] const ssize_t written = ::write(terminal, text.data(), text.size());
 }
 
-/// Lines are added at its end, also after it was emptied.
+/// Opened for appending, also after it was emptied.
 int openedLog(const std::string& path) {
   return ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0644);
 }
 
-/// A file that is worth nothing after a loss of power: nobody waits for the disk. Where it cannot
-/// be written, there is none: an old one would lie.
+/// Replaces a file without fsync, as its content is worthless after a power failure. If writing
+/// fails the file is removed, since an old one would be wrong.
 void replaceQuickly(const std::string& path, const std::string& text) {
   const std::string next = path + ".next";
   const int file = ::open(next.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
@@ -89,7 +89,7 @@ void replaceQuickly(const std::string& path, const std::string& text) {
   if (!whole || std::rename(next.c_str(), path.c_str()) != 0) ::unlink(path.c_str());
 }
 
-/// A log that has grown too large is copied and emptied: who writes to it has it open.
+/// Copies and empties a log that has grown too large; the process that writes it keeps it open.
 void trim(const std::string& path) {
   std::error_code none;
   const uintmax_t size = std::filesystem::file_size(path, none);
@@ -107,7 +107,7 @@ void trim(const std::string& path) {
 class Keeper {
  public:
   explicit Keeper(const KeptProcesses& kept);
-  /// Until all were stopped.
+  /// Returns when all processes have stopped.
   void run();
 
  private:
@@ -125,8 +125,8 @@ class Keeper {
   const KeptProcesses& kept_;
   ProcessTable table_;
   Liveness liveness_;
-  std::optional<LifeSignListener> life_;                     ///< null: who hangs is left alone
-  std::map<std::string, std::pair<int, std::string>> hung_;  ///< how often, and the last time
+  std::optional<LifeSignListener> life_;  ///< null: hanging processes are not detected
+  std::map<std::string, std::pair<int, std::string>> hung_;  ///< count, and the last occurrence
   sigset_t waited_{};
   int log_;
   double looked_;
@@ -165,7 +165,7 @@ void Keeper::run() {
     }
     reap();
     if (life_) watch();
-    tell();  // last: a slow disk must not keep a stop waiting
+    tell();  // last, as a slow disk must not delay a stop
   }
   tell();
 }
@@ -191,7 +191,7 @@ std::optional<int> Keeper::start(size_t process) const {
   const pid_t pid = fork();
   if (pid == 0) become(process);
   if (pid < 0) return std::nullopt;
-  setpgid(pid, pid);  // here, too: a group that is to be killed must be there
+  setpgid(pid, pid);  // also in the parent: the group must exist before it can be killed
   return pid;
 }
 
@@ -207,7 +207,7 @@ void Keeper::become(size_t process) const {
     setenv("NOTIFY_SOCKET", kept_.paths.life.c_str(), 1);
   else
     unsetenv("NOTIFY_SOCKET");
-  // A shell in the background may have had them ignored; SIGHUP is nohup's.
+  // A background shell may have set them to SIG_IGN; SIGHUP belongs to nohup.
   for (const int number : {SIGPIPE, SIGINT, SIGTERM, SIGQUIT, SIGCHLD})
     std::signal(number, SIG_DFL);
   sigprocmask(SIG_SETMASK, &kept_.mask, nullptr);
@@ -241,17 +241,17 @@ void Keeper::tell() {
 
 void Keeper::watch() {
   while (const auto word = life_->take()) liveness_.hear(word->pid, word->lines);
-  // While we did not listen ourselves (a busy host, Ctrl-Z), nobody was silent.
+  // If we were halted ourselves (busy host, Ctrl-Z), the silence is not the processes' fault.
   const double now = secondsNow();
   const double passed = std::min(now - std::exchange(looked_, now), kLongestLook);
-  if (stopping_) return;  // they are ended in their order
+  if (stopping_) return;  // they are being stopped in order
   for (const Liveness::Hung& hung : liveness_.pass(passed)) end(hung);
 }
 
 void Keeper::end(const Liveness::Hung& hung) {
   say(STDOUT_FILENO, kept_.launch + ": " + hung.line);
-  // A halted one would have to go on to take SIGABRT, and while one of its threads does, another
-  // may still send a command that it had at hand when it was halted.
+  // A halted process would have to be continued to handle SIGABRT, and one of its threads might
+  // then send a stale command.
   kill(hung.pid, hung.kill || isHalted(hung.pid) ? SIGKILL : SIGABRT);
   if (!hung.kill) noteHung(hung);
 }
@@ -267,7 +267,7 @@ void Keeper::noteHung(const Liveness::Hung& hung) {
   write(kept_.paths.hung, text);
 }
 
-/// A full disk ends no watch.
+/// A full disk must not end the supervision.
 void Keeper::write(const std::string& path, const std::string& text) const {
   try {
     writeText(path, text);
@@ -279,8 +279,9 @@ void Keeper::write(const std::string& path, const std::string& text) const {
 }  // namespace
 
 void becomeKeeper(const KeptProcesses& kept, const RunLock& lock, pid_t parent) {
-  setpgid(0, 0);                  // Ctrl-C reaches the parent alone
-  std::signal(SIGTTOU, SIG_IGN);  // what writes to the terminal from behind may be halted for it
+  setpgid(0, 0);  // Ctrl-C reaches only the parent
+  std::signal(SIGTTOU,
+              SIG_IGN);  // a background process that writes to the terminal may be halted otherwise
   prctl(PR_SET_CHILD_SUBREAPER, 0);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent || chdir(kept.paths.folder.c_str()) != 0) _exit(1);

@@ -10,19 +10,19 @@
 
 namespace tread::launch {
 
-/// What a supervisor is to keep running.
+/// The processes of a supervisor.
 struct KeptProcesses {
-  std::string launch;  ///< its name, for messages
+  std::string launch;  ///< name of the launch, for messages
   std::vector<SupervisedProcess> processes;
   RunPaths paths;
-  bool watch;     ///< ends processes that hang
-  sigset_t mask;  ///< of signals, for the processes
+  bool watch;     ///< end processes that hang
+  sigset_t mask;  ///< signal mask of the processes
 };
 
-/// Makes this process, a new child of `parent`, the supervisor: starts the processes, starts again
-/// those that end, and stops them in order at SIGTERM, or when the parent dies.
-/** It holds the lock, and closes all else that its parent had open. What the processes print goes
- * to log/NAME.log, which is emptied at 5 MB; three old ones are kept. */
+/// Turns this process, a new child of `parent`, into the supervisor. It starts the processes,
+/// restarts those that end, and stops them in order at SIGTERM or when the parent dies.
+/** It keeps the lock and closes all other descriptors of its parent. Output of the processes goes
+ * to log/NAME.log, which is rotated at 5 MB; three old ones are kept. */
 [[noreturn]] void becomeKeeper(const KeptProcesses& kept, const RunLock& lock, pid_t parent);
 
 }  // namespace tread::launch

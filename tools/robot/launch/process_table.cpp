@@ -14,7 +14,7 @@
 namespace tread::launch {
 namespace {
 
-constexpr double kStable = 1.0;         // [s] after which a process counts as running
+constexpr double kStable = 1.0;         // [s] after which a start counts as successful
 constexpr double kLongestPause = 60.0;  // [s]
 
 std::string howItEnded(int status) {
@@ -50,7 +50,7 @@ std::vector<ProcessTable::Task> ProcessTable::due(double now) {
   return tasks;
 }
 
-/// One after the other, so that whoever needs another one still has it.
+/// One at a time, so that a process that depends on another still has it.
 std::vector<ProcessTable::Task> ProcessTable::dueToStop(double now) {
   for (Entry& entry : entries_)
     if (!lives(entry)) entry.state = Entry::kStopped;
@@ -105,7 +105,7 @@ void ProcessTable::restartLater(Entry& entry, const std::string& how, double now
   note("exited: " + name + " (" + how + ")",
        entry.ends == 1   ? start + " ended (" + how + ")"
        : entry.ends == 2 ? start + " ended again (" + how +
-                               "); the pauses before it is started grow, see log/" + name + ".log"
+                               "); the pauses between its starts grow, see log/" + name + ".log"
                          : "");
   entry.since = now + (ran ? 0.0 : std::min<double>(entry.ends, kLongestPause));
   entry.state = Entry::kWaits;

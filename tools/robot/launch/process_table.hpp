@@ -10,38 +10,39 @@
 
 namespace tread::launch {
 
-/// Which of the processes run, and what is to be done with them: started in their order, started
-/// again, stopped in the reverse order.
-/** Pure: times [s] are arguments. One that ran for a second and ends is started again at once; one
- * that ended before after a pause, which grows by a second each time, up to a minute. At the stop
- * each is asked to end, and killed after its stop time, before the next one is asked. */
+/// State of the processes and the next actions: starting in order, restarting, stopping in reverse
+/// order.
+/** Pure: times [s] are arguments. A process that ran for 1 s and ends is restarted at once; one
+ * that ended earlier is restarted after a pause, which grows by 1 s each time, up to 60 s. At a
+ * stop each process is asked to end, and killed after its stop time, before the next one is asked.
+ * */
 class ProcessTable {
  public:
   ProcessTable(std::string launch, std::vector<LaunchProcess> processes);
 
   struct Task {
     enum Kind { kStart, kAskToEnd, kKill } kind;
-    size_t process;  ///< its place in the launch file
-    int pid;         ///< 0 where it is to be started
+    size_t process;  ///< index in the launch file
+    int pid;         ///< 0: to be started
   };
-  /// What is to be done now; each is told once.
+  /// Actions that are due; each is returned once.
   std::vector<Task> due(double now);
-  /// A process was started; without a pid it could not be.
+  /// A process was started; no pid: starting failed.
   void started(size_t process, std::optional<int> pid, double now);
-  /// A child has ended, with a status as of waitpid(2); its place if it is one of these processes.
+  /// A child has ended with a status of waitpid(2); returns its index, nullopt for other children.
   std::optional<size_t> ended(int pid, int status, double now);
-  /// From now on they are to end.
+  /// From now on all processes are stopped.
   void stop() { stopping_ = true; }
-  /// They were to end, and all have.
+  /// Whether all have ended after stop().
   bool done() const;
 
-  /// What has happened since the last call.
+  /// An event since the last call.
   struct Event {
-    std::string log;   ///< for the supervisor's log
-    std::string told;  ///< for people; empty where it does not matter to them
+    std::string log;   ///< line for the supervisor's log
+    std::string told;  ///< line for the terminal; empty where people need not know
   };
   std::vector<Event> takeEvents();
-  /// How the processes are, a line each.
+  /// State of the processes, one per line.
   std::string status() const;
 
  private:
@@ -49,9 +50,9 @@ class ProcessTable {
     enum State { kWaits, kStarting, kRuns, kStopping, kStopped } state = kWaits;
     LaunchProcess process;
     int pid = 0;
-    double since = 0.0;  ///< when the state began; kWaits: when it is to be started
-    int ends = 0;        ///< in a row, without having run for a second between them
-    bool ran = false;    ///< for a second, at least once
+    double since = 0.0;  ///< start of the state; kWaits: time of the next start
+    int ends = 0;        ///< consecutive ends without running for 1 s
+    bool ran = false;    ///< has run for 1 s at least once
     bool killed = false;
   };
 

@@ -19,21 +19,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of this user alone; empty if there is no such folder and none can be made.
+/// This user's private folder; empty if there is none and none can be created.
 std::string ownRunFolder() {
   const char* runtime = std::getenv("XDG_RUNTIME_DIR");
   const std::string base = runtime != nullptr && *runtime == '/' ? runtime : "/tmp";
   const std::string folder = base + "/tread-" + std::to_string(::getuid());
   ::mkdir(folder.c_str(), 0700);
   struct stat facts {};
-  // Somebody else's folder could send an operator to somebody else's robot.
+  // A folder of another user could direct an operator to another robot.
   if (::lstat(folder.c_str(), &facts) != 0 || !S_ISDIR(facts.st_mode) ||
       facts.st_uid != ::getuid() || (facts.st_mode & 077) != 0)
     return {};
   return folder;
 }
 
-/// The network that this process is in.
+/// Network namespace of this process.
 std::string network() {
   std::error_code none;
   return fs::read_symlink("/proc/self/ns/net", none).string();
@@ -55,7 +55,7 @@ Announcement::Announcement(const RunningRobot& robot) {
   path_ = folder + "/" + std::to_string(::getpid());
   file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   if (file_ < 0 || ::flock(file_, LOCK_EX | LOCK_NB) != 0) return;
-  // Into the file that is locked: another one in its place would not be.
+  // Write into the locked file: a new file in its place would not be locked.
   ::dprintf(file_, "%s\n%s\n%s\n%s\n", network().c_str(), robot.name.c_str(), robot.lcm_url.c_str(),
             robot.key.c_str());
 }

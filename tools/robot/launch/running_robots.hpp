@@ -7,18 +7,18 @@
 
 namespace tread::launch {
 
-/// A robot that runs on this machine, in the network of the caller.
+/// A robot that runs on this machine, in the caller's network.
 struct RunningRobot {
   std::string name;  ///< of the launch
   std::string lcm_url;
-  std::string key;    ///< file; empty = messages are not sealed
-  bool here = false;  ///< it was found on this machine, whose session and clock are its own
+  std::string key;    ///< key file; empty = messages are not sealed
+  bool here = false;  ///< found on this machine, so it shares the session and clock
 };
 
-/// Tells the operator's programs of this user about a robot as long as the object lives.
+/// Announces a robot to this user's operator programs while the object lives.
 class Announcement {
  public:
-  /// Says nothing where the folder for it cannot be used: --lcm-url still finds the robot.
+  /// Does nothing if the folder for it cannot be used: --lcm-url still finds the robot.
   explicit Announcement(const RunningRobot& robot);
   ~Announcement();
   Announcement(const Announcement&) = delete;
@@ -26,16 +26,15 @@ class Announcement {
 
  private:
   std::string path_;
-  int file_ = -1;  ///< locked, so that a killed launch is no robot
+  int file_ = -1;  ///< locked, so that a killed launch does not count as running
 };
 
-/// The robots that were announced by this user in this network, and still run.
+/// Robots that this user announced in this network and that still run.
 std::vector<RunningRobot> runningRobots();
 
-/// The robot to speak to, and its key: at the URL that was given, else at LCM_DEFAULT_URL, else the
-/// only robot that runs here; with the key that was given, else what a robot that runs here at this
-/// URL was started with. An empty URL is LCM's own. Throws std::runtime_error if several robots
-/// run.
+/// Finds the robot and its key. URL: the one given, else LCM_DEFAULT_URL, else that of the only
+/// running robot; an empty URL is LCM's default. Key: the one given, else that of the running robot
+/// at this URL. Throws std::runtime_error if several robots run.
 RunningRobot findRobot(const std::string& lcm_url, const std::string& key);
 
 }  // namespace tread::launch

@@ -9,8 +9,8 @@
 
 namespace tread::launch {
 
-/// Notes how long the machine kept a sleeping thread waiting: what a real-time measurement that was
-/// made meanwhile is worth.
+/// Measures how long the machine keeps a sleeping thread waiting, to judge real-time measurements
+/// made meanwhile.
 class StallWatch {
  public:
   StallWatch() : thread_([this] { watch(); }) {}

@@ -35,9 +35,9 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// The parent in the text of /proc/PID/stat; 0 if it cannot be read.
+/// Parent pid in the text of /proc/PID/stat; 0 if it cannot be read.
 pid_t parentIn(const std::string& stat) {
-  const size_t bracket = stat.rfind(") ");  // a program's name may hold blanks and brackets
+  const size_t bracket = stat.rfind(") ");  // a program name may contain blanks and brackets
   pid_t parent = 0;
   if (bracket == std::string::npos || std::sscanf(stat.c_str() + bracket, ") %*c %d", &parent) != 1)
     return 0;
@@ -60,24 +60,24 @@ std::vector<pid_t> children() {
   return pids;
 }
 
-/// Asks all children of this process to end, and kills those that have not after `stop_time`
-/// seconds.
+/// Sends SIGTERM to all children of this process, and SIGKILL to those that remain after
+/// `stop_time` seconds.
 void endChildren(double stop_time) {
   const auto deadline = std::chrono::steady_clock::now() +
                         std::chrono::milliseconds(static_cast<int64_t>(1000.0 * stop_time));
   for (const pid_t pid : children()) kill(pid, SIGINT);
   for (;;) {
     const pid_t pid = waitpid(-1, nullptr, WNOHANG);
-    if (pid < 0) return;  // nobody is left
+    if (pid < 0) return;  // no children left
     if (pid > 0) continue;
-    // A halted process sees nothing but SIGKILL; a grandchild may come to us late.
+    // A halted process reacts only to SIGKILL; a grandchild may become our child late.
     if (std::chrono::steady_clock::now() > deadline)
       for (const pid_t child : children()) kill(child, SIGKILL);
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
 }
 
-/// As nohup leaves it: this process outlives its terminal.
+/// True under nohup: this process outlives its terminal.
 bool ignoresHangup() {
   struct sigaction now {};
   return sigaction(SIGHUP, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
@@ -89,9 +89,9 @@ class Run {
   Run(std::string name, RunPaths paths) : name_(std::move(name)), paths_(std::move(paths)) {}
 
   void begin(const std::vector<SupervisedProcess>& processes, const RunLock& lock, bool watch);
-  /// Waits for the end of the supervisor.
+  /// Waits until the supervisor has ended.
   void wait();
-  /// Says how it ended; the exit code.
+  /// Reports how it ended; returns the exit code.
   int conclude() const;
 
  private:
@@ -114,7 +114,7 @@ void Run::begin(const std::vector<SupervisedProcess>& processes, const RunLock& 
   for (const int number : {SIGINT, SIGTERM, SIGCHLD}) sigaddset(&waited_, number);
   if (!ignoresHangup()) sigaddset(&waited_, SIGHUP);
   sigprocmask(SIG_BLOCK, &waited_, &before);
-  std::signal(SIGPIPE, SIG_IGN);  // whoever reads what we say may leave
+  std::signal(SIGPIPE, SIG_IGN);  // the reader of our output may leave
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   const pid_t parent = getpid();
   supervisor_ = fork();
@@ -131,7 +131,7 @@ void Run::wait() {
 }
 
 void Run::stop() {
-  kill(supervisor_, SIGTERM);  // before a terminal that nobody reads may hold us up
+  kill(supervisor_, SIGTERM);  // before writing: a terminal that nobody reads may block us
   if (!stopping_) {
     stop_ = Clock::now();
     std::cout << name_ << ": stopping" << std::endl;
@@ -187,8 +187,8 @@ int stopRun(const std::string& name, const RunPaths& paths) {
   }
   const auto start = Clock::now();
   if (pid > 0 && kill(pid, SIGTERM) != 0) {
-    std::cerr << name << ": pid " << pid << " is not ours to stop (" << std::strerror(errno)
-              << "); stop it as the user who started it" << std::endl;
+    std::cerr << name << ": pid " << pid << " cannot be stopped by this user ("
+              << std::strerror(errno) << "); stop it as the user who started it" << std::endl;
     return 1;
   }
   while (RunLock::isHeld(paths.lock)) {

@@ -11,7 +11,7 @@
 namespace tread::link {
 namespace {
 
-constexpr double kBurst = 0.5;  // [s] of the budget that may be used at once
+constexpr double kBurst = 0.5;  // [s] of the budget that a burst may use
 
 /// A map from channel to rate.
 std::vector<LinkRule> readRules(ConfigReader reader) {
@@ -39,7 +39,7 @@ LinkConfig readLinkConfig(ConfigReader& reader) {
     for (const LinkRule& back : config.to_robot)
       if (there.channel == back.channel)
         throw reader.error("to_robot",
-                           there.channel + " is in to_station, too: it would go round for ever");
+                           there.channel + " is also in to_station: it would loop for ever");
   reader.finish();
   config.effective = reader.effective();
   return config;
@@ -48,7 +48,7 @@ LinkConfig readLinkConfig(ConfigReader& reader) {
 LinkFilter::LinkFilter(const std::vector<LinkRule>& rules, double most_kilobytes)
     : most_(1000.0 * most_kilobytes), room_(kBurst * most_) {
   for (const LinkRule& rule : rules)
-    // A tenth less than the period: what comes at the rate itself must not be halved by jitter.
+    // A tenth less than the period: jitter must not halve a channel that comes at this very rate.
     intervals_[rule.channel] =
         rule.rate > 0.0 ? static_cast<int64_t>(0.9e6 / rule.rate) : int64_t{0};
 }

@@ -11,28 +11,28 @@
 
 namespace tread::link {
 
-/// What of a channel crosses the link.
+/// How much of a channel crosses the link.
 struct LinkRule {
   std::string channel;
-  double rate = 0.0;  ///< [Hz] at most, of each part (a tile of MAP, a process of HEALTH); 0 = all
+  double rate = 0.0;  ///< [Hz] limit for each part (tile of MAP, process of HEALTH); 0 = all
 };
 
-/// How the robot's own bus and the one towards the operator's station are joined.
+/// Joins the robot's own bus and the operator station's.
 struct LinkConfig {
   std::string station_url;           ///< LCM provider of the link; ttl=1
-  std::vector<LinkRule> to_station;  ///< of the robot's channels
-  std::vector<LinkRule> to_robot;    ///< of the station's: all of what they say crosses
-  double most = 500.0;               ///< [kB/s] to the station, of what is limited in rate
+  std::vector<LinkRule> to_station;  ///< channels of the robot
+  std::vector<LinkRule> to_robot;    ///< channels of the station: all their messages cross
+  double most = 500.0;               ///< [kB/s] to the station, for rate-limited channels
   std::string effective;             ///< as text, for CONFIG
 };
 
-/// Strict; throws ConfigError with file:line. A channel in both directions is refused: it would go
-/// round for ever.
+/// Strict; throws ConfigError with file:line. A channel in both directions is refused: it would
+/// loop for ever.
 LinkConfig readLinkConfig(ConfigReader& reader);
 
-/// Decides for one direction, message by message.
-/** What is not limited in rate always passes: commands, and above all stops. The rest shares a
- * budget of bytes, which a burst of half a second may use at once. */
+/// Decides which messages of one direction pass.
+/** Channels without a rate limit always pass: commands and above all stops. The others share a
+ * budget of bytes, with bursts of up to half a second. */
 class LinkFilter {
  public:
   LinkFilter(const std::vector<LinkRule>& rules, double most_kilobytes);
@@ -43,15 +43,16 @@ class LinkFilter {
   bool carries(const std::string& channel) const { return intervals_.count(channel) > 0; }
 
   int64_t passed() const { return passed_; }
-  int64_t thinned() const { return thinned_; }  ///< left out for their channel's rate
+  int64_t thinned() const { return thinned_; }  ///< dropped for their channel's rate
   int64_t over_budget() const { return over_budget_; }
 
  private:
-  std::map<std::string, int64_t> intervals_;                  ///< [us] by channel; 0 = all
-  std::map<std::pair<std::string, uint64_t>, int64_t> last_;  ///< [us] passed, by part
-  double most_;                                               ///< [bytes/s]
-  double room_;                                               ///< [bytes]
-  int64_t filled_ = 0;                                        ///< [us]
+  std::map<std::string, int64_t> intervals_;  ///< [us] by channel; 0 = all
+  std::map<std::pair<std::string, uint64_t>, int64_t>
+      last_;            ///< [us] of the last one that passed, by part
+  double most_;         ///< [bytes/s]
+  double room_;         ///< [bytes]
+  int64_t filled_ = 0;  ///< [us]
   int64_t passed_ = 0, thinned_ = 0, over_budget_ = 0;
 };
 

@@ -17,7 +17,7 @@ using namespace tread::link;
 
 constexpr int kWaitMs = 5;
 
-/// One direction: hears on one bus, says on the other.
+/// One direction: receives on one bus, sends on the other.
 class Direction {
  public:
   Direction(lcm::LCM& from, lcm::LCM& to, const std::vector<LinkRule>& rules, double most)
@@ -26,7 +26,7 @@ class Direction {
       from.subscribe(rule.channel, &Direction::hear, this)->setQueueCapacity(500);
   }
   const LinkFilter& filter() const { return filter_; }
-  /// What could not be sent: the link is down.
+  /// Messages that could not be sent because the link is down.
   int64_t unsent() const { return unsent_; }
   int64_t heard() const { return heard_; }
 
@@ -50,7 +50,7 @@ void handleAll(lcm::LCM& bus, int milliseconds) {
   }
 }
 
-/// Of what the link tells in HEALTH.
+/// Publishes the link's HEALTH.
 class LinkNode : public Node {
  public:
   LinkNode(Bus& bus, const LinkConfig& config, const std::string& robot_url)
@@ -72,9 +72,9 @@ class LinkNode : public Node {
     unsent_ = there_.unsent();
     health_.setCounter("to the station", there_.filter().passed());
     health_.setCounter("to the robot", back_.filter().passed());
-    health_.setCounter("left out for the rate", there_.filter().thinned());
-    health_.setCounter("left out for the budget", there_.filter().over_budget());
-    health_.setCounter("the station is heard", silent ? 0 : 1);
+    health_.setCounter("dropped for the rate", there_.filter().thinned());
+    health_.setCounter("dropped for the budget", there_.filter().over_budget());
+    health_.setCounter("the station is received", silent ? 0 : 1);
     health_.step(utime);
   }
 
@@ -103,8 +103,9 @@ int main(int argc, char** argv) {
       bus.run(node, stop);
     };
   };
-  return runShell(argc, argv, "tread-link",
-                  "Joins the robot's own bus and that of the operator's station: only what its "
-                  "configuration names crosses, limited in rate.",
-                  prepare);
+  return runShell(
+      argc, argv, "tread-link",
+      "Joins the robot's own bus and the operator station's. Only the channels that its "
+      "configuration names cross, limited in rate.",
+      prepare);
 }

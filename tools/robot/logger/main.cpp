@@ -32,12 +32,13 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("FILE", options.file, "log; FILE.0 is the newest, FILE.1 the one before")
       ->required();
   app.add_option("--lcm-url", options.lcm_url, "LCM provider");
-  app.add_option("--key", options.key, "taken as by all, not read: sealed messages stay sealed");
-  app.add_option("--keep", options.keep, "files that are kept")->check(CLI::Range(1, 10000));
+  app.add_option("--key", options.key,
+                 "accepted but not used: sealed messages are recorded sealed");
+  app.add_option("--keep", options.keep, "number of files to keep")->check(CLI::Range(1, 10000));
   app.add_option("--split-mb", options.split_mb, "size of a file [MB]")
       ->check(CLI::Range(1, 100000));
   app.add_option("--quota-mb", options.quota_mb,
-                 "of all files together [MB]: the oldest are removed; 0 = no limit")
+                 "size of all files together [MB]: the oldest are removed; 0 = no limit")
       ->check(CLI::Range(0, 100'000'000));
   app.add_flag("--check", options.check, "only read the command line");
   app.add_flag("--with-parent", options.with_parent, "end when the starting process is gone");

@@ -18,13 +18,13 @@ namespace {
 constexpr int kQueue = 100'000;                  // messages
 constexpr int64_t kMaintenancePeriod = 250'000;  // [us] between flushes
 constexpr int kWaitMs = 100;
-constexpr int kSilenceMs = 30;            // after which nothing is on its way any more
-constexpr int64_t kLastUs = 100'000;      // [us] after a stop
+constexpr int kSilenceMs = 30;            // of silence after which no message is in flight
+constexpr int64_t kLastUs = 100'000;      // [us] of receiving after a stop
 constexpr int64_t kRetry = 1'000'000;     // [us] between attempts after the disk was full
-constexpr int64_t kReserve = 10'000'000;  // [bytes] that must be free to begin again
-constexpr int64_t kScarce = 500'000'000;  // [bytes] free, of which people are warned
-constexpr int kMostFailures = 10;         // of LCM in a row
-constexpr int64_t kOverhead = 60;         // [bytes] of an event beside its message, about
+constexpr int64_t kReserve = 10'000'000;  // [bytes] of free space needed to begin again
+constexpr int64_t kScarce = 500'000'000;  // [bytes] of free space below which a warning is given
+constexpr int kMostFailures = 10;         // of LCM in succession
+constexpr int64_t kOverhead = 60;         // [bytes] of an event's header, about
 
 namespace fs = std::filesystem;
 
@@ -73,7 +73,7 @@ Recorder::Recorder(const RecorderSettings& settings)
         self->record(channel, static_cast<const uint8_t*>(buffer->data), buffer->data_size);
       },
       this);
-  if (all == nullptr) throw std::runtime_error("LCM does not let us subscribe");
+  if (all == nullptr) throw std::runtime_error("LCM refuses to subscribe");
   all->setQueueCapacity(kQueue);
 }
 
@@ -87,7 +87,7 @@ void Recorder::begin() {
 }
 
 void Recorder::giveUp(const std::string& why) {
-  std::fprintf(stderr, "tread-logger: %s; recording goes on when there is room\n", why.c_str());
+  std::fprintf(stderr, "tread-logger: %s; recording resumes when there is space\n", why.c_str());
   trouble_ = why;
   writer_.reset();
   next_try_ = hostNow() + kRetry;
@@ -106,7 +106,7 @@ void Recorder::reportHealth(int64_t now) {
     health_.setState(health_t::HEALTH_FAILED,
                      "nothing is recorded, " + lost + ": " + trouble_ + "; make room");
   } else if (lost_ > 0) {
-    health_.setState(health_t::HEALTH_DEGRADED, lost + ": the log has a hole (" + trouble_ + ")");
+    health_.setState(health_t::HEALTH_DEGRADED, lost + ": the log has a gap (" + trouble_ + ")");
   } else if (free_mb < kScarce / 1'000'000) {
     health_.setState(health_t::HEALTH_DEGRADED,
                      "only " + std::to_string(free_mb) + " MB are free for " + settings_.file +
@@ -156,16 +156,15 @@ void Recorder::maintain(int64_t now) {
 void Recorder::run(const std::atomic<bool>& stop) {
   int failures = 0;
   while (!stop) {
-    // A queue's length at a time, so that a flood does not keep the disk waiting.
+    // Handle one queue's length at a time, so that a flood does not delay writing.
     const int handled = lcm_->handleTimeout(kWaitMs);
     if (handled > 0)
       for (int i = 0; i < kQueue && lcm_->handleTimeout(0) > 0; ++i) {
       }
-    // A signal fails it once.
+    // A signal interrupts it once.
     failures = handled < 0 ? failures + 1 : 0;
     if (failures >= kMostFailures)
-      throw std::runtime_error(
-          "LCM fails again and again, so nothing more can be recorded; start again");
+      throw std::runtime_error("LCM fails repeatedly, so recording ends; start tread-logger again");
     if (const int64_t now = hostNow(); now >= next_maintenance_) {
       maintain(now);
       reportHealth(now);
@@ -173,7 +172,7 @@ void Recorder::run(const std::atomic<bool>& stop) {
     bus_.lifeSign().beat(hostNow());
   }
   bus_.lifeSign().stopping();
-  // What was sent before the stop is still on its way through LCM's own thread; a flood has no end.
+  // Messages sent before the stop are still in LCM's thread; the deadline is for a flood.
   const int64_t last = hostNow() + kLastUs;
   while (hostNow() < last && lcm_->handleTimeout(kSilenceMs) != 0) {
   }

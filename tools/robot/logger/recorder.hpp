@@ -16,14 +16,14 @@ class LCM;
 
 namespace tread::launch {
 
-/// Moves FILE.0 to FILE.1, FILE.1 to FILE.2 and so on, up to the first gap, so that FILE.0 is free;
-/// what would become FILE.<keep> is removed. Throws std::filesystem::filesystem_error.
+/// Moves FILE.0 to FILE.1, FILE.1 to FILE.2 and so on, up to the first gap, so that FILE.0 is free.
+/// A file that would become FILE.<keep> is removed. Throws std::filesystem::filesystem_error.
 void makeRoomForLog(const std::string& file, int keep);
 
-/// Removes the oldest of FILE.1, FILE.2 and so on until they have at most so many bytes together.
+/// Removes the oldest of FILE.1, FILE.2 and so on until their sizes sum to at most `bytes`.
 void keepWithin(const std::string& file, int64_t bytes);
 
-/// Where a recorder writes, and how much it keeps.
+/// Output of a recorder, and its limits.
 struct RecorderSettings {
   std::string file;  ///< FILE.0 is the newest, FILE.1 the one before
   std::string lcm_url;
@@ -33,9 +33,9 @@ struct RecorderSettings {
 };
 
 /// Records every message of a bus as LCM event logs, rotated.
-/** lcm-logger 1.3.1 keeps 30 messages while it waits for a busy host's processor and loses the rest
- * without a word; here a hundred thousand wait. A full disk ends no recording: HEALTH tells it and
- * what is lost, and a new file begins when there is room. */
+/** lcm-logger 1.3.1 queues 30 messages while a busy host delays it and silently drops the rest; the
+ * queue here holds 100 000. A full disk does not end the recording: HEALTH reports it and the
+ * number of lost messages, and a new file begins when there is space. */
 class Recorder {
  public:
   /// Throws std::runtime_error with one clear line if LCM or the file cannot be used.
@@ -44,7 +44,7 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// Until `stop`; then what has arrived is written, too.
+  /// Runs until `stop`, then writes the messages that have arrived.
   void run(const std::atomic<bool>& stop);
 
  private:
@@ -63,8 +63,8 @@ class Recorder {
   int64_t next_try_ = 0;               ///< [us]
   int64_t lost_ = 0;
   int64_t recorded_ = 0;
-  std::string trouble_;  ///< why nothing is recorded now
-  LcmBus bus_;           ///< for HEALTH and life signs alone
+  std::string trouble_;  ///< why nothing is recorded now; empty: recording
+  LcmBus bus_;           ///< only for HEALTH and signs of life
   HealthReporter health_;
 };
 

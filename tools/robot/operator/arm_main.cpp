@@ -7,19 +7,20 @@ int main(int argc, char** argv) {
   ArmOptions request;
   bool disarm = false;
   const auto addOptions = [&](CLI::App& app) {
-    auto* off = app.add_flag("--disarm", disarm, "take the permission back");
+    auto* off = app.add_flag("--disarm", disarm, "disarm: withdraw the permission to drive");
     auto* hold =
-        app.add_flag("--hold", request.hold, "stay: the robot may drive only as long as this runs");
-    auto* next =
-        app.add_option("--hand-over", request.hand_over_to,
-                       "give the robot that you hold to this operator, whose program runs");
+        app.add_flag("--hold", request.hold,
+                     "keep running: the robot may drive only as long as this program runs");
+    auto* next = app.add_option(
+        "--hand-over", request.hand_over_to,
+        "hand the robot that you hold over to this operator, whose program must be running");
     off->excludes(hold)->excludes(next);
     hold->excludes(next);
   };
   return runPermissionCommand(
       argc, argv,
       {"tread-arm",
-       "Arms the robot: it may drive to goals that are given from now on, as long as an operator's "
+       "Arms the robot: it may drive to goals given from now on, as long as an operator's "
        "program runs.",
        "arms", addOptions, [&](tread::Bus& bus, const Requester& requester, double patience) {
          request.arm = !disarm;

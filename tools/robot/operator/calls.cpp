@@ -14,19 +14,20 @@ namespace {
 
 constexpr int64_t kArmRepeat = 100'000;   // [us]
 constexpr int64_t kStopRepeat = 50'000;   // [us]
-constexpr int64_t kHandOver = 3'000'000;  // [us] for which it is told, at most
-constexpr int64_t kTold = 1'500'000;      // [us] in which HEALTH has told who holds the robot
-constexpr int64_t kAnswerAge = 500'000;   // [us] a MOTOR message older than this shows nothing
+constexpr int64_t kHandOver = 3'000'000;  // [us] for which a hand-over is repeated, at most
+constexpr int64_t kTold = 1'500'000;      // [us] within which HEALTH names the holder
+constexpr int64_t kAnswerAge = 500'000;   // [us] older MOTOR messages are ignored
 /// An answer counts only after this long: what came before the call is no answer.
 constexpr int64_t kSettle = 200'000;  // [us]
 
-constexpr int64_t kFreshAge = 1'000'000;    // [us] of what a goal's progress is told from
+// [us] age limit of messages that progress is reported from
+constexpr int64_t kFreshAge = 1'000'000;
 constexpr int64_t kGoalRepeat = 1'000'000;  // [us]
 
 constexpr int64_t kNoRobot = 5'000'000;  // [us] without any MOTOR until a goal is given up
-/// A robot that lost its permission on the way does not go on by itself [us].
+/// After losing its permission on the way the robot does not continue by itself [us].
 constexpr int64_t kDisarmedPatience = 2'000'000;
-/// The planner shows a goal soon, and what it has ended does not come back [us].
+/// The planner confirms a goal within this time; a goal that it has ended does not come back [us].
 constexpr int64_t kGoalPatience = 1'500'000;
 
 bool isStuck(int16_t status) {
@@ -34,15 +35,16 @@ bool isStuck(int16_t status) {
 }
 
 std::string heldBy(const std::string& holder, const std::string& name) {
-  return holder + " holds the robot (" + holder + " can give it: tread-arm --hand-over " + name +
-         ")";
+  return holder + " holds the robot (" + holder + " can hand it over: tread-arm --hand-over " +
+         name + ")";
 }
 
 }  // namespace
 
-// Where the robot has a key and this program none, nothing that it says is taken.
+// A robot with a key ignores a program without one.
 std::string keyWords(const Bus& bus) {
-  if (bus.hearsTwoSessions()) return "; two robots are heard with this key: one is a recording";
+  if (bus.hearsTwoSessions())
+    return "; two robots are received with this key: one of them is a recording";
   return bus.statistics().sealed_unread ? "; the robot has a key: give it with --key" : "";
 }
 
@@ -119,11 +121,12 @@ CallResult ArmCall::step(int64_t utime) {
   began_ = began_.value_or(utime);
   if (request_.arm) beacon_.step(utime);
   if (!request_.hand_over_to.empty()) return handOver(utime);
-  // What another has disarmed meanwhile is not armed for one who waits.
+  // `waits_`: another operator has disarmed the robot meanwhile, so it must not be armed for this
+  // one.
   if (waits_ && !shown(utime)) return CallResult::kRefused;
   if (!armed_) {
     const CallResult result = PermissionCall::step(utime);
-    // A second operator, whom the bridge refuses, must not believe that the robot is his.
+    // The bridge may refuse a second operator, who must not believe that he holds the robot.
     const bool before = request_.arm && result == CallResult::kDone && wasSo();
     waits_ = before && request_.hold && !otherHolder().empty();
     if (waits_) return CallResult::kPending;
@@ -291,7 +294,7 @@ CallResult GoalCall::step(int64_t utime) {
                                                           : CallResult::kPending;
 }
 
-/// Not armed for a while. A goal that was given before the arming counts for nothing.
+/// Disarmed for longer than the patience. A goal given before arming is void.
 bool GoalCall::lostPermission(int64_t utime) {
   if (!motor_.any()) return false;
   const bool may = mayDrive(motor_.message().bridge_state);
@@ -301,7 +304,7 @@ bool GoalCall::lostPermission(int64_t utime) {
   return disarmed_since_ && utime - *disarmed_since_ > kDisarmedPatience;
 }
 
-/// The planner had this goal and has it no more, or does not take it.
+/// The planner has dropped this goal or does not accept it.
 bool GoalCall::lostGoal(int64_t utime) {
   if (!plan_.any()) return false;
   const bool has = plan_.message().goal_id == goal_id_;
@@ -327,8 +330,8 @@ std::string GoalCall::lossWords() const {
   }
   if (!lost_since_) return "";
   if (was_goal_)
-    return plan_.message().goal_id != 0 ? "; another goal has taken its place"
-                                        : "; the planner follows this goal no more: give it again";
+    return plan_.message().goal_id != 0 ? "; another goal has replaced it"
+                                        : "; the planner has dropped this goal: give it again";
   const std::string holder = holder_.since(beacon_.robotTime(*started_)).value_or("");
   return "; the planner does not take this goal; " +
          (holder.empty() || holder == beacon_.name()

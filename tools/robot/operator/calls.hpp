@@ -13,11 +13,11 @@
 
 namespace tread::operators {
 
-/// What came of a call to the robot.
+/// Outcome of a request to the robot.
 enum class CallResult { kPending, kDone, kRefused };
 
-/// Something that the operator asks of the robot, repeated until the robot shows that it did it.
-/** It listens to its bus and so must live until the bus is no longer handled. */
+/// An operator's request, repeated until the robot shows that it was served.
+/** It subscribes to its bus, so it must live until the bus is no longer handled. */
 class Call {
  public:
   virtual ~Call() = default;
@@ -25,41 +25,41 @@ class Call {
   Call(const Call&) = delete;
   Call& operator=(const Call&) = delete;
 
-  /// Call every 20 ms or so. Sends what is due and looks at what came.
+  /// Call about every 20 ms. Sends what is due and evaluates the replies.
   virtual CallResult step(int64_t utime) = 0;
-  /// What to tell the operator now; the outcome in words once the call has ended.
+  /// Status line for the operator; the outcome once the call has ended.
   virtual std::string describe(int64_t utime) const = 0;
-  /// Whether it holds what it has armed.
+  /// Whether it holds the robot that it armed.
   virtual bool holds() const { return false; }
-  /// Something that the operator is told while the call goes on, when it changes; empty = nothing.
+  /// A notice for the operator during the call, shown when it changes; empty = none.
   virtual std::string notice() const { return ""; }
-  /// The operator has lost patience: takes back what must not go on.
+  /// Cancelled by the operator: withdraws the request.
   virtual void cancel(int64_t /*utime*/) {}
-  /// The program ends in good order, whatever came of the call.
+  /// The program is about to exit, whatever the outcome.
   virtual void letGo(int64_t /*utime*/) {}
 };
 
-/// Who asks, and why; both go into the log.
+/// Who requests, and why; both are logged.
 struct Requester {
   std::string by = "operator";
   std::string why;
-  /// Name of the operator that the program works for; programs of one name share the lease.
+  /// Name of the operator; programs of the same name share the lease.
   std::string operator_name = "operator";
 
-  /// "ADA (root@station)": what the log says.
+  /// Signature for the log, for instance "ADA (root@station)".
   std::string signature() const {
     return by == operator_name ? by : by + " (" + operator_name + ")";
   }
 };
 
-/// Of a robot that is not heard.
+/// Message if no robot is received.
 inline const std::string kNoMotor =
     "no MOTOR message came: is tread-motor-bridge running on this LCM URL?";
 
-/// "; the robot has a key: ..." where a robot has one and this program none, else empty.
+/// "; the robot has a key: ..." if the robot has a key and this program none, else empty.
 std::string keyWords(const Bus& bus);
 
-/// One ARM message; 'utime' [us] is the robot's.
+/// Sends one ARM message; `utime` [us] is the robot's time.
 void sendArm(Bus& bus, const Requester& requester, bool arm, int64_t utime, int64_t seq);
 
 /// A request to the motor bridge, repeated until MOTOR shows that it was served.
@@ -70,25 +70,25 @@ class PermissionCall : public Call {
 
  protected:
   struct Request {
-    /// `utime` is the robot's.
+    /// `utime` is the robot's time.
     std::function<void(int64_t utime, int64_t seq)> send;
-    /// Whether a bridge in this state (motor_t::STATE_*) has served it.
+    /// Whether this bridge state (motor_t::STATE_*) shows that the request was served.
     std::function<bool(int16_t bridge_state)> served;
     std::string text_if_served;
     std::string text_if_not;
     int64_t repeat;       ///< [us]
-    bool permits = true;  ///< worth nothing before the robot's time is known
+    bool permits = true;  ///< grants permission: void before the robot's time is known
   };
-  /// `patience` [s] for which it is repeated.
+  /// `patience` [s]: how long it is repeated.
   PermissionCall(Bus& bus, const std::string& operator_name, double patience, Request request);
 
   bool shown(int64_t utime) const;
-  /// What the bridge says of its state.
+  /// The reason that the bridge gives for its state.
   const std::string& bridgeReason() const { return motor_.message().state_reason; }
   bool estopped() const {
     return motor_.any() && motor_.message().bridge_state == motor_t::STATE_ESTOP;
   }
-  /// Whether it was so before this call asked for it.
+  /// Whether the state was reached before this call requested it.
   bool wasSo() const { return was_so_; }
 
   Bus& bus_;
@@ -104,14 +104,15 @@ class PermissionCall : public Call {
   bool was_so_ = false;
 };
 
-/// What tread-arm is asked for.
+/// A request by tread-arm.
 struct ArmOptions {
-  bool arm = true;           ///< false: disarm
-  bool hold = false;         ///< stay once armed: the robot may drive only as long as this runs
+  bool arm = true;  ///< false: disarm
+  /// keep running once armed: the robot may drive only as long as this program runs
+  bool hold = false;
   std::string hand_over_to;  ///< name of the operator who takes over; empty = nobody
 };
 
-/// Arms or disarms, and holds the robot for its operator meanwhile.
+/// Arms or disarms, and meanwhile holds the robot for its operator.
 class ArmCall : public PermissionCall {
  public:
   ArmCall(Bus& bus, const Requester& requester, const ArmOptions& request, double patience);
@@ -120,21 +121,21 @@ class ArmCall : public PermissionCall {
   std::string describe(int64_t utime) const override;
   std::string notice() const override;
   bool holds() const override { return armed_ && otherHolder().empty(); }
-  /// A robot that is held is disarmed.
+  /// Disarms a robot that it holds.
   void cancel(int64_t utime) override;
   void letGo(int64_t utime) override { beacon_.letGo(utime); }
 
  private:
   CallResult handOver(int64_t utime);
-  /// Who holds the robot in the place of this program's operator; empty = nobody else.
+  /// Another operator that holds the robot; empty = none.
   std::string otherHolder() const;
 
   Requester requester_;
   ArmOptions request_;
   HolderWatch holder_;
   std::optional<int64_t> began_;  ///< [us]
-  bool waits_ = false;            ///< to be handed over a robot that it is to hold
-  std::optional<int64_t> armed_;  ///< [us] since when
+  bool waits_ = false;            ///< waits for the hand-over of a robot that it is to hold
+  std::optional<int64_t> armed_;  ///< [us] time of arming
 };
 
 /// Engages or clears the emergency stop.
@@ -147,23 +148,23 @@ class StopCall : public PermissionCall {
   bool engage_;
 };
 
-/// Name of the ground at a point of the map, where somebody knows it.
+/// Surface name at a point of the map, if known.
 using SurfaceNames = std::function<std::string(const Eigen::Vector2d& p_map)>;
 
 /// A planner's status in a word.
 std::string statusWord(int16_t plan_status);
 
-/// Where to go, and how exactly.
+/// A goal and its tolerances.
 struct GoalRequest {
   Pose2 T_map_goal;
   double position_tolerance = 0.6;  ///< [m]
   double yaw_tolerance = kPi;       ///< [rad]; pi = any heading
-  /// [s] for which blocked or unreachable may last before the call gives up.
+  /// [s] the robot may be blocked or the goal unreachable before the call gives up.
   double patience = 30.0;
 };
 
-/// Repeats GOAL until the planner has arrived or gives up for good, the permission to drive is not
-/// there or lost, or the goal has ended.
+/// Repeats GOAL until the planner has arrived or gives up for good, the permission to drive is
+/// lost, or the goal has ended.
 class GoalCall : public Call {
  public:
   /// `goal_id` must be new to the planner.
@@ -172,7 +173,7 @@ class GoalCall : public Call {
 
   CallResult step(int64_t utime) override;
   std::string describe(int64_t utime) const override;
-  /// Sends goal 0, unless the planner follows another goal: it stops.
+  /// Sends goal 0, which stops the robot, unless the planner follows another goal.
   void cancel(int64_t utime) override;
   void letGo(int64_t utime) override { beacon_.letGo(utime); }
 
@@ -202,8 +203,8 @@ class GoalCall : public Call {
   std::optional<int64_t> stuck_since_;
   bool was_armed_ = false;
   std::optional<int64_t> disarmed_since_;  ///< [us]; none while armed
-  bool was_goal_ = false;                  ///< the planner had this goal
-  std::optional<int64_t> lost_since_;      ///< [us] the planner does not have it
+  bool was_goal_ = false;                  ///< the planner had accepted this goal
+  std::optional<int64_t> lost_since_;      ///< [us] since when the planner has dropped it
   int64_t seq_ = 0;
 };
 

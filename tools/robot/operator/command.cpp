@@ -27,7 +27,7 @@ void noteSignal(int /*signal*/) {
 }
 
 constexpr int kStepMs = 20;
-constexpr size_t kLongestWhy = 500;  // a stop must not be too long to be sent
+constexpr size_t kLongestWhy = 500;  // [bytes] a stop must stay short enough to be sent
 
 void show(const CommandOptions& options, const std::string& words) {
   if (!options.one_line) {
@@ -79,12 +79,12 @@ int run(const std::string& name, const CommandOptions& options, Bus& bus, Call& 
 int runCall(const std::string& name, const CommandOptions& options,
             const std::function<std::unique_ptr<Call>(Bus&)>& make) {
   for (const int number : {SIGINT, SIGTERM}) std::signal(number, noteSignal);
-  // What was started to outlive its terminal does.
+  // A program started under nohup outlives its terminal.
   for (const int number : {SIGHUP, SIGQUIT})
     if (std::signal(number, noteSignal) == SIG_IGN) std::signal(number, SIG_IGN);
   try {
     const launch::RunningRobot robot = launch::findRobot(options.lcm_url, options.key);
-    // On the robot's own host what was recorded is refused by its session and its time.
+    // On the robot's own host session and time stamp already reject recorded messages.
     LcmBus bus(
         BusAccess{robot.lcm_url, robot.here ? hostSealer(robot.key) : stationSealer(robot.key)},
         TimeSource::kHost);

@@ -14,41 +14,41 @@
 
 namespace tread::operators {
 
-/// Of --lcm-url.
+/// Help of --lcm-url.
 inline constexpr const char* kUrlHelp =
-    "LCM provider; else LCM_DEFAULT_URL, else the robot that tread-launch runs here";
+    "LCM provider; default: LCM_DEFAULT_URL, else the robot that tread-launch runs here";
 
-/// Of --operator.
+/// Help of --operator.
 inline constexpr const char* kOperatorHelp =
-    "whom this program works for: programs of one operator hold the robot together";
+    "name of the operator; programs with the same name hold the robot together";
 
-/// How a command runs its call.
+/// Options of a command that runs a call.
 struct CommandOptions {
-  std::string lcm_url;    ///< empty = found, see launch::findRobot()
+  std::string lcm_url;    ///< empty = searched, see launch::findRobot()
   std::string key;        ///< file of the robot's key; empty = messages are not sealed
   double timeout = 0.0;   ///< [s] after which the call is cancelled; 0 = never
   double progress = 0.0;  ///< [s] between lines of progress; 0 = none
   bool one_line = false;  ///< progress overwrites its line
-  bool holds = false;     ///< the robot moves for as long as the program runs
+  bool holds = false;     ///< the robot moves as long as the program runs
 };
 
-/// Runs a call over real LCM to its end, the timeout, or a signal that ends it in good order.
-/** Exit code: 0 done, 1 refused, out of time, or one clear line of what is wrong with LCM, 130
- * interrupted. */
+/// Runs a call over LCM until it ends, times out, or a signal ends it in good order.
+/** Exit code: 0 done; 1 refused, timed out or LCM unusable, with one clear line; 130 interrupted.
+ */
 int runCall(const std::string& name, const CommandOptions& options,
             const std::function<std::unique_ptr<Call>(Bus&)>& make);
 
-/// What tread-arm and tread-stop differ in.
+/// The differences of tread-arm and tread-stop.
 struct PermissionCommand {
   std::string name;
   std::string description;
-  std::string verb;                     ///< "arms"
+  std::string verb;                     ///< verb for messages: "arms"
   std::function<void(CLI::App&)> more;  ///< adds its own options
   /// `patience` [s].
   std::function<std::unique_ptr<Call>(Bus&, const Requester&, double patience)> make;
   EmptyKey empty_key = EmptyKey::kIsRefused;
 };
-/// The main function of such a command.
+/// The main function of tread-arm and tread-stop.
 int runPermissionCommand(int argc, char** argv, const PermissionCommand& command);
 
 }  // namespace tread::operators

@@ -21,7 +21,7 @@ constexpr const char* kGoing = "goal";
 constexpr const char* kStopping = "E-stop";
 constexpr const char* kClearing = "clearing the E-stop";
 constexpr size_t kMostPast = 30;
-/// Calls, the ended ones with them, that a page may have made before it must let go once.
+/// Calls, ended ones included, after which a page must let go of the robot once.
 constexpr size_t kMostCalls = 300;
 
 double finite(const Json& json, const char* key) {
@@ -39,7 +39,7 @@ GoalRequest goalFrom(const Json& json) {
   return request;
 }
 
-/// Whether a page's newest MOTOR is of the present: one that is still to come was never shown.
+/// Whether the newest MOTOR that a page has shown is recent; a time stamp in the future is invalid.
 bool isFresh(const Json& seen, int64_t utime, int64_t longest) {
   if (!seen.is_number_integer()) return false;
   const auto at = seen.get<int64_t>();
@@ -87,9 +87,9 @@ std::string OperatorConsole::take(const std::string& text, uint64_t page, int64_
     const Json json = Json::parse(text);
     const auto op = json.at("op").get<std::string>();
     if (takeStop(op, utime)) return "";
-    // A page that is behind shows a robot that was.
+    // A page that lags behind shows an outdated robot.
     if (!isFresh(json.at("seen"), utime, kPageLease))
-      return "the page has not seen the robot for too long: it cannot operate it";
+      return "the page's view of the robot is too old to operate it";
     if (page_ != page && page_ != 0) {
       if (utime - alive_ <= kPageLease) return "another page holds the robot";
       letGo(utime, "another page took over");
@@ -98,7 +98,7 @@ std::string OperatorConsole::take(const std::string& text, uint64_t page, int64_
     alive_ = utime;
     if (op == "alive") return "";
     if (calls_.size() + past_.size() >= kMostCalls)
-      return "too many commands since this page took the robot: disarm it, then go on";
+      return "too many commands since this page took the robot: disarm it, then continue";
     if (op == "arm") {
       if (!runs(kArming))
         start(kArming,
@@ -122,7 +122,7 @@ std::string OperatorConsole::take(const std::string& text, uint64_t page, int64_
     }
     return "";
   } catch (const Json::exception&) {
-    return "a command that cannot be read was passed over";
+    return "ignored an unreadable command";
   } catch (const std::invalid_argument& error) {
     return std::string("not taken: ") + error.what();
   }
@@ -130,7 +130,7 @@ std::string OperatorConsole::take(const std::string& text, uint64_t page, int64_
 
 bool OperatorConsole::takeStop(const std::string& op, int64_t utime) {
   if (op == "estop") {
-    // What still asked for the opposite must not win against it.
+    // A pending opposite request must not win.
     letGo(utime, "stopped");
     for (Running& running : calls_)
       if (!running.ended && running.what == kClearing) end(running, utime, "stopped again");
@@ -168,15 +168,15 @@ void OperatorConsole::leave(uint64_t page, int64_t utime) {
 }
 
 void OperatorConsole::step(int64_t utime) {
-  // Nobody knows whether a silent page still shows the robot to anybody.
+  // A silent page may no longer show the robot to anybody.
   if (page_ != 0 && utime - alive_ > kPageLease) {
-    letGo(utime, "the page is silent: it let go of the robot");
+    letGo(utime, "no sign of life from the page: it has released the robot");
     page_ = 0;
   }
   for (Running& running : calls_) {
     if (running.ended) continue;
     const CallResult result = running.call->step(utime);
-    // What a call in a terminal says of its keys is nothing for a page.
+    // Key hints of a terminal's call mean nothing on a page.
     running.words = result == CallResult::kPending && running.call->holds()
                         ? "armed, and held by this page"
                         : running.call->describe(utime);
@@ -184,7 +184,7 @@ void OperatorConsole::step(int64_t utime) {
     if (result == CallResult::kRefused) running.call->cancel(utime);
     end(running, utime, "");
     if (running.what == kArming)
-      letGo(utime, "the robot is held no more: " + running.words, kGoing);
+      letGo(utime, "the robot is no longer held: " + running.words, kGoing);
   }
   for (auto running = calls_.begin(); running != calls_.end();) {
     if (!running->ended || utime - running->ended_at < kShown) {

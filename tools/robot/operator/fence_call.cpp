@@ -27,7 +27,7 @@ FenceCall::FenceCall(Bus& bus, const Requester& requester, FenceRequest request,
     const bool in_force = std::any_of(kept.begin(), kept.end(), [this](const Fence& fence) {
       return request_.removes ? fence.name == request_.fence.name : fence == request_.fence;
     });
-    // What was said before the call is no answer.
+    // Messages from before the call do not answer it.
     if (started_ && message.utime > beacon_.robotTime(*started_))
       shown_[message.keeper] = in_force != request_.removes;
   });
@@ -60,13 +60,13 @@ std::string FenceCall::describe(int64_t /*utime*/) const {
     if (!shownBy(process)) list += (list.empty() ? "" : " and ") + std::string(process);
   }
   if (!silent.empty())
-    return "no FENCES came of " + silent + ": running on this LCM URL?" + keyWords(bus_);
+    return "no FENCES from " + silent + ": running on this LCM URL?" + keyWords(bus_);
   if (missing.empty())
     return request_.removes ? "no " + fence + " is in force any more" : fence + " is in force";
   return fence + (request_.removes ? " is still in force in " : " is not in force in ") + missing +
-         (request_.removes
-              ? ": only who holds the robot removes fences, and never those of robot.yaml"
-              : ": HEALTH says why it was refused");
+         (request_.removes ? ": only the operator who holds the robot can remove fences, and never "
+                             "those of robot.yaml"
+                           : ": HEALTH says why it was refused");
 }
 
 Fence fenceFrom(const std::string& name, bool keep_out, const std::vector<double>& numbers) {

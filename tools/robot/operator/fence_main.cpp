@@ -8,20 +8,24 @@ int main(int argc, char** argv) {
   tread::FenceRequest request;
   std::vector<double> stay_in, keep_out;
   const auto addOptions = [&](CLI::App& app) {
-    app.add_option("name", request.fence.name, "of the fence")->required();
-    auto* in = app.add_option("--stay-in", stay_in,
-                              "X Y of each corner in turn, in map [m]: the robot stays inside");
-    auto* out = app.add_option("--keep-out", keep_out, "the same: the robot stays outside");
+    app.add_option("name", request.fence.name, "name of the fence")->required();
+    auto* in =
+        app.add_option("--stay-in", stay_in,
+                       "X Y of each corner in order, in the map frame [m]: the robot stays inside");
+    auto* out =
+        app.add_option("--keep-out", keep_out, "corners as for --stay-in: the robot stays outside");
     auto* gone = app.add_flag("--remove", request.removes,
-                              "all fences of this name go, except those of robot.yaml");
+                              "remove all fences of this name, except those of robot.yaml");
     in->excludes(out)->excludes(gone);
     out->excludes(gone);
   };
   return runPermissionCommand(
       argc, argv,
       {"tread-fence",
-       "Adds a fence that the robot stays in or keeps out of, until it is removed, also over "
-       "restarts in the same run folder. Anybody may add one; who holds the robot may remove it.",
+       "Adds a fence that the robot stays in or keeps out of. It stays in force until it is "
+       "removed, also over "
+       "restarts in the same run folder. Anybody may add one; only the operator who holds the "
+       "robot may remove it.",
        "asks", addOptions, [&](tread::Bus& bus, const Requester& requester, double patience) {
          if (!request.removes)
            request.fence = fenceFrom(request.fence.name, !keep_out.empty(),

@@ -16,7 +16,7 @@ namespace {
 using namespace tread;
 using namespace tread::operators;
 
-/// Names of the ground from a world file; throws ConfigError.
+/// Surface names from a world file; throws ConfigError.
 SurfaceNames namesFrom(const std::string& path) {
   if (path.empty()) return {};
   const auto world = std::make_shared<const sim::World>(sim::readWorld(path));
@@ -27,7 +27,7 @@ SurfaceNames namesFrom(const std::string& path) {
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Sends the robot to a place and tells how it goes; ends when it is there. Ctrl-C cancels the "
+      "Sends the robot to a goal and prints its progress until it has arrived. Ctrl-C cancels the "
       "goal: the robot stops.",
       "tread-goal"};
   CommandOptions options;
@@ -40,13 +40,13 @@ int main(int argc, char** argv) {
   double yaw_degrees = 0.0;
   app.add_option("x", request.T_map_goal.x, "in map [m]")->required();
   app.add_option("y", request.T_map_goal.y, "in map [m]")->required();
-  app.add_option("yaw", yaw_degrees, "heading there [deg]; needs --yaw-tolerance to matter");
+  app.add_option("yaw", yaw_degrees, "heading at the goal [deg]; ignored without --yaw-tolerance");
   app.add_option("--tolerance", request.position_tolerance, "[m]")->check(CLI::Range(0.05, 100.0));
   app.add_option("--yaw-tolerance", request.yaw_tolerance, "[deg]; 180 = any heading")
       ->check(CLI::Range(1.0, 180.0));
-  app.add_option("--patience", request.patience, "give up after so long without a way [s]")
+  app.add_option("--patience", request.patience, "give up after this time without a path [s]")
       ->check(CLI::Range(0.0, 3600.0));
-  app.add_option("--timeout", options.timeout, "cancel the goal after so long [s]; 0 = never")
+  app.add_option("--timeout", options.timeout, "cancel the goal after this time [s]; 0 = never")
       ->check(CLI::Range(0.0, 86400.0));
   app.add_option("--world", world, "world file of a simulation: names the ground in the progress");
   app.add_flag("--quiet", quiet, "no progress");

@@ -12,12 +12,12 @@
 
 namespace tread::operators {
 
-/// How programs that operate or watch a robot reach it.
+/// Access of operating and watching programs to a robot.
 inline BusAccess accessTo(const launch::RunningRobot& robot) {
   return {robot.lcm_url, robot.here ? hostSealer(robot.key) : stationSealer(robot.key)};
 }
 
-/// An operator console over real LCM, for as long as its program runs.
+/// An operator console over LCM, for the lifetime of its program.
 class LiveConsole {
  public:
   LiveConsole(launch::RunningRobot robot, std::string name, std::string why)
@@ -28,7 +28,7 @@ class LiveConsole {
   OperatorConsole* operator->() { return &end_->console; }
   int64_t now() const { return end_->bus.now(); }
 
-  /// Takes what came and sends what is due, without waiting.
+  /// Handles received messages and sends what is due, without waiting.
   void step() {
     end_->bus.handle(0);
     end_->console.step(end_->bus.now());

@@ -7,10 +7,10 @@ int main(int argc, char** argv) {
   bool clear = false;
   return runPermissionCommand(
       argc, argv,
-      {"tread-stop", "Emergency stop over LCM. It is no replacement for the button on the machine.",
+      {"tread-stop", "Emergency stop over LCM. It does not replace the button on the machine.",
        "stops",
        [&](CLI::App& app) {
-         app.add_flag("--clear", clear, "clear the stop; arming is still needed");
+         app.add_flag("--clear", clear, "clear the stop; the robot must still be armed afterwards");
        },
        [&](tread::Bus& bus, const Requester& requester, double patience) {
          return std::make_unique<StopCall>(bus, requester, !clear, patience);

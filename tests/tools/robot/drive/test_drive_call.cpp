@@ -234,7 +234,7 @@ TEST_CASE("a stick that is not known is told as unknown, at 50 Hz, and to the pe
   CHECK(std::isnan(pit.told.back().hand_left));
   CHECK(std::isnan(pit.told.back().hand_right));
   CHECK(pit.told.back().hold);
-  const std::string line = "the stick was not seen at rest: move it to all sides once";
+  const std::string line = "stick not yet seen at rest: move it in all directions once";
   CHECK_THAT(pit.call->describe(pit.bus.now()), Catch::Contains(line));
   pit.wishes.forward = 0.0;  // one axis is not enough
   pit.run(100'000);

@@ -177,7 +177,7 @@ TEST_CASE("a decimal comma that might be one of thousands is read by option only
 
 TEST_CASE("a unit below the header that is not the mapping's is named") {
   CHECK(complaint("t,x,y,yaw\nms,m,m,deg\n0,1,2,90\n", kPoses) ==
-        "drive.csv:1: column yaw is in deg by the row below the header, but not by the mapping; "
+        "drive.csv:1: column yaw is in deg in the row below the header, but not in the mapping;  "
         "correct the unit of the column there");
   CHECK_THAT(complaint("t,x,y,yaw\n[s],m,m,rad\n0,1,2,1\n", kPoses),
              Catch::Contains("column t is in s by the row"));
@@ -211,7 +211,7 @@ TEST_CASE("refusals name file, line and column") {
   CHECK(complaint("t,x,y,yaw\n0,1,2,0\n100,1e10,2,0\n", kPoses) ==
         "drive.csv:3: column x (x) is 1e+10 after unit and scale; allowed is up to 1e+05");
   CHECK(complaint("t,x,y,yaw\n0,1,2,0\n-300,1,2,0\n", kPoses) ==
-        "drive.csv:3: column t goes back by 0.3 s; are these two drives? cut the file there, or "
+        "drive.csv:3: column t goes back by 0.3 s; are these two drives? split the file there, or "
         "name the column that tells them apart (run:)");
   CHECK(complaint("t,x,y,yaw\n0,1,2,0\n1e12,1,2,0\n", kPoses) ==
         "drive.csv:3: column t is 1e+09 s after the first row; is the unit of the time right?");
@@ -357,7 +357,7 @@ TEST_CASE("a mapping that cannot mean a drive is refused with its line") {
   CHECK_THAT(refusal("tables:\n  - time: {}\n    columns: {voltage: {column: a}}\n"),
              Contains("map.yaml:2") && Contains("give one"));
   CHECK_THAT(refusal(kCommands + "  - time: {column: a}\n    columns: {voltage: {column: a}}\n"),
-             Contains("cannot be placed"));
+             Contains("cannot be combined"));
   CHECK_THAT(refusal("wheels: 4\n" + kCommands), Contains("wheels"));
 }
 

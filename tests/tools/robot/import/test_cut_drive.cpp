@@ -136,10 +136,10 @@ TEST_CASE("what is in no piece is counted by its reason, and nothing of it is cu
   CHECK(surface.pieces.size() == 4);
   CHECK(surface.left_out.size() == 4);
   const UncutPart& poses =
-      surface.left_out.at("with poses that are missing, jump, or are more than 0.3 s apart");
+      surface.left_out.at("with poses missing, jumping, or more than 0.3 s apart");
   CHECK(poses.count == 2);
   CHECK(poses.seconds == Approx(4.0));
-  CHECK(surface.left_out.at("of commands that last for no piece").seconds == Approx(1.0));
+  CHECK(surface.left_out.at("of commands shorter than a piece").seconds == Approx(1.0));
   CHECK(surface.left_out.at("after a change of command").seconds == Approx(2.0));
   CHECK(surface.left_out.at("at the end of a command, shorter than a piece").seconds ==
         Approx(1.9));
@@ -200,7 +200,7 @@ TEST_CASE("pieces of commands nearby become what the pattern's command would hav
   for (const recordings::Execution& poses : executions)
     requireNear(poses.back(), integrate(answer(ahead, 0.7), 1.0), 2e-6);
   CHECK(cut.notes.front() ==
-        "gravel: 3 of 16 pieces are of commands nearby, corrected to the pattern's");
+        "gravel: 3 of 16 pieces are of similar commands, corrected to the pattern's");
 }
 
 TEST_CASE("surfaces with commands to other channels are refused by name") {
@@ -271,7 +271,7 @@ TEST_CASE("a table of several runs with named channels, rows asked for and poses
   CHECK(read.drive.runs[0].end == Approx(5.1));
   size_t others = 0, held = 0;
   for (const auto& [what, count] : read.left_out) {
-    if (what.find("not asked for") != std::string::npos) others = count;
+    if (what.find("excluded by the mapping") != std::string::npos) others = count;
     if (what.find("pose_new") != std::string::npos) held = count;
   }
   CHECK(others == 102);
@@ -295,7 +295,7 @@ TEST_CASE("channels of a mapping are checked where they stand") {
   CHECK_THAT(complaint("lft_command: {column: a}, right_command: {column: b}"),
              Catch::Contains("left_command and right_command come together"));
   CHECK_THAT(complaint("_command: {column: a}"),
-             Catch::Contains("is no quantity; known are NAME_"));
+             Catch::Contains("is not a quantity; known are NAME_"));
   std::string many;
   for (char name = 'a'; name <= 'i'; ++name)
     many += std::string(many.empty() ? "" : ", ") + name + "_command: {column: " + name + "}";
@@ -330,7 +330,7 @@ TEST_CASE("tread-import --cut writes recordings, to which surfaces can be added"
   run = tread::samples::called(more + " --force");
   CAPTURE(run.printed);
   REQUIRE(run.status == 0);
-  CHECK(run.says("the patterns as they were there"));
+  CHECK(run.says("existing patterns kept"));
   CHECK(recordings::readRecordings(out).surfaces.size() == 3);
   // Pieces of another length are of no pattern that is there.
   run = tread::samples::called(call + "--set surface=ice --cut 2 " + soft + " --force -o " + out);

@@ -110,9 +110,9 @@ TEST_CASE("mistakes in a launch file are named with file and line") {
   CHECK_THAT(mistake("name: r\nprocesses:\n  - name: p\n    program: x{\n"),
              StartsWith("r.yaml:4:") && Contains("stands for nothing"));
   CHECK_THAT(mistake("name: r\nvalues:\n  run: /x\nprocesses: [{name: p, program: p}]"),
-             StartsWith("r.yaml:3:") && Contains("has a meaning already"));
+             StartsWith("r.yaml:3:") && Contains("is a built-in placeholder"));
   CHECK_THAT(mistake("name: r\nprocesses:\n  - {name: p, program: x, external: true, config: y}\n"),
-             StartsWith("r.yaml:3:") && Contains("an external one takes it in arguments"));
+             StartsWith("r.yaml:3:") && Contains("give it to an external one in arguments"));
   CHECK_THAT(mistake("name: r\nprocesses:\n  - {name: supervisor, program: x}\n"),
              Contains("is taken"));
 }
@@ -169,6 +169,6 @@ TEST_CASE("a process's start time and watchdog are read, and what makes no sense
              Contains("watchdog: is 0.3 s; allowed 0 (not watched) or from 1 s on"));
   CHECK_THAT(mistake(one("start_time: 0")), Contains("start_time"));
   CHECK_THAT(mistake(one("watchdog: 5, external: true")),
-             Contains("an external one gives no signs of life"));
+             Contains("an external one sends no signs of life"));
   CHECK_THAT(mistake(one("watch_dog: 5")), Contains("watch_dog"));
 }

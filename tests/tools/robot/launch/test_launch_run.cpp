@@ -57,7 +57,8 @@ TEST_CASE(
     "where the wiring is to be tried, it is with a yes, and nothing starts where it is wrong") {
   const Launched unasked({"good"}, TREAD_STAND_IN, "simulated: true\npre_drive: \"{here}\"\n");
   Process launch("tread-launch", unasked.arguments(), unasked.output());
-  CHECK(unasked.says("trial: wiring not tried: nobody here to say yes, see --pre-drive"));
+  CHECK(
+      unasked.says("trial: wiring not tested: no terminal to ask for permission, see --pre-drive"));
   CHECK(unasked.says("trial: all 2 processes run after"));
   launch.signal(SIGINT);
   REQUIRE(launch.waitFor(10));

@@ -89,7 +89,7 @@ TEST_CASE("one that ends at once is tried again after pauses that grow, and told
   CHECK(pauses.back() == Approx(60.0).margin(0.11));
   CHECK(bench.told ==
         "robot: planner ended (exit status 1; not expected)\n"
-        "robot: planner ended again (exit status 1; not expected); the pauses before it is started "
+        "robot: planner ended again (exit status 1; not expected); the pauses between its starts "
         "grow, see log/planner.log\n");
   bench.runTo(bench.now + 2.0);
   CHECK(bench.told.find("robot: all 1 processes run after") != std::string::npos);

@@ -230,7 +230,7 @@ TEST_CASE("a full disk is told by HEALTH with what is lost, and recording goes o
     speaker.say(20, 900);
     return health.message().health_state == health_t::HEALTH_DEGRADED;
   }));
-  CHECK_THAT(health.message().health_reason, Catch::Contains("the log has a hole"));
+  CHECK_THAT(health.message().health_reason, Catch::Contains("the log has a gap"));
   recorder.signal(SIGINT);
   CHECK(recorder.waitFor(5.0));
   ::umount2(disk.c_str(), MNT_DETACH);

@@ -145,7 +145,7 @@ TEST_CASE("a robot that another operator holds is not armed for this one, and th
     });
     CHECK((result == CallResult::kDone) == (name == "bob"));
     CHECK((call.describe(scene.bus.now())
-               .find("ada holds the robot (ada can give it: tread-arm "
+               .find("ada holds the robot (ada can hand it over: tread-arm "
                      "--hand-over bob)") != std::string::npos) == (name == "ada"));
   }
 }
@@ -365,7 +365,7 @@ TEST_CASE("a fence that one of the two does not take is told with its name") {
   CHECK(result == CallResult::kRefused);
   CHECK_THAT(call.describe(scene.bus.now()),
              Catch::Contains(planner_there ? "fence yard is not in force in planner"
-                                           : "no FENCES came of planner"));
+                                           : "no FENCES from planner"));
   CHECK_THROWS_WITH(fenceFrom("a", true, {1, 2, 3}), Catch::Contains("one number is missing"));
   CHECK_THROWS_WITH(fenceFrom("a", true, {1, 2, 3, 4}), Catch::Contains("3 to 64 corners"));
 }
