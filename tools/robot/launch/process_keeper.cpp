@@ -32,8 +32,9 @@ namespace tread::launch {
 namespace {
 
 constexpr timespec kLookEvery{0, 50'000'000};
-constexpr double kLongestLook = 0.25;  // [s] between two checks of the signs of life
-constexpr double kTrimEvery = 1.0;     // [s]
+constexpr double kLongestLook =
+    0.25;                           // [s] counted at most between two checks of the signs of life
+constexpr double kTrimEvery = 1.0;  // [s]
 constexpr uintmax_t kLargestLog = 5'000'000;
 constexpr int kOldLogs = 3;
 

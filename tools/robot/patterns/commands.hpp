@@ -6,12 +6,11 @@
 
 #include <CLI/CLI.hpp>
 
-// The subcommands of tread-patterns. Each adds itself to the program and does its work in its
-// callback, once the whole command line is read; what it throws ends the program with its one line
-// and 2.
+// The subcommands of tread-patterns. Each adds itself to the program and runs in its callback,
+// after the command line is parsed. An exception ends the program with one line and exit code 2.
 namespace tread::patterns {
 
-/// A recording was interrupted, or the robot failed: exit code 1, as nothing given was wrong.
+/// A recording was interrupted, or the robot failed: exit code 1, as the input was not at fault.
 struct RecordingStopped : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

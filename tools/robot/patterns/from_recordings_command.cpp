@@ -35,7 +35,7 @@ struct Options {
   recordings::ExecutionLogRequest executions;
 };
 
-/// Surfaces of other recordings in the folder would be read as if they were of these.
+/// Refuses other surfaces in the folder: they would be read as part of these recordings.
 void refuseOtherSurfaces(const std::string& folder, const DriveRecordings& drives) {
   std::error_code none;
   for (const auto& entry : fs::directory_iterator(folder, none)) {
@@ -49,7 +49,7 @@ void refuseOtherSurfaces(const std::string& folder, const DriveRecordings& drive
   }
 }
 
-/// The surface that is called so, or so in part.
+/// The surface with this name, or with a name that contains it.
 size_t surfaceCalled(const DriveRecordings& drives, const std::string& name,
                      const std::string& option) {
   std::string known;
@@ -119,18 +119,22 @@ void fromRecordings(const Options& options) {
 }
 
 void addLogOptions(CLI::App& command, Outputs& outputs, Options& options) {
-  auto* log =
-      outputs.file("--log", options.log, "LCM log of executions on one surface, then on another");
-  auto* from = command.add_option("--from", options.from, "surface that is known");
-  auto* to = command.add_option("--to", options.to, "surface that is new");
+  auto* log = outputs.file("--log", options.log,
+                           "write an LCM log of executions on one surface, then on another");
+  auto* from = command.add_option("--from", options.from, "the known surface");
+  auto* to = command.add_option("--to", options.to, "the new surface");
   log->needs(from)->needs(to);
   from->needs(log);
   to->needs(log);
-  command.add_option("--executions", options.executions.executions, "on each of the two")
+  command
+      .add_option("--executions", options.executions.executions,
+                  "executions on each of the two surfaces")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str()
       ->needs(log);
-  command.add_option("--seed", options.executions.seed, "draws which recordings, in which order")
+  command
+      .add_option("--seed", options.executions.seed,
+                  "seed for the choice and order of the recordings")
       ->capture_default_str()
       ->needs(log);
 }
@@ -148,11 +152,11 @@ CLI::App* addFromRecordings(CLI::App& app) {
   command->add_option("--robot", options->request.robot, "part of the robot's name");
   command
       ->add_option("--sessions", options->request.sessions,
-                   "exactly these, separated by commas; else all that are comparable")
+                   "only these surfaces, separated by commas; default: all comparable ones")
       ->delimiter(',');
   command->add_option("--recipe", options->recipe,
-                      "which patterns (YAML, see config/patterns/recipes/drive.yaml)");
-  command->add_flag("--one-surface", options->one_surface, "a single surface will do");
+                      "recipe of the patterns (YAML, see config/patterns/recipes/drive.yaml)");
+  command->add_flag("--one-surface", options->one_surface, "accept a single surface");
   Outputs outputs(*command);
   outputs.folder("-o,--output", options->folder, "folder of recordings to write")->required();
   addLogOptions(*command, outputs, *options);

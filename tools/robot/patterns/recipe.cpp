@@ -33,8 +33,8 @@ double sixDigits(double value) {
   return std::stod(formatted("%.5e", value)) + 0.0;  // -0 becomes 0
 }
 
-/// Of a holonomic base people think in twists: its wheels' commands for forward and sideways speed
-/// [m/s] and yaw rate [rad/s].
+/// People describe the motion of a holonomic base as a twist: converts forward and sideways speed
+/// [m/s] and yaw rate [rad/s] to wheel commands.
 Command wheelCommand(const VehicleModel& model, const Twist2& v_body) {
   Command command = model.wheels.speeds(v_body);
   const double unit = model.kind == CommandKind::kTrackSpeed ? 1.0 : model.full_speed;
@@ -42,12 +42,12 @@ Command wheelCommand(const VehicleModel& model, const Twist2& v_body) {
   return command;
 }
 
-/// Numbers of a command in a recipe.
+/// Number of command columns in a recipe.
 size_t columnsOf(const VehicleModel& model) {
   return model.isOmni() ? 3 : 2;
 }
 
-/// Left and right exchanged.
+/// The command with left and right exchanged.
 Command mirroredBy(const VehicleModel& model, const Command& command) {
   if (!model.isOmni()) return mirroredCommand(command, model.channels());
   const double unit = model.kind == CommandKind::kTrackSpeed ? 1.0 : model.full_speed;
@@ -145,7 +145,7 @@ void readPattern(ConfigReader& reader, const VehicleModel& model, PatternSetCont
   addPattern(content, pattern, entry, model);
 }
 
-constexpr double kLeadIn = 3.0;  // [s], longer than any latency of an INS
+constexpr double kLeadIn = 3.0;  // [s], longer than the latency of any INS
 
 void hold(VehicleKernel& kernel, const Command& command, double period) {
   kernel.step(command.tracks(), period);
@@ -154,12 +154,12 @@ void hold(OmniKernel& kernel, const Command& command, double period) {
   kernel.step(command, period);
 }
 
-/// [periods] of it.
+/// [periods] of the lead-in.
 size_t leadIn(double period) {
   return static_cast<size_t>(kLeadIn / period) + 1;
 }
 
-/// What a late, askew or biased INS says of an execution, relative to what it said at its start.
+/// An execution as measured by a late, misaligned or biased INS, relative to its measured start.
 template <class Kernel>
 recordings::Execution seenByIns(const ModelDocument& model, const MotionPattern& pattern,
                                 double period, const Command& entry, Kernel kernel) {
@@ -222,7 +222,7 @@ Envelope envelopeOf(const VehicleModel& model, const MotionPattern& pattern, con
   return envelope;
 }
 
-/// A series of its own for each surface and pattern.
+/// An independent random series for each surface and pattern.
 std::mt19937_64 randomFor(uint64_t seed, const std::string& surface, int pattern_id) {
   std::vector<uint32_t> words{static_cast<uint32_t>(seed), static_cast<uint32_t>(seed >> 32U),
                               static_cast<uint32_t>(pattern_id)};

@@ -17,14 +17,14 @@
 namespace tread::patterns {
 namespace {
 
-constexpr double kRoomInGap = 0.3;  // [m] beside the footprint, where nobody says
+constexpr double kRoomInGap = 0.3;  // [m] default, in addition to the footprint
 
 struct RecipeOptions {
   std::string robot;
   std::string model;
   std::string output;
   RecipeWish wish;
-  double gap = 0.0;  ///< [m]; 0 = the footprint and kRoomInGap
+  double gap = 0.0;  ///< [m]; 0 = footprint plus kRoomInGap
 };
 
 void makeRecipe(const RecipeOptions& options) {
@@ -53,15 +53,19 @@ CLI::App* addRecipe(CLI::App& app) {
   const auto options = std::make_shared<RecipeOptions>();
   RecipeWish& wish = options->wish;
   CLI::App* command = app.add_subcommand(
-      "recipe", "make a recipe from the limits of a robot: what covers best what it can do");
-  command->add_option("ROBOT", options->robot, "folder of the robot")->required();
-  command->add_option("--model", options->model, "model file that predicts")->required();
+      "recipe", "design a recipe from a robot's limits that covers its possible motions best");
+  command
+      ->add_option("ROBOT", options->robot,
+                   "folder of the robot, for instance config/robots/teodor")
+      ->required();
+  command->add_option("--model", options->model, "model file for the predictions")->required();
   Outputs(*command).file("-o,--output", options->output, "recipe to write")->required();
-  command->add_option("--patterns", wish.patterns, "how many at most, default 40")
+  command->add_option("--patterns", wish.patterns, "largest number of patterns, default 40")
       ->check(CLI::Range(8, 500));
   command
       ->add_option("--speeds", wish.speeds,
-                   "forward speeds [m/s], at most four; default: by their number, .2, .5 and 1 of "
+                   "forward speeds [m/s], at most four; default, depending on --patterns: up to "
+                   ".2, .5 and 1 of "
                    "the full speed")
       ->delimiter(',')
       ->check(CLI::Range(0.02, 20.0));
@@ -71,11 +75,9 @@ CLI::App* addRecipe(CLI::App& app) {
       ->check(CLI::Range(0.1, 20.0));
   command
       ->add_option("--seconds", wish.seconds,
-                   "how long a pattern at full speed lasts at most [s]; default: nine lags")
+                   "longest pattern at full speed [s]; default: nine lags")
       ->check(CLI::Range(0.1, 10.0));
-  command
-      ->add_option("--acceleration", wish.acceleration,
-                   "the most that is asked of the ground [m/s2], default 4")
+  command->add_option("--acceleration", wish.acceleration, "largest acceleration [m/s2], default 4")
       ->check(CLI::Range(0.1, 20.0));
   command->callback([options] { makeRecipe(*options); });
   return command;

@@ -8,10 +8,10 @@
 
 namespace tread::patterns {
 
-/// The recipe as a file (config/patterns/recipes), `comment` on its first lines.
+/// The recipe as a file (config/patterns/recipes) with `comment` as its first lines.
 std::string recipeText(const DesignedRecipe& recipe, const std::string& comment);
 
-/// What each pattern adds: a table for people.
+/// Table for people: gain of each pattern.
 std::string gainsTable(const DesignedRecipe& recipe);
 
 }  // namespace tread::patterns

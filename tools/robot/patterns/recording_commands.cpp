@@ -28,7 +28,7 @@
 namespace tread::patterns {
 namespace {
 
-/// The recorder, ending its own run once it is done or has failed.
+/// A recorder that ends the run when it is done or has failed.
 class RunToItsEnd : public Node {
  public:
   RunToItsEnd(pattern_recorder::RecorderNode& recorder, std::atomic<bool>& stop)
@@ -48,7 +48,7 @@ class RunToItsEnd : public Node {
   const std::atomic<bool>& interrupted_ = stopRequest(0);
 };
 
-/// Where the part was written, in words; empty if there was nothing to write.
+/// Saves the executions so far; returns where, in words, empty if there are none.
 std::string keepPart(const std::string& path, const PatternSet& set,
                      const pattern_recorder::RecorderNode& recorder) {
   size_t executions = 0;
@@ -58,15 +58,15 @@ std::string keepPart(const std::string& path, const PatternSet& set,
     moveAside(path);
     writeText(path, recordings::formatSurface({"", recorder.recorded()}, set));
   } catch (const std::exception& error) {
-    return std::string("; what was recorded until then is lost: ") + wordsOf(error);
+    return std::string("; the executions so far are lost: ") + wordsOf(error);
   }
-  return "; the " + std::to_string(executions) + " executions until then are in " + path;
+  return "; the " + std::to_string(executions) + " executions so far are in " + path;
 }
 
-/// Runs a RecorderNode over real LCM to its end and prints what it says; the executions by pattern.
-/** Throws RecordingStopped if it fails or is interrupted (SIGINT, SIGTERM, SIGHUP), after the
- * robot was told to stop; what was recorded until then is written to `part`, in a folder that is
- * there, as far as it goes. */
+/// Runs a RecorderNode over LCM until it ends, and prints its progress; returns the executions by
+/// pattern.
+/** Throws RecordingStopped if it fails or is interrupted (SIGINT, SIGTERM, SIGHUP), after stopping
+ * the robot. The executions so far are then saved to `part` if its folder exists. */
 std::vector<std::vector<recordings::Execution>> recordLive(
     const PatternSet& set, const pattern_recorder::RecordingConfig& how, BusAccess access,
     const std::string& part) {
@@ -97,14 +97,17 @@ struct RecordOptions {
 };
 
 constexpr const char* kFooter =
-    "On the robot (--live) it takes the planner's place: no tread-planner may run; start the rest\n"
+    "On the robot (--live) this replaces the planner: stop tread-planner and start the other "
+    "processes\n"
     "with tread-launch config/launch/recording.yaml (or simulated_recording.yaml). Nothing is\n"
-    "driven before tread-arm allows it; it stops where INS, MOTOR or the permission go, and goes\n"
-    "on once it is armed again. It sees no obstacles: a circle of --room metres around where it\n"
-    "begins must be free. It turns back in time where the set has patterns that turn, with left\n"
-    "and right in turns; beyond the room it stops and asks to be driven back. Executions that are\n"
-    "no fair measurements are refused with the reason and driven again. Ctrl-C stops the robot;\n"
-    "what was recorded until then is kept beside the surfaces as SURFACE.csv.part.";
+    "driven before tread-arm allows it. It stops if INS, MOTOR or the permission is lost, and "
+    "continues\n"
+    "once it is armed again. It does not detect obstacles: a circle of --room metres around the "
+    "start\n"
+    "must be free. It stays inside if the set has patterns that turn, and alternates left\n"
+    "and right; outside it stops and asks to be driven back. Executions that are\n"
+    "not valid measurements are refused with the reason and repeated. Ctrl-C stops the robot;\n"
+    "the executions so far are kept as SURFACE.csv.part next to the surfaces.";
 
 void record(const RecordOptions& options) {
   const PatternSet set = readPatternFile(options.patterns);
@@ -133,26 +136,26 @@ void record(const RecordOptions& options) {
 }
 
 void addModelOptions(CLI::App& command, ModelRecording& how) {
-  command.add_option("--seed", how.seed, "with --model: of its spread and noise")
-      ->capture_default_str();
+  command.add_option("--seed", how.seed, "with --model: random seed")->capture_default_str();
   command
       .add_option("--ins-position", how.position,
-                  "with --model: m, standard deviation of each measured sample")
+                  "with --model: standard deviation of each measured position [m]")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 10.0));
-  command.add_option("--ins-yaw", how.yaw, "with --model: rad, the same for yaw")
+  command.add_option("--ins-yaw", how.yaw, "with --model: the same for yaw [rad]")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 3.0));
 }
 
 void addLiveOptions(CLI::App& command, pattern_recorder::RecordingConfig& how, std::string& lcm_url,
                     std::string& key) {
-  command.add_option("--room", how.room, "with --live: m around where it begins that must be free")
+  command
+      .add_option("--room", how.room, "with --live: radius of the free circle around the start [m]")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 1000.0));
   command
       .add_option("--give-up-after", how.give_up_after,
-                  "with --live: refusals of one pattern in a row")
+                  "with --live: consecutive refusals of one pattern until it ends")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
   how.operator_name = operatorName();
@@ -225,18 +228,19 @@ void average(const AverageOptions& options) {
 CLI::App* addRecord(CLI::App& app) {
   const auto options = std::make_shared<RecordOptions>();
   CLI::App* command = app.add_subcommand(
-      "record", "execute each pattern many times and store what it did under a surface's name");
+      "record",
+      "execute each pattern many times and store the measured motions under a surface's name");
   command->footer(kFooter);
   command->add_option("PATTERNS", options->patterns, "pattern file (YAML)")->required();
-  command->add_option("--recordings", options->folder, "folder of recordings; made if needed")
+  command->add_option("--recordings", options->folder, "folder of recordings; created if needed")
       ->required();
   command->add_option("--surface", options->surface, "name of the surface")->required();
   command->add_flag("--force", options->force, "replace the surface if it is recorded already");
-  CLI::Option_group* source = command->add_option_group("source", "who executes, one of");
+  CLI::Option_group* source = command->add_option_group("source", "executed by one of");
   source->add_option("--model", options->model, "a vehicle model (YAML)");
   source->add_flag("--live", options->live, "the robot, or the simulated one, over LCM");
   source->require_option(1);
-  command->add_option("-n,--executions", options->executions, "of each pattern")
+  command->add_option("-n,--executions", options->executions, "executions of each pattern")
       ->capture_default_str()
       ->check(CLI::Range(1, 100'000));
   addModelOptions(*command, options->how);
@@ -248,7 +252,7 @@ CLI::App* addRecord(CLI::App& app) {
 CLI::App* addAverage(CLI::App& app) {
   const auto options = std::make_shared<AverageOptions>();
   CLI::App* command = app.add_subcommand(
-      "average", "average the recordings of one surface: the set that is right there");
+      "average", "average the recordings of one surface into the pattern set for it");
   command->add_option("RECORDINGS", options->folder, "folder of recordings")->required();
   command->add_option("SURFACE", options->surface, "surface, a SURFACE.csv of the folder")
       ->required();
@@ -257,15 +261,17 @@ CLI::App* addAverage(CLI::App& app) {
   AverageLimits& limits = options->limits;
   command
       ->add_option("--strong-turn", limits.strong_turn,
-                   "rad of yaw from which twists are averaged, not poses")
+                   "turn above which twists are averaged instead of poses [rad]")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 100.0));
   command
       ->add_option("--max-speed", limits.max_speed,
-                   "m/s that are possible; 0 = 1.5 times what the median execution reaches")
+                   "largest plausible speed [m/s]; 0 = 1.5 times that of the median execution")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 30.0));
-  command->add_option("--min-executions", limits.min_executions, "fewer fair ones are refused")
+  command
+      ->add_option("--min-executions", limits.min_executions,
+                   "least number of valid executions of a pattern")
       ->capture_default_str()
       ->check(CLI::Range(1, 1'000'000));
   command->callback([options] { average(*options); });

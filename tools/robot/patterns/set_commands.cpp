@@ -59,7 +59,7 @@ void mirror(const MirrorOptions& options) {
   const PatternSet set = withMirrors(readPatternFile(options.file), options.pattern, notes);
   writeText(options.output, formatPatterns(set));
   for (const std::string& note : notes) std::cout << note << '\n';
-  if (notes.empty()) std::cout << "every pattern that turns has its mirror image already\n";
+  if (notes.empty()) std::cout << "every pattern that turns already has its mirror image\n";
   std::cout << options.output << ": " << set.patterns().size() << " patterns\n";
 }
 
@@ -69,7 +69,7 @@ struct ShowOptions {
   std::string picture;
 };
 
-/// The file's name, with its folder only where the other file has the same name.
+/// The file's name; with its folder only if both files have the same name.
 std::string labelOf(const std::string& file, const std::string& other) {
   const auto name = std::filesystem::path(file).filename();
   return name == std::filesystem::path(other).filename() ? file : name.string();
@@ -94,7 +94,7 @@ CLI::App* addMake(CLI::App& app) {
   const auto options = std::make_shared<MakeOptions>();
   CLI::App* command = app.add_subcommand("make", "make a pattern file from a recipe");
   command->add_option("RECIPE", options->recipe, "recipe (YAML)")->required();
-  command->add_option("--model", options->model, "model file that predicts")->required();
+  command->add_option("--model", options->model, "model file for the predictions")->required();
   Outputs(*command).file("-o,--output", options->output, "pattern file to write")->required();
   command->callback([options] { make(*options); });
   return command;
@@ -102,11 +102,11 @@ CLI::App* addMake(CLI::App& app) {
 
 CLI::App* addCheck(CLI::App& app) {
   const auto options = std::make_shared<CheckOptions>();
-  CLI::App* command = app.add_subcommand(
-      "check", "say what is wrong in a pattern file (code 1), or warn of what may make trouble");
+  CLI::App* command =
+      app.add_subcommand("check", "check a pattern file: errors (exit code 1) and warnings");
   command->add_option("FILE", options->file, "pattern file (YAML)")->required();
   command->add_option("--model", options->model,
-                      "model file: warn of motions beyond those that it was made from, too");
+                      "model file: also warn of motions beyond those that it was fitted to");
   command->callback([options] { check(*options); });
   return command;
 }
@@ -117,7 +117,7 @@ CLI::App* addMirror(CLI::App& app) {
       app.add_subcommand("mirror", "add the mirror image of every pattern that turns and has none");
   command->add_option("FILE", options->file, "pattern file (YAML)")->required();
   Outputs(*command).file("-o,--output", options->output, "pattern file to write")->required();
-  command->add_option("--pattern", options->pattern, "only this pattern");
+  command->add_option("--pattern", options->pattern, "add the mirror image of this pattern only");
   command->callback([options] { mirror(*options); });
   return command;
 }
@@ -126,7 +126,8 @@ CLI::App* addShow(CLI::App& app) {
   const auto options = std::make_shared<ShowOptions>();
   CLI::App* command = app.add_subcommand("show", "print a pattern file as a table, or compare two");
   command->add_option("FILE", options->file, "pattern file (YAML)")->required();
-  command->add_option("--compare", options->other, "another pattern file: how its ends differ");
+  command->add_option("--compare", options->other,
+                      "another pattern file: print the differences of the end poses");
   Outputs(*command).file("--picture", options->picture,
                          "PNG to write: all trajectories with the spread of their ends");
   command->callback([options] { show(*options); });

@@ -17,10 +17,11 @@ using report::Box;
 using report::Colour;
 using report::Panel;
 
-// Squared Mahalanobis distance that 95 % of a normal distribution in the plane stay below.
+// 95 % quantile of the squared Mahalanobis distance in the plane.
 constexpr double kChi2Of95 = 5.991;
 constexpr double kPanelWidth = 470.0, kPanelHeight = 400.0;  // [pixels]
-constexpr double kWideWidth = 860.0, kWideHeight = 680.0;    // [pixels] of a panel for all
+// [pixels] of the single panel for all classes
+constexpr double kWideWidth = 860.0, kWideHeight = 680.0;
 constexpr size_t kMostPanels = 4;
 constexpr double kSpaceX = 80.0, kSpaceY = 95.0;  // [pixels] around a panel
 constexpr double kTick = 18.0;                    // [pixels] length of the mark of the end heading
@@ -30,7 +31,7 @@ constexpr double kLabelSize = 10.0;               // [points]
 
 using Points = std::vector<Eigen::Vector2d>;
 
-/// Smallest box around points, in metres.
+/// Bounding box of points, in metres.
 struct Bounds {
   Eigen::Vector2d low{0.0, 0.0};
   Eigen::Vector2d high{0.0, 0.0};
@@ -64,14 +65,14 @@ Points pathOf(const MotionPattern& pattern) {
   return path;
 }
 
-/// Places for labels that cover neither each other nor a path, in pixels from the start, y
-/// downwards. A place is the left end of a line of text.
+/// Places labels so that they cover neither each other nor a path. In pixels from the start, y
+/// downwards; a place is the left end of a line of text.
 class LabelPlaces {
  public:
   /// Keeps labels off a point of a path.
   void block(const Eigen::Vector2d& point) { blocked_.push_back(point); }
 
-  /// The free place nearest to the wanted one, searched up and down.
+  /// The free place nearest to the wanted one, found by searching up and down.
   Eigen::Vector2d take(const Eigen::Vector2d& wanted, double width) {
     Eigen::Vector2d place = wanted;
     for (int i = 1; i < 80 && covered(place, width); ++i)
@@ -96,22 +97,22 @@ class LabelPlaces {
   std::vector<std::pair<Eigen::Vector2d, double>> taken_;
 };
 
-/// The trajectories that begin in one class, or all of them.
+/// Panel with the trajectories of one entry class, or of all.
 class ClassPanel {
  public:
-  /// An empty class means all; the box is in pixels.
+  /// An empty class means all. The box is in pixels.
   ClassPanel(const std::vector<PicturedSet>& sets, std::string entry_class, Box box)
       : sets_(sets), entry_class_(std::move(entry_class)), box_(box) {
     for (const PicturedSet& each : sets_)
       for (const MotionPattern* pattern : shownOf(each.set)) include(*pattern);
-    // A turn on the spot still needs room for its heading.
+    // A turn on the spot needs space for its heading mark.
     const Eigen::Vector2d middle = (bounds_.low + bounds_.high) / 2.0;
     const Eigen::Vector2d half =
         ((bounds_.high - bounds_.low) / 2.0).cwiseMax(Eigen::Vector2d(0.1, 0.1));
     const double scale =
         std::max(half.x() / (box_.width / 2.0 - 75.0), half.y() / (box_.height / 2.0 - 35.0));
     metres_per_pixel_ = scale;
-    // Names stand to the right of the ends.
+    // Space for the names to the right of the ends.
     middle_ = middle + Eigen::Vector2d(35.0 * scale, 0.0);
   }
 
@@ -119,7 +120,7 @@ class ClassPanel {
     const Eigen::Vector2d half(box_.width / 2.0 * metres_per_pixel_,
                                box_.height / 2.0 * metres_per_pixel_);
     const std::string title =
-        entry_class_.empty() ? "each in its own entry motion" : "beginning in " + entry_class_;
+        entry_class_.empty() ? "all entry classes together" : "beginning in " + entry_class_;
     Panel panel(picture, box_,
                 {title, "forward [m]", "left [m]", middle_.x() - half.x(), middle_.x() + half.x(),
                  middle_.y() - half.y(), middle_.y() + half.y(), false});
@@ -149,7 +150,7 @@ class ClassPanel {
 
   static Colour setColour(size_t s) { return s == 0 ? report::kBlue : report::kRed; }
 
-  /// One set: a colour a pattern; two: a colour a set.
+  /// For one set a colour per pattern, for two a colour per set.
   Colour colourOf(size_t s, size_t pattern) const {
     return sets_.size() > 1 ? setColour(s) : report::seriesColour(pattern);
   }
@@ -176,7 +177,7 @@ class ClassPanel {
     }
   }
 
-  /// Names at the ends of the first set that has the pattern.
+  /// Names at the ends; a pattern in both sets is labelled in the first.
   void drawLabels(Panel& panel) const {
     LabelPlaces places;
     for (const PicturedSet& each : sets_)
@@ -231,8 +232,8 @@ class ClassPanel {
   double metres_per_pixel_ = 1.0;
 };
 
-/// Classes in which patterns begin, in the order in which the sets name them; one empty name for
-/// all together where they are too many for a panel each.
+/// Entry classes in the order of the sets; one empty name (all together) if there are too many for
+/// a panel each.
 std::vector<std::string> panelClasses(const std::vector<PicturedSet>& sets) {
   std::vector<std::string> names;
   for (const PicturedSet& each : sets)

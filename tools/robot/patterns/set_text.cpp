@@ -18,7 +18,8 @@ bool isLetter(const std::string& text, size_t at) {
   return at < text.size() && std::isalpha(static_cast<unsigned char>(text[at])) != 0;
 }
 
-/// Whether the word stands at this place, not as a part of another: upright is no right.
+/// Whether the word is at this place and not part of another one: "upright" does not contain
+/// "right".
 bool wordAt(const std::string& text, size_t at, const std::string& word) {
   return text.compare(at, word.size(), word) == 0 && (at == 0 || !isLetter(text, at - 1)) &&
          !isLetter(text, at + word.size());
@@ -40,7 +41,7 @@ Command mirroredCommand(const Command& command, const CommandChannels& channels)
 
 namespace {
 
-/// The class that is this one with left and right exchanged: itself where it goes straight.
+/// The class with left and right exchanged: itself if it goes straight.
 const MotionClass* mirrorClass(const PatternSet& set, const std::string& name) {
   const MotionClass& motion = set.classNamed(name);
   for (const MotionClass& other : set.content().classes)
@@ -54,7 +55,7 @@ const MotionClass* mirrorClass(const PatternSet& set, const std::string& name) {
 std::string obstacle(const PatternSet& set, const MotionPattern& pattern) {
   for (const std::string& name : {pattern.entry_class, pattern.exit_class})
     if (mirrorClass(set, name) == nullptr)
-      return "class '" + name + "' turns, and its mirror image is no class of the set";
+      return "class '" + name + "' turns, and the set has no mirror image of it";
   const std::string name = mirroredName(pattern.name);
   if (set.findByName(name) != nullptr)
     return "the name '" + name + "' belongs to a pattern that is not its mirror image";
@@ -80,7 +81,7 @@ void requireWorkFor(const PatternSet& set, const std::string& name) {
   if (!turns(*pattern, set.content().channels))
     throw std::runtime_error(quoted(name) + " goes straight: it is its own mirror image");
   if (const MotionPattern* partner = mirrorPartner(set, *pattern))
-    throw std::runtime_error(quoted(name) + " has its mirror image already: '" + partner->name +
+    throw std::runtime_error(quoted(name) + " already has its mirror image: '" + partner->name +
                              "'");
   if (const std::string why = obstacle(set, *pattern); !why.empty())
     throw std::runtime_error(quoted(name) + " cannot be mirrored: " + why);
@@ -102,7 +103,7 @@ std::string row(const MotionPattern& pattern, double period) {
                    end.x, end.y, end.yaw * kDegrees, spread(pattern.end_covariance).c_str());
 }
 
-constexpr double kShortestWay = 0.25;  // [m] of which a share is told
+constexpr double kShortestWay = 0.25;  // [m] shorter paths have no meaningful relative error
 
 /// A pattern of both sets.
 struct Pair {
@@ -110,7 +111,7 @@ struct Pair {
   const MotionPattern* b;
 
   double distance() const { return std::hypot(b->end().x - a->end().x, b->end().y - a->end().y); }
-  /// Of the way that `a` predicts; of a turn on the spot it says nothing.
+  /// Difference relative to the path of `a`; empty for a turn on the spot.
   std::string share() const {
     const double length = a->pathLength();
     return length >= kShortestWay ? formatted("%.1f", 100.0 * distance() / length) : "-";
@@ -162,9 +163,9 @@ std::string inWords(const std::vector<Pair>& pairs) {
                    turned->b->end().yaw * kDegrees);
 }
 
-constexpr double kSpeedOff = 0.15;  // [m/s] at the end; a third of what the learner's gate allows
+constexpr double kSpeedOff = 0.15;  // [m/s] at the end; a third of the learner's gate
 constexpr double kTurnOff = 0.20;   // [rad/s]
-constexpr double kShareOff = 0.10;  // [1] of the class's own speed or rate, if that is more
+constexpr double kShareOff = 0.10;  // [1] of the class's own speed or rate, if larger
 constexpr double kEndSpan = 0.1;    // [s] over which the twist at the end is taken
 
 void adviseClasses(const PatternSet& set, std::vector<std::string>& advice) {
@@ -173,7 +174,8 @@ void adviseClasses(const PatternSet& set, std::vector<std::string>& advice) {
     if (motion.steady == Command{}) standing.insert(motion.name);
   if (standing.empty()) {
     advice.push_back(
-        "no class stands still (steady command all 0): a robot can neither begin nor end with this "
+        "no class stands still (steady command all 0): a robot can neither start nor stop with "
+        "this "
         "set");
     return;
   }
@@ -219,7 +221,7 @@ void adviseEnd(const PatternSet& set, const MotionPattern& pattern,
   if (speed_off <= speed_limit && turn_off <= turn_limit) return;
   advice.push_back(formatted(
       "pattern '%s' ends with %.2f m/s, %.2f m/s to the left and %.2f rad/s; its exit class '%s' "
-      "has %.2f, %.2f and %.2f: what follows begins otherwise than it was predicted",
+      "has %.2f, %.2f and %.2f: the next pattern starts differently from its prediction",
       pattern.name.c_str(), end.v_x, end.v_y, end.omega, pattern.exit_class.c_str(), wanted.v_x,
       wanted.v_y, wanted.omega));
 }
@@ -281,7 +283,7 @@ MotionPattern mirrored(const MotionPattern& pattern, const CommandChannels& chan
   image.times_learned = 0;
   for (Command& command : image.commands) command = mirroredCommand(command, channels);
   for (Pose2& pose : image.trajectory) pose = {pose.x, negated(pose.y), negated(pose.yaw)};
-  // Of x with y and of x with yaw; y and yaw change sign together.
+  // The signs of xy and x-yaw change; y and yaw change sign together.
   for (const size_t i : {size_t{1}, size_t{2}})
     image.end_covariance[i] = negated(image.end_covariance[i]);
   return image;
@@ -289,7 +291,7 @@ MotionPattern mirrored(const MotionPattern& pattern, const CommandChannels& chan
 
 namespace {
 
-/// The mirror image, between the mirror images of its classes.
+/// The mirror image of a pattern, between the mirror images of its classes.
 MotionPattern imageIn(const PatternSet& set, const MotionPattern& pattern) {
   MotionPattern image = mirrored(pattern, set.content().channels);
   image.entry_class = mirrorClass(set, pattern.entry_class)->name;

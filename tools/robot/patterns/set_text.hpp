@@ -10,49 +10,47 @@
 
 namespace tread::patterns {
 
-/// Tracks exchanged, steering to the other side.
+/// Tracks exchanged, steering reversed.
 Command mirroredCommand(const Command& command, const CommandChannels& channels);
 
-/// Whether a pattern commands its tracks differently, or steers, anywhere; else it is its own
+/// Whether a pattern turns: its tracks differ somewhere, or it steers. Otherwise it is its own
 /// mirror image.
 bool turns(const MotionPattern& pattern, const CommandChannels& channels);
 
-/// The name of the mirror image: the words left and right exchanged, else with _mirrored behind it.
+/// Name of the mirror image: the words left and right exchanged, else the suffix _mirrored.
 std::string mirroredName(const std::string& name);
 
-/// The pattern of the set that is this one with left and right exchanged, in its commands and in
-/// the steady commands of its classes, or nullptr.
+/// The set's mirror image of this pattern, in its commands and in the steady commands of its
+/// classes, or nullptr.
 const MotionPattern* mirrorPartner(const PatternSet& set, const MotionPattern& pattern);
 
-/// Left and right exchanged: commands, name, y, yaw and their signs in the covariance; never
-/// learned. The id is the caller's to give.
+/// Exchanges left and right: commands, name, y, yaw and their signs in the covariance. The result
+/// counts as never learned; the caller sets the id.
 MotionPattern mirrored(const MotionPattern& pattern, const CommandChannels& channels);
 
-/// The set with the mirror image of every pattern that turns and has no partner, or of the named
-/// one only; `notes` tells what was added and what could not be.
-/** Throws std::runtime_error if the named pattern is not there, has a partner, goes straight or is
- * between classes that turn and have no mirror image in the set, and if a name that is needed
- * belongs to another pattern. */
+/// Adds the mirror image of every pattern that turns and has none, or only of the named one;
+/// `notes` lists what was added and what could not be.
+/** Throws std::runtime_error if the named pattern does not exist, has a mirror image, goes straight
+ * or connects turning classes that have no mirror image, or if the new name is already in use. */
 PatternSet withMirrors(const PatternSet& set, const std::optional<std::string>& only,
                        std::vector<std::string>& notes);
 
-/// A set as a table for people: one line a pattern with classes, duration, length, end pose and its
-/// spread.
+/// A table for people: per pattern its classes, duration, length, end pose and spread.
 std::string table(const PatternSet& set);
 
-/// What two sets predict of the patterns that both have, matched by name: a line a pattern with
-/// both ends and their difference, and in words which differs most.
-/** The difference is that of end b from end a, in the frame of the start. Patterns whose commands
- * differ are named as well. */
+/// Compares the predictions of two sets for patterns of the same name: per pattern both ends and
+/// their difference, and in words the largest difference.
+/** The difference is that of end b from end a, in the frame of the start. Also lists patterns with
+ * different commands. */
 std::string comparison(const PatternSet& a, const std::string& name_a, const PatternSet& b,
                        const std::string& name_b);
 
-/// What a valid set may still make trouble with, a line each: a turn without its mirror image, a
-/// class that cannot be reached from standing or left for it, a trajectory that does not end in its
-/// exit class's twist, end covariances that nobody knows.
+/// Warnings about a valid set, one per line: a turn without its mirror image, a class that cannot
+/// be reached from or left to standstill, a trajectory that does not end in its exit class's twist,
+/// unknown end covariances.
 std::vector<std::string> adviceFor(const PatternSet& set);
 
-/// A set as it stands in a picture.
+/// A set in a picture.
 struct PicturedSet {
   std::string label;
   PatternSet set;

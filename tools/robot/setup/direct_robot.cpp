@@ -9,9 +9,9 @@
 namespace tread::setup {
 namespace {
 
-constexpr int64_t kExchange = 10'000;      // [us] between looks at both lines
+constexpr int64_t kExchange = 10'000;      // [us] between reads of both lines
 constexpr int64_t kCommandEvery = 50'000;  // [us]
-constexpr int64_t kPatience = 5'000'000;   // [us] for both to come up
+constexpr int64_t kPatience = 5'000'000;   // [us] for both to start up
 constexpr size_t kFewFixes = 10;
 
 std::unique_ptr<Link> openLine(Site& site, const std::string& address) {
@@ -75,7 +75,7 @@ std::string DirectRobot::begin() {
     if (fault().empty() && fixes_.size() > kFewFixes) return "";
   }
   if (!fault().empty()) return fault();
-  return "the INS gives no position with a heading; look at its fix";
+  return "the INS has no position with a heading; look at its fix";
 }
 
 std::string DirectRobot::fault() const {
@@ -104,7 +104,7 @@ std::string DirectRobot::run(double seconds, const Choose& choose,
     if (silent_) continue;
     const std::string words = fault();
     if (words.empty()) continue;
-    commands_.push_back({site_.now(), {}});  // a lost controller is given zero
+    commands_.push_back({site_.now(), {}});  // a reconnected controller gets zero first
     return words;
   }
   silent_ = false;

@@ -13,35 +13,36 @@
 
 namespace tread::setup {
 
-/// INS and motors of a robot, without its processes: for the short drives before there are any.
-/** It sees no obstacles. When it goes the motors are given zero. */
+/// INS and motors of a robot without its processes, for short drives before those can run.
+/** It detects no obstacles. Its destructor gives the motors zero. */
 class DirectRobot {
  public:
-  /// Opens both ports; throws std::runtime_error, one line, where one cannot be opened.
+  /// Opens both ports; throws std::runtime_error, one line, if one cannot be opened.
   DirectRobot(Site& site, const Drivers& drivers);
   ~DirectRobot();
   DirectRobot(const DirectRobot&) = delete;
   DirectRobot& operator=(const DirectRobot&) = delete;
 
-  /// The command of each 50 ms as shares of the full one; nothing = the line is silent.
+  /// The command for each 50 ms as shares of the full one; nullopt = send nothing.
   using Choose = std::function<std::optional<TrackCommand>(int64_t utime)>;
-  /// Drives for so long, or until the controller reports a fault: that in one line, else empty.
+  /// Drives for `seconds` or until the controller reports a fault; returns that in one line, else
+  /// empty.
   std::string run(double seconds, const Choose& choose, const std::function<bool()>& ended = {});
-  /// Waits for controller and INS; why they are not there, one line; empty = ready.
+  /// Waits for controller and INS; returns what is missing, one line; empty = ready.
   std::string begin();
 
   const std::vector<GivenCommand>& commands() const { return commands_; }
   const std::vector<InsFix>& fixes() const { return fixes_; }
-  /// [rad] of the INS, at its newest fix.
+  /// [rad] at the INS's newest fix.
   const YawPitchRoll& attitude() const { return attitude_; }
-  /// A pose since the last call.
+  /// A pose newer than the last call, if any.
   std::optional<Pose2> takePose();
   motor::MotorTelemetry telemetry() const { return controller_->telemetry(); }
   int64_t now() { return site_.now(); }
 
  private:
   void exchange();
-  /// What the controller complains of, one line; empty = nothing.
+  /// Fault that the controller reports, one line; empty = none.
   std::string fault() const;
 
   Site& site_;
@@ -52,8 +53,8 @@ class DirectRobot {
   std::vector<GivenCommand> commands_;
   std::vector<InsFix> fixes_;
   YawPitchRoll attitude_;
-  bool silent_ = false;  ///< nothing is written
-  size_t taken_ = 0;     ///< fixes that takePose() has given
+  bool silent_ = false;  ///< send nothing
+  size_t taken_ = 0;     ///< fixes that takePose() has returned
 };
 
 }  // namespace tread::setup

@@ -29,12 +29,13 @@ constexpr double kHokuyoRange = 15.0;   // [m]
 constexpr double kLeastInsRate = 5.0;   // [Hz]
 constexpr int kRates[] = {115200, 460800, 38400, 9600, 57600, 230400, 921600};
 
-/// Whether such an INS tells heights above the ellipsoid, so that its file must tell the geoid's.
+/// Whether such an INS reports ellipsoidal heights, so that its configuration needs the geoid's
+/// height.
 bool tellsEllipsoidHeight(const std::string& kind) {
   return kind == "vectornav" || kind == "xsens";
 }
 
-/// Bytes there now.
+/// Bytes that are available now.
 std::string received(Link& link) {
   std::string bytes;
   std::array<uint8_t, 4096> buffer;
@@ -49,10 +50,10 @@ void send(Link& link, const std::string& bytes) {
   if (!bytes.empty()) link.write(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size());
 }
 
-/// Share of a scan's beams that hit something or know that nothing is there.
+/// Share of the beams with a hit or a reliable "no hit".
 double shareThatTells(const lidar::RangeScan& scan) {
   const auto ranges = std::count_if(scan.ranges.begin(), scan.ranges.end(), [&](float r) {
-    return static_cast<double>(r) >= scan.range_min;  // nor is NaN
+    return static_cast<double>(r) >= scan.range_min;  // excludes NaN
   });
   const auto points = std::count_if(scan.points.begin(), scan.points.end(),
                                     [](const auto& point) { return !std::isnan(point[0]); });
@@ -60,7 +61,7 @@ double shareThatTells(const lidar::RangeScan& scan) {
   return all == 0 ? 0.0 : static_cast<double>(ranges + points) / static_cast<double>(all);
 }
 
-/// A port at all rates that it may have.
+/// A port with each of its possible baud rates.
 std::vector<std::string> addressesOf(const std::string& port) {
   const LinkAddress address = parseLinkAddress(port);
   if (address.kind != Kind::kTty || port.find('?') != std::string::npos) return {port};
@@ -76,11 +77,12 @@ class Search {
 
   void run() {
     if (ports_.empty())
-      throw std::runtime_error("no port is there; plug the devices in, or name ports with --port");
+      throw std::runtime_error(
+          "this host has no port; plug the devices in, or name ports with --port");
     eachPort([this](const std::string& address) { return listenForIns(address); },
              {Kind::kTty, Kind::kTcp, Kind::kPty});
     if (findings_.ins.kind.empty())
-      throw std::runtime_error("no INS is heard on " + joined(ports_) + advice_ +
+      throw std::runtime_error("no INS sends on " + joined(ports_) + advice_ +
                                "; look at its power, its line and its output");
     eachPort([this](const std::string& address) { return askControllers(address); },
              {Kind::kTty, Kind::kCan, Kind::kPty});
@@ -89,12 +91,12 @@ class Search {
              {Kind::kTty, Kind::kTcp, Kind::kUdp, Kind::kPty});
     if (findings_.range_finder.kind.empty()) takeHokuyo();
     if (findings_.range_finder.kind.empty())
-      throw std::runtime_error("no range finder scans on " + joined(ports_) +
+      throw std::runtime_error("no range finder sends scans on " + joined(ports_) +
                                "; look at its power and its line; it is needed to see obstacles");
   }
 
  private:
-  /// Tries a port at each rate until something is found there; such a port is done with.
+  /// Tries each remaining port at each rate until something is found; that port is then taken.
   void eachPort(const std::function<bool(const std::string&)>& attempt,
                 const std::set<Kind>& kinds) {
     for (auto port = ports_.begin(); port != ports_.end(); ++port) {
@@ -170,7 +172,7 @@ class Search {
       addDescribed(all);
       return all;
     }
-    // Four controllers hold two, so that they are asked for first.
+    // Four-wheel layouts have two controllers, so they are tried first.
     const DriveLayout four = DriveLayout::kSkidSteer4;
     const std::string can = "vesc_can:\n  watchdog: 0.2\n";
     if (parseLinkAddress(address).kind == Kind::kCan)
@@ -234,7 +236,7 @@ class Search {
                                   return address.compare(0, port.size(), port) == 0;
                                 }),
                  ports_.end());
-    person_.say("motor controller: sabertooth on " + address + ", which never answers");
+    person_.say("motor controller: sabertooth on " + address + ", which sends no replies");
   }
 
   bool askFinders(const std::string& address) {
@@ -277,19 +279,19 @@ class Search {
     person_.say("range finder: " + kind + " on " + address + ", sees to " + fixed(range, 0) + " m");
     if (told < kLeastTelling)
       person_.say("only " + fixed(100.0 * told, 0) +
-                  " % of its beams tell anything here, and the planner drives only where it knows "
+                  " % of its beams give a result here, and the planner drives only where it knows "
                   "the ground to be free: the first goal needs a place with more in sight");
     return true;
   }
 
-  /// One that did not answer, for instance behind an address that no host knows by itself.
+  /// A Hokuyo that did not answer, for instance at a TCP address that cannot be discovered.
   void takeHokuyo() {
     const std::string address = person_.ask("hokuyo");
     if (address == "none") return;
     lidar::checkDeviceAddress("hokuyo", address);
     findings_.range_finder = {"hokuyo", address, "", 0.0};
     findings_.range = kHokuyoRange;
-    person_.say("range finder: hokuyo on " + address + ", not heard yet");
+    person_.say("range finder: hokuyo on " + address + ", not yet received");
   }
 
   Site& site_;

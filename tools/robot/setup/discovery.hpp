@@ -11,11 +11,11 @@
 
 namespace tread::setup {
 
-/// Finds out which port speaks what, with the drivers' own decoders, and notes it in `findings`.
-/** First it only listens: INS and range finders that speak by themselves. Then it asks on what is
- * left: motor controllers are started up, which gives them zero, and range finders are told to
- * scan. A controller that never answers is asked for. Throws std::runtime_error with one line if
- * INS or controller are not found. */
+/// Identifies the device at each port with the drivers' own decoders, and stores it in `findings`.
+/** First it only listens, for INS and range finders that send by themselves. Then it queries the
+ * remaining ports: it starts motor controllers, which sets them to zero, and asks range finders to
+ * scan. It asks the person for a controller that never answers. Throws std::runtime_error with one
+ * line if INS or controller are not found. */
 void discover(Site& site, Interview& person, RobotFindings& findings);
 
 }  // namespace tread::setup

@@ -16,20 +16,20 @@ namespace tread::setup {
 namespace {
 
 constexpr double kShareOfMarking = 0.6;
-constexpr double kRoomInGap = 0.3;                   // [m] beside the footprint
+constexpr double kRoomInGap = 0.3;                   // [m] in addition to the footprint
 constexpr int kPatterns = 32;                        // a person waits while they are driven
 constexpr int kExecutions = 4;                       // of each pattern
 constexpr double kRecordingRoom = 4.5;               // [m]
 constexpr int64_t kStep = 50'000;                    // [us]
 constexpr int64_t kRecordingPatience = 900'000'000;  // [us]
-constexpr int64_t kStopped = 4'000'000;              // [us] that a stop lasts before it is told
-constexpr size_t kMostStops = 3;                     // of one drive; the fourth ends it
-constexpr int64_t kMapMade = 3'000'000;              // [us]
-constexpr int64_t kGoalPatience = 180'000'000;       // [us]
+constexpr int64_t kStopped = 4'000'000;         // [us] of standstill after which it is reported
+constexpr size_t kMostStops = 3;                // stops in one drive; the next one ends it
+constexpr int64_t kMapMade = 3'000'000;         // [us]
+constexpr int64_t kGoalPatience = 180'000'000;  // [us]
 const std::string kOperator = "setup";
 
-/// Arms for the setup; throws std::runtime_error where the bridge does not. The call listens to the
-/// bus: keep it as long as that is handled.
+/// Arms for the setup; throws std::runtime_error if the bridge refuses. The call subscribes to the
+/// bus: keep it as long as the bus is handled.
 std::unique_ptr<operators::ArmCall> arm(RobotSession& robot, const std::string& why,
                                         const std::function<void()>& meanwhile) {
   Bus& bus = robot.bus();
@@ -46,7 +46,7 @@ std::unique_ptr<operators::ArmCall> arm(RobotSession& robot, const std::string& 
   return call;
 }
 
-/// Where the INS says that it is.
+/// Current pose from the INS.
 Pose2 presentPose(RobotSession& robot, Latest<ins_t>& ins) {
   for (int i = 0; i < 400; ++i) {
     if (ins.any() && ins.age(robot.bus().now()) < 500'000)
@@ -81,7 +81,7 @@ RecordedPatterns recordPatterns(Site& site, Interview& person, const std::string
   how.executions = kExecutions;
   how.room = kRecordingRoom;
   how.operator_name = kOperator;
-  // What the model foretells may be far off.
+  // The model's prediction may be far off.
   how.limits.entry_speed = how.limits.entry_yaw_rate = 1.0;
   pattern_recorder::RecorderNode recorder(predicted, how, bus,
                                           [&](const std::string& line) { person.say(line); });
@@ -101,10 +101,10 @@ RecordedPatterns recordPatterns(Site& site, Interview& person, const std::string
     if (recorder.reason().empty()) drove = bus.now();
     if (bus.now() - drove < kStopped) continue;
     if (armed.size() > kMostStops) break;
-    // Something has stopped it: a person decides anew.
+    // Something stopped the robot: the person decides again.
     person.say("stopped: " + recorder.reason());
     person.confirm("record");
-    armed.push_back(arm(*robot, "recording goes on", step));
+    armed.push_back(arm(*robot, "recording continues", step));
     drove = bus.now();
   }
   recorder.shutdown(bus.now());
@@ -130,7 +130,7 @@ GoalDrive driveAhead(Site& site, Interview& person, const std::string& folder, d
   robot->pass(kMapMade);
   operators::GoalRequest request;
   request.T_map_goal = presentPose(*robot, ins) * Pose2{ahead, 0.0, 0.0};
-  // Calls listen to the bus as long as it is handled.
+  // Calls must live as long as the bus is handled.
   std::vector<std::unique_ptr<operators::ArmCall>> armed;
   std::vector<std::unique_ptr<operators::GoalCall>> calls;
   while (!drive.arrived && calls.size() <= kMostStops) {

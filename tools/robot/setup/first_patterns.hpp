@@ -13,7 +13,7 @@
 
 namespace tread::setup {
 
-/// Recipe of a robot's first patterns (config/patterns/recipes), designed for what was measured.
+/// Recipe of a robot's first patterns (config/patterns/recipes), designed for the measured values.
 /** No faster than that the way from standstill to standstill is within 0.6 of `marking_range` [m].
  */
 std::string recipeFor(const RobotFindings& findings);

@@ -13,7 +13,7 @@ namespace {
 constexpr double kLeastRate = 10.0;      // [Hz] of the INS
 constexpr double kMostDead = 0.35;       // [1]
 constexpr double kMostDelay = 0.5;       // [s]
-constexpr double kWatchdogSlack = 0.35;  // [s] for the INS to notice
+constexpr double kWatchdogSlack = 0.35;  // [s] for the INS to detect the stop
 
 }  // namespace
 
@@ -28,14 +28,14 @@ std::vector<FitCheck> checkFit(const SetupResult& result) {
   check(found.ins.rate >= kLeastRate, "the INS measures at " + fixed(found.ins.rate, 0) + " Hz",
         "set it to 20 Hz or more: the motor bridge stops without it");
   check(found.has_attitude,
-        found.has_attitude ? "the INS tells roll and pitch: tilt is watched"
-                           : "the INS tells no roll and pitch",
-        "nothing watches the tilt, and slopes are not known");
+        found.has_attitude ? "the INS measures roll and pitch: tilt is watched"
+                           : "the INS does not measure roll and pitch",
+        "tilt cannot be watched, and slopes are unknown");
   const double silence = result.ground.watchdog;
   const double allowed =
       found.watchdog + wiring.delay.high + 3.0 * wiring.lag.high + kWatchdogSlack;
   check(silence > 0.0 && silence < allowed,
-        "with a silent line it stands after " + fixed(silence, 2) + " s (watchdog " +
+        "after the line falls silent it stands within " + fixed(silence, 2) + " s (watchdog " +
             fixed(found.watchdog, 2) + " s)",
         "set up the controller's watchdog");
   check(wiring.delay.value < kMostDelay,
@@ -58,9 +58,10 @@ std::vector<FitCheck> checkFit(const SetupResult& result) {
   check(found.marking_range <= found.range,
         "the range finder sees to " + fixed(found.range, 1) + " m", "lower marking_range");
   check(found.beams_that_tell > kLeastTelling,
-        fixed(100.0 * found.beams_that_tell, 0) + " % of its beams told something where it stood",
-        "the planner drives only where it knows the ground to be free: begin where more is within "
-        "its range, or tell the driver that no echo means clear");
+        fixed(100.0 * found.beams_that_tell, 0) + " % of its beams gave a result where it stood",
+        "the planner drives only where it knows the ground to be free: begin with more objects "
+        "within "
+        "its range, or configure the driver so that no echo means clear");
   if (!result.recorded) return checks;
   const auto reach = launch::checkReach(result.recorded->patterns, found.marking_range);
   check(reach.empty(),

@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int64_t kLaunchPatience = 10'000'000;  // [us]
-constexpr int64_t kSlice = 2'000;                // [us] of waiting at once
+constexpr int64_t kSlice = 2'000;                // [us] waited at a time
 constexpr int kCanHardware = 280;                // ARPHRD_CAN
 constexpr const char* kSickPort = ":2111";
 constexpr const char* kVelodyne = "udp:2368";
@@ -41,7 +41,7 @@ std::vector<std::string> entriesOf(const fs::path& folder) {
   return paths;
 }
 
-/// Serial devices: names that outlive plugging first, others where they have none.
+/// Serial devices, by names that survive replugging if they have one.
 std::vector<std::string> serialLines() {
   std::vector<std::string> ports;
   std::set<std::string> named;
@@ -67,7 +67,7 @@ std::vector<std::string> canInterfaces() {
   return ports;
 }
 
-/// Hosts that this one has spoken to lately.
+/// Hosts that this one has communicated with recently.
 std::vector<std::string> neighbours() {
   std::vector<std::string> hosts;
   std::ifstream table("/proc/net/arp");
@@ -81,7 +81,7 @@ std::vector<std::string> neighbours() {
   return hosts;
 }
 
-/// tread-launch and what it has started, and a bus beside them.
+/// tread-launch with the processes that it started, and a bus.
 class LaunchedRobot : public RobotSession {
  public:
   LaunchedRobot(const std::string& file, const std::string& folder, const HostOptions& options,
@@ -99,7 +99,7 @@ class LaunchedRobot : public RobotSession {
     pid_ = fork();
     if (pid_ < 0) throw std::runtime_error("tread-launch cannot be started");
     if (pid_ == 0) {
-      setpgid(0, 0);  // Ctrl-C is for the setup, which then ends this in order
+      setpgid(0, 0);  // Ctrl-C is handled by the setup, which then stops this in order
       launch::becomeProgram({settings.bin + "/tread-launch", file, "--set", "robot=" + folder,
                              "--run", options.run, "--lcm-url", launched.lcm_url});
       _exit(127);
@@ -119,12 +119,12 @@ class LaunchedRobot : public RobotSession {
   }
 
  private:
-  /// Some providers are there only once tread-launch runs.
+  /// Some LCM providers are available only once tread-launch runs.
   void openBus(const launch::LaunchFile& launched) {
     for (const int64_t patient = hostNow() + kLaunchPatience; bus_ == nullptr;) {
       try {
-        // The robot's clock is this host's. One that follows jumps when it hears the first
-        // messages, and a request that is under way then has waited long enough.
+        // The robot's clock is this host's. A clock that follows the messages would jump at the
+        // first ones, and a pending request would time out.
         bus_ = std::make_unique<LcmBus>(BusAccess{launched.lcm_url, hostSealer(launched.key)},
                                         TimeSource::kHost);
       } catch (const std::runtime_error&) {
@@ -160,7 +160,7 @@ std::vector<std::string> portsOfHost() {
 HostSite::HostSite(HostOptions options, const std::atomic<bool>& interrupted)
     : options_(std::move(options)), interrupted_(interrupted) {
   ports_ = options_.ports.empty() ? portsOfHost() : options_.ports;
-  for (const std::string& port : ports_) parseLinkAddress(port);  // throws for what is none
+  for (const std::string& port : ports_) parseLinkAddress(port);  // throws if it is invalid
 }
 
 std::unique_ptr<Link> HostSite::open(const std::string& address) {

@@ -10,23 +10,23 @@
 
 namespace tread::setup {
 
-/// What the command line says of this host.
+/// Options for this host.
 struct HostOptions {
-  std::vector<std::string> ports;  ///< looked at alone; empty: what this host has
-  std::string launch_folder;       ///< of robot.yaml and recording.yaml
+  std::vector<std::string> ports;  ///< the only ones to look at; empty: all of this host
+  std::string launch_folder;       ///< with robot.yaml and recording.yaml
   std::string run;                 ///< folder for states and logs
   std::string lcm_url;             ///< empty = the launch files'
 };
 
-/// Serial lines (by their lasting names), CAN interfaces, Velodyne's UDP port, and SICK's TCP port
-/// on the neighbours of this host.
+/// Serial lines (by their persistent names), CAN interfaces, Velodyne's UDP port, and SICK's TCP
+/// port on neighbouring hosts.
 std::vector<std::string> portsOfHost();
 
 /// This host: real ports, real time, and tread-launch for the processes.
 class HostSite : public Site {
  public:
-  /// Once `interrupted` is true, waiting throws std::runtime_error: motors are let go by whoever
-  /// holds them.
+  /// Once `interrupted` is true, waiting throws std::runtime_error, and destructors stop the
+  /// motors.
   HostSite(HostOptions options, const std::atomic<bool>& interrupted);
 
   std::vector<std::string> ports() override { return ports_; }

@@ -13,42 +13,42 @@
 
 namespace tread::setup {
 
-/// Something that no instrument tells.
+/// A question that no instrument can answer.
 struct Question {
-  std::string key;    ///< in a file of answers
-  std::string words;  ///< for a person
+  std::string key;    ///< in the file of answers
+  std::string words;  ///< text for a person
   std::optional<std::string> usual;
 };
 
-/// All that may be asked, in this order; a file of answers has these keys.
+/// All questions in order; the keys are those of a file of answers.
 const std::vector<Question>& questions();
 
-/// The person beside the robot, or a file of that person's answers.
+/// The person at the robot, or a file of answers.
 class Interview {
  public:
   virtual ~Interview() = default;
-  /// The answer to the question of this key; throws ConfigError if there is none.
+  /// The answer to this question; throws ConfigError if there is none.
   virtual std::string ask(const std::string& key) = 0;
-  /// Tells how it goes.
+  /// Reports progress.
   virtual void say(const std::string& line) = 0;
 
-  /// Throws ConfigError where an answer is out of range.
+  /// Throws ConfigError if an answer is out of range.
   double number(const std::string& key, Range range);
-  /// One of a few words.
+  /// One of a list of words.
   std::string choice(const std::string& key, const std::vector<std::string>& allowed);
-  /// Throws ConfigError unless the answer is yes: what follows moves the robot.
+  /// Throws ConfigError unless the answer is yes: the next step moves the robot.
   void confirm(const std::string& key);
 
  protected:
-  /// Where an answer stands, for messages.
+  /// Source of an answer, for messages.
   virtual std::string place(const std::string& key) const = 0;
 };
 
-/// Answers from a YAML file; nothing is asked.
+/// Answers from a YAML file, without asking.
 class AnswersFile : public Interview {
  public:
   using Say = std::function<void(const std::string& line)>;
-  /// Throws ConfigError for keys that are no question.
+  /// Throws ConfigError for unknown keys.
   AnswersFile(ConfigReader reader, Say say);
 
   std::string ask(const std::string& key) override;

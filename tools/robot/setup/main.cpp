@@ -5,9 +5,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "common/config/config_folder.hpp"
 #include "common/bus/shell.hpp"
 #include "common/config/command_line.hpp"
+#include "common/config/config_folder.hpp"
 #include "tools/robot/launch/host.hpp"
 #include "tools/robot/setup/host_site.hpp"
 #include "tools/robot/setup/setup.hpp"
@@ -27,10 +27,12 @@ struct SetupOptions {
 constexpr const char* kFooter =
     "Finds the devices on this host's ports, turns each track on a stand, drives a minute in a "
     "free\n"
-    "circle of 5 m, drives patterns there, writes ROBOTS/NAME and drives to a goal 10 m ahead. It\n"
-    "asks only for what no instrument tells, and before everything that moves. "
+    "circle of 5 m radius, drives patterns there, writes ROBOTS/NAME and drives to a goal 10 m "
+    "ahead. It\n"
+    "asks only what no instrument can measure, and before each motion. "
     "ROBOTS/NAME/setup.html\n"
-    "is the report. Keep the emergency stop at hand: until the last step nothing sees obstacles.\n"
+    "is the report. Keep the emergency stop at hand: before the last step nothing detects "
+    "obstacles.\n"
     "Ctrl-C stops the motors. tools/robot/setup/README.md is the manual.";
 
 int setUpHere(const SetupOptions& options, Site& site) {
@@ -49,7 +51,7 @@ int setUpHere(const SetupOptions& options, Site& site) {
 }
 
 int preDriveHere(const std::string& folder, Site& site) {
-  std::cout << "It moves to and fro for about 10 s, less than a metre." << std::endl;
+  std::cout << "The robot moves back and forth for about 10 s, less than a metre." << std::endl;
   const PreDrive drive = preDriveOf(site, folder);
   for (const WiringFault& fault : drive.faults) std::cout << "WRONG: " << fault.words << '\n';
   if (!drive.problem.empty()) std::cerr << "tread-setup-robot: " << drive.problem << '\n';
@@ -73,22 +75,23 @@ int run(SetupOptions options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Sets a robot up: from its ports to its first goal.", "tread-setup-robot"};
+  CLI::App app{"Sets up a robot, from its ports to its first goal.", "tread-setup-robot"};
   app.footer(kFooter);
   SetupOptions options;
   auto* answers =
       app.add_option("--answers", options.answers, "file of answers (YAML): nothing is asked")
           ->check(CLI::ExistingFile);
-  app.add_option("--robots", options.robots, "folder in which NAME is made")->capture_default_str();
+  app.add_option("--robots", options.robots, "folder in which NAME is created")
+      ->capture_default_str();
   auto* pre_drive =
-      app.add_option("--pre-drive", options.pre_drive,
-                     "folder of a robot: 10 s of driving, names what is swapped, reversed, dead "
-                     "or turned")
+      app.add_option(
+             "--pre-drive", options.pre_drive,
+             "folder of a robot: drives for 10 s and reports what is swapped, reversed, dead "
+             "or turned")
           ->check(CLI::ExistingDirectory);
   answers->excludes(pre_drive);
-  app.add_option(
-         "--port", options.host.ports,
-         "look only at this address (may be given several times); else at all ports of the host")
+  app.add_option("--port", options.host.ports,
+                 "look only at this address (repeatable); default: all ports of the host")
       ->expected(1)
       ->take_all();
   app.add_option("--run", options.host.run,

@@ -16,13 +16,13 @@
 namespace tread::setup {
 namespace {
 
-/// Nobody needs more digits, and they are read by people.
+/// Few digits, since people read them.
 std::string rounded(double value, int decimals = 3) {
   const double unit = std::pow(10.0, -decimals);
   return formatNumber(std::round(value / unit) / std::pow(10.0, decimals));
 }
 
-/// Five decimals of pi are still within a turn.
+/// Five decimals, so that pi stays within a turn.
 std::string numbersOf(double a, double b, double c) {
   return "[" + rounded(a, 5) + ", " + rounded(b, 5) + ", " + rounded(c, 5) + "]";
 }
@@ -46,7 +46,7 @@ std::string motorText(const RobotFindings& findings) {
   const Device& controller = findings.controller;
   const WiringReport& wiring = findings.wiring;
   const bool described = !findings.line_description.empty();
-  // A weaker side gets larger commands: to the monitor that is a pull to one side.
+  // The weaker side gets larger commands, which the monitor sees as a pull to one side.
   const double stronger = std::max(wiring.full_left.value, wiring.full_right.value);
   const double pull = stronger > 0.0 ? 0.25 + 1.0 - wiring.fullSpeed() / stronger : 0.25;
   return "controller: " + controller.kind + "\naddress: " + controller.address + "\n" +
@@ -201,7 +201,7 @@ ModelDocument modelOf(const RobotFindings& findings) {
   model.delay = wiring.delay.value;
   model.effects.motor_deadband = wiring.dead_power.value * model.full_speed;
   model.effects.track_asymmetry = (left - right) / (left + right);
-  // As it varies on grounds that were measured; the recordings tell better.
+  // Typical spread between measured grounds; the recordings give better values.
   model.spread = {0.03, 0.06, 0.03};
   document.provenance.tool = "tread-setup-robot";
   return document;

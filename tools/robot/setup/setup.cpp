@@ -18,11 +18,11 @@
 namespace tread::setup {
 namespace {
 
-constexpr double kSwing = 0.08;         // [m] of footprint beyond the outline
-constexpr double kAskew = 0.26;         // [rad]: the ground is not that steep, the INS leans
+constexpr double kSwing = 0.08;         // [m] of the footprint beyond the outline
+constexpr double kAskew = 0.26;         // [rad]: no ground is that steep, so the INS is tilted
 constexpr double kAhead = 10.0;         // [m] of the first goal
 constexpr double kMarking = 10.0;       // [m]
-constexpr double kUsualSteering = 0.5;  // [rad] until it is measured
+constexpr double kUsualSteering = 0.5;  // [rad] before it is measured
 
 bool isName(const std::string& name) {
   return !name.empty() &&
@@ -72,8 +72,8 @@ class Setup {
     RobotDescription& robot = found().robot;
     robot.name = person_.ask("name");
     if (!isName(robot.name))
-      throw ConfigError("name '" + robot.name + "' is no name of a folder; use small letters, " +
-                        "digits, - and _");
+      throw ConfigError("name '" + robot.name +
+                        "' is not a valid folder name; use small letters, " + "digits, - and _");
     const std::string folder = robots_ + "/" + robot.name;
     if (std::filesystem::exists(folder))
       throw ConfigError(folder + " is there already; choose another name, or take it away");
@@ -89,7 +89,7 @@ class Setup {
     robot.range_finder.angles.yaw = toRadians(person_.number("range_finder_yaw", {-180.0, 180.0}));
     robot.ins.p_body = {person_.number("ins_x", kPlace), person_.number("ins_y", kPlace),
                         person_.number("ins_z", kPlace)};
-    // Until they are measured.
+    // Estimates until they are measured.
     robot.gauge = 1.5 * robot.outline.half_width;
     robot.drive.full_speed = robot.drive.max_command = 1.0;
     robot.max_speed = 20.0;
@@ -102,7 +102,7 @@ class Setup {
     std::filesystem::create_directories(folder);
   }
 
-  /// An INS that stands on its head or side says so while the robot stands level.
+  /// An INS that is mounted upside down or sideways shows it while the robot stands level.
   void levelIns() {
     found().marking_range = std::min(kMarking, 0.9 * found().range);
     person_.confirm("wheels_down");
@@ -158,7 +158,7 @@ class Setup {
                 " m wide");
   }
 
-  /// The told place was taken off with the heading that the INS had before its mounting was known.
+  /// The configured position was applied with the heading from before the mounting was known.
   void moveIns(const WiringReport& wiring) {
     const double turned = wiring.has(FaultKind::kInsTurned) ? wiring.mounting_yaw.value : 0.0;
     Eigen::Vector3d& place = found().robot.ins.p_body;
@@ -166,7 +166,7 @@ class Setup {
                       Eigen::Vector2d(place.head<2>());
   }
 
-  /// With the corrections nothing may be wrong any more but what they cannot mend.
+  /// After the corrections only faults that they cannot fix may remain.
   void verify() {
     WiringExpectation brief;
     brief.brief = true;

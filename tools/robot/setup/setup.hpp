@@ -14,13 +14,13 @@
 
 namespace tread::setup {
 
-/// Whether two things that must fit do.
+/// A check whether two related values fit.
 struct FitCheck {
   bool good = true;
-  std::string words;  ///< what, with numbers; what to do where it is not
+  std::string words;  ///< one line: what, with numbers; the remedy if it does not fit
 };
 
-/// All that a setup has found out; one line of `problem` where it could not go on.
+/// Results of a setup; `problem`: why it stopped, one line.
 struct SetupResult {
   std::string folder;
   RobotFindings findings;
@@ -33,24 +33,24 @@ struct SetupResult {
   std::string problem;
 };
 
-/// Footprint, ranges, stopping distance, rates and leases of what was found, against each other.
+/// Compares footprint, ranges, stopping distance, rates and leases with each other.
 std::vector<FitCheck> checkFit(const SetupResult& result);
 
-/// Sets a robot up from nothing: ports, wiring, motion, patterns, first goal, and writes its folder
-/// below `robots`. Never throws for what the robot does: that is the result's problem.
+/// Sets up a robot: ports, wiring, motion, patterns, first goal; writes its folder below `robots`.
+/// A failure of the robot does not throw but is the result's problem.
 SetupResult setUp(Site& site, Interview& person, const std::string& robots);
 
 /// One page with pictures, as HTML.
 std::string reportOf(const SetupResult& result);
 
-/// The ten seconds before a drive.
+/// Result of the 10 s test before a drive.
 struct PreDrive {
   std::vector<WiringFault> faults;
-  std::string problem;  ///< why nothing could be said; empty
+  std::string problem;  ///< why there is no result; empty = valid
 };
 
-/// Drives less than a metre with a robot's configuration and names every part that is swapped,
-/// reversed, dead or turned; throws ConfigError for a folder that is none.
+/// Drives less than a metre with a robot's configuration and reports every part that is swapped,
+/// reversed, dead or turned; throws ConfigError for an invalid folder.
 PreDrive preDriveOf(Site& site, const std::string& folder);
 
 }  // namespace tread::setup

@@ -32,7 +32,7 @@ std::string pathChart(const std::string& title, const std::vector<Pose2>& track,
   return chart.svg();
 }
 
-/// Speed of the INS over time with the commands' mean as it would be at full speed.
+/// Chart of the INS's speed over time, with the mean command scaled to full speed.
 std::string speedChart(const GroundReport& ground, bool is_car) {
   std::vector<ChartPoint> measured, commanded;
   ChartRange range = ChartRange::empty();
@@ -50,7 +50,7 @@ std::string speedChart(const GroundReport& ground, bool is_car) {
     range.include(measured.back());
   }
   for (const GivenCommand& given : ground.commands) {
-    // A car's second one is its steering.
+    // For a car the second channel is the steering.
     const double share =
         is_car ? given.command.left : 0.5 * (given.command.left + given.command.right);
     commanded.push_back({seconds(given.utime), share * ground.wiring.fullSpeed()});
@@ -96,13 +96,14 @@ report::Table measuredTable(const WiringReport& wiring, bool is_car) {
                     row("lag of the steering", wiring.steering_lag, "s", 2)}
              : Rows{row("left track at full command", wiring.full_left, "m/s", 2),
                     row("right track at full command", wiring.full_right, "m/s", 2),
-                    row("width, as it turns", wiring.gauge, "m", 2)};
-  const Rows both{row("delay of a command", wiring.delay, "s", 2),
-                  row("lag of the motors", wiring.lag, "s", 2),
-                  row("commands that move nothing", wiring.dead_power, "%", 0, 100.0),
-                  row("INS turned against what was told", wiring.mounting_yaw, "deg", 1, degrees),
-                  row("INS ahead of what was told", wiring.antenna_x, "m", 2),
-                  row("INS left of what was told", wiring.antenna_y, "m", 2)};
+                    row("effective track width", wiring.gauge, "m", 2)};
+  const Rows both{
+      row("delay of a command", wiring.delay, "s", 2),
+      row("lag of the motors", wiring.lag, "s", 2),
+      row("commands that move nothing", wiring.dead_power, "%", 0, 100.0),
+      row("INS yaw relative to its given mounting", wiring.mounting_yaw, "deg", 1, degrees),
+      row("INS ahead of its given position", wiring.antenna_x, "m", 2),
+      row("INS left of its given position", wiring.antenna_y, "m", 2)};
   rows.insert(rows.end(), both.begin(), both.end());
   return {{"measured", "value", "95 %"}, rows, 1};
 }

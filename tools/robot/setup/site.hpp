@@ -12,28 +12,28 @@
 
 namespace tread::setup {
 
-/// The robot's processes, running from its folder until this is gone.
+/// The robot's processes, running from its folder for the lifetime of this object.
 class RobotSession {
  public:
   virtual ~RobotSession() = default;
-  /// Where they are heard and told.
+  /// The bus of the processes.
   virtual Bus& bus() = 0;
-  /// Lets them run on [us]; messages are handled meanwhile.
+  /// Lets them run for `duration` [us] and handles messages meanwhile.
   virtual void pass(int64_t duration) = 0;
 };
 
-/// Which processes a step needs.
+/// Processes that a step needs.
 enum class Processes {
-  kRecording,  ///< INS and motors only: the room is free, and nobody plans
+  kRecording,  ///< only INS and motors: the room is free, no planning
   kAll
 };
 
-/// A robot's host with its ports and its time: a real one, or a simulated one in virtual time. The
-/// setup does not know which.
+/// A robot's host with its ports and time: real, or simulated in virtual time. The setup code is
+/// the same for both.
 class Site {
  public:
   virtual ~Site() = default;
-  /// Addresses where a device may be; those of serial lines without a rate.
+  /// Possible device addresses; those of serial lines without baud rate.
   virtual std::vector<std::string> ports() = 0;
   virtual std::unique_ptr<Link> open(const std::string& address) = 0;
   virtual int64_t now() = 0;  ///< [us]

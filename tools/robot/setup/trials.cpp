@@ -11,13 +11,13 @@
 namespace tread::setup {
 namespace {
 
-constexpr double kSilence = 1.2;       // [s] in which the watchdog must trip
+constexpr double kSilence = 1.2;       // [s] within which the watchdog must trip
 constexpr double kRampStep = 0.02;     // of the full command
 constexpr double kRampEvery = 0.15;    // [s]
-constexpr int kDisturbances = 4;       // of the motor line in one drive
-constexpr double kStandsSpeed = 0.05;  // [m/s] by the INS
+constexpr int kDisturbances = 4;       // tolerated faults of the motor line in one drive
+constexpr double kStandsSpeed = 0.05;  // [m/s] of the INS that counts as standstill
 
-/// Turning of a side as the controller tells it: speed where it has one, else current.
+/// Motion of a side as reported by the controller: its speed if it measures one, else the current.
 double toldMotion(const motor::MotorTelemetry& telemetry, int side) {
   const double speed = telemetry.measured[static_cast<size_t>(side)];
   const double current = telemetry.current[static_cast<size_t>(side)];
@@ -88,7 +88,7 @@ class Lift {
     hold(0.6, TrackCommand{});
   }
 
-  /// The servo tells nothing: what it does a person sees.
+  /// A servo has no feedback, so a person must watch it.
   void tryCar() {
     trySide(0);
     report_.seen.forward = person_.choice("first_direction", {"forward", "backward"}) == "forward";
@@ -103,8 +103,8 @@ class Lift {
     report_.seen.forward = person_.choice("first_direction", {"forward", "backward"}) == "forward";
   }
 
-  /// The line falls silent: the controller must stop by itself. What drives it would give zero,
-  /// too, once it may speak again, so that only a person can tell.
+  /// Stops sending: the controller must stop by itself. Afterwards it gets zero commands anyway, so
+  /// only a person can see which of the two stopped it.
   void tryWatchdog() {
     hold(1.0, straight(drivers_, kLiftedLevel));
     hold(kSilence, std::nullopt);
@@ -113,7 +113,7 @@ class Lift {
     if (person_.choice("watchdog_stopped", {"yes", "no"}) == "no")
       throw std::runtime_error(
           "the controller does not stop when its line falls silent: set up its "
-          "watchdog, or choose one that has one; nothing drives without it");
+          "watchdog, or choose a controller with a watchdog; the robot must not drive without one");
   }
 
   Interview& person_;
@@ -122,7 +122,7 @@ class Lift {
   LiftReport report_;
 };
 
-/// [s] until the INS sees it stand after commands cease.
+/// [s] until the INS shows standstill after commands cease.
 double coastAfterSilence(DirectRobot& robot, const TrackCommand& command) {
   robot.run(1.0, [&](int64_t) { return command; });
   const int64_t last = robot.commands().back().utime;
@@ -162,7 +162,7 @@ GroundReport tryWheelsDown(Site& site, const Drivers& drivers, const WiringDrive
   config.car = drivers.isCar();
   WiringDrive drive(config);
   std::string fault;
-  // A line that was disturbed for a moment does not end it.
+  // A short fault of the line does not end the drive.
   for (int i = 0; i < kDisturbances && (i == 0 || robot.begin().empty()); ++i) {
     fault = robot.run(
         2.0 * how.seconds + 10.0, [&](int64_t now) { return drive.step(now, robot.takePose()); },
@@ -183,7 +183,7 @@ GroundReport tryWheelsDown(Site& site, const Drivers& drivers, const WiringDrive
 
 namespace {
 
-/// Moves the servo's ends so that no steering is straight ahead, and both sides as far.
+/// Shifts the servo's ends so that zero steering is straight ahead and both sides are equal.
 void centreServo(const WiringReport& wiring, RobotFindings& findings) {
   if (findings.controller.kind != "vesc") return;
   const double reach = 0.5 * (wiring.steering_left.value - wiring.steering_right.value);

@@ -13,40 +13,41 @@
 
 namespace tread::setup {
 
-/// What one side did on the stand; NaN = the controller does not tell.
+/// Result for one side on the stand; NaN = the controller does not measure it.
 struct LiftedSide {
   double dead_power = 0.0;  ///< [1] least share of the full command that moved it
   double current = 0.0;     ///< [A] running free at kLiftedLevel
 };
 
-/// Wheels up: each side alone.
+/// Wheels up: result for each side.
 struct LiftReport {
   std::array<LiftedSide, 2> sides;  ///< configured left and right
-  SideMotion seen;                  ///< what a person saw of the configured left side
+  SideMotion seen;                  ///< what a person saw the configured left side do
   std::vector<std::string> problems;
 };
 
 /// Level at which a side runs free on the stand.
 inline constexpr double kLiftedLevel = 0.4;
 
-/// Turns each side alone, lets the watchdog trip, and asks which one turned first, and how.
-/** Throws std::runtime_error, one line, where it cannot go on. */
+/// Turns each side alone, tests the watchdog, and asks which one turned first and in which
+/// direction.
+/** Throws std::runtime_error, one line, if it cannot continue. */
 LiftReport tryWheelsUp(Site& site, Interview& person, const Drivers& drivers);
 
-/// Wheels down: the minute in the free circle.
+/// Wheels down: result of the minute in the free circle.
 struct GroundReport {
   WiringReport wiring;
   std::vector<GivenCommand> commands;
   std::vector<InsFix> fixes;
-  double watchdog = 0.0;  ///< [s] from the last command to standing, by the INS; 0 = not tried
+  double watchdog = 0.0;  ///< [s] from the last command to standstill of the INS; 0 = not tested
   std::string problem;    ///< why it ended early; empty if it did not
 };
 
-/// Drives the wiring out; `watchdog`: then also ceases to command while it drives.
+/// Drives the wiring test; `watchdog`: afterwards also stops sending while driving.
 GroundReport tryWheelsDown(Site& site, const Drivers& drivers, const WiringDriveConfig& how,
                            const WiringExpectation& expected, bool watchdog);
 
-/// Applies what was found to what is configured: channels, directions, mounting of the INS.
+/// Applies the findings to the configuration: channels, directions, mounting of the INS.
 void applyWiring(const WiringReport& wiring, RobotFindings& findings);
 
 }  // namespace tread::setup

@@ -19,7 +19,7 @@
 #include "tools/robot/operator/live_console.hpp"
 #include "tools/robot/top/monitor.hpp"
 
-// ncurses has a macro of this name.
+// ncurses defines a macro of this name.
 #undef timeout
 
 namespace {
@@ -28,9 +28,9 @@ using namespace tread;
 using namespace tread::top;
 
 constexpr int kWaitMs = 20;
-constexpr int64_t kShow = 250'000;     // [us] between pictures
-constexpr int64_t kHold = 60'000'000;  // [us] without a key
-constexpr uint64_t kTerminal = 1;      // the one page of the console
+constexpr int64_t kShow = 250'000;     // [us] between screen updates
+constexpr int64_t kHold = 60'000'000;  // [us] the robot is held after the last key
+constexpr uint64_t kTerminal = 1;      // page number of this terminal in the console
 
 struct Arguments {
   std::string lcm_url;
@@ -39,7 +39,7 @@ struct Arguments {
   double once = 0.0;
 };
 
-/// The bus, and what the kernel has lost of it.
+/// The bus, and the kernel's counters of lost datagrams.
 class Watch {
  public:
   Watch(BusAccess access, Monitor& monitor)
@@ -61,7 +61,7 @@ class Watch {
   LcmListener listener_;
 };
 
-/// What is shown here is what comes now.
+/// Adds the current time as "seen": this screen shows messages at once.
 std::string withTime(const char* op, int64_t now) {
   return std::string("{\"op\":\"") + op + "\",\"seen\":" + std::to_string(now) + "}";
 }
@@ -73,14 +73,14 @@ std::vector<std::string> linesOf(const std::string& text) {
   return lines;
 }
 
-/// The terminal as long as it lives; given back in good order, also where something throws.
+/// The terminal for the lifetime of this object; restored also after an exception.
 class Screen {
  public:
   Screen() {
     std::setlocale(LC_ALL, "");
     if (newterm(nullptr, stdout, stdin) == nullptr)
       throw std::runtime_error(
-          "this terminal cannot be used (TERM); tread-top --once 3 needs none");
+          "this terminal cannot be used (TERM); tread-top --once 3 works without one");
     cbreak();
     noecho();
     nodelay(stdscr, TRUE);
@@ -139,7 +139,7 @@ class Screen {
   }
 };
 
-/// Prints once what a terminal would show.
+/// Prints the screen once.
 int printOnce(Watch& listener, const Monitor& monitor, double seconds,
               const std::atomic<bool>& stop) {
   for (const int64_t end = hostNow() + static_cast<int64_t>(1e6 * seconds);
@@ -152,7 +152,7 @@ int printOnce(Watch& listener, const Monitor& monitor, double seconds,
 int watch(Watch& listener, const Monitor& monitor, operators::LiveConsole& console,
           const std::atomic<bool>& stop) {
   const Screen screen;
-  // Over ssh nobody notices that a terminal is gone: who holds the robot shows it by a key.
+  // Over ssh a lost terminal goes unnoticed, so the operator must press keys.
   int64_t held_until = 0;
 
   std::string refused;
@@ -203,11 +203,12 @@ int run(const Arguments& arguments) {
 int main(int argc, char** argv) {
   CLI::App app{
       "Watches the robot in a terminal: channels with rates, ages, sizes and losses, processes, "
-      "motors; arms, disarms and stops by a key. Works over ssh, where --operator should say who "
+      "motors. Keys arm, disarm and stop. Over ssh give your name by --operator, so that the log "
+      "shows who "
       "you are.",
       "tread-top"};
   Arguments arguments;
-  app.add_option("--once", arguments.once, "print once what was seen in so many seconds, and end")
+  app.add_option("--once", arguments.once, "print the screen once after so many seconds, and end")
       ->check(CLI::Range(0.1, 3600.0));
   app.add_option("--operator", arguments.operator_name, operators::kOperatorHelp)
       ->capture_default_str();

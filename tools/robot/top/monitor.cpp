@@ -12,9 +12,9 @@
 namespace tread::top {
 namespace {
 
-constexpr double kSilentProcess = 2.5;     // [s] HEALTH comes every second
+constexpr double kSilentProcess = 2.5;     // [s]; HEALTH comes every second
 constexpr double kSlow = 0.7;              // [1] of the nominal rate
-constexpr int64_t kMostMissing = 100'000;  // more at once is another counter
+constexpr int64_t kMostMissing = 100'000;  // a larger gap is a restarted counter
 
 const ChannelSpec* specOf(const std::string& channel) {
   const auto found = std::find_if(kChannels.begin(), kChannels.end(),
@@ -28,7 +28,7 @@ int64_t bigEndian(const uint8_t* bytes) {
   return static_cast<int64_t>(value);
 }
 
-/// Several processes speak on some channels, and each counts for itself.
+/// Some channels have several senders, each with its own counter.
 uint64_t senderOf(const std::string& channel, const std::vector<uint8_t>& bytes) {
   const LogEvent event{0, channel, bytes};
   health_t health;
@@ -45,7 +45,7 @@ uint64_t senderOf(const std::string& channel, const std::vector<uint8_t>& bytes)
   return 0;
 }
 
-/// Only those whose senders are known apart are counted.
+/// Counts only channels whose senders can be distinguished.
 bool counts(const std::string& channel) {
   return channel != kArm.name && channel != kEstop.name && channel != kFence.name &&
          channel != kMark.name && channel != kGoal.name && channel != kManual.name;
@@ -108,7 +108,7 @@ void Monitor::take(const std::string& channel, const uint8_t* bytes, size_t size
 }
 
 void Monitor::count(Stream& stream, const std::string& channel, const std::vector<uint8_t>& bytes) {
-  constexpr size_t kSeqAt = 16;  // behind the fingerprint and utime
+  constexpr size_t kSeqAt = 16;  // after the fingerprint and utime
   if (specOf(channel) == nullptr || !counts(channel)) return;
   if (bytes.size() < kSeqAt + 8) {
     ++stream.broken;
@@ -135,7 +135,7 @@ Line Monitor::lineOf(const std::string& channel, const Stream& stream, int64_t n
   const double rate = static_cast<double>(recent) / span;
   const double age = static_cast<double>(now - stream.last) * 1e-6;
   const double nominal = spec == nullptr ? 0.0 : spec->rate_hz;
-  // A channel of several publishers, or of operators, has no rate of its own.
+  // A channel with several publishers, or of operators, has no nominal rate.
   const bool steady = nominal >= 1.0 && channel != kHealth.name && channel != kOperator.name &&
                       channel != kManual.name && channel != kGoal.name;
   const bool slow = steady && rate < kSlow * nominal;
@@ -202,12 +202,12 @@ std::vector<Line> Monitor::lines(int64_t now) const {
   if (plan_)
     lines.push_back(
         {Mood::kPlain,
-         "planner  " + (plan_->reason.empty() ? std::string("no word of a stop") : plan_->reason)});
+         "planner  " + (plan_->reason.empty() ? std::string("no stop reported") : plan_->reason)});
   if (kernel_) {
     const int64_t lost = kernel_->buffer_errors - kernel_begun_->buffer_errors;
     lines.push_back(
         {lost > 0 ? Mood::kBad : Mood::kPlain,
-         formatted("kernel   %lld datagrams found no room in a buffer since this began%s",
+         formatted("kernel   %lld datagrams dropped (full buffer) since tread-top started%s",
                    static_cast<long long>(lost), lost > 0 ? ": config/sysctl/60-tread.conf" : "")});
   }
   if (!doubt_.empty()) lines.push_back({Mood::kBad, "trust    " + doubt_});

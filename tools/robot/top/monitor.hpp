@@ -15,7 +15,7 @@
 
 namespace tread::top {
 
-/// How bad a line is.
+/// Severity of a line.
 enum class Mood { kTitle, kPlain, kGood, kDoubt, kBad };
 
 struct Line {
@@ -23,28 +23,28 @@ struct Line {
   std::string text;
 };
 
-/// What the host's kernel has thrown away since it was started.
+/// Datagrams that the host's kernel has dropped since boot.
 struct KernelCounters {
-  int64_t buffer_errors = 0;  ///< datagrams that found no room in a receiver's buffer
+  int64_t buffer_errors = 0;  ///< dropped because a receive buffer was full
 };
-/// Of /proc/net/snmp; nothing if it says nothing of UDP.
+/// Parsed from /proc/net/snmp; nullopt if it has no UDP lines.
 std::optional<KernelCounters> kernelCounters(const std::string& snmp);
 
 /// Watches the bus: rates against the table, ages, sizes, losses, processes.
 class Monitor {
  public:
-  /// A message as it came, without its seal, at a time [us] of the host.
+  /// Counts a message, without its seal, received at host time `utime` [us].
   void take(const std::string& channel, const uint8_t* bytes, size_t size, int64_t now);
   void take(const KernelCounters& counters);
-  /// A line about how far to trust all this; empty = none.
+  /// A caveat about the displayed data; empty = none.
   void setDoubt(const std::string& words) { doubt_ = words; }
 
-  /// What to show at a time [us]. Channels in the order of the table, foreign ones behind.
+  /// The lines to show at a time [us]: channels in the order of the table, then unknown ones.
   std::vector<Line> lines(int64_t now) const;
 
  private:
   static constexpr int64_t kWindow = 3'000'000;  ///< [us] over which rates are counted
-  /// Names that whoever may send can make up: so many are listed, further ones passed over.
+  /// Senders can invent names, so only so many are listed.
   static constexpr size_t kMostNames = 64;
 
   struct Stream {

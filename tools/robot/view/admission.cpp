@@ -8,7 +8,7 @@
 namespace tread::view {
 namespace {
 
-/// As long for a wrong guess as for a right one.
+/// Compares in constant time, so that timing reveals nothing about the token.
 bool sameText(const std::string& a, const std::string& b) {
   unsigned char different = a.size() == b.size() ? 0 : 1;
   for (size_t i = 0; i < a.size(); ++i)
@@ -37,8 +37,8 @@ std::string addOrigin(const std::string& url, ServerSettings& settings) {
   const size_t path = std::min(url.find_first_of("/?#", host), url.size());
   if ((name != "http" && name != "https") || path == host ||
       url.find_first_of("?#@ ", host) != std::string::npos)
-    return "'" + url + "' is no address of a page: https://HOST[:PORT][/PATH/] is needed";
-  // As browsers say it: in small letters, without the usual port.
+    return "'" + url + "' is not the address of a page; give https://HOST[:PORT][/PATH/]";
+  // Normalized as in browsers: lower case, without the default port.
   std::string origin = url.substr(0, path);
   std::transform(origin.begin(), origin.end(), origin.begin(),
                  [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });

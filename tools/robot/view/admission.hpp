@@ -8,36 +8,36 @@
 
 namespace tread::view {
 
-/// Where viewers come in.
+/// Settings of the server.
 struct ServerSettings {
   std::string address = "127.0.0.1";
-  int port = 8765;          ///< 0 = any that is free
-  std::string token;        ///< asked of everybody; empty = none, for this machine alone
+  int port = 8765;    ///< 0 = any free one
+  std::string token;  ///< required from every viewer; empty = none, then only for this machine
   bool may_command = true;  ///< pages may operate the robot
-  /// Where else pages of ours come from ("https://host"), and under which paths a proxy asks for
+  /// Further origins of our pages ("https://host"), and the paths under which a proxy requests
   /// them; see addOrigin().
   std::vector<std::string> origins;
   std::set<std::string> paths;
   std::string
-      certificate;  ///< PEM file with its key; empty = not encrypted, for this machine alone
+      certificate;  ///< PEM file with its key; empty = not encrypted, then only for this machine
 };
 
-/// Takes the address of the page behind a proxy, "https://host:8443/robot/"; returns what is wrong
-/// with it, empty = nothing.
+/// Adds the address of the page behind a proxy, "https://host:8443/robot/"; returns the error,
+/// empty = none.
 std::string addOrigin(const std::string& url, ServerSettings& settings);
 
-/// What a viewer's request says of itself.
+/// Identity of a viewer's request.
 struct Visitor {
-  std::string host;    ///< the name by which it asks, with the port
-  std::string origin;  ///< where the page that asks came from; empty: no page asks
+  std::string host;    ///< name and port that it requests
+  std::string origin;  ///< origin of the requesting page; empty: not a page
   std::string token;
 };
 
-/// Whether no page asks, or one that was fetched from here.
+/// Whether the request comes from our own page or from no page.
 bool isOurs(const Visitor& visitor, const ServerSettings& settings);
 
-/// A stranger's page in the same browser must not even listen: without a token only those who name
-/// this machine are let in, and only pages that came from here.
+/// A foreign page in the same browser must not even read. Without a token only requests to this
+/// machine's own names pass, and only from pages served here.
 bool mayLook(const Visitor& visitor, const ServerSettings& settings);
 
 }  // namespace tread::view

@@ -47,7 +47,7 @@ void addExtension(X509& certificate, int kind, const std::string& value) {
   require(added);
 }
 
-/// Valid at all times: a robot without a network may believe that it is 1970.
+/// Unlimited validity: a robot without a network may have the date of 1970.
 X509Pointer certify(EVP_PKEY& key) {
   X509Pointer certificate(X509_new());
   require(certificate != nullptr);
@@ -86,7 +86,7 @@ std::string newPem() {
   return {bytes, static_cast<size_t>(size)};
 }
 
-/// Empty where the text holds no certificate, or not its key.
+/// Empty if the text holds no certificate or not its key.
 std::string fingerprintOf(const std::string& pem) {
   const Bio text(BIO_new_mem_buf(pem.data(), static_cast<int>(pem.size())));
   const X509Pointer certificate(PEM_read_bio_X509(text.get(), nullptr, nullptr, nullptr));
@@ -115,7 +115,8 @@ Certificate ownCertificate(const std::string& folder) {
   Certificate certificate{file.path, "", !file.isThere() && file.ensure(newPem())};
   certificate.fingerprint = fingerprintOf(file.read());
   if (certificate.fingerprint.empty())
-    file.refuse("holds no certificate with its key", "remove it, so that another one is made");
+    file.refuse("does not contain a certificate and its key",
+                "remove it, so that another one is made");
   return certificate;
 }
 

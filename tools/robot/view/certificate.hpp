@@ -6,14 +6,14 @@
 
 namespace tread::view {
 
-/// What tread-view shows to browsers on other machines, so that nobody on the way reads the token.
+/// Certificate for browsers on other machines, so that nobody on the network can read the token.
 struct Certificate {
   std::string path;         ///< certificate and private key in one PEM file
   std::string fingerprint;  ///< SHA-256, as browsers show it: "3F:2A:..."
-  bool made = false;        ///< just now
+  bool made = false;        ///< created just now
 };
 
-/// The machine's own one, signed by itself, kept in a folder; made there at the first start.
+/// This machine's self-signed certificate, kept in a folder; created at the first start.
 /** Throws std::runtime_error, one line, if it cannot be made or read, or if others may read it. */
 Certificate ownCertificate(const std::string& folder);
 

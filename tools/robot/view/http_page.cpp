@@ -21,7 +21,7 @@ std::string headerOf(lws* socket, lws_token_indexes token) {
   return text;
 }
 
-/// The value of an argument of the address: "?token=..."
+/// Value of an argument of the address: "?token=...".
 std::string argumentOf(lws* socket, const char* name) {
   char buffer[256] = {};
   const char* const value =
@@ -36,20 +36,20 @@ int addHeader(lws* socket, const char* name, const std::string& value, unsigned 
                                      static_cast<int>(value.size()), at, end);
 }
 
-/// Says why there is no page.
+/// Answers with the reason why there is no page.
 int refuseRequest(lws* socket, unsigned int status, const char* why) {
   lws_return_http_status(socket, status, why);
   return lws_http_transaction_completed(socket) != 0 ? -1 : 0;
 }
 
-/// What goes before the page; false if it cannot be sent.
+/// Sends the headers; false on failure.
 bool writeHead(lws* socket) {
   unsigned char head[LWS_PRE + 1024];
   unsigned char *at = head + LWS_PRE, *const end = head + sizeof head;
   unsigned char* const begin = at;
   return lws_add_http_common_headers(socket, HTTP_STATUS_OK, "text/html; charset=utf-8",
                                      pageText().size(), &at, end) == 0 &&
-         // In a stranger's frame clicks would be meant for something else.
+         // Inside a foreign frame a click could be redirected (clickjacking).
          addHeader(socket, "x-frame-options:", "DENY", &at, end) == 0 &&
          addHeader(socket, "content-security-policy:", "frame-ancestors 'none'", &at, end) == 0 &&
          lws_finalize_write_http_header(socket, begin, &at, end) == 0;
@@ -66,9 +66,9 @@ int answerRequest(lws* socket, const ServerSettings& settings, size_t* sent) {
   const std::string path = headerOf(socket, WSI_TOKEN_GET_URI);
   if (!mayLook(visitorOf(socket), settings))
     return refuseRequest(socket, HTTP_STATUS_FORBIDDEN,
-                         "the address must end with ?token=..., as tread-view said");
+                         "the address must end with ?token=..., as printed by tread-view");
   if (path != "/" && path != "/index.html" && settings.paths.count(path) == 0)
-    return refuseRequest(socket, HTTP_STATUS_NOT_FOUND, "only the page is here");
+    return refuseRequest(socket, HTTP_STATUS_NOT_FOUND, "there is only the page at /");
   if (!writeHead(socket)) return 1;
   *sent = 0;
   lws_callback_on_writable(socket);

@@ -11,14 +11,14 @@ struct lws;
 
 namespace tread::view {
 
-/// The page as one HTML file; made by the build.
+/// The page as one HTML file, made by the build.
 std::string_view pageText();
 
-/// What the request of a socket says of who asks.
+/// Identity of a socket's request.
 Visitor visitorOf(lws* socket);
 
-/// Answers a request by HTTP: the page, or why not. `sent` [bytes] of the page so far. What these
-/// return is for libwebsockets: not zero = close.
+/// Answers an HTTP request with the page or an error. `sent` [bytes] of the page so far. The
+/// results are for libwebsockets: non-zero = close.
 int answerRequest(lws* socket, const ServerSettings& settings, size_t* sent);
 /// Sends the next piece of the page.
 int continuePage(lws* socket, size_t* sent);

@@ -29,7 +29,7 @@ using namespace tread::view;
 
 constexpr int kWaitMs = 2;
 constexpr double kConsolePeriod = 0.3;  // [s]
-/// Of this program beside the robot's: a third of their share where the processor is scarce.
+/// Nice value next to the robot's processes: a third of their share if the processor is scarce.
 constexpr int kNiceness = 5;
 
 struct Arguments {
@@ -38,7 +38,7 @@ struct Arguments {
   std::string lcm_url;
   std::string key;
   std::string operator_name = operatorName();
-  std::string state;  ///< folder of the certificate; empty = the usual one
+  std::string state;  ///< folder of the certificate; empty = default
   bool look_only = false;
 };
 
@@ -71,29 +71,29 @@ void sayWhere(const ViewServer& server, const ServerSettings& settings) {
   std::fflush(stdout);
 }
 
-/// Who listens to others must not tell them the token in clear.
+/// A server for other machines must not receive the token unencrypted.
 void protect(Arguments& arguments) {
   ServerSettings& server = arguments.server;
   const bool local = isLoopback(server.address);
-  // Whoever comes by a proxy seems to be at this machine.
+  // Requests through a proxy appear to come from this machine.
   if (server.token.empty() && (!local || !server.origins.empty())) server.token = newToken();
   if (local) return;
   const std::string folder =
       arguments.state.empty() ? launch::defaultRunFolder("view") : arguments.state;
   const Certificate certificate = ownCertificate(folder);
   server.certificate = certificate.path;
-  std::printf("tread-view: certificate of its own%s, the browser asks once; SHA-256 %s\n",
+  std::printf("tread-view: self-signed certificate%s, the browser asks once; SHA-256 %s\n",
               certificate.made ? ", made now" : "", certificate.fingerprint.c_str());
 }
 
 void live(const Arguments& arguments, const std::atomic<bool>& stop) {
-  // Before any thread is started, which would keep its own.
+  // Before any thread is started: threads inherit the priority.
   setpriority(PRIO_PROCESS, 0, std::max(kNiceness, getpriority(PRIO_PROCESS, 0)));
   const launch::RunningRobot robot = launch::findRobot(arguments.lcm_url, arguments.key);
   operators::LiveConsole console(robot, arguments.operator_name, "by the page of tread-view");
   ServerSettings settings = arguments.server;
   settings.may_command = !arguments.look_only;
-  // The key keeps strangers out: whoever may use this machine must not come in by the page.
+  // With a key, local users must not be able to operate the robot through the page without a token.
   if (!robot.key.empty() && settings.may_command && settings.token.empty())
     settings.token = newToken();
   ViewServer server(
@@ -118,7 +118,7 @@ void live(const Arguments& arguments, const std::atomic<bool>& stop) {
     const double now = secondsNow();
     server.step(now - last);
     last = now;
-    // A goal's progress changes with every look, and nobody reads that fast.
+    // Progress of a goal changes at every step, faster than anybody reads.
     if (now - told_at < kConsolePeriod) continue;
     told_at = now;
     server.feed().setDoubt(listener.doubt());
@@ -157,7 +157,7 @@ int run(Arguments& arguments) {
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "A page for the browser: map, plan, patterns, learning, health and events of the running "
+      "Serves a browser page with map, plan, patterns, learning, health and events of the running "
       "robot, with goal, fences and E-stop; or of a log, with a time slider. Foxglove and "
       "Lichtblick connect to the same address.",
       "tread-view"};
@@ -165,15 +165,15 @@ int main(int argc, char** argv) {
   app.add_option("logs", arguments.logs,
                  "LCM log; several are parts of one recording, in order; none = the running robot");
   app.add_option("--address", arguments.server.address,
-                 "to listen at; others than this machine's own need the token that is printed")
+                 "address to listen at; for other machines viewers need the printed token")
       ->capture_default_str();
-  app.add_option("--port", arguments.server.port, "0 = any that is free")
+  app.add_option("--port", arguments.server.port, "0 = any free one")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
-  app.add_option(
-      "--token", arguments.server.token,
-      "asked of every viewer; default: none on this machine, unless the robot has a key or a proxy "
-      "is named; else a new one");
+  app.add_option("--token", arguments.server.token,
+                 "token required from every viewer; default: none on this machine, unless the "
+                 "robot has a key or a proxy "
+                 "is named (--origin); else a random one");
   app.add_option_function<std::vector<std::string>>(
          "--origin",
          [&](const std::vector<std::string>& urls) {
@@ -181,12 +181,13 @@ int main(int argc, char** argv) {
              if (const std::string wrong = addOrigin(url, arguments.server); !wrong.empty())
                throw CLI::ValidationError("--origin", wrong);
          },
-         "address of the page as a browser sees it behind a proxy; from there it operates, too")
+         "address of the page behind a proxy, as the browser sees it; this page may operate the "
+         "robot")
       ->expected(1)
       ->take_all();
   app.add_option("--state", arguments.state,
                  "folder of the certificate for other machines; default ~/.local/state/tread/view");
-  app.add_flag("--look-only", arguments.look_only, "no page operates the robot");
+  app.add_flag("--look-only", arguments.look_only, "no page may operate the robot");
   app.add_option("--operator", arguments.operator_name, operators::kOperatorHelp)
       ->capture_default_str();
   app.add_option("--lcm-url", arguments.lcm_url, operators::kUrlHelp);

@@ -15,12 +15,11 @@
 namespace tread::view {
 namespace {
 
-constexpr size_t kReceiveBuffer = 4096;  // [bytes]
-constexpr int kMostWaiting = 64;         // newcomers that the kernel keeps for us
-constexpr unsigned int kHandshakeSeconds =
-    10;  // [s] for what must be said before a WebSocket opens
+constexpr size_t kReceiveBuffer = 4096;         // [bytes]
+constexpr int kMostWaiting = 64;                // connections waiting in the kernel
+constexpr unsigned int kHandshakeSeconds = 10;  // [s] limit before a WebSocket is open
 
-/// What this thread has computed so far [s].
+/// Processor time of this thread so far [s].
 double computedSoFar() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -35,7 +34,7 @@ int refuse(lws* socket, std::string why) {
 
 }  // namespace
 
-/// What libwebsockets calls back.
+/// Callbacks of libwebsockets.
 struct Sockets::Library {
   Library(const ServerSettings& settings, Sockets& owner);
   ~Library() {
@@ -46,7 +45,7 @@ struct Sockets::Library {
 
   static int called(lws* socket, lws_callback_reasons reason, void* user, void* in, size_t size) {
     auto* const sockets = static_cast<Sockets*>(lws_context_user(lws_get_context(socket)));
-    // Nothing may be thrown through C.
+    // Exceptions must not cross C code.
     try {
       return sockets == nullptr ? 0 : handle(*sockets, socket, reason, user, in, size);
     } catch (const std::exception&) {
@@ -88,7 +87,7 @@ struct Sockets::Library {
 
 Sockets::Library::Library(const ServerSettings& settings, Sockets& owner) {
   lws_set_log_level(0, nullptr);
-  // Without a subprotocol it is a browser that asks for the page.
+  // Without a subprotocol it is a browser's request for the page.
   protocols.push_back({"http", &Library::called, sizeof(size_t), 0, 0, nullptr, 0});
   for (const char* name : kSubprotocols)
     protocols.push_back({name, &Library::called, 0, kReceiveBuffer, 0, nullptr, 0});
@@ -116,7 +115,7 @@ Sockets::Sockets(const ServerSettings& settings, SocketEvents events)
       library_(std::make_unique<Library>(settings_, *this)) {
   if (library_->port <= 0)
     throw std::runtime_error(settings_.address + ":" + std::to_string(settings_.port) +
-                             " cannot be listened at; is it taken (--port)?");
+                             " is not available for listening; is it in use (--port)?");
 }
 
 Sockets::~Sockets() = default;
@@ -133,26 +132,26 @@ void Sockets::step(double elapsed, uint64_t operates, bool limited) {
   if (limits_.mayAccept()) listenAgain();
   holdOthers();
   giveTurns();
-  // Negative: without waiting. Each call serves what is ready; several requests may be waiting.
+  // Negative: do not wait. Each call serves what is ready; several requests may be pending.
   for (int i = 0; i < 4; ++i) lws_service(library_->context, -1);
   if (limited) limits_.computed(computedSoFar() - before);
 }
 
-/// Programs that fill all places must not keep the operator's page out.
+/// Programs that occupy all places must not keep the operator's page out.
 bool Sockets::hasRoom(lws* socket) const {
   const Visitor visitor = visitorOf(socket);
   const bool page = isOurs(visitor, settings_) && !visitor.origin.empty();
   return clients_.size() < (page ? kMostPages : kMostClients);
 }
 
-/// To take newcomers and close them at once would only make them come again: beyond the limit they
-/// wait in the kernel, which costs nothing.
+/// Accepting and closing connections at once would only make clients retry: beyond the limit they
+/// wait in the kernel at no cost.
 void Sockets::accept(lws* listener) {
   limits_.accepted();
   if (limits_.mayAccept()) return;
   listener_ = listener;
   lws_rx_flow_control(listener, 0);
-  // Who waits with many others waits long; beyond this the kernel lets them knock again.
+  // Beyond this backlog the kernel makes clients retry, which is faster than a long queue.
   ::listen(lws_get_socket_fd(listener), kMostWaiting);
 }
 
@@ -172,7 +171,7 @@ void Sockets::open(lws* socket) {
   Client& client = clients_.back();
   client.socket = socket;
   client.number = ++numbers_;
-  // Only our own page operates the robot; another site's, with the token, may look.
+  // Only our own page operates the robot; a page of another site that has the token may only watch.
   client.may_command = settings_.may_command && isOurs(visitorOf(socket), settings_);
   events_.opened(client);
 }
@@ -200,7 +199,7 @@ int Sockets::receive(lws* socket, const char* bytes, size_t size) {
   return 0;
 }
 
-/// Beyond the limit only who operates is listened to; the others' requests wait on their side.
+/// Beyond the limit only the operator is read; other requests wait at the client.
 void Sockets::holdOthers() {
   for (Client& client : clients_) {
     const bool hold = !limits_.mayCompute() && !operates(client);
@@ -209,8 +208,8 @@ void Sockets::holdOthers() {
   }
 }
 
-/// Says whose turn it is: who operates the robot, and of the others as many as the line and the
-/// processor have room for, one after the other.
+/// Schedules sending: the operator first, then the others in turn, as far as line and processor
+/// allow.
 void Sockets::giveTurns() {
   double left = limits_.sends();
   const size_t count = clients_.size();
@@ -229,7 +228,7 @@ void Sockets::giveTurns() {
 
 int Sockets::write(lws* socket) {
   Client* const client = find(socket);
-  // libwebsockets calls of itself, too; then it is not this client's turn.
+  // libwebsockets also calls by itself, outside of this client's turn.
   if (client == nullptr || !client->asked) return 0;
   client->asked = false;
   for (size_t sent = 0; !client->frames.empty() && sent < kPiece;) {

@@ -19,7 +19,7 @@ struct lws;
 
 namespace tread::view {
 
-/// A frame for one client alone has this number, which no channel has: a text.
+/// Channel number of a text frame for one client; no channel has it.
 constexpr uint32_t kText = UINT32_MAX;
 
 /// One WebSocket of a viewer.
@@ -27,30 +27,30 @@ struct Client {
   lws* socket = nullptr;
   uint64_t number = 0;
   bool may_command = false;
-  bool asked = false;                          ///< libwebsockets says when the line takes more
-  bool held = false;                           ///< what it sends is not read
+  bool asked = false;  ///< waiting for libwebsockets to report a writable line
+  bool held = false;   ///< its requests are not read
   std::map<uint32_t, uint32_t> subscriptions;  ///< by channel
   std::map<uint32_t, std::string> topics;      ///< its own channels
   FrameQueue frames;
   std::string received;
   Allowance requests{kRequestRate, kRequestBurst};
 
-  /// One that is behind has other worries.
+  /// A client that is behind gets no texts.
   void pushText(std::string text) {
     if (!frames.isCrowded())
       frames.push({{kText, 0}, 0, std::make_shared<const std::string>(std::move(text)), false});
   }
 };
 
-/// What the sockets ask and tell the server.
+/// Callbacks of the sockets into the server.
 struct SocketEvents {
   std::function<void(Client&)> opened, closed;
   std::function<void(Client&, const std::string& message, bool binary)> received;
-  /// What goes over the line for a frame that waited; empty = nothing any more.
+  /// The payload for a queued frame; empty = obsolete.
   std::function<std::pair<std::string, bool>(const Client&, const Frame&)> bytesOf;
 };
 
-/// The viewers' sockets, with libwebsockets: who comes in, whose turn it is, what is too much.
+/// The viewers' sockets, with libwebsockets: admission, scheduling, limits.
 class Sockets {
  public:
   /// Throws std::runtime_error with one clear line if the address cannot be used.
@@ -62,8 +62,8 @@ class Sockets {
   std::list<Client>& clients() { return clients_; }
   const std::list<Client>& clients() const { return clients_; }
   int port() const;
-  /// Serves what is due without waiting. `elapsed` [s] since the last call; `operates`: the number
-  /// of the client that holds the robot, 0 = none; `limited`: there is a robot that needs the
+  /// Serves what is due without waiting. `elapsed` [s] since the last call; `operates`: number of
+  /// the client that holds the robot, 0 = none; `limited`: a robot on this host needs the
   /// processor.
   void step(double elapsed, uint64_t operates, bool limited);
 
@@ -88,7 +88,7 @@ class Sockets {
   Limits limits_;
   uint64_t numbers_ = 0;
   uint64_t operator_ = 0;
-  lws* listener_ = nullptr;  ///< whose newcomers wait
+  lws* listener_ = nullptr;  ///< its connections wait
   std::vector<unsigned char> buffer_;
   std::unique_ptr<Library> library_;
 };

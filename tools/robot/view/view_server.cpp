@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// No channels have these numbers: what is newest for all.
+// Numbers that no channel has: frames for all clients, of which the newest counts.
 constexpr uint32_t kTime = UINT32_MAX - 1;
 constexpr uint32_t kWords = UINT32_MAX - 2;
 
@@ -99,7 +99,7 @@ void ViewServer::serve(Client& client, const ClientRequest& request) {
       client.pushText(statusMessage(1, "there is no channel " + std::to_string(channel)));
       continue;
     }
-    // Once more is the same subscription by another name.
+    // A repeated subscription only changes the name.
     const bool first = client.subscriptions.count(channel) == 0;
     client.subscriptions[channel] = subscription;
     if (!first) continue;
@@ -128,7 +128,7 @@ void ViewServer::control(Client& client, const std::string& topic, const std::st
       if (op == "play") feed_.play(true, json.value("speed", 1.0));
       if (op == "pause") feed_.play(false, json.value("speed", 1.0));
     } catch (const Json::exception&) {
-      problem = "a control that cannot be read was passed over";
+      problem = "ignored an unreadable control message";
     }
   } else {
     problem = "nobody listens to " + topic + " here";

@@ -15,11 +15,11 @@
 namespace tread::view {
 
 /// Serves the page by HTTP and the feed by WebSocket (the Foxglove protocol).
-/** One thread: step() does all. A slow viewer gets the newest of each channel's parts, and never
- * holds up the others. What viewers may cost together is limited: places, requests, bytes. */
+/** One thread: step() does everything. A slow viewer gets only the newest of each part and never
+ * delays the others. The cost of all viewers is limited: places, requests, bytes. */
 class ViewServer {
  public:
-  /// `command`: of a page, with the page's number; returns what is wrong with it, empty = taken.
+  /// `command`: from a page, with its number; returns the error, empty = accepted.
   using Command = std::function<std::string(const std::string& json, uint64_t page)>;
   using Leave = std::function<void(uint64_t page)>;
 
@@ -31,9 +31,9 @@ class ViewServer {
   Feed& feed() { return feed_; }
   /// Serves what is due without waiting. `elapsed` [s] since the last call.
   void step(double elapsed);
-  /// Tells all pages in a line how things are; the newest counts.
+  /// Shows a status line on all pages; the newest replaces the others.
   void tell(const std::string& words);
-  /// The page that holds the robot; 0 = none. It does not wait for others.
+  /// The page that holds the robot; 0 = none. It is served first.
   void setOperator(uint64_t page) { operator_ = page; }
   int port() const { return sockets_.port(); }
 
@@ -49,10 +49,10 @@ class ViewServer {
   Command command_;
   Leave leave_;
   std::string session_;
-  std::string words_;  ///< told last
+  std::string words_;  ///< last status line
   uint64_t operator_ = 0;
   std::shared_ptr<const std::string> advertisement_;
-  int64_t told_time_ = 0;  ///< [us] of a log, told to viewers last
+  int64_t told_time_ = 0;  ///< [us] of a log, sent last
   Feed feed_;
   Sockets sockets_;
 };

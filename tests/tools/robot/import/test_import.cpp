@@ -322,7 +322,7 @@ TEST_CASE("what is lost is told, and more than a hundredth of it is exit status 
   CHECK(exitOf(50, "") == 1);
   CHECK_THAT(words(), Catch::Contains("lost: 49 of 500 rows of ") &&
                           Catch::Contains("more than 1 % was lost") &&
-                          Catch::Contains("no commands: 1 times, 2.5 s in all"));
+                          Catch::Contains("gaps in the commands: 1, 2.5 s in all"));
   CHECK(exitOf(50, "--allow-loss") == 0);
 }
 

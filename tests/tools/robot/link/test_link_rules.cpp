@@ -82,7 +82,7 @@ TEST_CASE("a configuration that would go round for ever, or names what is not th
   CHECK(configOf("station_url: a\nto_station: {INS: 5}\nto_robot: {GOAL: 0}\n").to_station.size() ==
         1);
   CHECK_THROWS_WITH(configOf("station_url: a\nto_station: {INS: 5}\nto_robot: {INS: 0}\n"),
-                    Catch::Contains("round for ever"));
+                    Catch::Contains("loop for ever"));
   CHECK_THROWS_WITH(configOf("station_url: a\nto_station: {CAMERA: 5}\nto_robot: {}\n"),
                     Catch::Contains("CAMERA"));
   CHECK_THROWS(configOf("to_station: {INS: 5}\nto_robot: {GOAL: 0}\n"));

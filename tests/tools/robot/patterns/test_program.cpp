@@ -124,7 +124,7 @@ TEST_CASE("A set is mirrored into another file, never over itself") {
   const Folder folder;
   const Run complete = run("mirror " + kSet + " -o " + folder.path("same.yaml"));
   CHECK(complete.status == 0);
-  CHECK(complete.says("every pattern that turns has its mirror image already"));
+  CHECK(complete.says("every pattern that turns already has its mirror image"));
   const Run itself =
       run("mirror " + folder.path("same.yaml") + " -o " + folder.path("./same.yaml"));
   CHECK(itself.status == 2);

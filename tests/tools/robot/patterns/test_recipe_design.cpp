@@ -141,7 +141,7 @@ TEST_CASE("fewer patterns are for fewer speeds, and what cannot be is told in a 
   CHECK_THAT(refusal(model, wish), Catch::Contains("12 patterns are too few"));
   wish.patterns = 40;
   wish.speeds = {0.5, 3.0};
-  CHECK_THAT(refusal(model, wish), Catch::Contains("3.00 m/s is more than the robot reaches"));
+  CHECK_THAT(refusal(model, wish), Catch::Contains("3.00 m/s exceeds the robot's top speed"));
   wish.speeds = {};
   wish.seconds = 0.3;
   CHECK_THAT(refusal(model, wish), Catch::Contains("too short"));

@@ -39,5 +39,5 @@ TEST_CASE(
   CHECK(terminal.number("ins_x", {-1.0, 1.0}) == 0.0);
   CHECK_THROWS_WITH(terminal.confirm("wheels_up"), Contains("nothing is moved"));
   CHECK_THROWS_WITH(terminal.ask("go"), Contains("no answer"));
-  CHECK_THAT(shown.str(), Contains("How far does it reach forward") && Contains("[0]"));
+  CHECK_THAT(shown.str(), Contains("How far does it extend forward") && Contains("[0]"));
 }

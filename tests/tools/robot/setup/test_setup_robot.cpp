@@ -261,7 +261,7 @@ TEST_CASE("a range finder that sees nothing around it is told at once, not at th
     discover(site, person, findings);
     CAPTURE(person.heard());
     CHECK((findings.beams_that_tell < kLeastTelling) == open);
-    CHECK((person.heard().find("only 0 % of its beams tell") != std::string::npos) == open);
+    CHECK((person.heard().find("only 0 % of its beams give") != std::string::npos) == open);
   }
 }
 
@@ -444,7 +444,7 @@ TEST_CASE("what a setup cannot go on with is told in one clear line") {
   std::filesystem::remove_all(folder.path("robots"));
   HiddenMachine deaf = machine("roboteq", "grass", 31);
   deaf.ins_baud = 1200;
-  CHECK(brought(deaf, answers, folder).problem.find("no INS is heard") == 0);
+  CHECK(brought(deaf, answers, folder).problem.find("no INS sends") == 0);
   std::filesystem::remove_all(folder.path("robots"));
   CHECK(
       brought(machine("roboteq", "grass", 31), "", folder).problem.find("first_track is missing") !=

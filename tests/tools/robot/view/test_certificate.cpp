@@ -39,7 +39,7 @@ TEST_CASE("a certificate that others may read, or that is none, is refused with 
     CAPTURE(text);
     std::ofstream(path, std::ios::trunc) << text;
     CHECK_THROWS_WITH(ownCertificate(folder.path("view")),
-                      Catch::Contains("holds no certificate with its key; remove it"));
+                      Catch::Contains("does not contain a certificate and its key; remove it"));
   }
   CHECK_THROWS_WITH(ownCertificate("/proc/none"), Catch::Contains("cannot be made"));
 }

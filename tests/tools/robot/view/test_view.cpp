@@ -327,7 +327,7 @@ TEST_CASE("a proxy that is named asks for a token, and an address that is none i
   const auto refused = called("tread-view --origin robot.example");
   CAPTURE(refused.printed);
   CHECK(refused.status == 2);
-  CHECK(refused.says("https://HOST[:PORT][/PATH/] is needed"));
+  CHECK(refused.says("give https://HOST[:PORT][/PATH/]"));
 }
 
 TEST_CASE("what tread-view cannot use is one clear line") {
@@ -340,5 +340,5 @@ TEST_CASE("what tread-view cannot use is one clear line") {
   const auto taken =
       called("tread-view " + missionLog() + " --port " + port.substr(0, port.size() - 1));
   CHECK(taken.status == 2);
-  CHECK(taken.says("is it taken"));
+  CHECK(taken.says("is it in use"));
 }

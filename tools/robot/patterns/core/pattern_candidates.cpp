@@ -11,26 +11,28 @@
 namespace tread::patterns {
 namespace {
 
-constexpr double kLags = 3.0;         // 95 % of a change of speed is over by then
-constexpr double kHolds = 3.0;        // that a pattern lasts, where nobody says
-constexpr double kMostLonger = 2.0;   // [1] that slow patterns last longer
-constexpr double kBackwards = 0.4;    // of the full speed
-constexpr double kAside = 0.5;        // of the full speed
-constexpr double kStep = 0.4;         // of the full speed, from rest to rest
-constexpr double kTurnShare = 0.35;   // of what the drive could turn
-constexpr double kEasing = 0.05;      // steps in which a turn is slowed down
-constexpr double kLikeSpeeds = 0.6;   // [1] classes of other directions are joined
-constexpr double kLeastTurn = 0.075;  // [1] of the gap, sideways or rad: less is as good as none
+constexpr double kLags = 3.0;        // 95 % of a change of speed is over by then
+constexpr double kHolds = 3.0;       // default duration of a pattern, in settling times
+constexpr double kMostLonger = 2.0;  // [1] slow patterns last longer by at most this factor
+constexpr double kBackwards = 0.4;   // of the full speed
+constexpr double kAside = 0.5;       // of the full speed, to the side
+constexpr double kStep = 0.4;        // of the full speed, from rest to rest
+constexpr double kTurnShare = 0.35;  // of the drive's largest yaw rate
+constexpr double kEasing = 0.05;     // step by which an infeasible turn is slowed down
+// [1] classes of perpendicular directions are connected from this ratio of speeds on
+constexpr double kLikeSpeeds = 0.6;
+// [1] of the gap, sideways or in rad: smaller turns are not worth a pattern
+constexpr double kLeastTurn = 0.075;
 constexpr double kSame = 1e-9;
-// Of the full speed, for few, more and many patterns.
+// Speeds as shares of the full speed, for few, more and many patterns.
 const std::vector<std::vector<double>> kShares{{1.0}, {0.4, 1.0}, {0.2, 0.5, 1.0}};
 const std::vector<double> kStrengths{0.1, 0.2, 0.35, 0.5, 0.75, 1.0};
 const std::vector<double> kTimes{0.1, 0.15, 0.2, 0.3, 0.4, 0.55, 0.75, 1.0, 1.3, 1.6, 2.0};
 const std::vector<std::string> kNames{"crawl", "slow", "fast"};
-constexpr int kForThree = 30;  // patterns that are worth three speeds,
+constexpr int kForThree = 30;  // patterns from which three speeds pay off,
 constexpr int kForTwo = 20;    // and two
 
-/// A positive number as people read it.
+/// A positive number for people, with few digits.
 std::string hundredths(double value) {
   const std::string digits = std::to_string(100 + std::lround(100.0 * value) % 100);
   return std::to_string(std::lround(100.0 * value) / 100) + "." + digits.substr(1);
@@ -138,11 +140,11 @@ std::vector<double> CandidateFamily::chosenSpeeds() const {
   std::sort(speeds.begin(), speeds.end());
   if (!speeds.empty() && speeds.back() > top_ + 1e-6)
     throw std::runtime_error("a speed of " + hundredths(speeds.back()) +
-                             " m/s is more than the robot reaches, " + hundredths(top_) + " m/s");
+                             " m/s exceeds the robot's top speed, " + hundredths(top_) + " m/s");
   if (speeds.size() > kNames.size() + 1)
-    throw std::runtime_error(std::to_string(speeds.size()) + " speeds; at most four are driven");
+    throw std::runtime_error(std::to_string(speeds.size()) + " speeds; at most four are allowed");
   if (!speeds.empty()) return speeds;
-  // From standing through the longest pattern to standing.
+  // From standstill through the longest pattern back to standstill.
   const double full = std::min(top_, wish_.room / (2.0 * hold_ + longest_));
   const size_t row = wish_.patterns >= kForThree ? 2 : wish_.patterns >= kForTwo ? 1 : 0;
   for (const double share : kShares[row]) speeds.push_back(share * full);
@@ -177,7 +179,7 @@ size_t CandidateFamily::mirrorOf(size_t index) const {
 }
 
 bool CandidateFamily::joined(size_t entry, size_t exit) const {
-  // The mirror image comes with what it is of.
+  // A mirror image is generated together with its original.
   const auto right = [&](size_t i) { return classes_[i].motion.left < 0.0; };
   if (right(entry) || (right(exit) && mirrorOf(entry) == entry)) return false;
   if (entry == exit) return true;

@@ -13,68 +13,69 @@
 
 namespace tread::patterns {
 
-/// What a recipe is made for: limits of the robot, and what is wished.
+/// Requirements on a recipe: limits of the robot, and wishes.
 struct RecipeWish {
   std::string name;
-  double max_command = 1.0;    ///< in the unit of the model's kind
-  double max_steering = 0.5;   ///< [rad] of a car
-  std::vector<double> speeds;  ///< [m/s] forwards; empty = full, and where there are enough
-                               ///< patterns crawl and slow
-  int patterns = 40;           ///< at most
-  double gap = 1.0;            ///< [m] width of the narrowest gap that it must pass
-  double seconds = 0.0;        ///< [s] that a pattern lasts, about; 0 = by the robot's lag
-  double acceleration = 4.0;   ///< [m/s2] the most that patterns ask of the ground
-  double period = 0.05;        ///< [s] of a command
-  /// [m] within which it drives from standing through a pattern to standing, with those speeds.
+  double max_command = 1.0;   ///< in the unit of the model's kind
+  double max_steering = 0.5;  ///< [rad] of a car
+  /// [m/s] forwards; empty = full speed, with enough patterns also two slower ones
+  std::vector<double> speeds;
+  int patterns = 40;          ///< at most
+  double gap = 1.0;           ///< [m] width of the narrowest gap that it must pass
+  double seconds = 0.0;       ///< [s] approximate duration of a pattern; 0 = from the robot's lag
+  double acceleration = 4.0;  ///< [m/s2] largest acceleration, which the ground must support
+  double period = 0.05;       ///< [s] between commands
+  /// [m] length in which the robot must be able to drive from standstill through a pattern to
+  /// standstill, at those speeds.
   double room = std::numeric_limits<double>::infinity();
 };
 
-/// A motion that is commanded: of a car with the steering angle [rad] in the place of the yaw rate.
+/// A commanded motion; for a car `turn` is the steering angle [rad].
 struct Wanted {
   double forward = 0.0;  ///< [m/s]
   double left = 0.0;     ///< [m/s] of a holonomic base
-  double turn = 0.0;     ///< [rad/s] as if nothing slipped
+  double turn = 0.0;     ///< [rad/s] without slip
 
   double speed() const { return std::hypot(forward, left); }
   Wanted mirrored() const { return {forward, -left, -turn}; }
-  /// The same turn at a share of the speed.
+  /// The same turn at a fraction of the speed.
   Wanted slower(double share) const { return {share * forward, share * left, turn}; }
 };
 
-/// A steady motion straight on or aside in which patterns begin and end.
+/// A steady straight motion, forwards, backwards or sideways, in which patterns begin and end.
 struct DesignedClass {
   std::string name;
   Wanted motion;
-  int level = 0;            ///< of its speed among those in its direction; 0 = rest
-  std::vector<double> row;  ///< the steady command as a recipe gives it
+  int level = 0;            ///< rank of its speed within its direction; 0 = rest
+  std::vector<double> row;  ///< the steady command, as a row of a recipe
 };
 
-/// A pattern that could be in the set.
+/// A candidate for the set.
 struct CandidatePattern {
   size_t entry = 0;                       ///< class
   size_t exit = 0;                        ///< class
-  std::vector<std::vector<double>> rows;  ///< as in a recipe: commands, then seconds
-  Pose2 end;                              ///< as the model foretells
+  std::vector<std::vector<double>> rows;  ///< as in a recipe: commands and seconds
+  Pose2 end;                              ///< predicted by the model
   double seconds = 0.0;
 };
 
-/// One candidate, or one and its mirror image.
+/// A candidate, and its mirror image if there is one.
 using CandidatePair = std::vector<CandidatePattern>;
 
-/// All that a vehicle could do in one pattern: turns of many strengths and durations from class to
-/// class.
-/** A pattern turns, at the speed of its exit class or as fast as it can turn so, and then holds its
- * exit class's steady command until it has settled; between two equal classes it may also turn to
- * and fro. Joined are equal classes, rest and all others, and neighbouring speeds. */
+/// All feasible patterns of a vehicle: turns of many strengths and durations between classes.
+/** A pattern turns at the speed of its exit class, or at the highest speed that allows the turn. It
+ * then holds its exit class's steady command until it has settled. Between equal classes it may
+ * also turn one way and back. Patterns connect a class with itself, rest with every class, and
+ * neighbouring speeds. */
 class CandidateFamily {
  public:
-  /// Throws std::runtime_error, one line, where the wish is beyond the robot. The model must live
-  /// as long.
+  /// Throws std::runtime_error, one line, if the wish exceeds the robot's limits. The model must
+  /// outlive this.
   CandidateFamily(const VehicleModel& model, const RecipeWish& wish);
 
   const std::vector<DesignedClass>& classes() const { return classes_; }
   const std::vector<CandidatePair>& pairs() const { return pairs_; }
-  /// [s] that a pattern at full speed lasts at most.
+  /// [s] longest pattern at full speed.
   double seconds() const { return longest_; }
   /// [m/s] of the fastest class
   double top() const { return top_; }
@@ -93,7 +94,7 @@ class CandidateFamily {
   double topSpeed() const;
   double hardestTurn() const;
   bool drivable(const Wanted& motion) const;
-  /// The fastest at which it can turn so; nothing where it cannot.
+  /// The motion slowed down until the turn is feasible; nullopt if it never is.
   std::optional<Wanted> withinReach(const Wanted& motion) const;
   double longest(double speed) const;
   std::vector<double> row(const Wanted& motion) const;

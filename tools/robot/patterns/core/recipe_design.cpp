@@ -15,18 +15,19 @@
 namespace tread::patterns {
 namespace {
 
-constexpr double kCell = 0.05;     // [1] of the gap: what is reached nearer together is one place
-constexpr double kSpotTurn = 0.6;  // [rad] of the turns on the spot that no set can do without
-constexpr double kSlight = 0.3;    // [1] of the gap: a turn that is as good as none
-constexpr double kAlongCounts = 0.3;      // [1] of a metre sideways: ahead the next pattern leads
-constexpr double kRestCounts = 0.2;       // [1] as much as a class of that share of the full speed
-constexpr double kBackwardsCounts = 0.3;  // [1] of a class as fast forwards
-constexpr double kChangeCounts = 0.25;    // [1] of going on in a class
-constexpr double kSpot = 0.1;             // [m] a turn on the spot moves no farther
+constexpr double kCell = 0.05;     // [1] of the gap: end points closer together share a cell
+constexpr double kSpotTurn = 0.6;  // [rad] of the mandatory turns on the spot
+constexpr double kSlight = 0.3;    // [1] of the gap: smaller turns count as straight
+// [1] weight of a metre ahead relative to one sideways: the next pattern continues ahead
+constexpr double kAlongCounts = 0.3;
+constexpr double kRestCounts = 0.2;  // [1] rest counts as a class of this share of the full speed
+constexpr double kBackwardsCounts = 0.3;  // [1] relative to the same speed forwards
+constexpr double kChangeCounts = 0.25;    // [1] of a change of class relative to staying in it
+constexpr double kSpot = 0.1;             // [m] largest motion of a turn on the spot
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kStraightAway = 0.02;  // [rad] less is no turn
+constexpr double kStraightAway = 0.02;  // [rad] smaller is straight
 
-/// Where a pattern ends, in lengths that can be compared [m].
+/// End of a pattern, with all components in comparable lengths [m].
 using Place = std::array<double, 5>;
 
 double squaredDistance(const Place& a, const Place& b) {
@@ -35,20 +36,20 @@ double squaredDistance(const Place& a, const Place& b) {
   return sum;
 }
 
-/// The places that a vehicle reaches from one class.
+/// The reachable end points from one class.
 struct Reachable {
   std::vector<Place> places;
-  std::vector<double> counts;   ///< [1] how much each place counts; of all classes together 1
-  std::vector<double> nearest;  ///< [m2] squared distance of the nearest end
+  std::vector<double> counts;   ///< [1] weight of each end point; sum over all classes 1
+  std::vector<double> nearest;  ///< [m2] squared distance to the nearest end of the set
 };
 
-/// How much a class counts: by the way that is driven in it, which is mostly forwards.
+/// Weight of a class: the distance typically driven in it, mostly forwards.
 double weightOf(const Wanted& motion, double top) {
   if (motion.speed() == 0.0) return kRestCounts;
   return (motion.forward > 0.0 ? 1.0 : kBackwardsCounts) * motion.speed() / top;
 }
 
-/// Chooses pairs from the family.
+/// Chooses pairs from the candidates greedily.
 class Coverage {
  public:
   Coverage(const CandidateFamily& family, const RecipeWish& wish)
@@ -80,8 +81,8 @@ class Coverage {
     }
   }
 
-  /// How much the dispersion's square would be less for each of its patterns [m2]. The mirror image
-  /// covers the mirrored places as well.
+  /// Decrease of the squared dispersion per pattern of the pair [m2]. The mirror image covers the
+  /// mirrored end points.
   double gain(const CandidatePair& pair) const {
     double sum = 0.0;
     const Place place = placeOf(pair.front());
@@ -120,7 +121,7 @@ class Coverage {
     }
   }
 
-  /// A hard turn may be off by more than a slight one, by the same share of it.
+  /// A hard turn may deviate more than a slight one, by the same relative error.
   double countOf(const Place& place) const {
     const double turn = std::hypot(place[1], place[2]), least = kSlight * wish_.gap;
     return 1.0 / (turn * turn + least * least);
@@ -141,7 +142,7 @@ bool isStraight(const CandidatePattern& candidate) {
   return std::abs(candidate.end.yaw) < kStraightAway;
 }
 
-/// The pair for whose first pattern `cost` is least; none where it is infinite for all.
+/// The pair whose first pattern has the least `cost`; none if all are infinite.
 template <class Cost>
 const CandidatePair* cheapest(const CandidateFamily& family, const Cost& cost) {
   const CandidatePair* best = nullptr;
@@ -154,7 +155,8 @@ const CandidatePair* cheapest(const CandidateFamily& family, const Cost& cost) {
   return best;
 }
 
-/// Without these a class cannot be reached, kept or left, or the vehicle cannot turn.
+/// Mandatory pairs: without them a class cannot be reached, kept or left, or the vehicle cannot
+/// turn.
 std::vector<const CandidatePair*> neededPairs(const CandidateFamily& family, bool is_car) {
   const std::vector<DesignedClass>& classes = family.classes();
   std::vector<const CandidatePair*> needed;
@@ -164,7 +166,7 @@ std::vector<const CandidatePair*> neededPairs(const CandidateFamily& family, boo
   };
   for (size_t entry = 0; entry < classes.size(); ++entry)
     for (size_t exit = 0; exit < classes.size(); ++exit)
-      // Straight on as far as it goes, from speed to speed as soon as it can.
+      // Straight on as far as possible; changes of speed as early as possible.
       need([&](const CandidatePattern& c) {
         if (c.entry != entry || c.exit != exit || c.rows.size() != 1) return kNever;
         return entry == exit ? -c.seconds : c.seconds;

@@ -12,16 +12,16 @@ namespace {
 
 constexpr double kNoSteering = 0.05;      // [rad] at full command
 constexpr double kAskewSteering = 0.04;   // [rad] straight ahead
-constexpr double kAskewInSeconds = 0.15;  // [rad] the same, told by a few seconds
+constexpr double kAskewInSeconds = 0.15;  // [rad] the same, after a few seconds of driving
 
-/// What a fit says if the throttle drives forward or backward.
+/// Interpretation of a fit, if the throttle drives forwards or backwards.
 struct CarReading {
   bool forward = true;
   double yaw = 0.0;       ///< [rad] of the INS
-  Eigen::Vector2d place;  ///< [m] of the INS, axes of the body
-  double left = 0.0;      ///< [rad] of the wheels at full command to the left
+  Eigen::Vector2d place;  ///< [m] of the INS, in body axes
+  double left = 0.0;      ///< [rad] wheel angle at full command to the left
   double right = 0.0;     ///< [rad] at full command to the right
-  double straight = 0.0;  ///< [rad] at none
+  double straight = 0.0;  ///< [rad] at zero command
 
   bool steersLeft() const { return left > right; }
 };
@@ -89,7 +89,7 @@ class CarCheck {
     return more > 0 || (more == 0 && straighter) ? backward : forward;
   }
 
-  /// How many parts are not as configured.
+  /// Number of parts that deviate from the configuration.
   int changesOf(const CarReading& reading) const {
     const bool turned = std::abs(reading.yaw) > std::max(tolerance_.turn, kTurnedForSure);
     return !reading.forward + (!reading.steersLeft() && !steeringIsDead(reading)) + turned;
@@ -121,7 +121,7 @@ class CarCheck {
     report_.lag = interval([](Fit fit, Reading) { return fit.shape[1]; }, false);
     report_.dead_power = interval([](Fit fit, Reading) { return fit.shape[2]; }, false);
     report_.steering_lag = interval([](Fit fit, Reading) { return fit.steering_lag; }, false);
-    // As they are once a reversed steering is turned round.
+    // Angles after a reversed steering is corrected.
     const bool round = !reading_.steersLeft();
     report_.steering_left = interval(
         [round](Fit, Reading reading) { return round ? reading.right : reading.left; }, true);
@@ -146,9 +146,10 @@ class CarCheck {
     const Interval& yaw = report_.mounting_yaw;
     if (yaw.low > tolerance_.turn || yaw.high < -tolerance_.turn)
       report_.faults.push_back(insTurned(
-          yaw, std::abs(yaw.value) > 0.9 * kPi && !expected_.seen
-                   ? "; or throttle and steering are both reversed: look which way it goes"
-                   : ""));
+          yaw,
+          std::abs(yaw.value) > 0.9 * kPi && !expected_.seen
+              ? "; or throttle and steering are both reversed: look in which direction it drives"
+              : ""));
     const Interval &x = report_.antenna_x, &y = report_.antenna_y;
     if (!dead && std::hypot(x.value, y.value) > tolerance_.elsewhere &&
         (!x.holds(0.0) || !y.holds(0.0)))
@@ -165,8 +166,9 @@ class CarCheck {
       add(FaultKind::kSteeringReversed, 0.0,
           std::string("the steering is reversed: left is right; change invert_steering of "
                       "robot.yaml") +
-              (expected_.brief ? ", unless the INS is mirrored: so short a way does not tell"
-                               : ""));
+              (expected_.brief
+                   ? ", unless the INS is mirrored: so short a drive does not show which"
+                   : ""));
     const double askew = expected_.brief ? kAskewInSeconds : kAskewSteering;
     const Interval& straight = report_.steering_straight;
     if (!dead && (straight.low > askew || straight.high < -askew))
@@ -182,7 +184,7 @@ class CarCheck {
   CarFit fit_;
   CarReading reading_;
   bool mirrored_ = false;
-  bool contradicts_ = false;  ///< what was seen and what the INS says
+  bool contradicts_ = false;  ///< observation and INS disagree
 };
 
 }  // namespace

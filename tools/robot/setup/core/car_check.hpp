@@ -8,13 +8,14 @@
 
 namespace tread::setup {
 
-/// checkWiring() for a car, whose commands are throttle and steering.
-/** 1. The rear axle moves along one direction, which is ahead or astern, and a point beside it by
- *     turning, too: so the INS's mounting and place are found (CarFit).
- *  2. Which way it turns at a steering, and how much for its wheelbase, is the angle of its wheels.
- *  3. A reversed throttle turns the way and, with it, the turning; reversed steering the turning
- *     alone; an INS turned by half a turn the way alone. Of two explanations the one with fewer
- *     parts holds, unless `expected.seen` says. */
+/// checkWiring() for a car with throttle and steering commands.
+/** 1. The rear axle moves in one direction, which is ahead or astern; any other point also moves by
+ *    turning. So the INS's mounting and position are found (CarFit).
+ * 2. The direction and strength of the turn at a steering command, with the wheelbase, give the
+ *    wheel angle.
+ * 3. A reversed throttle reverses motion and turning, reversed steering only the turning, an INS
+ *    turned by 180 deg only the motion. Of two explanations the one with fewer faulty parts holds,
+ *    unless `expected.seen` decides. */
 WiringReport checkCar(const std::vector<GivenCommand>& commands, const std::vector<InsFix>& fixes,
                       const WiringExpectation& expected);
 

@@ -11,14 +11,13 @@ namespace tread::setup {
 namespace {
 
 constexpr double kLeastCount = 10.0;
-// What is usual: a minute's drive outweighs it, a few seconds do not.
+// Prior: a minute's drive outweighs it, a few seconds do not.
 const Shape kUsualShape(0.1, 0.15, 0.05), kShapeSpread(0.08, 0.15, 0.08);
-constexpr double kPlaceDoubt =
-    0.06;  // .05 m/s of noise over .2 m that it may be elsewhere, squared
-constexpr double kCurveDoubt = 0.09;  // .03 rad/s over .1 1/m that it may be askew, squared
+constexpr double kPlaceDoubt = 0.06;  // prior weight: (.05 m/s of noise over .2 m of position)^2
+constexpr double kCurveDoubt = 0.09;  // prior weight: (.03 rad/s over .1 1/m of curvature)^2
 constexpr double kSteeringLags[] = {0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.6};  // [s]
 
-/// Mean of a series over [from, to] s, by its integral.
+/// Mean of a series over [from, to] s, from its integral.
 class Mean {
  public:
   explicit Mean(const std::vector<double>& series) : integral_(series.size() + 1, 0.0) {
@@ -72,7 +71,8 @@ std::vector<double> CarRows::steeringOf(double delay, double lag) const {
   return lagged(delayed, lag);
 }
 
-/// The velocity is along one direction, and what a point beside the rear axle has by turning.
+/// The velocity is along one direction, plus the contribution of turning at a point away from the
+/// rear axle.
 CarFit CarRows::drive(const Shape& shape, bool mirrored, const Use& use) const {
   CarFit fit;
   fit.shape = shape;
@@ -137,7 +137,7 @@ void CarRows::turn(bool mirrored, const Use& use, CarFit& fit) const {
   }
 }
 
-/// Minus the log likelihood of a row.
+/// Negative log likelihood of a row.
 double CarRows::costOf(const Shape& shape, bool mirrored, const Use& use) const {
   const double unusual = (shape - kUsualShape).cwiseQuotient(kShapeSpread).squaredNorm();
   return std::log(drive(shape, mirrored, use).velocity_rms + 1e-6) +

@@ -11,7 +11,7 @@
 namespace tread::setup {
 namespace {
 
-constexpr double kStudent = 2.2;  // 95 % with that many parts
+constexpr double kStudent = 2.2;  // 95 % quantile for that many parts
 
 }  // namespace
 
@@ -43,10 +43,11 @@ WiringFault insMirrored(bool by_path) {
   return {FaultKind::kInsMirrored,
           {},
           0.0,
-          by_path ? "the INS is mirrored: its heading turns the other way round than its path; "
+          by_path ? "the INS is mirrored: its heading turns opposite to its path; "
                     "set the sense of its heading at the device (clockwise from north)"
-                  : "the INS is mirrored, or what was seen is not so: a turn to the left is one "
-                    "to the right for it; look at its mounting and its axes, and try again"};
+                  : "the INS is mirrored, or the observation is wrong: a turn to the left is "
+                    "measured as one "
+                    "to the right; check its mounting and axes, and repeat"};
 }
 
 WiringFault insTurned(const Interval& yaw, const std::string& or_else) {
@@ -55,7 +56,7 @@ WiringFault insTurned(const Interval& yaw, const std::string& or_else) {
           yaw.value,
           "the INS is turned by " + inDegrees(yaw.value) + " (" + inDegrees(yaw.low) + " to " +
               inDegrees(yaw.high) +
-              ") against what is configured; set ins: mounting of robot.yaml" + or_else};
+              ") from its configured mounting; set ins: mounting of robot.yaml" + or_else};
 }
 
 WiringFault insElsewhere(const Interval& x, const Interval& y) {
@@ -63,7 +64,7 @@ WiringFault insElsewhere(const Interval& x, const Interval& y) {
           {},
           std::hypot(x.value, y.value),
           "the INS measures " + inMetres(x.value) + " ahead and " + inMetres(y.value) +
-              " left of where it is configured; set ins: antenna of robot.yaml"};
+              " left of its configured position; set ins: antenna of robot.yaml"};
 }
 
 WiringFault nothingMoves() {
@@ -71,7 +72,7 @@ WiringFault nothingMoves() {
           {},
           0.0,
           "nothing moves, or the INS is frozen: release the emergency stop, look at fuses and the "
-          "power stage, and whether the INS's position changes when it is carried"};
+          "power stage; check that the INS's position changes when you move it"};
 }
 
 }  // namespace tread::setup

@@ -12,9 +12,9 @@
 namespace tread::setup {
 namespace {
 
-constexpr double kDeadShare = 0.15;        // of the other side's motion
+constexpr double kDeadShare = 0.15;        // relative to the motion of the other side
 constexpr double kTurnedBesideDead = 0.8;  // [rad]
-constexpr double kSteadyShare = 0.04;      // that a pulse ends before it is quite steady
+constexpr double kSteadyShare = 0.04;      // settling error that a pulse may still have at its end
 
 double motionOf(const WiringFit& fit, int side) {
   return fit.atFull() *
@@ -51,7 +51,7 @@ class Check {
   }
 
  private:
-  /// Whether anything moves, and which side is dead.
+  /// Whether the vehicle moves at all; also finds a dead side.
   bool moves() {
     const double left = motionOf(report_.fit, 0), right = motionOf(report_.fit, 1);
     report_.dead = {left < std::max(kStandsStill, kDeadShare * right),
@@ -77,7 +77,8 @@ class Check {
     return found;
   }
 
-  /// How many parts are not as configured: of two explanations the one with fewer holds.
+  /// Number of parts that deviate from the configuration: of two explanations the one with fewer
+  /// holds.
   int changesOf(const WiringGeometry& geometry) const {
     return geometry.swapped + geometry.reverse_left + geometry.reverse_right +
            (std::abs(geometry.of[kYaw]) > std::max(tolerance_.turn, kTurnedForSure));
@@ -99,7 +100,7 @@ class Check {
     measureStraight(best);
   }
 
-  /// Where it was driven straight at full command, that tells its speeds better.
+  /// Straight driving at full command measures the speeds better.
   void measureStraight(const WiringGeometry& best) {
     if (oneIsDead() || mirrored_) return;
     const std::vector<StraightSpeed> speeds = straightSpeeds(commands_, fixes_, best);
@@ -118,7 +119,7 @@ class Check {
     double mean = 0.0, squares = 0.0;
     for (const double value : values) mean += value / count;
     for (const double value : values) squares += std::pow(value - mean, 2);
-    // Student's factor of 95 %, near enough from three values on.
+    // Student's 95 % quantile, accurate enough from three values on.
     const double student = 2.0 + 7.0 / std::pow(count - 1.0, 1.5);
     const double reach =
         std::hypot(student * std::sqrt(squares / (count - 1.0) / count), kSteadyShare * mean);
@@ -152,13 +153,14 @@ class Check {
   void judgeIns() {
     if (mirrored_ || contradicts_) report_.faults.push_back(insMirrored(mirrored_));
     const Interval& yaw = report_.mounting_yaw;
-    // One track alone may turn it about another point than the dead one's middle.
+    // With one dead track the vehicle may turn about another point than the middle of that track.
     const double least = oneIsDead() ? kTurnedBesideDead : tolerance_.turn;
     if (yaw.low > least || yaw.high < -least)
       report_.faults.push_back(insTurned(
-          yaw, std::abs(yaw.value) > 0.9 * kPi && !expected_.seen
-                   ? "; or both motors run backwards and are swapped: look which way it goes"
-                   : ""));
+          yaw,
+          std::abs(yaw.value) > 0.9 * kPi && !expected_.seen
+              ? "; or both motors run backwards and are swapped: look in which direction it drives"
+              : ""));
     const double off = std::hypot(report_.antenna_x.value, report_.antenna_y.value);
     const bool sure = !report_.antenna_x.holds(0.0) || !report_.antenna_y.holds(0.0);
     if (!oneIsDead() && off > tolerance_.elsewhere && sure)
@@ -168,7 +170,7 @@ class Check {
   void judgeSides() {
     if (report_.moves[0].side != Side::kLeft)
       add(FaultKind::kSwapped, {}, 0.0,
-          "the sides are swapped: what is configured as left drives the right track; change "
+          "the sides are swapped: the configured left channel drives the right track; change "
           "left_channel of robot.yaml, or the wires");
     for (const int i : {0, 1}) {
       const Side configured = i == 0 ? Side::kLeft : Side::kRight;
@@ -219,7 +221,7 @@ class Check {
   Tolerance tolerance_;
   WiringReport report_;
   bool mirrored_ = false;
-  bool contradicts_ = false;  // what was seen and what the INS says
+  bool contradicts_ = false;  // observation and INS disagree
 };
 
 }  // namespace

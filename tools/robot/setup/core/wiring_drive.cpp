@@ -11,16 +11,16 @@ namespace tread::setup {
 namespace {
 
 constexpr double kLongestPulse = 2.0;    // [s]
-constexpr double kMovedAway = 0.04;      // [m] that count as motion
+constexpr double kMovedAway = 0.04;      // [m] that counts as motion
 constexpr double kMovedRound = 0.06;     // [rad]
 constexpr int64_t kSpeedSpan = 300'000;  // [us]
-constexpr int64_t kBlind = 500'000;      // [us] without a pose
-constexpr double kTurnAsTravel = 0.35;   // [m] per rad, so that turns are short, too
+constexpr int64_t kBlind = 500'000;      // [us] without a pose that it tolerates
+constexpr double kTurnAsTravel = 0.35;   // [m] per rad, to keep turns short
 
 using Pulse = WiringDrive::Pulse;
 
-/// To and fro by turns, so that it stays where it is; the ways back of turns are shorter, so that
-/// it looks to all sides in the end.
+/// Back and forth, so that it stays in place. Return turns are shorter, so that it faces all
+/// directions by the end.
 constexpr Pulse kRound[] = {
     {1, 0, false, 1},    {-1, 0, false, 0.8},   {0, 1, false, 1},    {0, -1, false, 0.8},
     {1, 1, true, 1},     {-1, -1, true, 1},     {1, -1, true, 1},    {-1, 1, true, 0.6},
@@ -30,7 +30,7 @@ constexpr Pulse kRound[] = {
     {1, 0.5, true, 0.8}, {-1, -0.5, true, 0.8}, {0.5, 1, true, 0.8}, {-0.5, -1, true, 0.8}};
 constexpr size_t kPulses = sizeof kRound / sizeof kRound[0];
 
-/// The same for throttle and steering: back with the same steering it comes where it was.
+/// The same for throttle and steering: driving back with the same steering returns to the start.
 constexpr Pulse kCarRound[] = {{1, 1, false, 1},   {-1, 1, false, 1},  {1, -1, false, 1},
                                {-1, -1, false, 1}, {1, 0, false, 1},   {-1, 0, false, 1},
                                {1, 0, true, 1},    {-1, 0, true, 1},   {1, 1, true, 1},
@@ -38,7 +38,7 @@ constexpr Pulse kCarRound[] = {{1, 1, false, 1},   {-1, 1, false, 1},  {1, -1, f
                                {1, 0, true, 1},    {-1, 0, true, 1},   {1, 0.5, true, 1},
                                {-1, 0.5, true, 1}, {1, -0.5, true, 1}, {-1, -0.5, true, 1}};
 constexpr size_t kCarPulses = sizeof kCarRound / sizeof kCarRound[0];
-constexpr double kHomeward = 0.3;  // of the room: from here on a car drives back
+constexpr double kHomeward = 0.3;  // of the room: from here a car drives back
 
 }  // namespace
 
@@ -80,15 +80,15 @@ TrackCommand WiringDrive::step(int64_t utime, const std::optional<Pose2>& T_map_
   if (!start_) start_ = last_seen_ = utime;
   if (T_map_body) {
     last_seen_ = utime;
-    // Noise of standing adds up: only what is beyond it is path.
+    // Noise at standstill accumulates: only larger steps count as path.
     if (!last_ || distanceBetween(*last_, *T_map_body) > 0.02) follow(*T_map_body);
     recent_.emplace_back(utime, *T_map_body);
     while (recent_.front().first < utime - kSpeedSpan) recent_.pop_front();
   }
   if (utime - *last_seen_ > kBlind) {
-    end("the INS gives no position with a heading; it must not drive blindly");
+    end("the INS has no position with a heading; driving without one is not allowed");
   } else if (home_ && distanceBetween(*home_, *last_) > 0.9 * config_.room) {
-    end("it has left the free circle; drive it back to the middle, or give it more room");
+    end("the vehicle has left the free circle; drive it back to the middle, or allow more room");
   } else if (path_ > config_.most_path) {
     end("");
   } else if (home_) {
@@ -100,7 +100,7 @@ TrackCommand WiringDrive::step(int64_t utime, const std::optional<Pose2>& T_map_
   return command_;
 }
 
-/// A pulse has ended: what did it do?
+/// Evaluates the pulse that has ended.
 void WiringDrive::feel() {
   const double share = config_.car ? std::abs(command_.left)
                                    : std::max(std::abs(command_.left), std::abs(command_.right));
@@ -117,17 +117,18 @@ void WiringDrive::feel() {
   tried_ = true;
 }
 
-/// Did the last pulse move it? Asked after the pause: on soft ground it moves late and coasts.
+/// Whether the last pulse moved it, judged after the pause: on soft ground it starts late and
+/// coasts.
 void WiringDrive::judge() {
   const Pose2& now = recent_.empty() ? *last_ : recent_.back().second;
   felt_ = distanceBetween(pulse_start_, now) > kMovedAway ||
           std::abs(wrapAngle(now.yaw - pulse_start_.yaw)) > kMovedRound;
-  if (!felt_ && level_ >= 1.0) end("");  // both sides at full command: nothing moves
+  if (!felt_ && level_ >= 1.0) end("");  // full command on both sides does not move it
   if (!felt_) level_ = std::min(1.0, level_ + config_.level_step);
 }
 
 WiringDrive::Pulse WiringDrive::nextPulse() {
-  // One side alone: the other one may be dead, or turn the other way round.
+  // One side alone: the other one may be dead or reversed.
   if (!felt_) return {1, config_.car ? 1.0 : 0.5, false, 1};
   const size_t at = pulse_++;
   if (!config_.car) return kRound[at % kPulses];
@@ -160,7 +161,7 @@ void WiringDrive::begin(int64_t utime) {
   pulse_start_ = *last_;
   pulse_begin_ = utime;
   if (config_.car) {
-    // The wheels first: a servo is slow.
+    // Wheels first: a servo is slow.
     if (command_.right != pulse.right) pulse_begin_ += toMicroseconds(config_.pause);
     throttle_ = level * pulse.left;
     command_ = {0.0, pulse.right};

@@ -14,30 +14,31 @@
 
 namespace tread::setup {
 
-/// How far and how long the wiring is driven out.
+/// Extent of the wiring drive.
 struct WiringDriveConfig {
-  double room = 5.0;         ///< [m] free circle around where it begins
+  double room = 5.0;         ///< [m] radius of the free circle around the start
   double seconds = 60.0;     ///< of driving
-  double travel = 1.8;       ///< [m] about as far in one direction
+  double travel = 1.8;       ///< [m] approximate travel in one direction
   double shortest = 0.9;     ///< [s] of a pulse
   double pause = 0.6;        ///< [s] between two
-  double first_level = 0.2;  ///< [1] of the command that it begins with; it rises until it moves
+  double first_level = 0.2;  ///< [1] initial command; it rises until the vehicle moves
   bool car = false;          ///< commands are throttle and steering
-  double level_step = 0.15;  ///< [1] by which it rises
-  double most_path = 1e3;    ///< [m] it ends before it has driven farther
+  double level_step = 0.15;  ///< [1] step of the rise
+  double most_path = 1e3;    ///< [m] longest path
 };
 
-/// The 10 s before a drive: less than a metre of path. A car begins more gently: it needs a path to
-/// turn on.
+/// The 10 s test before a drive: less than a metre of path. A car begins more gently, as it needs a
+/// path to turn.
 WiringDriveConfig preDrive(bool car);
 
-/// Chooses commands that tell what hangs where: pulses to and fro, straight, turning, each side
-/// alone, slow and full; shorter where the vehicle is fast or far from the middle.
-/** Knows nothing of the wiring, only keeps to the circle. Commands are shares of the full one. */
+/// Chooses commands that reveal the wiring: pulses back and forth, straight, turning, each side
+/// alone, slow and full; shorter if the vehicle is fast or far from the middle.
+/** It needs no knowledge of the wiring and stays in the circle. Commands are shares of the full
+ * one. */
 class WiringDrive {
  public:
-  /// Shares of the level for both sides, or for throttle and steering; slow or full; and how much
-  /// of the travel.
+  /// Shares of the level for both sides, or for throttle and steering; slow or full; share of the
+  /// travel.
   struct Pulse {
     double left, right;
     bool full;
@@ -46,13 +47,13 @@ class WiringDrive {
 
   explicit WiringDrive(const WiringDriveConfig& config);
 
-  /// The command from now on [us]; `T_map_body` if the INS told a pose that is fresh.
+  /// The command from now on [us]; `T_map_body` if the INS has a fresh pose.
   TrackCommand step(int64_t utime, const std::optional<Pose2>& T_map_body);
 
   bool done() const { return done_; }
   /// Why it ended early, one line; empty if it did not.
   const std::string& problem() const { return problem_; }
-  /// [m] driven so far, as far as the INS tells.
+  /// [m] driven so far according to the INS.
   double path() const { return path_; }
 
  private:
@@ -71,14 +72,15 @@ class WiringDrive {
   std::deque<std::pair<int64_t, Pose2>> recent_;  ///< of the last 0.3 s
   double path_ = 0.0;
   double fastest_ = 0.0;  ///< [m/s] per share of a full command
-  bool tried_ = false;    ///< some pulse is over
+  bool tried_ = false;    ///< at least one pulse has ended
   bool felt_ = false;     ///< it moves at level_
   double level_ = 0.0;
   Pose2 pulse_start_;
   size_t pulse_ = 0;  ///< of the round
   TrackCommand command_;
-  std::optional<Eigen::Vector2d> way_;  ///< [m] of a car's last pulse, as if the throttle was +
-  double throttle_ = 0.0;               ///< of a car, once its wheels stand as they shall
+  /// [m] displacement of a car's last pulse, as for a positive throttle
+  std::optional<Eigen::Vector2d> way_;
+  double throttle_ = 0.0;  ///< of a car, applied once its wheels have turned
   int64_t pulse_begin_ = 0;
   int64_t pulse_end_ = 0;
   int64_t pause_end_ = 0;

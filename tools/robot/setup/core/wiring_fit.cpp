@@ -9,9 +9,9 @@
 namespace tread::setup {
 namespace {
 
-constexpr double kWindow = 0.1;    // [s] of a row
-constexpr double kMostGap = 0.15;  // [s] between fixes that belong together
-constexpr double kFinest = 0.001;  // of the search, [s] and [1]
+constexpr double kWindow = 0.1;    // [s] duration of a row
+constexpr double kMostGap = 0.15;  // [s] largest gap between consecutive fixes
+constexpr double kFinest = 0.001;  // resolution of the search, [s] and [1]
 const Eigen::Vector3d kLeastShape(0.0, 0.005, 0.0), kMostShape(0.8, 1.5, 0.6);
 
 }  // namespace
@@ -85,13 +85,13 @@ std::vector<MotionRow> motionRows(const std::vector<GivenCommand>& commands,
 WiringRows::WiringRows(const std::vector<GivenCommand>& commands, const std::vector<InsFix>& fixes)
     : held_(heldCommands(commands, fixes)), rows_(motionRows(commands, fixes)) {}
 
-/// What has passed of s by each step [s].
+/// Integral of s up to each step [s].
 std::vector<Eigen::Vector2d> WiringRows::integralOf(const Eigen::Vector3d& shape) const {
   std::vector<Eigen::Vector2d> integral(held_.size() + 1, Eigen::Vector2d::Zero());
   Eigen::Vector2d speed = Eigen::Vector2d::Zero();
   const double decay = std::exp(-kFitStep / shape[1]);
   for (size_t i = 0; i < held_.size(); ++i) {
-    // A delay between two steps takes a share of each.
+    // A delay between two steps is interpolated.
     const double back = static_cast<double>(i) - shape[0] / kFitStep;
     const double floor = std::floor(back);
     Eigen::Vector2d target = Eigen::Vector2d::Zero();
@@ -146,7 +146,7 @@ WiringFit WiringRows::solve(const Eigen::Vector3d& shape, bool mirrored, const U
   return fit;
 }
 
-/// Both kinds of residual count by how large they are usually: minus the log likelihood.
+/// Negative log likelihood; each kind of residual is scaled by its own spread.
 double WiringRows::costOf(const WiringFit& fit) const {
   return 2.0 * std::log(fit.velocity_rms + 1e-6) + std::log(fit.turn_rms + 1e-6);
 }

@@ -14,78 +14,77 @@
 
 namespace tread::setup {
 
-/// What was commanded from a time on, until the next one.
+/// A command that holds until the next one.
 struct GivenCommand {
   int64_t utime = 0;     ///< [us]
-  TrackCommand command;  ///< as it was given to the configured left and right, full = 1
+  TrackCommand command;  ///< for the configured left and right, full = 1
 };
 
-/// Where the INS says that the vehicle was, with the mounting that is configured.
+/// Pose of the vehicle from the INS, with the configured mounting.
 struct InsFix {
   int64_t utime = 0;  ///< [us]
   Pose2 T_map_body;   ///< yaw may be wrapped
 };
 
-/// How a vehicle answers commands, whatever hangs on which wire: the sum of what both sides do.
+/// Response of a vehicle to its commands, independent of the wiring: the sum of both sides.
 /** command -> delay -> dead power -> first-order lag -> s; velocity = response * (s_left, s_right).
  * Axes of the velocity are those of the INS. */
 struct WiringFit {
   double delay = 0.0;  ///< [s]
   double lag = 0.0;    ///< [s]
-  double dead = 0.0;   ///< [1] commands up to it give nothing
-  /// Per unit of s: along and across [m/s], turning [rad/s].
+  double dead = 0.0;   ///< [1] commands up to it have no effect
+  /// Per unit of s: forward and left [m/s], yaw rate [rad/s].
   Eigen::Matrix<double, 3, 2> response = Eigen::Matrix<double, 3, 2>::Zero();
-  double velocity_rms = 0.0;  ///< [m/s] what is left unexplained
+  double velocity_rms = 0.0;  ///< [m/s] residual
   double turn_rms = 0.0;      ///< [rad/s]
 
-  /// Share of a full command that is beyond the dead power.
+  /// Share of a full command above the dead power.
   double atFull() const { return 1.0 - dead; }
 };
 
 inline constexpr double kFitStep = 0.01;  ///< [s] of integration
 
-/// The motion between two fixes a tenth of a second apart.
+/// The motion between two fixes .1 s apart.
 struct MotionRow {
   double from = 0.0, to = 0.0;  ///< [s] since the first command
   Eigen::Vector2d moved_map;    ///< [m/s]
-  double yaw = 0.0;             ///< [rad] in the middle
+  double yaw = 0.0;             ///< [rad] at mid-time
   double turned = 0.0;          ///< [rad/s]
 
-  /// Along and across the INS's axes [m/s] and turning [rad/s]; `mirrored`: its yaw turns the wrong
-  /// way round.
+  /// Velocity along and across the INS's axes [m/s] and yaw rate [rad/s]; `mirrored`: its yaw has
+  /// the wrong sign.
   Eigen::Vector3d seen(bool mirrored) const;
 };
 
-/// Both in the order of time. Gaps of the INS are left out.
+/// Both inputs ordered by time. Gaps of the INS are left out.
 std::vector<MotionRow> motionRows(const std::vector<GivenCommand>& commands,
                                   const std::vector<InsFix>& fixes);
-/// The command that holds at each kFitStep, from the first command to the last fix.
+/// The command in force at each kFitStep, from the first command to the last fix.
 std::vector<TrackCommand> heldCommands(const std::vector<GivenCommand>& commands,
                                        const std::vector<InsFix>& fixes);
-/// A series of commands delayed [s]: a delay between two steps takes a share of each.
+/// A delayed series of commands [s]; a delay between two steps is interpolated.
 double delayedAt(const std::vector<double>& held, size_t step, double delay);
-/// 0 up to the dead power, the rest beyond it.
+/// 0 up to the dead power, above it the excess.
 double beyondDead(double command, double dead);
 
-/// What a search is over: delay [s], lag [s], dead power [1].
+/// Search variables: delay [s], lag [s], dead power [1].
 using Shape = Eigen::Vector3d;
-/// The shape of the least cost near another one, by steps from `step` down.
-/** A compass search: delay and lag stand in for each other, so that it also moves along both. */
+/// Local search for the least cost around `near`, with decreasing `step`.
+/** Compass search; as delay and lag are correlated, it also moves along both. */
 Shape searchShape(Shape near, double step, const std::function<double(const Shape&)>& cost);
-/// The same over all shapes that a vehicle may have.
+/// The same over the whole range of vehicles.
 Shape searchShape(const std::function<double(const Shape&)>& cost);
 
-/// The motions between fixes a tenth of a second apart, and the commands before them.
+/// Motions between fixes .1 s apart, with the commands before them.
 class WiringRows {
  public:
-  /// Both in the order of time. Gaps of the INS are left out.
+  /// Both inputs ordered by time. Gaps of the INS are left out.
   WiringRows(const std::vector<GivenCommand>& commands, const std::vector<InsFix>& fixes);
 
   size_t size() const { return rows_.size(); }
-  /// The best fit over the rows for which `use` is true. `mirrored`: the INS turns its yaw the
-  /// wrong way round.
+  /// Fits the rows for which `use` is true. `mirrored`: the INS's yaw has the wrong sign.
   WiringFit fit(bool mirrored, const std::function<bool(size_t row)>& use) const;
-  /// The same, searched near another one.
+  /// The same, searched around another fit.
   WiringFit refine(const WiringFit& near, bool mirrored,
                    const std::function<bool(size_t row)>& use) const;
 
@@ -96,7 +95,7 @@ class WiringRows {
   double costOf(const WiringFit& fit) const;
   std::vector<Eigen::Vector2d> integralOf(const Eigen::Vector3d& shape) const;
 
-  std::vector<TrackCommand> held_;  ///< command in each hundredth of a second
+  std::vector<TrackCommand> held_;  ///< command in each 10 ms
   std::vector<MotionRow> rows_;
 };
 

@@ -10,15 +10,15 @@
 namespace tread::setup {
 namespace {
 
-constexpr double kFull = 0.99;         // [1] of a command
-constexpr double kLeastSteady = 0.25;  // [s] that a speed is measured for
-constexpr double kSettled = 2.5;       // lags
+constexpr double kFull = 0.99;         // [1] a full command
+constexpr double kLeastSteady = 0.25;  // [s] shortest time for measuring a speed
+constexpr double kSettled = 2.5;       // [lags] after which a speed is steady
 
 double angleOf(const Eigen::Vector2d& direction) {
   return std::atan2(direction.y(), direction.x());
 }
 
-/// The index of the first fix at a time or later.
+/// Index of the first fix at or after a time.
 size_t fixAt(const std::vector<InsFix>& fixes, int64_t utime) {
   const auto later = [](const InsFix& fix, int64_t time) { return fix.utime < time; };
   return static_cast<size_t>(std::lower_bound(fixes.begin(), fixes.end(), utime, later) -
@@ -40,7 +40,7 @@ WiringGeometry geometryOf(const WiringFit& fit, bool swapped) {
   const double c_left = response(2, 0), c_right = response(2, 1);
   const Eigen::Vector2d straight =
       c_right * response.block<2, 1>(0, 0) - c_left * response.block<2, 1>(0, 1);
-  // A track that goes forward turns the vehicle away from its side.
+  // A forward track turns the vehicle away from its own side.
   const double sign = (c_left * c_right > 0.0) == swapped ? 1.0 : -1.0;
   const Eigen::Vector2d forward = sign * straight.normalized();
   const double width = straight.norm() / std::abs(c_left * c_right);
@@ -50,7 +50,7 @@ WiringGeometry geometryOf(const WiringFit& fit, bool swapped) {
   found.reverse_right = speed_right < 0.0;
   const double full_left = fit.atFull() * std::abs(speed_left);
   const double full_right = fit.atFull() * std::abs(speed_right);
-  // What is left of the velocity is the turning of a point beside the middle.
+  // The remaining velocity is due to turning, at a point away from the middle.
   const double away = angleOf(forward);
   const Eigen::Rotation2D<double> to_body(-away);
   Eigen::Vector2d lever = Eigen::Vector2d::Zero();
@@ -110,7 +110,7 @@ std::vector<StraightSpeed> straightSpeeds(const std::vector<GivenCommand>& comma
     if (to >= fixes.size() || to <= from) continue;
     const double time = 1e-6 * static_cast<double>(fixes[to].utime - fixes[from].utime);
     if (time < 0.5 * kLeastSteady) continue;
-    // What the lag still holds back of it.
+    // The part of the speed that the lag still withholds.
     const double reached =
         1.0 - lag / time * std::exp(-settle / lag) * (1.0 - std::exp(-time / lag));
     const double speed =

@@ -10,13 +10,13 @@
 
 namespace tread::setup {
 
-/// The quantities that a fit leads to, in the order of WiringReport.
+/// Quantities derived from a fit, in the order of WiringReport.
 /** Speeds of the real sides at full command [m/s], effective gauge [m], yaw of the INS [rad], its
- * place [m], delay, lag [s], dead power [1]. */
+ * position [m], delay, lag [s], dead power [1]. */
 enum Quantity { kLeft, kRight, kWidth, kYaw, kX, kY, kDelay, kLag, kDeadPower, kQuantities };
 using Quantities = std::array<double, kQuantities>;
 
-/// How the configured left and right side are connected, if they are swapped or not.
+/// Connection of the configured left and right side, for either answer to "are they swapped?".
 struct WiringGeometry {
   bool swapped = false;
   bool reverse_left = false;  ///< the configured left side
@@ -24,12 +24,12 @@ struct WiringGeometry {
   Quantities of{};
 };
 
-/// What a response says if left and right are swapped or not: both are the same motions with front
-/// and rear exchanged.
+/// Interpretation of a response for swapped or unswapped sides: both explain the same motions, with
+/// front and rear exchanged.
 WiringGeometry geometryOf(const WiringFit& fit, bool swapped);
 
-/// The same where only one of the configured sides moves (0 = left). How wide it is, it does not
-/// tell; ahead is where the INS looks.
+/// The same if only one configured side moves (0 = left). The width is then unknown; ahead is the
+/// INS's direction.
 WiringGeometry geometryOfOne(const WiringFit& fit, int alive);
 
 /// Full speed of the real sides [m/s], straight ahead and back.
@@ -38,8 +38,8 @@ struct StraightSpeed {
   double right = 0.0;
 };
 
-/// One for each time that both real sides were given the same full command for long enough.
-/** Turning drags on both sides, so that a response over all motions tells less than this. */
+/// One entry per period in which both real sides had the same full command for long enough.
+/** Turning drags on both sides, so a fit over all motions is less accurate. */
 std::vector<StraightSpeed> straightSpeeds(const std::vector<GivenCommand>& commands,
                                           const std::vector<InsFix>& fixes,
                                           const WiringGeometry& geometry);

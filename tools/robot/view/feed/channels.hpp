@@ -9,11 +9,11 @@
 
 namespace tread::view {
 
-/// Topic of what happened since the beginning, and of where a log's playback is.
+/// Topic of the events since the beginning and of a log's playback position.
 inline constexpr const char* kHistoryTopic = "view/history";
 inline constexpr const char* kPlayerTopic = "view/player";
 
-/// What a viewer can subscribe to.
+/// A channel for viewers.
 struct OfferedChannel {
   uint32_t id = 0;
   std::string topic;
@@ -21,7 +21,7 @@ struct OfferedChannel {
   std::string schema;  ///< JSON Schema
 };
 
-/// Tread's channels, the scene's topics and those of the page itself.
+/// Tread's channels, the scene's topics and the page's own.
 class OfferedChannels {
  public:
   OfferedChannels();

@@ -19,8 +19,7 @@ constexpr double kPlayerPeriod = 0.5;  // [s]
 /// Who subscribes again and again does not have it drawn anew each time.
 constexpr double kSceneLife = 10.0;  // [s]
 
-/// What is remembered of a channel [bytes]: thousands of map tiles, and more of the rest than any
-/// robot has.
+/// Memory for each channel [bytes]: enough for thousands of map tiles, and ample for the others.
 constexpr size_t kMostOfMap = 24'000'000;
 constexpr size_t kMostOfOthers = 4'000'000;
 
@@ -74,7 +73,7 @@ bool Feed::sceneWanted() const {
   });
 }
 
-/// The scene costs more than a message: nobody looks, nothing is drawn.
+/// The scene is expensive to draw, so it is drawn only for a viewer.
 void Feed::draw(const LogEvent& event) {
   if (!scene_ && sceneWanted()) return redraw();
   if (!scene_) return;
@@ -101,7 +100,7 @@ void Feed::redraw() {
                    [](const LogEvent* a, const LogEvent* b) { return a->utime < b->utime; });
   for (const LogEvent* const event : events)
     for (SceneMessage& made : scene_->take(*event))
-      // What had happened before is in the history.
+      // Earlier events are in the history.
       if (made.topic != "scene/events") show(std::move(made), event->utime);
 }
 
@@ -174,7 +173,7 @@ std::vector<uint64_t> Feed::partsOf(uint32_t channel) {
 std::optional<FeedMessage> Feed::newest(uint32_t channel, uint64_t part) {
   if (channel == channels_.find(kPlayerTopic)->id) return ownMessage(kPlayerTopic, playerJson());
   if (channel == channels_.find(kHistoryTopic)->id) {
-    // So that nothing of it comes as news once more.
+    // So that they are not sent again as news.
     sendNews();
     return ownMessage(kHistoryTopic, player_ ? player_->history().whole() : history_.whole());
   }
@@ -192,7 +191,7 @@ void Feed::seek(int64_t time, int64_t request) {
   const bool back = time < player_->now();
   player_->seek(std::clamp(time, player_->begin(), player_->end()),
                 [this](const LogEvent& event) { pass(event); });
-  // What is drawn now is not what was there before.
+  // The drawn scene belongs to a later time.
   if (back && scene_) redraw();
   answered_ = request;
   send_(ownMessage(kPlayerTopic, playerJson()));

@@ -20,44 +20,43 @@ namespace tread::view {
 /// A message for viewers.
 struct FeedMessage {
   uint32_t channel = 0;
-  uint64_t part = 0;                           ///< what of its channel it replaces
+  uint64_t part = 0;                           ///< part of its channel that it replaces
   int64_t time = 0;                            ///< [us] of recording
   std::shared_ptr<const std::string> payload;  ///< JSON
-  bool is_news = false;  ///< it replaces nothing: what came before must be heard, too
+  bool is_news = false;  ///< replaces nothing: the earlier ones must be delivered, too
 };
 
-/// Turns messages of the bus or of a log into what viewers subscribe to, and remembers the newest
-/// for those who come later.
-/** Only what somebody wants is turned into JSON. */
+/// Converts messages of the bus or of a log for viewers, and keeps the newest for later viewers.
+/** Converts to JSON only what is subscribed to. */
 class Feed {
  public:
   using Send = std::function<void(const FeedMessage&)>;
-  /// `wanted`: whether anybody subscribes to a channel; `send`: to all who do.
+  /// `wanted`: whether a channel has subscribers; `send`: sends to all of them.
   Feed(std::function<bool(uint32_t)> wanted, Send send);
 
   const OfferedChannels& channels() const { return channels_; }
 
-  /// Opens logs; from then on they are played instead of a bus.
+  /// Opens logs, which are played instead of a bus.
   void openLogs(const std::vector<std::string>& logs);
-  /// A message of the bus.
+  /// Processes a message of the bus.
   void take(const LogEvent& event);
-  /// A line about how far to trust what is shown; empty = none.
+  /// A caveat about the displayed data; empty = none.
   void setDoubt(const std::string& words) { doubt_ = words; }
-  /// Call it often. `elapsed` [s] of real time since the last call.
+  /// Call often. `elapsed` [s] of real time since the last call.
   void step(double elapsed);
 
-  /// The parts of which a viewer of a channel must know the newest at once.
+  /// Parts of a channel that a new viewer needs at once.
   std::vector<uint64_t> partsOf(uint32_t channel);
-  /// The newest of such a part; nothing if there is none any more.
+  /// The newest message of such a part; nullopt if there is none.
   std::optional<FeedMessage> newest(uint32_t channel, uint64_t part);
 
-  /// Control of a log's playback; without a log nothing.
+  /// Controls a log's playback; no effect without a log.
   void seek(int64_t time, int64_t request);
   void play(bool playing, double speed);
   bool hasLog() const { return player_ != nullptr; }
-  /// One clear line of what is wrong with the log; empty if nothing is.
+  /// Damage of the log in one line; empty if none.
   std::string problem() const { return player_ ? player_->problem() : ""; }
-  /// [us] the time of what is shown.
+  /// [us] time of the displayed data.
   int64_t now() const { return player_ ? player_->now() : newest_; }
 
  private:
@@ -65,10 +64,10 @@ class Feed {
   void draw(const LogEvent& event);
   void show(SceneMessage made, int64_t time);
   bool sceneWanted() const;
-  /// The scene anew, from the newest of all parts up to now: it was not drawn, or time went back.
+  /// Redraws the scene from the newest parts: it was not drawn before, or time went back.
   void redraw();
 
-  /// The newest of a channel by part. Its JSON is shared while anybody still has it.
+  /// The newest message of each part. Its JSON is shared with the queues.
   struct Kept {
     LogEvent event;
     std::weak_ptr<const std::string> json;
@@ -89,8 +88,8 @@ class Feed {
   std::map<uint32_t, KeptChannel> kept_;
   std::map<std::pair<uint32_t, uint64_t>, FeedMessage> newest_scene_;  ///< by channel and part
 
-  std::unique_ptr<SceneMaker> scene_;  ///< null: nobody looks
-  double since_scene_ = 0.0;           ///< [s] since somebody looked
+  std::unique_ptr<SceneMaker> scene_;  ///< null: no viewer
+  double since_scene_ = 0.0;           ///< [s] since the last viewer
 
   static constexpr size_t kMostHistory = 2000;
   History history_{kMostHistory};  ///< of a bus
@@ -101,7 +100,7 @@ class Feed {
   double speed_ = 1.0;
   double since_news_ = 0.0;    ///< [s]
   double since_player_ = 0.0;  ///< [s]
-  int64_t answered_ = 0;       ///< the seek that was served last
+  int64_t answered_ = 0;       ///< the seek that was answered last
 };
 
 }  // namespace tread::view

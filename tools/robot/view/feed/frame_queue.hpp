@@ -12,13 +12,13 @@
 
 namespace tread::view {
 
-/// Something that comes again with time, as long as it is not used up.
+/// A budget that is refilled over time.
 class Allowance {
  public:
   Allowance(double rate, double most) : rate_(rate), most_(most), left_(most) {}
   void wait(double elapsed) { left_ = std::min(most_, left_ + rate_ * elapsed); }
   void use(double amount) { left_ -= amount; }
-  /// Uses one if there is one.
+  /// Uses one unit if there is one.
   bool take() {
     if (left_ < 1.0) return false;
     left_ -= 1.0;
@@ -30,24 +30,24 @@ class Allowance {
   double rate_, most_, left_;
 };
 
-/// What of a channel a frame tells: channel and part.
+/// Channel and part of a frame.
 using FramePart = std::pair<uint32_t, uint64_t>;
 
-/// A frame that waits for a viewer's line.
+/// A frame in a viewer's queue.
 struct Frame {
   FramePart part;
   int64_t time = 0;                            ///< [us]
-  std::shared_ptr<const std::string> payload;  ///< null: what is newest at its turn
-  bool is_news = false;  ///< part of a whole, which the newest without a payload is
+  std::shared_ptr<const std::string> payload;  ///< null: the newest one at its turn
+  bool is_news = false;  ///< part of a sequence, which the newest one cannot replace
 };
 
-/// The frames that wait for one viewer.
-/** Frames give way where the line is slower than the robot: then each part waits once, and its
- * newest is sent. So a queue holds some payloads, and each part's name at most once more. */
+/// The queue of frames for one viewer.
+/** If the line is slower than the robot, frames are merged: each part is queued once, and its
+ * newest message is sent. So the queue holds a few payloads, and each part at most once more. */
 class FrameQueue {
  public:
-  static constexpr size_t kCrowded = 64;              ///< frames, from which on the newest suffices
-  static constexpr size_t kCrowdedBytes = 1'000'000;  ///< the same [bytes]
+  static constexpr size_t kCrowded = 64;  ///< frames in the queue from which on they are merged
+  static constexpr size_t kCrowdedBytes = 1'000'000;  ///< [bytes] from which on they are merged
 
   bool empty() const { return frames_.empty(); }
   size_t size() const { return frames_.size(); }
@@ -89,7 +89,7 @@ class FrameQueue {
   }
 
   std::deque<Frame> frames_;
-  std::set<FramePart> newest_;  ///< those that wait without a payload
+  std::set<FramePart> newest_;  ///< queued parts without a payload
   size_t bytes_ = 0;
 };
 

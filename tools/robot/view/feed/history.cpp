@@ -14,8 +14,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kWayStep = 0.15;            // [m] at the beginning
-constexpr double kWayPoints = 5000.0;        // after which the points lie farther apart
+constexpr double kWayStep = 0.15;            // [m] spacing at the beginning
+constexpr double kWayPoints = 5000.0;        // number of points from which on the spacing grows
 constexpr int64_t kBatteryStep = 2'000'000;  // [us]
 
 constexpr size_t kMostWords = 400;  // [bytes] of an event
@@ -28,7 +28,7 @@ void keepNewest(List& list, size_t most, size_t& told) {
   told -= std::min(told, dropped);
 }
 
-/// JSON has no number for what is not known.
+/// JSON has no number for unknown values.
 Json numberOr(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }

@@ -10,8 +10,7 @@
 
 namespace tread::view {
 
-/// What a page must know of the time before it was opened: events, how patterns ended, the way,
-/// the battery.
+/// Data from before a page was opened: events, pattern errors, path, battery.
 class History {
  public:
   /// Keeps at least the newest `most` of each list, and at most twice as many.
@@ -34,7 +33,7 @@ class History {
     int64_t utime;
     double a, b;
   };
-  /// How much of each list there is.
+  /// Length of each list.
   struct Mark {
     size_t events = 0, patterns = 0, way = 0, battery = 0;
     bool operator==(const Mark& other) const {

@@ -9,7 +9,7 @@
 namespace tread::view {
 namespace {
 
-/// What is older than that at some time is no state any more [us], but for what never changes.
+/// Older messages no longer describe the state [us], except for constant data.
 constexpr int64_t kLongestAge = 120'000'000;
 
 bool lasts(const std::string& channel) {

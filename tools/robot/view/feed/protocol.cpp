@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr char kMessageData = 0x01;  // from both sides
+constexpr char kMessageData = 0x01;  // the same in both directions
 constexpr char kTime = 0x02;
 
 void appendLittleEndian(std::string& bytes, uint64_t value, int size) {
@@ -20,7 +20,7 @@ uint64_t nanoseconds(int64_t time) {
   return time > 0 ? static_cast<uint64_t>(time) * 1000 : 0;
 }
 
-/// The numbers of an array's entries; throws Json::exception where it has others.
+/// The numbers in an array; throws Json::exception for other entries.
 std::vector<uint32_t> numbersIn(const Json& message, const char* key) {
   return message.at(key).get<std::vector<uint32_t>>();
 }
@@ -96,7 +96,7 @@ ClientRequest readRequest(const std::string& text) {
   try {
     read(Json::parse(text), request);
   } catch (const Json::exception&) {
-    request.problem = "a message that is no request of the protocol was passed over";
+    request.problem = "ignored a message that is not a request of the protocol";
   }
   return request;
 }
