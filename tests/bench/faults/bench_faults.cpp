@@ -223,7 +223,8 @@ int main(int argc, char** argv) {
                "bench-faults"};
   Arguments arguments;
   app.add_option("--missions", arguments.missions, "how many")->check(CLI::Range(1, 1000000));
-  app.add_option("--seed", arguments.seed, "seed of the first one; the others count up from it");
+  app.add_option("--seed", arguments.seed,
+                 "seed of the first mission; the others count up from it");
   app.add_flag("--only", arguments.only, "that seed alone, with its faults in words");
   app.add_flag("--go-back", arguments.go_back,
                "instead: the operator falls silent for good, and the robot shall return");

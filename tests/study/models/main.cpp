@@ -141,7 +141,7 @@ int main(int argc, char** argv) {
       .folder("--out", options.out, "folder for comparison.json and comparison.md; made if needed")
       ->required();
   app.add_flag("--pool", options.pool, "also judge each log by what all others teach");
-  app.add_option("--seed", options.seed, "of the random draws of the tests")
+  app.add_option("--seed", options.seed, "seed of the random numbers in the tests")
       ->capture_default_str()
       ->check(CLI::Range(int64_t{0}, int64_t{9'000'000'000'000'000'000}));
   tread::addThreads(app, options.threads);

@@ -60,7 +60,7 @@ int run(int argc, char** argv) {
   app.add_option("--model", model_file, "model file (YAML)")->required();
   app.add_option("--train", log, "log to learn from")->required();
   app.add_option("--out", out, "folder for verdict.json")->required();
-  app.add_flag("--calibrate", calibrate, "fit lag, delay and gains of the nominal model, too");
+  app.add_flag("--calibrate", calibrate, "also fit lag, delay and gains of the nominal model");
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   const ModelDocument model = readModelDocument(model_file);
   const std::vector<gap::Drive> drives{gap::readDriveFor(model, log)};

@@ -32,10 +32,10 @@ std::vector<std::string> split(const std::string& words) {
 void checkRules(const std::vector<std::string>& rules) {
   for (const std::string& rule : rules) {
     if (!methodOf(rule))
-      throw std::invalid_argument("--rules: there is no rule '" + rule + "'; known are " +
+      throw std::invalid_argument("--rules: unknown rule '" + rule + "'; known are " +
                                   joinWords(methodNames()));
     if (std::count(rules.begin(), rules.end(), rule) > 1)
-      throw std::invalid_argument("--rules: '" + rule + "' is there twice; each rule once");
+      throw std::invalid_argument("--rules: '" + rule + "' is given twice");
   }
 }
 
@@ -62,7 +62,7 @@ PatternRecordings recordingsOfFolder(const Request& request, Batch& batch) {
   }
   if (!request.robot.empty() || !request.sessions.empty())
     throw std::invalid_argument(request.recordings +
-                                ": --robot and --sessions choose among drives; there is no "
+                                ": --robot and --sessions select drives; there is no "
                                 "sessions.csv here");
   if (!fs::exists(folder / "patterns.yaml"))
     throw std::invalid_argument(request.recordings +
@@ -71,7 +71,7 @@ PatternRecordings recordingsOfFolder(const Request& request, Batch& batch) {
   return recordings::readRecordings(request.recordings);
 }
 
-/// Names of patterns as indices into the set.
+/// Pattern names as indices into the set.
 Sequence sequenceOf(const std::vector<std::string>& names, const PatternSet& set) {
   Sequence sequence;
   std::vector<std::string> known;
@@ -79,14 +79,14 @@ Sequence sequenceOf(const std::vector<std::string>& names, const PatternSet& set
   for (const std::string& name : names) {
     const auto place = std::find(known.begin(), known.end(), name);
     if (place == known.end())
-      throw std::invalid_argument("sequence " + joinWords(names) + ": there is no pattern '" +
-                                  name + "'; the patterns are " + joinWords(known));
+      throw std::invalid_argument("sequence " + joinWords(names) + ": unknown pattern '" + name +
+                                  "'; the patterns are " + joinWords(known));
     sequence.push_back(static_cast<size_t>(place - known.begin()));
   }
   return sequence;
 }
 
-/// Runs one set of recordings after the other.
+/// Runs the sets of recordings in turn.
 class Runner {
  public:
   Runner(const Request& request, const std::function<void(double)>& progress)
@@ -116,7 +116,8 @@ class Runner {
   void runFolder() {
     const Request& request = batch_.request;
     if (request.sets != 1 || request.length != 1)
-      throw std::invalid_argument("--sets and --length need a --world, which can be recorded anew");
+      throw std::invalid_argument(
+          "--sets and --length need a --world, which can be recorded again");
     batch_.source = "recordings " + fs::path(request.recordings).filename().string();
     const PatternRecordings recorded = recordingsOfFolder(request, batch_);
     chooseSequences(recorded.patterns, {});
@@ -126,10 +127,10 @@ class Runner {
   void runWorld() {
     const Request& request = batch_.request;
     if (!request.robot.empty() || !request.sessions.empty())
-      throw std::invalid_argument("--robot and --sessions choose among --recordings");
+      throw std::invalid_argument("--robot and --sessions need --recordings");
     const TransitionWorld world = readTransitionWorld(request.world);
     batch_.source = "world " + world.name;
-    // The paper's numbers are for patterns of one second and changes between patterns.
+    // The paper's numbers are for patterns of one second and for changes between patterns.
     batch_.setting.paper_reference =
         world.paper_reference && request.length == 1 && !request.change_inside;
     for (uint64_t number = 0; number < static_cast<uint64_t>(request.sets); ++number) {
@@ -149,7 +150,7 @@ class Runner {
     if (batch_.settings.sequences.empty()) chooseByEnds(set);
   }
 
-  /// The usual names where the set has them, else what moves most apart.
+  /// The usual names if the set has them, else the patterns that are farthest apart.
   void chooseByEnds(const PatternSet& set) {
     const auto has = [&](const char* name) {
       const auto& patterns = set.patterns();
@@ -161,13 +162,13 @@ class Runner {
     batch_.settings.sequences = sequencesFor(set);
     if (batch_.settings.sequences.empty())
       throw std::invalid_argument(batch_.source +
-                                  ": there is one pattern only; transitions need two");
+                                  ": there is only one pattern; transitions need two");
     std::vector<std::string> names;
     for (const size_t pattern : batch_.settings.sequences.front())
       names.push_back(set.patterns()[pattern].name);
     batch_.notes.push_back("test sequences are " + joinWords(names) +
-                           " and the mirrored one, the patterns whose ends are most apart; "
-                           "--sequence names others");
+                           " and the reverse, for the patterns with the most distant ends; "
+                           "choose others by --sequence");
   }
 
   void runRecordings(const PatternRecordings& recorded, uint64_t number) {
@@ -194,7 +195,7 @@ class Runner {
   std::function<void(double)> progress_;
 };
 
-/// What --extras asks for, in words and as a request: a tenth of the repetitions, few sets of
+/// The variants of --extras, in words and as requests: a tenth of the repetitions, few sets of
 /// recordings.
 std::vector<std::pair<std::string, Request>> variantsOf(const Request& request) {
   constexpr int64_t kFewest = 100;
@@ -221,7 +222,7 @@ std::vector<std::pair<std::string, Request>> variantsOf(const Request& request) 
 Batch runBatch(const Request& request, const std::function<void(double)>& progress) {
   if (!request.extras) return Runner(request, progress).run();
   const std::vector<std::pair<std::string, Request>> variants = variantsOf(request);
-  // A variant takes about as long as its share of the repetitions.
+  // A variant takes time in proportion to its repetitions.
   const double main_share = 1.0 / (1.0 + 0.15 * static_cast<double>(variants.size()));
   double done = 0.0, part = main_share;
   const auto shared = [&](double share) {

@@ -36,7 +36,7 @@ std::string aboutLine(const Batch& batch) {
   return text + ".";
 }
 
-/// A table of "position / orientation", a column for each rule.
+/// A table of "position / orientation" with a column per rule.
 report::Table ruleTable(const Batch& batch, std::vector<std::string> first_columns) {
   report::Table table{std::move(first_columns), {}, 1};
   const std::vector<std::string>& rules = batch.setting.rules;
@@ -84,27 +84,27 @@ report::Table unchangedTable(const Batch& batch, const std::vector<Row>& rows) {
 }
 
 report::Section unchangedSection(const Batch& batch) {
-  return {"Cost on an unchanged surface",
-          {report::Paragraph{"Error in the long run over that of the right set; position / "
-                             "orientation. Patterns in random order:"},
-           unchangedTable(batch, batch.tables.unchanged),
-           report::Paragraph{"The test sequences again and again:"},
-           unchangedTable(batch, batch.tables.unchanged_sequences)}};
+  return {
+      "Cost on an unchanged surface",
+      {report::Paragraph{"Error in the long run relative to the correct set; position / "
+                         "orientation. Patterns in random order:"},
+       unchangedTable(batch, batch.tables.unchanged), report::Paragraph{"Repeated test sequences:"},
+       unchangedTable(batch, batch.tables.unchanged_sequences)}};
 }
 
-/// A PNG file inside the page, as wide as the page.
+/// A PNG file embedded in the page, as wide as the page.
 report::Pictures picture(const std::string& path, const std::string& caption) {
   return {{"<img style=\"grid-column: 1 / -1; max-width: 100%\" alt=\"" + escaped(caption) +
            "\" src=\"data:image/png;base64," + base64(readText(path)) + "\">"},
           caption};
 }
 
-/// Text as it stands.
+/// Preformatted text.
 report::Section textSection(const std::string& title, const std::string& text) {
   return {title, {report::Commands{{text}}}};
 }
 
-/// report.html, with the pictures of the same folder.
+/// report.html, including the pictures in the folder.
 report::Page pageOf(const Batch& batch, const std::string& transition, const std::string& folder) {
   report::Page page;
   page.title = "Transitions between surfaces";
@@ -127,7 +127,7 @@ report::Page pageOf(const Batch& batch, const std::string& transition, const std
   if (!textOfRemembered(batch).empty())
     page.sections.push_back(textSection("Remembered surfaces", textOfRemembered(batch)));
   if (!batch.variants.empty())
-    page.sections.push_back(textSection("On other terms", textOfVariants(batch)));
+    page.sections.push_back(textSection("Under other conditions", textOfVariants(batch)));
   if (!batch.notes.empty())
     page.sections.push_back({"About the recordings", {report::Points{batch.notes}}});
   return page;
@@ -151,7 +151,7 @@ std::string textOfRemembered(const Batch& batch) {
   if (text.empty()) return "";
   std::string head = formatted("%-24s", "from");
   for (const TrialGround& ground : batch.grounds) head += formatted("%12s", ground.surface.c_str());
-  return "REMEMBERED surfaces before a transition, that of the shipped set among them; mean over "
+  return "REMEMBERED surfaces before a transition, including that of the shipped set; mean over "
          "excitation runs.\n\n" +
          head + text + "\n";
 }
@@ -168,7 +168,7 @@ std::string textOfDrift(const Batch& batch) {
   if (watched.empty()) return "";
   std::string text =
       "DRIFT: width of the never executed pattern '" + watched +
-      "' over its shipped one while the test sequences are driven\nagain and again on unchanged "
+      "' relative to its shipped one, while the test sequences are\nrepeated on unchanged "
       "ground, mean over surfaces.\n\nafter                   ";
   const size_t all = batch.settings.drift;
   const size_t shown[] = {all / 10, all / 3, 2 * all / 3, all};
@@ -196,7 +196,7 @@ void writeBatch(const std::string& folder, const Batch& batch) {
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
   if (failure)
-    throw std::runtime_error(folder + ": the folder cannot be made: " + failure.message());
+    throw std::runtime_error(folder + ": the folder cannot be created: " + failure.message());
   const auto path = [&](const std::string& name) {
     return (std::filesystem::path(folder) / name).string();
   };

@@ -10,7 +10,7 @@
 
 namespace tread::experiment {
 
-/// Whether a measured end lies within the region that a covariance states for nine in ten.
+/// Whether a measured end is inside the 90 % region of a covariance.
 inline bool isInside(const Pose2& predicted, const Pose2& measured,
                      const PoseCovariance& covariance) {
   constexpr double kQuantile = 6.251;  // chi^2, three degrees of freedom

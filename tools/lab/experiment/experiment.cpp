@@ -13,10 +13,10 @@
 namespace tread::experiment {
 namespace {
 
-constexpr int64_t kSideRepetitions = 240;  // of what is not in Tables I and II
-constexpr int64_t kLongDrives = 16;        // on each surface, at least; fewer in a quick run
+constexpr int64_t kSideRepetitions = 240;  // for results outside Tables I and II
+constexpr int64_t kLongDrives = 16;        // minimum on each surface; fewer in a quick run
 constexpr size_t kBins = 50;
-constexpr double kBinsReach = 2.5;  // times the mean error without learning
+constexpr double kBinsReach = 2.5;  // relative to the mean error without learning
 
 enum class Trial : uint64_t {
   kSequences,
@@ -28,18 +28,18 @@ enum class Trial : uint64_t {
   kFirst
 };
 
-/// Of the i-th of `runs`.
+/// Share of the i-th of `runs`.
 int64_t share(int64_t repetitions, int64_t i, int64_t runs) {
   return repetitions * (i + 1) / runs - repetitions * i / runs;
 }
 
-/// So many on each surface.
+/// Repetitions on each surface.
 int64_t longDrives(int64_t repetitions) {
   constexpr int64_t kFewest = 2;
   return std::max(std::clamp(repetitions / 4, kFewest, kLongDrives), repetitions / 300);
 }
 
-/// Bins for the errors of single executions, from those without learning.
+/// Bins for single errors, from those without learning.
 std::pair<Histogram, Histogram> binsFor(const TrialGround& from, const TrialGround& to,
                                         const std::vector<Sequence>& sequences) {
   double position = 0.0, orientation = 0.0, metres = 0.0, radians = 0.0;
@@ -63,7 +63,7 @@ std::pair<Histogram, Histogram> binsFor(const TrialGround& from, const TrialGrou
   return {bins(position, metres), bins(orientation, radians)};
 }
 
-/// What followed one excitation run from a surface to another one.
+/// Results after one excitation run from a surface to another.
 struct RunErrors {
   SequenceErrors sequences;
   std::vector<MethodErrors> all_patterns;
@@ -74,16 +74,16 @@ struct RunErrors {
 
 using Drift = std::vector<std::vector<double>>;  // [method][execution]
 
-/// What followed one excitation run on unchanged ground.
+/// Results after one excitation run on unchanged ground.
 struct UnchangedErrors {
   MethodErrors random;
   MethodErrors sequences;
   FirstExecutions first;
-  Drift drift;  ///< empty without a pattern to watch
+  Drift drift;  ///< empty if no pattern is watched
 };
 
-/// All trials as tasks, their results in places of their own, put together in order afterwards.
-/// Each excitation run is a task with seeds of its own: threads have no influence on numbers.
+/// All trials as tasks whose results are stored separately and merged in order. Each excitation run
+/// is a task with its own seeds, so results do not depend on threads.
 class Schedule {
  public:
   Schedule(const std::vector<TrialGround>& grounds, const ExperimentSettings& settings)
@@ -99,7 +99,7 @@ class Schedule {
     unchanged_.resize(grounds.size());
     for (size_t s = 0; s < grounds.size(); ++s) addUnchanged(s);
     rivals_.resize(grounds.size() * grounds.size());
-    // Tuned before, as all excitation runs of a transition begin with them.
+    // Tuned first, because all excitation runs of a transition share them.
     onThreads(settings.threads)(rivals_.size(), [&](size_t i) {
       rivals_[i] = tunedRivals(settings.rules, grounds, i / grounds.size(), i % grounds.size());
     });
@@ -125,7 +125,7 @@ class Schedule {
             seedOf({settings_.seed, 2, from, to, static_cast<uint64_t>(trial),
                     static_cast<uint64_t>(run)})};
   }
-  /// Repetitions of what is not in Tables I and II.
+  /// Repetitions for results outside Tables I and II.
   int64_t side() const {
     return std::max(std::min(settings_.repetitions, kSideRepetitions), settings_.repetitions / 10);
   }
@@ -187,13 +187,13 @@ void Schedule::addUnchanged(size_t surface) {
     });
 }
 
-/// Adds a run's errors number by number.
+/// Adds a run's errors element by element.
 void addRun(const std::vector<MethodErrors>& run, std::vector<MethodErrors>& sums, size_t methods) {
   sums.resize(run.size(), MethodErrors(methods));
   for (size_t i = 0; i < run.size(); ++i) sums[i].addRun(run[i]);
 }
 
-/// Mean of all, number by number.
+/// Element-wise mean.
 Drift meanDrift(const std::vector<const Drift*>& drifts) {
   Drift mean;
   for (const Drift* one : drifts) {

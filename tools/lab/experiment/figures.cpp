@@ -17,8 +17,8 @@ using report::Style;
 using Points = std::vector<Eigen::Vector2d>;
 
 constexpr double kWidth = 1400.0;
-constexpr double kRow = 330.0;  // height of a row of panels with its legend
-constexpr double kLeft = 75.0;  // of each panel, for its numbers
+constexpr double kRow = 330.0;  // [pixels] height of a row of panels with its legend
+constexpr double kLeft = 75.0;  // [pixels] left margin of a panel for its numbers
 
 Style styleOf(const std::string& rule) {
   static const std::map<std::string, report::Colour> colours{
@@ -44,13 +44,13 @@ Style styleOf(const std::string& rule) {
   Style style;
   style.colour = colour == colours.end() ? report::kBlack : colour->second;
   style.dashed = rule == "off" || rule == kOmniscient;
-  // Collective and telescoping scaling are often the same to a line's width: both show.
+  // Collective and telescoping scaling often coincide: draw both visibly.
   style.width = style.dashed ? 1.5 : rule == "telescoping" ? 5.0 : 2.0;
   return style;
 }
 
-/// Not more than five curves in one panel: the paper's rules, then the others, each time with the
-/// best that is possible.
+/// At most five curves per panel: the paper's rules, then the others, each group with the best
+/// possible.
 std::vector<std::vector<size_t>> curveGroups(const std::vector<std::string>& rules) {
   constexpr size_t kMost = 5;
   std::vector<size_t> papers, others;
@@ -78,7 +78,7 @@ std::vector<std::vector<size_t>> curveGroups(const std::vector<std::string>& rul
   return groups;
 }
 
-/// Names of the rules in a line above their panels, away from the curves.
+/// Legend in a line above the panels.
 void drawLegend(Picture& picture, double x, double y, const std::vector<std::string>& rules,
                 const std::vector<size_t>& group) {
   for (const size_t i : group) {
@@ -115,7 +115,7 @@ struct Column {
   std::vector<Points> curves;
 };
 
-/// A row of panels for each group of rules, all of a column on the same scale.
+/// A row of panels for each group of rules; a column has a common scale.
 void drawRows(const std::string& path, const std::string& title, std::vector<Column> columns,
               const std::vector<std::string>& rules) {
   const std::vector<std::vector<size_t>> groups = curveGroups(rules);
@@ -136,7 +136,7 @@ void drawRows(const std::string& path, const std::string& title, std::vector<Col
   picture.save(path);
 }
 
-/// value(errors of an execution, rule) over the number of the execution, by rule.
+/// value(errors of an execution, rule) over the execution number, by rule.
 template <class Value>
 std::vector<Points> overExecutions(const TransitionErrors& transition, size_t rules,
                                    const Value& value) {

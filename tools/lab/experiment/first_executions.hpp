@@ -10,9 +10,9 @@
 
 namespace tread::experiment {
 
-/// How many measured ends lay inside the 90 % regions that were predicted for them.
+/// Measured ends inside their predicted 90 % regions.
 struct RegionCount {
-  double ends = 0.0;  ///< for which the method stated a region
+  double ends = 0.0;  ///< with a stated region
   double inside = 0.0;
 
   void add(const RegionCount& other) {
@@ -24,7 +24,7 @@ struct RegionCount {
 /// The first executions of random patterns on a surface.
 struct FirstExecutions {
   static constexpr size_t kCount = 12;
-  /// After so many of them all patterns are tested.
+  /// Numbers of executions after which all patterns are tested.
   static constexpr std::array<size_t, 6> kTested{0, 1, 2, 3, 5, 10};
 
   explicit FirstExecutions(size_t methods = 0)
@@ -32,18 +32,19 @@ struct FirstExecutions {
         regions(kCount, std::vector<RegionCount>(methods)) {}
   void addRun(const FirstExecutions& run);
 
-  std::vector<MethodErrors> all_patterns;         ///< by kTested
-  std::vector<std::vector<RegionCount>> regions;  ///< [execution][method], before the execution
+  std::vector<MethodErrors> all_patterns;  ///< by kTested
+  /// [execution][method], stated before the execution
+  std::vector<std::vector<RegionCount>> regions;
 };
 
-/// Every repetition begins anew; all methods execute the same recordings.
+/// Each repetition starts anew; all methods execute the same recordings.
 FirstExecutions driveFirstExecutions(Methods& methods, const TrialSite& site);
 
 struct Tables;
 struct Setting;
 
-/// Shares of ends inside the 90 % regions, errors over all patterns, and the price on unchanged
-/// ground, by method.
+/// By method: shares of ends inside the 90 % regions, errors over all patterns, and the loss on
+/// unchanged ground.
 std::string textOfFirstExecutions(const Tables& tables, const Setting& setting);
 
 }  // namespace tread::experiment

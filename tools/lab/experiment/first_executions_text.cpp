@@ -21,7 +21,7 @@ std::string cell(const char* format, double value) {
   return formatted("%8s", std::isfinite(value) ? formatted(format, value).c_str() : "-");
 }
 
-/// Rows of a quantity that a method has after k executions, on changed or on unchanged ground.
+/// Rows of a quantity after k executions, on changed or unchanged ground.
 std::vector<const Row*> rowsOf(const std::vector<Row>& rows, bool changed, const char* quantity,
                                const std::string& method, size_t k) {
   std::vector<const Row*> found;
@@ -60,7 +60,7 @@ struct AfterChange {
   }
 };
 
-/// A table: a row for each method, `columns` numbers in it.
+/// A table with a row per method and `columns` numbers.
 std::string block(
     const std::string& title, const std::vector<std::string>& columns,
     const std::vector<std::string>& methods,
@@ -121,7 +121,7 @@ std::string textOfErrorsAfter(const Tables& tables, const Setting& setting, cons
                [](const AfterChange& errors, Method method) { return errors.worst(method); });
 }
 
-/// Mean over surfaces and half its 99 % interval, surface by surface independent.
+/// Mean over surfaces and half its 99 % interval; surfaces are independent.
 std::string price(const std::vector<Row>& rows, const char* quantity, const std::string& method) {
   double squares = 0.0;
   const auto found = rowsOf(rows, false, quantity, method, 0);
@@ -133,7 +133,8 @@ std::string price(const std::vector<Row>& rows, const char* quantity, const std:
 
 std::string textOfPrice(const Tables& tables, const Setting& setting) {
   std::string text =
-      "\nUNCHANGED GROUND: error over the omniscient one, mean over surfaces; random patterns, all "
+      "\nUNCHANGED GROUND: error relative to the omniscient one, mean over surfaces; random "
+      "patterns, all "
       "of them after k\nexecutions, and in the long run with its 99 % interval (paired).\n";
   for (const char* quantity : kQuantities) {
     std::vector<std::string> columns = testedColumns();
@@ -163,8 +164,8 @@ std::string textOfPrice(const Tables& tables, const Setting& setting) {
 std::string textOfFirstExecutions(const Tables& tables, const Setting& setting) {
   std::string text =
       "FIRST EXECUTIONS of random patterns. Errors over all patterns after k of them, mean over "
-      "transitions, and\nthat mean over the one of no learning and over the one of the right set; "
-      "worst over off: the transition that\nis worst against no learning.\n";
+      "transitions, and\nthis mean relative to no learning and to the correct set; "
+      "worst over off: the transition with the\nlargest error relative to no learning.\n";
   for (const char* quantity : kQuantities) text += textOfErrorsAfter(tables, setting, quantity);
   return text + textOfPrice(tables, setting) + textOfRegions(tables, setting);
 }

@@ -43,7 +43,7 @@ using recordings::AverageLimits;
 using recordings::AverageNote;
 using recordings::Execution;
 
-constexpr int kFewest = 8;  // fair executions of a pattern
+constexpr int kFewest = 8;  // least valid executions of a pattern
 constexpr size_t kFew = 40;
 
 TrialGround groundOf(const recordings::PatternRecordings& recorded,
@@ -70,10 +70,11 @@ TrialGround groundOf(const recordings::PatternRecordings& recorded,
     tests.push_back(std::move(halves[1]));
   }
   if (fewest < kFew)
-    notes.push_back(surface.surface + ": few recordings, " + std::to_string(fewest) +
-                    " of a pattern, half of them for tests; others may give other numbers, which "
-                    "the intervals do not tell");
-  limits.max_speed = std::numeric_limits<double>::max();  // all are fair
+    notes.push_back(
+        surface.surface + ": few recordings, " + std::to_string(fewest) +
+        " of a pattern, half of them for tests; other recordings may give other numbers, which "
+        "the intervals do not cover");
+  limits.max_speed = std::numeric_limits<double>::max();  // accept all
   limits.min_executions = 1;
   TrialGround ground{surface.surface,
                      recordings::averageSet(recorded.patterns, known, limits, of_half),
@@ -164,7 +165,7 @@ WorldPattern readPattern(ConfigReader& reader) {
   reader.table("commands", rows, 3, {-1.0, kMaxSamples}, "", true);
   for (const std::vector<double>& row : rows) {
     if (std::abs(row[0]) > 1.0 || std::abs(row[1]) > 1.0)
-      throw reader.error("commands", "a power is beyond full power; allowed are -1..1");
+      throw reader.error("commands", "power out of range -1..1");
     if (row[2] < 1.0 || row[2] != std::floor(row[2]))
       throw reader.error("commands", "samples are counted; allowed are 1, 2, 3, ...");
     pattern.commands.insert(pattern.commands.end(), static_cast<size_t>(row[2]), {row[0], row[1]});
@@ -174,25 +175,25 @@ WorldPattern readPattern(ConfigReader& reader) {
   return pattern;
 }
 
-/// Names stand in tables, between commas, and in file names.
+/// Names appear in tables, CSV and file names.
 void checkName(const ConfigReader& reader, std::set<std::string>& known, const std::string& name) {
   const auto plain = [](char letter) {
     return (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
            (letter >= '0' && letter <= '9') || letter == '_' || letter == '-';
   };
   if (name.empty() || name.size() > 64 || !std::all_of(name.begin(), name.end(), plain))
-    throw reader.error("name", "'" + name + "' is no name; 1 to 64 letters, digits, - and _");
-  if (!known.insert(name).second)
-    throw reader.error("name", "'" + name + "' is there twice; each name once");
+    throw reader.error(
+        "name", "'" + name + "' is not a valid name; allowed are 1 to 64 letters, digits, - and _");
+  if (!known.insert(name).second) throw reader.error("name", "'" + name + "' is given twice");
 }
 
 std::vector<std::string> readSequence(ConfigReader& reader, const std::set<std::string>& patterns) {
   std::vector<std::string> names;
   reader.texts("patterns", names, true);
-  if (names.empty()) throw reader.error("patterns", "a sequence names at least one pattern");
+  if (names.empty()) throw reader.error("patterns", "a sequence needs at least one pattern");
   for (const std::string& name : names)
     if (patterns.count(name) == 0)
-      throw reader.error("patterns", "no pattern is called '" + name + "'; see patterns:");
+      throw reader.error("patterns", "unknown pattern '" + name + "'; see patterns:");
   return names;
 }
 
@@ -215,10 +216,11 @@ void requireKind(ConfigReader& reader, const std::string& name) {
   std::string kind;
   if (reader.has("kind")) reader.choice("kind", kind, {"transitions"});
   if (kind.empty())
-    throw ConfigError(name +
-                      ":1: no world of transitions (it has no 'kind: transitions'); the worlds of "
-                      "the simulator are another kind of file, see "
-                      "config/worlds/transitions_symmetric.yaml");
+    throw ConfigError(
+        name +
+        ":1: not a world of transitions (it has no 'kind: transitions'); the worlds of "
+        "the simulator are a different kind of file, see "
+        "config/worlds/transitions_symmetric.yaml");
 }
 
 TransitionWorld readWorld(ConfigReader reader, const std::string& file) {
@@ -253,7 +255,7 @@ std::vector<TrackCommand> heldLonger(const std::vector<TrackCommand>& commands, 
   return longer;
 }
 
-/// The patterns as a set; what it predicts is the first surface's mean motion.
+/// The patterns as a set; its predictions are the first surface's mean motion.
 PatternSet setOf(const TransitionWorld& world, int length) {
   const VehicleModel& model = world.surfaces.front().model;
   PatternSetContent content;

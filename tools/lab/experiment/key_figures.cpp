@@ -9,7 +9,7 @@
 namespace tread::experiment {
 namespace {
 
-/// Errors of a rule over those of another one, one number for each transition.
+/// Ratio of the errors of two rules, one number per transition.
 std::vector<double> ratios(const std::vector<Row>& rows, const std::string& quantity,
                            const std::string& rule, const std::string& against, int k) {
   std::vector<double> values;
@@ -44,11 +44,11 @@ double reduced(const std::vector<Row>& rows, const std::string& quantity, const 
   return 100.0 * (1.0 - median(ratios(rows, quantity, rule, "single", k)));
 }
 
-/// One column of the key figures: what it makes of the rows of a table after k executions.
+/// One column of the key figures: its function of a table's rows after k executions.
 struct Figure {
   const char* title;
   const char* format;
-  /// Over all sets of recordings at once, for cells that are means over them.
+  /// Computed at once over all sets of recordings, for cells that are means over them.
   bool of_means;
   std::vector<Row> Tables::*rows;
   double (*of_rows)(const std::vector<Row>& rows, const std::string& quantity,
@@ -75,7 +75,7 @@ std::string shown(const char* format, double value) {
   return std::isfinite(value) ? formatted(format, value) : "-";
 }
 
-/// Mean over the sets of recordings, and the deviation between them.
+/// Mean and standard deviation over the sets of recordings.
 std::string cellOf(const Figure& figure, const std::vector<Tables>& sets,
                    const std::string& quantity, const std::string& rule) {
   const auto n = static_cast<double>(sets.size());
@@ -100,10 +100,13 @@ std::string textOfKeyFigures(const Tables& tables, const Setting& setting,
                              const std::vector<Tables>& sets) {
   constexpr size_t kName = 23, kWidth = 15;
   std::string text =
-      "KEY FIGURES. Reductions [%] against single: median over transitions, test sequences, and "
-      "over all patterns\nafter 10 executions. Against off [%]: the worst transition, + = worse "
+      "KEY FIGURES. Reductions [%] relative to single: median over transitions, test sequences, "
+      "and "
+      "over all patterns\nafter 10 executions. Relative to off [%]: the worst transition, + = "
+      "worse "
       "than no learning, test sequences, and over\nall patterns after 3 executions. Unchanged: "
-      "error in the long run over the omniscient one, median over surfaces,\nrandom patterns, and "
+      "error in the long run relative to the omniscient one, median over surfaces,\nrandom "
+      "patterns, and "
       "test sequences.";
   if (sets.size() > 1)
     text += " Means and deviations over " + std::to_string(sets.size()) +

@@ -33,7 +33,7 @@ struct Arguments {
   std::string out;
 };
 
-/// A bar on stderr, where somebody looks at it.
+/// A progress bar on stderr, on a terminal only.
 void showProgress(double share) {
   static const bool looked_at = isatty(STDERR_FILENO) != 0;
   if (!looked_at) return;
@@ -47,24 +47,26 @@ void showProgress(double share) {
 
 void define(CLI::App& command, Arguments& arguments) {
   Request& request = arguments.request;
-  auto* source = command.add_option_group("surfaces", "where the recordings come from");
-  source->add_option("--world", request.world, "world of transitions (config/worlds), simulated");
+  auto* source = command.add_option_group("surfaces", "source of the recordings");
+  source->add_option("--world", request.world, "simulated world of transitions (config/worlds)");
   source->add_option("--recordings", request.recordings,
                      "folder of recordings (patterns.yaml) or of drives (sessions.csv)");
   source->require_option(1);
   command.add_option("--robot", request.robot, "drives: part of the robot's name");
   command.add_option("--sessions", request.sessions, "drives: only these sessions")->delimiter(',');
   command
-      .add_option("--rules", request.rules,
-                  "methods: RULE, RULE_home, RULE_unmet, RULE_remembered, RULE a rule of the "
-                  "learner or a rival (" +
-                      tread::joinWords(tread::adaptation::rivalNames()) + "); omniscient")
+      .add_option(
+          "--rules", request.rules,
+          "methods: RULE, RULE_home, RULE_unmet, RULE_remembered, where RULE is a rule of the "
+          "learner or a rival (" +
+              tread::joinWords(tread::adaptation::rivalNames()) + "); omniscient")
       ->delimiter(',')
       ->capture_default_str();
-  command.add_option("--sequence", request.sequences,
-                     "test sequence, patterns with commas between; once for each sequence "
-                     "(default: the world's; left, left, right; the patterns most apart)");
-  command.add_option("--repetitions", request.repetitions, "of each transition")
+  command.add_option(
+      "--sequence", request.sequences,
+      "test sequence, patterns separated by commas; repeatable "
+      "(default: the world's; left, left, right; the patterns with the most distant ends)");
+  command.add_option("--repetitions", request.repetitions, "repetitions of each transition")
       ->check(CLI::Range(2, 100'000'000))
       ->capture_default_str();
   command
@@ -84,18 +86,20 @@ void define(CLI::App& command, Arguments& arguments) {
                   "SECTION.KEY=VALUE in the place of what learner.yaml would say: ground.fresh=0.3")
       ->expected(1)
       ->take_all();
-  command.add_option("--seed", request.seed, "of recordings and trials")->capture_default_str();
+  command.add_option("--seed", request.seed, "seed of recordings and trials")
+      ->capture_default_str();
   tread::addThreads(command, request.threads);
-  command.add_option("--sets", request.sets, "world: so many sets of recordings")
+  command.add_option("--sets", request.sets, "world: number of sets of recordings")
       ->check(CLI::Range(1, 10'000))
       ->capture_default_str();
-  command.add_option("--length", request.length, "world: each command held so many times as long")
+  command.add_option("--length", request.length, "world: factor on the duration of each command")
       ->check(CLI::Range(1, 20))
       ->capture_default_str();
   command.add_flag("--change-inside", request.change_inside,
                    "the ground changes in the middle of the first execution");
-  command.add_flag("--extras", request.extras,
-                   "also with twice as long patterns (world) and with changes inside a pattern");
+  command.add_flag(
+      "--extras", request.extras,
+      "also with patterns of twice the length (world) and with changes inside a pattern");
   Outputs(command).folder("--out", arguments.out, "folder for tables, pictures and report.html");
 }
 
@@ -116,12 +120,12 @@ void define(CLI::App& command, AdaptationArguments& arguments) {
       .add_option("--rules", arguments.settings.rules,
                   "off, rules of learner.yaml or RULE_home, rivals (" +
                       tread::joinWords(tread::adaptation::rivalNames()) +
-                      "), hindsight: slip regression that has seen the whole session")
+                      "), hindsight (slip regression fitted to the whole session)")
       ->delimiter(',')
       ->capture_default_str();
   command
       .add_option("--starts", arguments.settings.starts,
-                  "of each session, at most: there a learner begins that knows nothing of it")
+                  "largest number of starts in each session; each has a new learner")
       ->check(CLI::Range(1, 100'000))
       ->capture_default_str();
   command
@@ -129,7 +133,7 @@ void define(CLI::App& command, AdaptationArguments& arguments) {
                   "SECTION.KEY=VALUE in the place of what learner.yaml would say: ground.fresh=0.3")
       ->expected(1)
       ->take_all();
-  command.add_option("--seed", arguments.settings.seed, "of intervals and random features")
+  command.add_option("--seed", arguments.settings.seed, "seed of intervals and random features")
       ->capture_default_str();
   tread::addThreads(command, arguments.settings.threads);
   Outputs(command).folder("--out", arguments.out,
@@ -147,14 +151,16 @@ struct CrossingArguments {
 
 void define(CLI::App& command, CrossingArguments& arguments) {
   tread::experiment::CrossingSettings& settings = arguments.settings;
-  command.add_option("csv", arguments.files, "drives in CSV, in which columns name the ground")
-      ->required();
-  command.add_option("--mapping", arguments.mapping, "what their columns mean (config/imports)")
+  command.add_option("csv", arguments.files, "drives in CSV with columns that name the ground")
       ->required();
   command
-      .add_option("--rules", settings.rules,
-                  "rules of the learner, or rivals (" +
-                      tread::joinWords(tread::adaptation::rivalNames()) + ")")
+      .add_option("--mapping", arguments.mapping,
+                  "file with the meaning of the columns (config/imports)")
+      ->required();
+  command
+      .add_option(
+          "--rules", settings.rules,
+          "learning rules or rivals (" + tread::joinWords(tread::adaptation::rivalNames()) + ")")
       ->delimiter(',')
       ->capture_default_str();
   command.add_option("--cut", settings.cut.length, "pieces of so many seconds under one command")
@@ -165,20 +171,16 @@ void define(CLI::App& command, CrossingArguments& arguments) {
                   "first piece this long after a command began [s]")
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str();
-  command.add_option("--known", settings.known, "pieces that the set of a run comes from")
+  command.add_option("--known", settings.known, "number of pieces for the initial set of a run")
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();
-  command
-      .add_option("--border", settings.border,
-                  "how far a border may lie from where the columns say [m]")
+  command.add_option("--border", settings.border, "uncertainty of the borders in the columns [m]")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
-  command.add_option("--window", settings.test.window, "of the running test [s]")
+  command.add_option("--window", settings.test.window, "window of the change test [s]")
       ->check(CLI::Range(0.1, 10.0))
       ->capture_default_str();
-  command
-      .add_option("--chance", settings.test.chance,
-                  "that a window of unchanged motion is as far off [1]")
+  command.add_option("--chance", settings.test.chance, "false-alarm probability of a window [1]")
       ->check(CLI::Range(1e-9, 0.5))
       ->capture_default_str();
   command.add_option("--memory", settings.config.memory, "w: weight of the old prediction")
@@ -200,7 +202,7 @@ void run(CrossingArguments arguments) {
   tread::learner::readRules(reader, settings.config);
   reader.finish();
   std::vector<experiment::CrossingDrives> drives;
-  std::string left_out;  // said once there is a result: what cannot be done is one line
+  std::string left_out;  // printed only with a result: an error must be one line
   for (const std::string& file : arguments.files) {
     tread::ConfigReader mapping = tread::ConfigReader::fromFile(arguments.mapping);
     tread::import::ForeignDrive read =
@@ -268,21 +270,21 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Experiments with rules of learning.", "tread-experiment"};
+  CLI::App app{"Experiments with learning rules.", "tread-experiment"};
   app.require_subcommand(1);
   Arguments arguments;
   arguments.request.rules = tread::experiment::defaultMethods();
   CLI::App* transitions = app.add_subcommand(
-      "transitions", "section V of the paper: what rules err after a change of surface");
+      "transitions", "section V of the paper: errors of rules after a change of surface");
   define(*transitions, arguments);
   AdaptationArguments of_adaptation;
-  CLI::App* adaptation = app.add_subcommand(
-      "adaptation",
-      "open-loop errors after 0 to 30 executions on ground, in a session, with a vehicle not met");
+  CLI::App* adaptation = app.add_subcommand("adaptation",
+                                            "open-loop errors after 0 to 30 executions on new "
+                                            "ground, in a new session, with a new vehicle");
   define(*adaptation, of_adaptation);
   CrossingArguments of_crossings;
   CLI::App* crossings = app.add_subcommand(
-      "crossings", "errors, and how soon it is noticed, where the ground changes inside a run");
+      "crossings", "errors and detection delays when the ground changes within a run");
   define(*crossings, of_crossings);
   if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   return tread::runProgram("tread-experiment", [&] {

@@ -10,7 +10,7 @@ namespace {
 using adaptation::Sample;
 using learner::ConstTrajectory;
 
-constexpr size_t kMostTraining = 62;  // executions of a surface: two runs of the tuning
+constexpr size_t kMostTraining = 62;  // executions of a surface: two tuning runs
 constexpr uint64_t kFeatureSeed = 1;  // of random features
 
 std::vector<Twist2> twistsOf(const std::vector<Pose2>& poses, double period) {
@@ -29,7 +29,7 @@ Eigen::Vector3d meanTwist(const ConstTrajectory& measured, double period) {
 
 /// Variances of the mean twist over the executions of each pattern.
 std::vector<Eigen::Vector3d> noiseOf(const TrialGround& ground) {
-  constexpr double kLeast = 1e-8;  // [m^2/s^2], [rad^2/s^2]: nothing is exact
+  constexpr double kLeast = 1e-8;  // [m^2/s^2], [rad^2/s^2]: least variance
   const double period = ground.averaged.periodSeconds();
   std::vector<Eigen::Vector3d> noise;
   for (const Executions& known : ground.known) {
@@ -45,7 +45,7 @@ std::vector<Eigen::Vector3d> noiseOf(const TrialGround& ground) {
   return noise;
 }
 
-/// What the executions known of a surface are beside the set of another, pattern after pattern.
+/// Residuals of the known executions of a surface relative to another surface's set, by pattern.
 std::vector<Sample> samplesOf(const TrialGround& ground, const std::vector<Sample>& reference) {
   const double period = ground.averaged.periodSeconds();
   std::vector<Sample> samples;

@@ -12,10 +12,10 @@
 
 namespace tread::experiment {
 
-/// A rival of `adaptation` as a rule: the reference that it corrects is the shipped set.
+/// A rival of `adaptation` as a learning rule; its reference is the shipped set.
 class RivalRule : public learner::LearningRule {
  public:
-  /// `noise`: variances of a pattern's mean twist from execution to execution, by pattern.
+  /// `noise`: variances of a pattern's mean twist between executions, by pattern.
   RivalRule(std::unique_ptr<adaptation::Rival> rival, const PatternSet& shipped,
             const std::vector<Eigen::Vector3d>& noise);
   RivalRule(const RivalRule& other);
@@ -28,13 +28,13 @@ class RivalRule : public learner::LearningRule {
   std::unique_ptr<learner::LearningRule> clone() const override {
     return std::make_unique<RivalRule>(*this);
   }
-  /// Rivals are not stored.
+  /// The state of rivals is not stored.
   bool restore(const learner::TrajectoryTable&, const std::vector<double>&) override {
     return false;
   }
 
  private:
-  /// What the shipped set says of its patterns.
+  /// The shipped set's predictions.
   struct Reference {
     double period;
     std::vector<std::vector<Twist2>> twists;  ///< by pattern and sample
@@ -46,13 +46,13 @@ class RivalRule : public learner::LearningRule {
   std::unique_ptr<adaptation::Rival> rival_;
 };
 
-/// The rivals among the names of some methods, tuned for a transition between two surfaces.
-/** They know the recordings of excitation runs of all surfaces but the new one, each as a session:
- * how grounds differ from the one of the set that they begin with. */
+/// The rivals among the named methods, tuned for a transition between two surfaces.
+/** Tuning uses the excitation recordings of all surfaces but the new one, each as a session,
+ * relative to the initial set: they show how grounds differ. */
 Rivals tunedRivals(const std::vector<std::string>& methods, const std::vector<TrialGround>& grounds,
                    size_t from, size_t to);
 
-/// A rival that begins with a surface's averaged set.
+/// A rival that starts with a surface's averaged set.
 std::unique_ptr<learner::LearningRule> rivalRule(const adaptation::Rival& rival,
                                                  const TrialGround& ground);
 

@@ -13,7 +13,7 @@ Estimate reduction(const Estimate& ratio) {
   return {100.0 * (1.0 - ratio.value), 100.0 * (1.0 - ratio.high), 100.0 * (1.0 - ratio.low)};
 }
 
-/// Rows of both quantities of some errors; make(row, moments of the quantity).
+/// Rows of both quantities; make(row, moments of the quantity).
 template <class Make>
 void forBoth(const MethodErrors& errors, Row row, const Make& make) {
   row.quantity = kPosition;
@@ -82,7 +82,7 @@ void addFirstExecutions(const FirstExecutions& first, const ExperimentSettings& 
     }
 }
 
-/// The i-th row of one table, over all sets of recordings.
+/// The i-th row of one table, combined over all sets of recordings.
 Row combinedRow(const std::vector<const Row*>& sets) {
   Row row = *sets.front();
   if (sets.size() < 2) return row;
@@ -234,7 +234,7 @@ bool isLeftOut(const PaperCell& cell) {
   return is(cell, "cinder", "tarmac", kOrientation);
 }
 
-/// Squared differences of one column.
+/// Sum of squared differences in one column.
 struct Squares {
   double sum = 0.0;
   int count = 0;
@@ -287,7 +287,7 @@ const std::array<std::string, 4>& paperRules() {
 
 std::string doubtOfError(const PaperCell& cell, size_t column) {
   if (isLeftOut(cell))
-    return "probably a misprint: all other cells speak for about .092 .081 .066 .038, which gives "
+    return "probably a misprint: all other cells suggest about .092 .081 .066 .038, which gives "
            "the 18.5 % of Table II";
   if (is(cell, "tarmac", "cinder", kOrientation) && column == 1)
     return "column b probably a misprint: it does not fit its neighbours a and c, nor Table II";

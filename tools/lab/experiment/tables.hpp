@@ -13,7 +13,7 @@
 
 namespace tread::experiment {
 
-/// What to compare, on what, how often.
+/// Settings of an experiment.
 struct ExperimentSettings {
   std::vector<std::string> rules;  ///< names of methods, see methodOf()
   learner::RuleConfig config;      ///< of all rules
@@ -22,13 +22,13 @@ struct ExperimentSettings {
   int64_t excitations = 40;    ///< excitation runs of a transition, which share the repetitions
   int64_t excitation = 200;    ///< executions on each surface of one
   uint64_t seed = 1;
-  int threads = 1;  ///< no influence on any number
+  int threads = 1;  ///< results do not depend on it
   bool change_inside = false;
   std::vector<int> all_patterns_after{1, 2, 3, 10};  ///< executions, ascending
   size_t development = 30;                           ///< executions of Figure 4
   size_t drift = 300;                                ///< executions of the drift's figure
 
-  size_t ruleIndex(const std::string& name) const;  ///< rules.size() if it is not there
+  size_t ruleIndex(const std::string& name) const;  ///< rules.size() if absent
 };
 
 /// One ordered pair of surfaces.
@@ -38,28 +38,29 @@ struct TransitionErrors {
   SequenceErrors sequences;
   std::vector<MethodErrors> all_patterns;  ///< by all_patterns_after
   std::vector<MethodErrors> development;   ///< by execution
-  FirstExecutions first;                   ///< of random patterns
-  std::vector<double> remembered;  ///< surfaces before the transition, mean over excitation runs
+  FirstExecutions first;             ///< of random patterns
+  /// remembered surfaces before the transition, mean over excitation runs
+  std::vector<double> remembered;
 };
 
 /// Section V on one set of recordings.
 struct ExperimentErrors {
-  std::vector<TransitionErrors> transitions;      ///< from each surface to each other one, in order
-  std::vector<MethodErrors> unchanged;            ///< by surface, in the long run, random patterns
-  std::vector<MethodErrors> unchanged_sequences;  ///< the same over the test sequences
+  std::vector<TransitionErrors> transitions;  ///< from each surface to each other one, in order
+  std::vector<MethodErrors> unchanged;              ///< by surface, in the long run, with random patterns
+  std::vector<MethodErrors> unchanged_sequences;    ///< the same over the test sequences
   std::vector<FirstExecutions> unchanged_first;   ///< by surface
   /// Width of the pattern `watched` by rule, over executions on unchanged ground; see driveDrift().
   std::vector<std::vector<double>> drift;
 };
 
-/// The widest pattern of a set that no sequence executes; nothing if all are executed or straight.
+/// The widest pattern that no sequence executes; nullopt if all are executed or straight.
 std::optional<size_t> neverExecuted(const TrialGround& ground,
                                     const std::vector<Sequence>& sequences);
 
-/// Parts done and parts in all; called from the threads, one at a time.
+/// Progress callback (done, total), called from the threads, one at a time.
 using Progress = std::function<void(size_t done, size_t all)>;
 
-/// Runs all trials. Same settings and grounds, same bytes, for any number of threads.
+/// Runs all trials. Results do not depend on the number of threads.
 ExperimentErrors runExperiment(const std::vector<TrialGround>& grounds,
                                const ExperimentSettings& settings, const Progress& progress);
 
@@ -67,7 +68,7 @@ inline constexpr const char* kPosition = "position";
 inline constexpr const char* kOrientation = "orientation";
 inline constexpr const char* kQuantities[] = {kPosition, kOrientation};
 
-/// Of a share of ends inside 90 % regions.
+/// Quantity name for the share of ends inside 90 % regions.
 inline constexpr const char* kRegion = "region";
 
 /// One number of a table.
@@ -76,53 +77,54 @@ struct Row {
   std::string to;
   std::string quantity;  ///< position: per driven metre; orientation: per radian turned
   std::string rule;
-  std::string against;  ///< reductions: the rule that is improved on
-  int k = 0;            ///< executions before, where that counts
+  std::string against;  ///< for reductions: the rule compared with
+  int k = 0;            ///< number of executions before, if relevant
   Estimate estimate;
-  double spread = std::numeric_limits<double>::quiet_NaN();  ///< deviation over sets of recordings
+  /// standard deviation over sets of recordings
+  double spread = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The numbers of an experiment.
+/// All results of an experiment.
 struct Tables {
   std::vector<Row> errors;        ///< Table I
   std::vector<Row> reductions;    ///< [%] Table II
   std::vector<Row> all_patterns;  ///< errors over all patterns after k executions
-  /// Errors over all patterns after k executions of random ones; also on unchanged ground.
+  /// Errors over all patterns after k executions of random ones, also on unchanged ground.
   std::vector<Row> first_executions;
   std::vector<Row> regions;    ///< [1] share of ends inside, before execution k = 1, 2, ...
-  std::vector<Row> unchanged;  ///< [1] error in the long run over the omniscient one
+  std::vector<Row> unchanged;  ///< [1] error in the long run relative to the omniscient one's
   std::vector<Row> unchanged_sequences;  ///< the same over the test sequences
 };
 
 Tables tablesOf(const ExperimentErrors& errors, const ExperimentSettings& settings,
                 const std::vector<TrialGround>& grounds);
 
-/// Means over the sets of recordings, number by number, with the spread and the 99 % interval of
-/// the mean (by Student); of one set of recordings that set of recordings.
+/// Element-wise means over the sets of recordings, with standard deviation and 99 % interval
+/// (Student); a single set is returned unchanged.
 Tables combined(const std::vector<Tables>& sets);
 
-/// The row of these words; nullptr if there is none.
+/// The matching row; nullptr if there is none.
 const Row* find(const std::vector<Row>& rows, const std::string& from, const std::string& to,
                 const std::string& quantity, const std::string& rule,
                 const std::string& against = "", int k = 0);
 
-/// Rules for which a reduction is told: all that learn.
+/// Rules with a reduction: all that learn.
 std::vector<std::string> learningRules(const std::vector<std::string>& rules);
 
-/// How one table is written to NAME.csv.
+/// A table and its file NAME.csv.
 struct TableFile {
   const char* name;
   std::vector<Row> Tables::*rows;
   const char* header;
   std::string (*line)(const Row& row);
 };
-/// All tables, in the order of sets of recordings.csv.
+/// All tables, in the order of sets.csv.
 const std::array<TableFile, 7>& tableFiles();
 std::string csvOf(const Tables& tables, const TableFile& file);
 
-/// drift.csv: rule,executions,width of the watched pattern over its shipped one [1].
+/// drift.csv: rule, executions, width of the watched pattern relative to its shipped one [1].
 std::string csvOfDrift(const ExperimentErrors& errors, const ExperimentSettings& settings);
-/// sets of recordings.csv: table,seed,from,to,quantity,rule,against,k,value of each set of
+/// sets.csv: table,seed,from,to,quantity,rule,against,k,value, a row for each number of each set of
 /// recordings.
 std::string csvOfSets(const std::vector<Tables>& sets, uint64_t first_seed);
 
@@ -132,7 +134,7 @@ struct PaperCell {
   const char* to;
   const char* quantity;
   std::array<double, 4> errors;  ///< columns a, b, c, d per driven metre or radian
-  double reduction;              ///< [%] of c against b
+  double reduction;              ///< [%] of c relative to b
 };
 
 /// All 24 cells.
@@ -143,25 +145,25 @@ const PaperCell* paperCell(const std::string& from, const std::string& to,
 /// The rules of columns a, b, c, d.
 const std::array<std::string, 4>& paperRules();
 
-/// Why a printed number is probably a misprint; empty if nothing speaks against it.
+/// Why a printed number is probably a misprint; empty if it is plausible.
 std::string doubtOfError(const PaperCell& cell, size_t column);
 std::string doubtOfReduction(const PaperCell& cell);
 
-/// How near a table comes to the paper's.
+/// Agreement of a table with the paper's.
 struct Agreement {
   /// Root of the mean squared difference in columns a, b, c, d; the transition cinder -> tarmac is
-  /// left out of the orientation. NaN where nothing can be compared.
+  /// left out of the orientation. NaN if there is nothing to compare.
   std::array<double, 4> position_rms;
   std::array<double, 4> orientation_rms;
-  int cells = 0;  ///< compared reductions of each quantity
+  int cells = 0;  ///< compared reductions per quantity
   int position_signs = 0;
   int orientation_signs = 0;
 };
 
-/// Nothing if no transition of the tables is the paper's.
+/// nullopt if the tables share no transition with the paper.
 std::optional<Agreement> agreementWithPaper(const Tables& tables);
 
-/// What a text about an experiment must know beside its numbers.
+/// Description of an experiment, for texts.
 struct Setting {
   std::vector<std::string> surfaces;
   std::vector<std::string> rules;
@@ -169,49 +171,48 @@ struct Setting {
   size_t sets = 1;
 };
 
-/// Rules side by side in one table that is narrow enough to read: the paper's columns a, b, c, d
-/// first, then what else was compared.
+/// Groups of rules that fit into one table: the paper's columns a, b, c, d first, then the others.
 std::vector<std::vector<std::string>> columnGroups(const Setting& setting);
 
 /// Table I in the paper's layout: rows from, groups of columns to; a, b, c, d as in the paper,
-/// further rules in tables after them; the paper's numbers below.
+/// further rules in additional tables; the paper's numbers below.
 std::string textOfErrors(const Tables& tables, const Setting& setting);
-/// Table II: collective against single as in the paper, then each other rule.
+/// Table II: collective compared with single as in the paper, then every other rule.
 std::string textOfReductions(const Tables& tables, const Setting& setting);
-/// RMS deviations and signs, and those of single sets of recordings; empty where nothing can be
-/// compared.
+/// RMS deviations and signs, also of single sets of recordings; empty if there is nothing to
+/// compare.
 std::string textOfAgreement(const Tables& tables, const Setting& setting,
                             const std::vector<Tables>& sets);
-/// Medians and worst cases by rule: reductions, all patterns, unchanged ground; with several sets
-/// of recordings means and deviations over them.
+/// Medians and worst cases by rule: reductions, all patterns, unchanged ground; for several sets of
+/// recordings means and standard deviations.
 std::string textOfKeyFigures(const Tables& tables, const Setting& setting,
                              const std::vector<Tables>& sets);
 
-/// The median; NaN of nothing.
+/// The median; NaN if empty.
 double median(std::vector<double> values);
 
-/// What the command line asks for.
+/// Options of the command line.
 struct Request {
-  std::string world;                   ///< file; else `recordings` is used
+  std::string world;                   ///< file; empty: `recordings` is used
   std::string recordings;              ///< folder
-  std::string robot;                   ///< of a folder of drives
-  std::vector<std::string> sessions;   ///< of it; empty = all that are comparable
+  std::string robot;                   ///< name of the robot in a folder of drives
+  std::vector<std::string> sessions;   ///< selected ones; empty = all comparable ones
   std::vector<std::string> sequences;  ///< "left,left,right"; empty = those of the world
   std::vector<std::string> rules;
   int64_t repetitions = 2000;
   int64_t excitations = 40;            ///< excitation runs of each transition
   int64_t excitation = 200;            ///< executions on each surface of one
-  double memory = 0.5;                 ///< [1] w of equation (2)
+  double memory = 0.5;                 ///< [1] weight w of equation (2)
   std::vector<std::string> overrides;  ///< of learner.yaml: "ground.fresh=0.3"
   uint64_t seed = 1;
   int threads = 1;
-  int sets = 1;    ///< of a world: sets of recordings, from seeds that count up
-  int length = 1;  ///< of a world: each command is held so many times as long
+  int sets = 1;    ///< for a world: number of sets of recordings, with increasing seeds
+  int length = 1;  ///< for a world: factor on the duration of each command
   bool change_inside = false;
-  bool extras = false;  ///< twice as long patterns and changes inside a pattern, too
+  bool extras = false;  ///< also patterns of twice the length and changes within a pattern
 };
 
-/// The same experiment on other terms, with fewer repetitions.
+/// The experiment under other conditions, with fewer repetitions.
 struct Variant {
   std::string words;
   Tables tables;
@@ -226,50 +227,48 @@ struct Batch {
   std::string source;              ///< the world or folder, in words
   std::vector<std::string> notes;  ///< about the recordings
   std::vector<Tables> sets;
-  Tables tables;                     ///< of all sets of recordings together
+  Tables tables;                  ///< combined over all sets of recordings
   std::vector<TrialGround> grounds;  ///< of the first set of recordings
-  ExperimentErrors first;            ///< of it, for the pictures
-  std::vector<Variant> variants;     ///< if the request wants extras
+  ExperimentErrors first;         ///< its errors, for the pictures
+  std::vector<Variant> variants;  ///< if the request has `extras`
   double seconds = 0.0;              ///< of the trials, without recording
 };
 
-/// Runs everything; throws an exception with one line for what cannot be done. progress(share of
-/// the work that is done, 0..1).
+/// Runs everything; throws an exception with one line on failure. progress(done share, 0..1).
 Batch runBatch(const Request& request, const std::function<void(double)>& progress);
 
-/// How many surfaces methods remember after an excitation run; empty if none does by nature.
+/// Number of surfaces that methods remember after an excitation run; empty if none has a memory.
 std::string textOfRemembered(const Batch& batch);
 
 /// Key figures of the variants.
 std::string textOfVariants(const Batch& batch);
 
-/// Width of the never executed pattern after 100, 200, 300 executions on unchanged ground.
+/// Width of the never executed pattern after 100, 200 and 300 executions on unchanged ground.
 std::string textOfDrift(const Batch& batch);
 
-/// Name of the pattern that is watched for drift; empty if there is none.
+/// Name of the pattern watched for drift; empty if there is none.
 std::string watchedPattern(const Batch& batch);
 
-/// Writes all files into a folder, which is made if needed.
+/// Writes all files into a folder, which is created if needed.
 void writeBatch(const std::string& folder, const Batch& batch);
 
-/// The transition of the paper's figures: from cinder to grass if it is there, else the one that
-/// costs most without learning. An index into errors.transitions.
+/// The transition of the paper's figures: cinder to grass if it exists, else the one with the
+/// largest error without learning. An index into errors.transitions.
 size_t transitionOfFigures(const ExperimentErrors& errors, const ExperimentSettings& settings,
                            const std::vector<TrialGround>& grounds);
 
-/// "cinder to grass".
+/// For instance "cinder to grass".
 std::string wordsOf(const TransitionErrors& transition, const std::vector<TrialGround>& grounds);
 
-/// Figure 4: error and its deviation over executions without a reset, by rule (PNG).
+/// Figure 4: mean error and its standard deviation over executions without a reset, by rule (PNG).
 void drawDevelopment(const std::string& path, const TransitionErrors& transition,
                      const ExperimentSettings& settings, const std::string& words);
 
-/// Figure 5: how often which error occurs over the test sequences, by rule (PNG).
+/// Figure 5: histogram of the errors over the test sequences, by rule (PNG).
 void drawDistributions(const std::string& path, const TransitionErrors& transition,
                        const ExperimentSettings& settings, const std::string& words);
 
-/// How wide each rule predicts a pattern that is never executed, over executions on unchanged
-/// ground (PNG).
+/// Predicted width of a never executed pattern over executions on unchanged ground, by rule (PNG).
 void drawDrift(const std::string& path, const std::vector<std::vector<double>>& drift,
                const ExperimentSettings& settings, const std::string& watched);
 

@@ -21,8 +21,8 @@ std::string centred(const std::string& text, size_t width) {
 
 constexpr size_t kRowHead = 22;
 
-/// Head and body of a Table I; cell(from, to, quantity, column) gives six characters. The columns'
-/// letters begin with `first`.
+/// Head and body of a Table I; cell(from, to, quantity, column) returns six characters. The
+/// columns' letters begin with `first`.
 template <class Cell>
 std::string grid(const Setting& setting, size_t columns, char first, const Cell& cell) {
   const size_t group = 7 * columns + 2;
@@ -108,7 +108,7 @@ std::string rmsLine(const std::string& name, const std::array<double, 4>& rms) {
   return line + "\n";
 }
 
-/// The largest deviations and the fewest and most signs of single sets of recordings.
+/// The largest deviations and the extreme numbers of signs over single sets of recordings.
 std::string extremesLines(const std::vector<Tables>& sets) {
   Agreement most = *agreementWithPaper(sets.front()), fewest = most;
   for (const Tables& set : sets) {

@@ -22,7 +22,7 @@ inline double orientationError(const Pose2& predicted, const Pose2& driven) {
   return difference <= kPi ? difference : std::abs(wrapAngle(difference));
 }
 
-/// Executions drawn at random, and the errors of all methods since the last clear().
+/// Randomly drawn executions, and the errors of all methods since the last clear().
 class TrialDrive {
  public:
   TrialDrive(Methods& methods, const TrialSite& site)
@@ -56,10 +56,10 @@ class TrialDrive {
     execute(pattern, learn, [](size_t, double, double, const ExecutionEnd&) {});
   }
 
-  /// Any pattern, by chance.
+  /// A random pattern.
   size_t any() { return drawIndex(random_, site_.to.tests.size()); }
 
-  /// The first one after the transition.
+  /// The first execution after the transition.
   template <class Each>
   void executeFirst(size_t pattern, bool learn, const Each& each) {
     if (!site_.change_inside) return execute(pattern, learn, each);
@@ -87,7 +87,8 @@ class TrialDrive {
     }
   }
 
-  /// First half of an execution on the old surface, continued by the second half of one on the new.
+  /// First half of an execution on the old surface, continued by the second half of one on the new
+  /// surface.
   learner::ConstTrajectory joinedAt(size_t pattern) {
     const Executions& before = site_.from.tests[pattern];
     const Executions& after = site_.to.tests[pattern];

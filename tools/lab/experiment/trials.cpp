@@ -29,7 +29,7 @@ void RatioMoments::addRun(const RatioMoments& run) {
 }
 
 Estimate RatioMoments::quotient(size_t above, size_t below) const {
-  // Var(A/B) = sum((a - r b)^2) / (sum b)^2 n / (n - 1), a and b the sums of each of n runs.
+  // Var(A/B) = sum((a - r b)^2) / (sum b)^2 n / (n - 1), with a and b the sums of each of n runs.
   const double ratio = sums_[above] / sums_[below];
   if (runs_ < 2) return {ratio};
   const double squares = product(above, above) - 2.0 * ratio * product(above, below) +
@@ -55,17 +55,17 @@ double student99(size_t samples) {
   constexpr size_t kListed = sizeof kQuantiles / sizeof kQuantiles[0];
   if (samples < 2) return std::numeric_limits<double>::infinity();
   if (samples - 2 < kListed) return kQuantiles[samples - 2];
-  // Two terms of the expansion about the normal quantile: exact to 0.002 from here on.
+  // Two terms of the expansion around the normal quantile: exact to 0.002 from here on.
   const double freedom = static_cast<double>(samples - 1);
   return kNormal99 + (std::pow(kNormal99, 3) + kNormal99) / (4.0 * freedom);
 }
 
 namespace {
 
-constexpr size_t kSettling = 60;  // executions before the long run counts
-constexpr size_t kLongRun = 240;  // executions that count
+constexpr size_t kSettling = 60;  // executions before the long run
+constexpr size_t kLongRun = 240;  // executions of the long run
 
-/// All sequences, one after the other.
+/// All sequences concatenated.
 Sequence joined(const std::vector<Sequence>& sequences) {
   Sequence all;
   for (const Sequence& sequence : sequences)
@@ -90,7 +90,7 @@ SequenceErrors driveSequences(Methods& methods, const TrialSite& site,
     drive.clear();
     for (const Sequence& sequence : sequences) {
       methods.reset();
-      // What the last one teaches is not asked for any more.
+      // The result of the last execution is not needed.
       drive.executeFirst(sequence[0], sequence.size() > 1, count);
       for (size_t j = 1; j < sequence.size(); ++j)
         drive.execute(sequence[j], j + 1 < sequence.size(), count);

@@ -8,9 +8,9 @@
 
 #include "common/vehicle/model_document.hpp"
 
-// Subcommands of tread-gap. Each adds itself to the program and does its work in its callback, once
-// the whole command line is read; it sets the program's exit status, and what it throws ends the
-// program with its one line and 2.
+// Subcommands of tread-gap. Each adds itself to the program and runs in its callback, after the
+// command line is parsed. It sets the exit status; an exception ends the program with one line and
+// status 2.
 namespace tread::gap {
 
 /// A model for a command whose manoeuvres are of two tracks; another one is refused.

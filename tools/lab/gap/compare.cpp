@@ -16,13 +16,14 @@
 namespace tread::gap {
 namespace {
 
-/// Rows, and whether there are enough of them.
+/// Throws unless there are enough rows.
 void requireEnough(const Observations& data) {
   const std::string problem = tooLittleDriving(data);
   if (!problem.empty()) throw std::runtime_error(data.drives().front().name + ": " + problem);
 }
 
-/// What a model has on, without what is known beforehand: that would pull all logs to one value.
+/// The parameters that the model has on, without their priors: those would pull all logs to one
+/// value.
 std::vector<FreeParameter> comparedParameters(const ModelDocument& model) {
   std::vector<FreeParameter> free = givenParameters(model, false);
   if (free.empty()) free = givenParameters(model, true);
@@ -35,7 +36,7 @@ EndErrors endErrorsOf(const Observations& data, const ModelDocument& model) {
   return summaryOf(endErrors(data, model));
 }
 
-/// Limits as their reciprocals are said: errors of first order.
+/// A value with its standard error; limits, which are fitted as reciprocals, to first order.
 std::string saidWithError(const Movement& movement, double value, double error) {
   const EffectParameter* parameter = findEffectParameter(movement.parameter);
   if (parameter == nullptr || !parameter->reciprocal() || value <= 0.0)
@@ -50,9 +51,9 @@ std::string nameOf(const Movement& movement) {
   return effectOf(movement.parameter) + "." + parameter->natural_name;
 }
 
-/// From where on a difference is none of chance, and why just there.
+/// The significance limit and its justification.
 std::string limitLine(const LogChange& change) {
-  return "From " + threeDigits(change.needed) + " sigma on it is no chance, with " +
+  return "From " + threeDigits(change.needed) + " sigma on it is significant, with " +
          std::to_string(change.movements.size()) + " parameters and " +
          std::to_string(std::min(change.first_blocks, change.second_blocks)) +
          " blocks of driving.\n";
@@ -139,7 +140,7 @@ std::string textOf(const LogChange& change) {
   std::string text = headline(change) + "\n";
   text += formatted("%-34s %-26s %-26s %s\n", "parameter", "first log", "second log", "sigma");
   for (const Movement& movement : change.movements) {
-    // The sign of plus and minus has two bytes and one place.
+    // "±" has two bytes and one column.
     text += formatted("%-34s %-27s %-27s %+.1f%s\n", nameOf(movement).c_str(),
                       saidWithError(movement, movement.first, movement.first_error).c_str(),
                       saidWithError(movement, movement.second, movement.second_error).c_str(),

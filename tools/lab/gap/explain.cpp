@@ -13,37 +13,40 @@ namespace {
 const std::vector<Advice>& advices() {
   static const std::vector<Advice> all{
       {GapVerdict::kNoDiscrepancy,
-       "nothing beyond chance; the report says from which size on each effect would have been seen",
-       "Keep the model (after --calibrate: take model.yaml). To look deeper, drive longer or what "
-       "this drive did not show."},
+       "nothing significant; the report gives the size from which each effect would have been seen",
+       "Keep the model (after --calibrate: use model.yaml). To look deeper, drive longer, or drive "
+       "what "
+       "this drive lacked."},
       {GapVerdict::kNothingNew,
-       "the log differs from the model as the drive did that the model was made from, and in "
+       "the log differs from the model exactly as the drive did from which the model was made, and "
+       "in "
        "nothing else",
-       "Keep the model; the vehicle is as it was. What the model does not explain stands in its "
-       "file as its rest."},
-      {GapVerdict::kFound, "effects by name, with sizes and intervals; the model has them in",
+       "Keep the model; the vehicle is unchanged. What the model does not explain is recorded in "
+       "its "
+       "file as `rest`."},
+      {GapVerdict::kFound, "named effects with sizes and intervals; the new model contains them",
        "Check each in two minutes, as the report says; run find with --test and a log of another "
-       "day; then take model.yaml."},
+       "day; then use model.yaml."},
       {GapVerdict::kAmbiguous,
-       "it is one of several that this drive cannot tell apart; what tells is said",
-       "The new model drives like the log whichever it is. To know which, measure or drive what "
+       "it is one of several effects that this drive cannot tell apart; the report says what can",
+       "The new model predicts the drive equally well with each. To decide, measure or drive what "
        "the report says, and give find both logs."},
       {GapVerdict::kPartial, "effects were found, and the residuals still depend on something",
-       "Use model.yaml if its error is small enough for you. Else look at the curve of what is "
-       "unexplained, drive more of that, and give find both logs."},
+       "Use model.yaml if its error is small enough for you. Else look at the curve of the "
+       "unexplained part, drive more of that, and give find both logs."},
       {GapVerdict::kNotInCatalogue,
-       "there is a disagreement and no effect of the catalogue explains it; on what it depends is "
+       "there is a disagreement that no effect of the catalogue explains; what it depends on is "
        "said",
        "Do not trust the model where the residuals depend on something. Look at the vehicle: loose "
-       "tracks, load, tyres, other software; drive more of what is named."},
+       "tracks, load, tyres, other software; drive more of the named condition."},
       {GapVerdict::kMeasurement,
-       "the INS, not the vehicle; only the measurement part of the model changes",
-       "Mend the INS: lever arm, mounting, time stamps. Or keep the measurement part of "
+       "the INS differs, not the vehicle; only the measurement part of the model changes",
+       "Correct the INS: lever arm, mounting, time stamps. Or keep the measurement part of "
        "model.yaml."},
       {GapVerdict::kCannotTell,
-       "too little driving, a log that is not sound, or a size that is no measurement; no model is "
+       "too little driving, an unsound log, or a size at its limit; no model is "
        "written",
-       "Mend the log, or drive what is missing; the reason says which."}};
+       "Correct the log, or drive what is missing; the reason says which."}};
   return all;
 }
 
@@ -55,7 +58,7 @@ const std::vector<Word>& firstSteps() {
       {"write a CSV",
        "20 rows a second with the columns step (a number, the same as long as the log does not "
        "pause), t_s, cmd_left_rad_s, cmd_right_rad_s, wheel_left_rad_s, wheel_right_rad_s (of "
-       "wheels or sprockets), x_m, y_m, yaw_rad, z_m, roll_rad, pitch_rad (the latest pose), "
+       "wheels or sprockets), x_m, y_m, yaw_rad, z_m, roll_rad, pitch_rad (the newest pose), "
        "pose_new (1 in rows with a new pose, else 0), imu_yaw_rate_rad_s (left is positive)"},
       {"describe it",
        "sessions.csv with one row: session (the CSV's name without .csv), robot, surface, "
@@ -64,7 +67,7 @@ const std::vector<Word>& firstSteps() {
       {"import",
        "tread-import --format steps --keep-lag --gyro all --sessions sessions.csv mine.csv -o "
        "mine.lcmlog"},
-      {"or log LCM", "a log with the robot's INS and MOTOR messages is read as it is"},
+      {"or log LCM", "a log with the robot's INS and MOTOR messages needs no import"},
       {"first model",
        "ideal.yaml, three lines: 'name: ideal', 'kind: track_speed', 'gauge: 1.08' (baseline_m); "
        "for an LCM log whose commands are powers from -1 to 1 'kind: power' and the speed at full "
@@ -80,13 +83,13 @@ constexpr size_t kWidth = 96;
 constexpr size_t kIndent = 18;
 constexpr size_t kTopicIndent = 20;
 
-/// Text in lines of at most `width` letters, each after the first one indented.
+/// Breaks text into lines of at most `width` characters; all but the first are indented.
 std::string wrapped(const std::string& text, size_t width, size_t indent) {
   std::string lines;
   std::string line;
   size_t at = 0;
   while (at < text.size()) {
-    // Spaces belong to the word behind them, so that an indented heading keeps its own.
+    // Spaces belong to the following word, so that an indented heading keeps its own.
     size_t end = text.find_first_not_of(' ', at);
     end = text.find(' ', end == std::string::npos ? text.size() : end);
     const std::string word =
@@ -110,7 +113,7 @@ std::string entry(const std::string& heading, const std::string& text, size_t in
   return wrapped(padded(heading, indent) + text, kWidth, indent) + "\n";
 }
 
-/// The channels that an effect moves, in words.
+/// The channels that an effect changes, in words.
 std::string channelWords(const std::string& channels) {
   std::vector<std::string> words;
   for (const char channel : channels)
@@ -163,27 +166,30 @@ const std::vector<Word>& glossary() {
       {"execution", "2 s of driving that the model predicts from its measured beginning"},
       {"end error",
        "how far the predicted pose is from the measured one at the end of an execution"},
-      {"held-out", "driving that was kept apart from the fit; only its errors count as proof"},
+      {"held-out", "driving that was not used for the fit; only its errors count as evidence"},
       {"block",
-       "about 20 s of driving, long enough to know nothing of the next one; chance is counted in "
+       "about 20 s of driving, long enough to be independent of the next one; significance is "
+       "counted in "
        "blocks, not in samples"},
       {"nats",
        "unit of evidence: the model makes held-out data e^n times as likely; a gain counts when it "
        "is well above its standard error"},
       {"score, p",
-       "how clearly the residuals have an effect's signature, and the chance of so clear a one "
-       "anywhere in the catalogue if nothing were there"},
+       "how clearly the residuals show an effect's signature, and the probability of such a score "
+       "anywhere in the catalogue without any effect"},
       {"group",
-       "confounded effects: the same to the INS; a tape or another sensor tells them apart"},
+       "confounded effects: they look the same to the INS; a tape measure or another sensor "
+       "distinguishes them"},
       {"runner-up",
-       "an effect that explains the drive, too; one within its standard error is as good"},
+       "another effect that explains the drive; one within its standard error is equally good"},
       {"adequacy",
-       "the test whether what the model leaves still depends on anything (speed, yaw rate, "
+       "the test whether the residuals still depend on anything (speed, yaw rate, "
        "time..)"},
       {"floor",
-       "the end error of dead reckoning with encoders and gyro: what a model can hope for"},
-      {"negligible", "beyond chance, but less than 1 % of the end error: not added"},
-      {"envelope", "the fastest motions that the model was made from; beyond them it guesses"}};
+       "the end error of dead reckoning with encoders and gyro: the best that a model can reach"},
+      {"negligible", "significant, but below 1 % of the end error: not added"},
+      {"envelope",
+       "the fastest motions from which the model was made; beyond them it extrapolates"}};
   return words;
 }
 
@@ -251,8 +257,8 @@ std::optional<std::string> topic(const std::string& name) {
 
 std::string listOfTopics() {
   return "\nBeside effects:\n"
-         "  start                 from a log of your own to a first run\n"
-         "  verdicts              what each verdict means and what to do then\n"
+         "  start                 from your log to a first run\n"
+         "  verdicts              the meaning of each verdict and the next step\n"
          "  words                 what block, nats, adequacy, held-out .. mean\n";
 }
 

@@ -43,14 +43,14 @@ struct FindOptions {
 };
 
 constexpr const char* kFindFooter =
-    "Into --out: verdict.json, model.yaml (the new model; nothing is applied by itself; none "
+    "Writes into --out: verdict.json, model.yaml (the new model, not applied automatically; none "
     "after\n"
     "CANNOT_TELL), report.md and report.html. Exit status: 0 NO_DISCREPANCY or "
     "NOTHING_NEW,\n"
     "10 FOUND, 11 AMBIGUOUS, 12 PARTIAL, 13 NOT_IN_CATALOGUE, 14 MEASUREMENT, 15 CANNOT_TELL, 2 "
-    "bad input (one line says which).\n"
-    "The same files and the same seed give the same bytes, with any number of threads, unless "
-    "--limit ends it.";
+    "bad input (with one line of explanation).\n"
+    "The same files and seed give the same bytes with any number of threads, unless "
+    "--limit ends the search.";
 
 std::string fileName(const std::string& path) {
   return std::filesystem::path(path).filename().string();
@@ -60,14 +60,14 @@ void say(const std::string& line) {
   std::cout << line << std::endl;
 }
 
-/// Stage 0: what a log is, and what is wrong with it.
+/// Stage 0: prints the contents and defects of a log.
 void tell(const Drive& drive) {
   say("0 " + drive.name + ": " + threeDigits(drive.driven()) + " s of driving, " +
       std::to_string(drive.executions.size()) + " executions");
   for (const LogNote& note : drive.notes) say((note.fatal ? "  ! " : "  ") + note.what);
 }
 
-/// Reads logs of one role; the same log twice would count its noise twice.
+/// Reads logs of one role; refuses duplicates, which would count their noise twice.
 std::vector<Drive> readDrives(const std::vector<std::string>& paths, InputFile::Role role,
                               const ModelDocument& model, std::vector<InputFile>& inputs) {
   std::vector<Drive> drives;
@@ -84,11 +84,11 @@ std::vector<Drive> readDrives(const std::vector<std::string>& paths, InputFile::
   return drives;
 }
 
-/// Where the files are; a model that an earlier run left is not this one's.
+/// Prints where the files are; says so if a model.yaml in the folder is from an earlier run.
 void sayWhere(const std::string& folder, const GapFinding& finding) {
   say("Report: " + folder + "/report.html");
   if (hasNewModel(finding)) {
-    say("New model, not applied by itself: " + folder + "/model.yaml");
+    say("New model, not applied automatically: " + folder + "/model.yaml");
     return;
   }
   const bool old = std::filesystem::exists(folder + "/model.yaml");
@@ -96,7 +96,7 @@ void sayWhere(const std::string& folder, const GapFinding& finding) {
       (old ? "; " + folder + "/model.yaml is left from an earlier run." : "."));
 }
 
-/// What find and repeat read.
+/// The inputs of find and repeat.
 GapTask taskOf(const FindOptions& options, std::vector<InputFile>& inputs) {
   GapTask task;
   task.model = readModelDocument(options.model);
@@ -140,7 +140,7 @@ int find(const FindOptions& options) {
 
 constexpr int kSomethingMoved = 10;
 
-/// Files for the models of days: their logs may have one name in several folders.
+/// File names for the models of days; logs of the same name may come from different folders.
 std::vector<std::string> dayFiles(const FindOptions& options) {
   std::vector<std::string> files;
   for (size_t i = 0; i < options.train.size(); ++i)
@@ -167,7 +167,7 @@ int repeat(const FindOptions& options) {
   sayWhere(options.out, repetition.together);
   if (cannot_tell) return exitStatus(GapVerdict::kCannotTell);
   for (const std::string& file : files)
-    say("The same with what is that day's: " + options.out + "/" + file);
+    say("The same with that day's parameters: " + options.out + "/" + file);
   return repetition.differs() ? kSomethingMoved : 0;
 }
 
@@ -183,7 +183,7 @@ int compare(const CompareOptions& options) {
   const Drive first = readSoundDriveFor(model, options.first);
   const Drive second = readSoundDriveFor(model, options.second);
   if (first.sha256 == second.sha256)
-    throw std::runtime_error(options.second + ": the same file as the first; give two logs");
+    throw std::runtime_error(options.second + ": both are the same file; give two logs");
   requireSameRobot(first, second);
   requireSameImport(first, second);
   const LogChange change = compareLogs(model, first, second, onThreads(options.threads));
@@ -193,10 +193,10 @@ int compare(const CompareOptions& options) {
   return change.anyMoved() ? kSomethingMoved : 0;
 }
 
-/// What all commands that fit have.
+/// Options common to all commands that fit.
 void addSeedAndThreads(CLI::App& command, FindOptions& options) {
   addEffectsOption(command);
-  command.add_option("--seed", options.seed, "of the random draws of the tests")
+  command.add_option("--seed", options.seed, "seed of the random numbers in the tests")
       ->capture_default_str()
       ->check(CLI::Range(int64_t{0}, int64_t{9'000'000'000'000'000'000}));
   addThreads(command, options.threads);
@@ -205,39 +205,40 @@ void addSeedAndThreads(CLI::App& command, FindOptions& options) {
 void addFind(CLI::App& app, int& status) {
   const auto options = std::make_shared<FindOptions>();
   CLI::App* command = app.add_subcommand(
-      "find", "where do simulation and measurement disagree, and what is it called?");
+      "find", "find where simulation and measurement disagree, and name the effect");
   command->footer(kFindFooter);
   command->add_option("--model", options->model, "model file (YAML)")->required();
   command->add_option("--train", options->train, "logs to learn from")->required()->expected(-1);
   command
       ->add_option("--test", options->test,
-                   "logs for the errors before and after only; without any, blocks of the training "
-                   "logs are kept apart in turn")
+                   "logs that are used only for the errors before and after; without them blocks "
+                   "of the training "
+                   "logs are left out in turn")
       ->expected(-1);
   Outputs(*command)
-      .folder("--out", options->out, "folder for the four files; made if needed")
+      .folder("--out", options->out, "folder for the four files; created if needed")
       ->required();
   command->add_flag("--calibrate", options->calibrate,
-                    "fit lag, delay and gains of the nominal model, too: makes the model of a new "
+                    "also fit lag, delay and gains of the nominal model: makes the model of a new "
                     "vehicle from a long log");
   command->add_flag("--keep-small", options->keep_small,
-                    "effects that are real stay in the model, even if they change the end error "
+                    "keep significant effects in the model even if they change the end error "
                     "by less than 1 %: for a model that others are to be compared with");
   command->add_flag("--named-only", options->named_only,
-                    "add no term without a name: what no effect explains is told and stays the "
+                    "add no unnamed term: what no effect explains is reported and stays the "
                     "model's rest");
   command
       ->add_option("--limit", options->limit,
                    "time for the search [s]; then find ends with the best so far, as PARTIAL")
       ->check(CLI::Range(0.001, 1e6));
   command
-      ->add_option("--accept", options->accepted,
-                   "effects that are in the model from the start and stay, whatever the tests say")
+      ->add_option(
+          "--accept", options->accepted,
+          "effects that are in the model from the start and stay, whatever the test results")
       ->expected(-1);
-  command->add_option("--reject", options->rejected, "effects that are not considered")
-      ->expected(-1);
+  command->add_option("--reject", options->rejected, "effects to leave out")->expected(-1);
   command->add_option("--by", options->by,
-                      "who accepts or rejects; for the new model's provenance");
+                      "name of the person who accepts or rejects, for the new model's provenance");
   addSeedAndThreads(*command, *options);
   command->callback([options, &status] { status = find(*options); });
 }
@@ -245,18 +246,20 @@ void addFind(CLI::App& app, int& status) {
 void addRepeat(CLI::App& app, int& status) {
   const auto options = std::make_shared<FindOptions>();
   CLI::App* command = app.add_subcommand(
-      "repeat", "do several days of one vehicle say the same, and what is the day's?");
+      "repeat", "compare several days of one vehicle: what agrees, and what differs by day?");
   command->footer(
-      "Runs find on each log and on all together, and fits what all together show on each log.\n"
-      "Parameters that agree within chance are the vehicle's, the others are the day's (ground,\n"
-      "battery, INS). Into --out: the files of find for all together, repeat.txt, and for each\n"
-      "log a model with what is that day's. Exit status: 0 nothing differs, 10 something\n"
-      "does, 15 all together cannot tell, 2 bad input.");
-  command->add_option("LOGS", options->train, "two or more")->required()->expected(-1);
+      "Runs find on each log and on all together, and fits the common result's terms to each log.\n"
+      "Parameters without significant differences are the vehicle's, the others are the day's "
+      "(ground,\n"
+      "battery, INS). Writes into --out: the files of find for all together, repeat.txt, and for "
+      "each\n"
+      "log a model with that day's parameters. Exit status: 0 nothing differs, 10 something\n"
+      "does, 15 all together give CANNOT_TELL, 2 bad input.");
+  command->add_option("LOGS", options->train, "two or more logs")->required()->expected(-1);
   command->add_option("--model", options->model, "model file (YAML)")->required();
-  Outputs(*command).folder("--out", options->out, "folder; made if needed")->required();
+  Outputs(*command).folder("--out", options->out, "output folder; created if needed")->required();
   command->add_flag("--calibrate", options->calibrate,
-                    "fit lag, delay and gains of the nominal model, too");
+                    "also fit lag, delay and gains of the nominal model");
   addSeedAndThreads(*command, *options);
   command->callback([options, &status] { status = repeat(*options); });
 }
@@ -265,10 +268,10 @@ struct NameOptions {
   std::string model;
   std::string from;
   std::string to;
-  std::string effect;  ///< file to write; empty = the term stays one
+  std::string effect;  ///< file to write; empty = the term stays unnamed
 };
 
-/// Puts an effect in the place of a term; returns the text of its file.
+/// Replaces a term by an effect; returns the text of the effect's file.
 std::string keepAsEffect(ModelDocument& model, const NameOptions& options) {
   if (std::filesystem::exists(options.effect))
     throw std::runtime_error(options.effect + ": is there already; choose another file");
@@ -291,35 +294,36 @@ void name(const NameOptions& options) {
   else
     renameTerm(model, options.from, options.to);
   const std::string text = formatModelDocument(model);
-  parseModelDocument(text, options.model);  // a file that nobody can read is none
+  parseModelDocument(text, options.model);  // refuse to write an unreadable file
   if (keep) writeText(options.effect, effect);
   writeText(options.model, text);
   say(options.from + " is " + options.to + " in " + options.model + " now");
   if (keep)
-    say("It is an effect now: " + options.effect +
-        "; edit its words, and give its folder to find --effects for other logs and models.");
+    say("Written as an effect: " + options.effect +
+        "; edit its texts, and give its folder to find --effects for other logs and models.");
 }
 
 void addName(CLI::App& app) {
   const auto options = std::make_shared<NameOptions>();
   CLI::App* command =
-      app.add_subcommand("name", "give a term of a model that find has added a name of your own");
+      app.add_subcommand("name", "give a name to an unnamed term that find has added to a model");
   command->footer(
-      "The model file is written anew with the name, as find writes it: comments of your own in\n"
+      "The model file is rewritten with the name, as find writes it: your own comments in\n"
       "it are lost.");
   command->add_option("MODEL", options->model, "model file (YAML); it is changed")->required();
-  command->add_option("TERM", options->from, "its name now, as unnamed_1")->required();
-  command->add_option("NAME", options->to, "its name from now on: a-z, 0-9 and _")->required();
+  command->add_option("TERM", options->from, "its present name, for instance unnamed_1")
+      ->required();
+  command->add_option("NAME", options->to, "its new name: a-z, 0-9 and _")->required();
   command->add_option("--effect", options->effect,
-                      "file to write (YAML): the term becomes an effect of a catalogue of your "
-                      "own, which find --effects FOLDER looks for");
+                      "file to write (YAML): the term becomes an effect of your "
+                      "own catalogue, for find --effects FOLDER");
   command->callback([options] { name(*options); });
 }
 
 void addExplain(CLI::App& app) {
   const auto name = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand(
-      "explain", "what an effect is, what it looks like and how to check it in two minutes");
+      "explain", "explain an effect: meaning, appearance in data, a check of two minutes");
   command->add_option("EFFECT", *name,
                       "name of an effect, or start, verdicts or words; without it, a list");
   addEffectsOption(*command);
@@ -334,12 +338,14 @@ void addExplain(CLI::App& app) {
 
 void addCompare(CLI::App& app, int& status) {
   const auto options = std::make_shared<CompareOptions>();
-  CLI::App* command =
-      app.add_subcommand("compare", "what changed from one log to another, yesterday and today");
+  CLI::App* command = app.add_subcommand(
+      "compare", "find what changed between two logs, for instance of yesterday and today");
   command->footer(
-      "Fits the same terms on both logs and tells which parameters moved beyond chance, at three\n"
-      "sigma for all of them together: of a hundred pairs of equal logs at most one is said to\n"
-      "have changed. Exit status 0: nothing moved; 10: something did; 2: bad input.");
+      "Fits the same terms to both logs and reports which parameters changed significantly, at "
+      "three\n"
+      "sigma for all of them together: of a hundred pairs of equal logs at most one is reported "
+      "to\n"
+      "differ. Exit status 0: nothing changed; 10: something did; 2: bad input.");
   command->add_option("FIRST", options->first, "log")->required();
   command->add_option("SECOND", options->second, "log")->required();
   command->add_option("--model", options->model, "model file whose terms are fitted (YAML)")

@@ -68,7 +68,7 @@ bool stands(const MotionClass& motion) {
   return motion.steady == Command{};
 }
 
-/// Patterns on the shortest ways between classes: from[class] = pattern that leads there first.
+/// Shortest pattern chains between classes: from[class] = first pattern of the chain.
 std::map<std::string, const MotionPattern*> waysFrom(const PatternSet& set,
                                                      const std::string& start) {
   std::map<std::string, const MotionPattern*> into{{start, nullptr}};
@@ -167,7 +167,7 @@ std::vector<MotionSample> drivenByModel(const ModelDocument& model, const Manoeu
 }
 
 std::vector<Manoeuvre> planManoeuvres(const ModelDocument& model, double full) {
-  // Others than this model may settle later: half a second more.
+  // Other models may settle later than this one: half a second of margin.
   const double settled = 3.0 * model.vehicle.settlingLag() + model.vehicle.commandDelay() + 0.5;
   const auto stop = static_cast<size_t>(std::ceil(settled / kManoeuvrePeriod));
   std::vector<Manoeuvre> all;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr size_t kSamples = 10;  // commands between two observations: half a second
 
-/// Half an hour into a session: what grows with time is there, but constant.
+/// Half an hour into a session: time-dependent effects are present and nearly constant.
 Circumstances circumstances() {
   Circumstances late;
   late.session_time = 1800.0;
@@ -34,7 +34,7 @@ ExecutionSpread spreadOf(const VehicleModel& vehicle) {
   return spread;
 }
 
-/// Pose and mean yaw rate of each half second, one below the other.
+/// Pose and mean yaw rate of each half second, stacked.
 Eigen::VectorXd observed(const ModelDocument& model, const Manoeuvre& manoeuvre,
                          const ExecutionNoise& noise = {}) {
   const std::vector<MotionSample> motion = drivenByModel(model, manoeuvre, circumstances(), noise);
@@ -53,7 +53,7 @@ Eigen::VectorXd observed(const ModelDocument& model, const Manoeuvre& manoeuvre,
   return Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-/// What an error of the pose at the begin does to all later ones.
+/// Effect of an error of the start pose on all later poses.
 Eigen::MatrixXd startErrors(const Eigen::VectorXd& values, const InsNoise& noise) {
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(values.size(), 3);
   for (Eigen::Index i = 0; i + 3 < values.size(); i += 4) {
@@ -84,10 +84,10 @@ Eigen::MatrixXd noiseOf(const ModelDocument& model, const Manoeuvre& manoeuvre,
   return covariance + start * start.transpose();
 }
 
-/// A manoeuvre, what a truth does on it, and what takes a difference to units of its noise.
-/** Compared are poses and mean yaw rates each half second. The noise is the model's spread from one
- * execution to the next (3 %, 3 % and 1 deg where it states none), which is the same throughout a
- * manoeuvre, and that of the INS, at its begin, too. */
+/// A manoeuvre with its true outcome and the whitening of differences.
+/** It compares poses and mean yaw rates each half second. The noise has two parts: the model's
+ * spread between executions, constant within one (3 %, 3 % and 1 deg if not stated), and INS
+ * noise, also on the start pose. */
 class Probe {
  public:
   Probe(const ModelDocument& truth, const Manoeuvre& manoeuvre, const InsNoise& ins)
@@ -110,14 +110,14 @@ class Probe {
   Eigen::LLT<Eigen::MatrixXd> noise_;
 };
 
-/// A model that is refitted to look like the truth.
+/// A model that is refitted to imitate the truth.
 class Rival {
  public:
   Rival(ModelDocument model, std::vector<FreeParameter> free)
       : model_(std::move(model)), free_(std::move(free)) {}
 
-  /// Fits on manoeuvres so often each, from where it stands; returns the difference that remains
-  /// [nats], with what its parameters' priors cost.
+  /// Refits on each manoeuvre with its count, from the present values. Returns the remaining
+  /// difference plus the cost of the priors [nats].
   double fit(const std::vector<Probe>& probes, const std::vector<size_t>& counts) {
     constexpr int kIterations = 12;
     constexpr double kStuck = 1e6;
@@ -191,7 +191,7 @@ class Rival {
     }
   }
 
-  /// One damped step; false if it does not help.
+  /// One damped step; false if it does not improve.
   bool step(const Eigen::MatrixXd& information, const Eigen::VectorXd& pull, double damping,
             const std::vector<Probe>& probes, const std::vector<size_t>& counts, double& loss) {
     Eigen::MatrixXd damped = information;
@@ -216,13 +216,13 @@ class Rival {
   std::vector<FreeParameter> free_;
 };
 
-/// Effects with a change point have changed.
+/// Moves an effect's change point before the beginning.
 void beginAtOnce(ModelDocument& model, const Effect& effect) {
   for (const ChangePoint& change : effect.search.change_points)
     *findParameter(model, effect.name + "." + change.time) = 0.0;
 }
 
-/// The model with one of the two effects and without the other.
+/// The model with the first effect and without the second.
 ModelDocument modelWith(const ModelDocument& model, const std::string& there,
                         const std::string& gone) {
   ModelDocument with = model;
@@ -233,7 +233,7 @@ ModelDocument modelWith(const ModelDocument& model, const std::string& there,
   return with;
 }
 
-/// A rival switched on at several sizes: a fit may end in different places.
+/// The rival effect at several initial sizes, because a fit may end in different local minima.
 std::vector<Rival> rivalsOf(ModelDocument model, const std::string& there,
                             const std::string& gone) {
   turnOff(model, effectNamed(gone));
@@ -241,7 +241,7 @@ std::vector<Rival> rivalsOf(ModelDocument model, const std::string& there,
   turnOn(model, rival);
   beginAtOnce(model, rival);
   std::vector<FreeParameter> free = givenParameters(model, false);
-  // The rival may take any size, whatever the model says of it.
+  // No prior for the rival's size, even if the model has one.
   free.erase(std::remove_if(free.begin(), free.end(),
                             [&rival](const FreeParameter& known) {
                               return effectOf(known.path) == rival.name;
@@ -262,7 +262,7 @@ std::vector<Rival> rivalsOf(ModelDocument model, const std::string& there,
   return rivals;
 }
 
-/// One effect is there, the other one tries to look like it.
+/// One case: this effect is present, the other one imitates it.
 class Side {
  public:
   Side(const DesignTask& task, const std::string& truth, const std::string& rival)
@@ -278,12 +278,12 @@ class Side {
 
   const std::vector<Probe>& probes() const { return probes_; }
   double difference() const { return difference_; }
-  /// How badly the rival does on a manoeuvre, per second.
+  /// Remaining difference of the rival on a manoeuvre, per second.
   double missedPerSecond(size_t probe) const {
     return probes_[probe].missed(rival_.model()).squaredNorm() / probes_[probe].duration();
   }
 
-  /// Refits the rival; from all sizes only where the nearest fit would be enough.
+  /// Refits the rival; from all initial sizes only if the nearest fit exceeds `enough`.
   void follow(const std::vector<size_t>& counts, double enough) {
     difference_ = rival_.fit(probes_, counts);
     if (difference_ >= enough) rival_ = bestOn(counts);
@@ -298,7 +298,7 @@ class Side {
   }
 
  private:
-  /// The best of fits from where the rival stands and from all sizes; its difference is kept.
+  /// The best fit from the present values and from all initial sizes; stores its difference.
   Rival bestOn(const std::vector<size_t>& counts) {
     Rival best = rival_;
     difference_ = best.fit(probes_, counts);
@@ -319,7 +319,7 @@ class Side {
   double difference_ = 0.0;
 };
 
-/// Chooses manoeuvres.
+/// Selects manoeuvres.
 class Designer {
  public:
   explicit Designer(const DesignTask& task) : task_(task), counts_(task.manoeuvres.size(), 0) {
@@ -344,8 +344,8 @@ class Designer {
                        [this](const Side& side) { return side.difference() >= task_.enough; });
   }
 
-  /// Adds the manoeuvre on which the harder side's rival is worst; false if there is no time for
-  /// one.
+  /// Adds the manoeuvre with the largest difference for the harder side; false if none fits into
+  /// the time.
   bool addWorst() {
     const Side& harder = sides_[0].difference() <= sides_[1].difference() ? sides_[0] : sides_[1];
     double best = 0.0;

@@ -31,19 +31,19 @@ struct PlanOptions {
   std::string patterns;
   std::string out;
   std::vector<std::string> set;
-  double speed = 0.0;  // [m/s], 0 = as the model's envelope says
+  double speed = 0.0;  // [m/s], 0 = from the model's envelope
 };
 
 constexpr const char* kPlanFooter =
-    "Each effect is taken at its size in the model, else at its typical one (or as --set says); "
+    "Each effect has its size in the model, else its typical one (or that of --set). The "
     "the\n"
-    "other is refitted to look most like it, together with what the model says is uncertain. The\n"
-    "drive tells them apart whichever is there, so that their order makes no difference. It stays\n"
-    "within the motions that the model was made from, where its file says them. Written to --out\n"
-    "is a pattern set for tread-patterns record. Where no drive tells the two apart, the\n"
-    "measurement that does is printed instead, and the exit status is 1.";
+    "other one is refitted to imitate it, together with the model's uncertain numbers. The\n"
+    "drive separates the two whichever is present, so their order does not matter. It stays\n"
+    "within the model's envelope, if its file has one. Written to --out\n"
+    "is a pattern set for tread-patterns record. If no drive separates the two, the\n"
+    "measurement that does is printed, and the exit status is 1.";
 
-/// What the catalogue says of two confounded effects; empty where it knows no common group.
+/// The catalogue's text on two confounded effects; empty if they share no group.
 std::string fromTable(const std::string& a, const std::string& b) {
   std::string text;
   for (const ConfoundedGroup* group : confoundedGroupsOf(a)) {
@@ -54,7 +54,7 @@ std::string fromTable(const std::string& a, const std::string& b) {
   return text;
 }
 
-/// Measurements that tell the two apart, from that table, else from the catalogue.
+/// Measurements that separate the two, from that table, else from the catalogue.
 std::string otherWays(const std::string& a, const std::string& b) {
   std::string text = fromTable(a, b);
   if (!text.empty()) return text;
@@ -77,7 +77,7 @@ std::string sizeOf(const ModelDocument& model, const std::string& name) {
   return sizes.empty() ? "off" : joined(sizes);
 }
 
-/// The room that the patterns of a set ask for, with some to spare [m].
+/// Free space that the patterns of a set need, with a margin [m].
 double roomFor(const PatternSet& set) {
   double farthest = 0.0;
   for (const MotionPattern& pattern : set.patterns())
@@ -102,7 +102,7 @@ std::string sizedName(const ModelDocument& model, const std::string& effect) {
 std::string sideText(const DesignSide& side) {
   return "  " + threeDigits(side.difference) + " if it is " +
          sizedName(side.true_model, side.truth) + ",\n    although " +
-         inSentence(titleOf(side.rival)) + " is refitted to look most like it (" +
+         inSentence(titleOf(side.rival)) + " is refitted to imitate it (" +
          sizeOf(side.rival_model, side.rival) + ")\n";
 }
 
@@ -117,7 +117,7 @@ void tellFound(const PlanOptions& options, const DesignTask& task, const Design&
             << threeDigits(task.enough) << " is enough):\n"
             << sideText(design.sides[0]) << sideText(design.sides[1]);
   const std::string known = fromTable(side.truth, side.rival);
-  if (!known.empty()) std::cout << "\nThey resemble each other; another way to tell:\n" << known;
+  if (!known.empty()) std::cout << "\nThey look similar; another way to decide:\n" << known;
   if (options.out.empty()) return;
   writeText(options.out, formatPatterns(set));
   std::cout
@@ -134,9 +134,9 @@ void tellNone(const Design& design) {
   const DesignSide& side = design.harder();
   if (side.visible < kInvisible)
     std::cout << titleOf(side.truth) << " (" << sizeOf(side.true_model, side.truth)
-              << ") shows in none of these manoeuvres on level ground. What shows it:\n";
+              << ") is not visible in any of these manoeuvres on level ground. What shows it:\n";
   else
-    std::cout << "No drive of these manoeuvres within 120 s tells "
+    std::cout << "No drive of these manoeuvres within 120 s distinguishes "
               << sizedName(side.true_model, side.truth) << " from "
               << sizedName(side.rival_model, side.rival) << ": expected difference "
               << threeDigits(side.difference) << " after " << threeDigits(design.duration)
@@ -144,7 +144,7 @@ void tellNone(const Design& design) {
   std::cout << otherWays(design.sides.front().truth, design.sides.front().rival);
 }
 
-/// The built-in manoeuvres: what a person asks for, else what the model knows.
+/// The built-in manoeuvres: as requested, else within the model's envelope.
 std::vector<Manoeuvre> builtInManoeuvres(const PlanOptions& options, const ModelDocument& model) {
   if (options.speed > 0.0) return planManoeuvres(model, options.speed);
   std::vector<Manoeuvre> all = planManoeuvres(model, fullCommand(model));
@@ -152,14 +152,14 @@ std::vector<Manoeuvre> builtInManoeuvres(const PlanOptions& options, const Model
   return all;
 }
 
-/// Of patterns and speeds that a person asks for, and where the model does not say what it knows.
+/// Warns of requested patterns and speeds beyond the model's envelope, and of a model without one.
 void warnBeyond(const PlanOptions& options, const ModelDocument& model, const PatternSet& set) {
   patterns::warnOutside(model, options.model, set);
   if (model.envelope) return;
   const Envelope asked = patterns::envelopeOf(model.vehicle, set);
-  std::cerr << options.model << ": warning: no envelope in it; the plan asks for up to "
+  std::cerr << options.model << ": warning: it has no envelope; the plan commands up to "
             << threeDigits(asked.v) << " m/s and " << threeDigits(asked.omega)
-            << " rad/s of it, whatever it was made from\n";
+            << " rad/s, whatever the model was made from\n";
 }
 
 int plan(const PlanOptions& options) {
@@ -173,7 +173,8 @@ int plan(const PlanOptions& options) {
   task.first = options.truth;
   task.second = options.rival;
   if (options.speed > 0.0 && task.model.vehicle.kind == CommandKind::kPower)
-    throw std::runtime_error("--speed is for models that take track speeds; this one takes powers");
+    throw std::runtime_error(
+        "--speed is for models with track-speed commands; this one has power commands");
   if (!options.set.empty()) {
     ModelChange change{{}, {}, options.set};
     if (!isOn(effectNamed(options.truth), task.model)) change.add = {options.truth};
@@ -216,7 +217,7 @@ Circumstances circumstancesOf(const WhatIfOptions& options) {
   return circumstances;
 }
 
-/// "What if without A, with B and limit=1.2".
+/// For instance "What if without A, with B and limit=1.2".
 std::string questionOf(const ModelChange& change) {
   std::vector<std::string> parts;
   for (const std::string& effect : change.remove)
@@ -236,7 +237,7 @@ void whatIf(const WhatIfOptions& options) {
     throw std::runtime_error("what-if: nothing to change; give --remove, --add or --set");
   const bool svg = endsWith(options.out, ".svg");
   if (!options.out.empty() && !svg && !endsWith(options.out, ".html"))
-    throw std::runtime_error(options.out + ": what kind of file? end it with .html or .svg");
+    throw std::runtime_error(options.out + ": unknown kind of file; end it with .html or .svg");
   // Only on a log do other vehicles than those of the manoeuvres drive.
   const ModelDocument model = options.log.empty()
                                   ? readTwoTracks(options.model, "what-if without --log")
@@ -265,16 +266,17 @@ void whatIf(const WhatIfOptions& options) {
 }
 
 void addCircumstances(CLI::App& command, WhatIfOptions& options) {
-  command.add_option("--minutes", options.minutes, "since the start of the session")
+  command.add_option("--minutes", options.minutes, "time since the start of the session [min]")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 10000.0));
-  command.add_option("--pitch", options.pitch, "deg, of the ground, nose down positive")
+  command.add_option("--pitch", options.pitch, "slope of the ground [deg], nose down positive")
       ->check(CLI::Range(-45.0, 45.0));
-  command.add_option("--roll", options.roll, "deg, of the ground, left side up positive")
+  command.add_option("--roll", options.roll, "slope of the ground [deg], left side up positive")
       ->check(CLI::Range(-45.0, 45.0));
-  command.add_option("--battery-drop", options.battery_drop, "%, fall of the voltage since then")
+  command
+      .add_option("--battery-drop", options.battery_drop, "fall of the voltage since the start [%]")
       ->check(CLI::Range(0.0, 100.0));
-  command.add_option("--worked", options.worked, "mean square of the duty until now, 0..1")
+  command.add_option("--worked", options.worked, "mean square of the duty so far, 0..1")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1.0));
 }
@@ -284,25 +286,25 @@ void addCircumstances(CLI::App& command, WhatIfOptions& options) {
 void addEffectsOption(CLI::App& command) {
   command
       .add_option_function<std::string>("--effects", addEffectsOf,
-                                        "folder of effects (*.yaml) beside those of the catalogue; "
+                                        "folder of further effects (*.yaml); "
                                         "config/effects has examples")
       ->trigger_on_parse();
 }
 
 void addPlan(CLI::App& app, int& status) {
   const auto options = std::make_shared<PlanOptions>();
-  CLI::App* command =
-      app.add_subcommand("plan", "the shortest drive that tells effect A from effect B");
+  CLI::App* command = app.add_subcommand(
+      "plan", "find the shortest drive that distinguishes effect A from effect B");
   command->footer(kPlanFooter);
-  command->add_option("A", options->truth, "effect that may be there")->required();
-  command->add_option("B", options->rival, "effect that may be there instead")->required();
+  command->add_option("A", options->truth, "first effect")->required();
+  command->add_option("B", options->rival, "second effect")->required();
   command->add_option("--model", options->model, "model file (YAML)")->required();
   command->add_option("--patterns", options->patterns,
                       "choose among the patterns of this set instead of the built-in manoeuvres");
   command->add_option("--set", options->set, "parameter=number: another size of A");
   command
       ->add_option("--speed", options->speed,
-                   "m/s, largest track speed commanded; not for models that take powers")
+                   "largest commanded track speed [m/s]; not for models with power commands")
       ->check(CLI::Range(0.01, 20.0));
   addEffectsOption(*command);
   Outputs(*command).file("--out", options->out, "pattern set to write (YAML)");
@@ -312,15 +314,16 @@ void addPlan(CLI::App& app, int& status) {
 void addWhatIf(CLI::App& app) {
   const auto options = std::make_shared<WhatIfOptions>();
   CLI::App* command = app.add_subcommand(
-      "what-if", "simulate with an effect removed, added or of another size, and show it");
+      "what-if",
+      "simulate a model with an effect removed, added or resized, and show the difference");
   command->add_option("--model", options->model, "model file (YAML)")->required();
   command->add_option("--remove", options->change.remove, "turn this effect or unnamed term off");
   command->add_option("--add", options->change.add,
-                      "turn this effect on, at its typical size; of one that is on, --set another");
+                      "turn this effect on, at its typical size (another one by --set)");
   command->add_option(
       "--set", options->change.set,
       "parameter=number: of the effect added, or effect.parameter, or lag, delay..");
-  command->add_option("--log", options->log, "a log; its executions are simulated, too");
+  command->add_option("--log", options->log, "also simulate the executions of this log");
   Outputs(*command).file("--out", options->out, "pictures: FILE.html or FILE.svg");
   addCircumstances(*command, *options);
   addEffectsOption(*command);

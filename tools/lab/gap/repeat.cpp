@@ -22,7 +22,7 @@ std::vector<std::string> namesOf(const GapFinding& finding) {
   return names;
 }
 
-/// Whether a log says anything of a parameter: its error is less than what is typical, or than it.
+/// Whether a log determines a parameter: its error is below the typical size, or below its value.
 bool isSeen(const LogFit& fit, size_t parameter) {
   const double error = fit.errors[parameter];
   const EffectParameter* known = findEffectParameter(fit.parameters[parameter]);
@@ -66,10 +66,10 @@ std::string saidOwner(const RepeatedParameter& parameter) {
   const auto seen = std::count(parameter.seen.begin(), parameter.seen.end(), true);
   if (parameter.differs) return "the day's, " + threeDigits(parameter.farthest) + " sigma";
   if (seen > 1) return "the vehicle's";
-  return seen == 1 ? "seen in one log only" : "seen in none";
+  return seen == 1 ? "visible in one log only" : "visible in none";
 }
 
-/// Columns of text, each as wide as its widest cell; plus and minus is one place in two bytes.
+/// Formats columns, each as wide as its widest cell; "±" has two bytes and one column.
 std::string tableText(const std::vector<std::vector<std::string>>& rows) {
   const auto widthOf = [](const std::string& cell) {
     return static_cast<size_t>(
@@ -119,9 +119,9 @@ ModelDocument Repetition::modelOf(size_t log) const {
 
 Repetition repeatLogs(const GapTask& task, const Progress& say) {
   if (task.train.size() < 2)
-    throw std::invalid_argument("repeat: one log repeats nothing; give two or more");
+    throw std::invalid_argument("repeat: one log is not enough; give two or more");
   for (const Drive& drive : task.train) {
-    // Before an hour of work, not after it.
+    // Check now rather than after an hour of computing.
     const std::vector<Drive> alone{drive};
     const std::string problem = tooLittleDriving(Observations(alone, ObservationSettings{}));
     if (!problem.empty()) throw std::invalid_argument(drive.name + ": " + problem);
@@ -166,7 +166,7 @@ std::string textOf(const Repetition& repetition) {
   }
   if (repetition.names().empty()) text += "No effect is named in any log.\n";
   if (repetition.together.verdict == GapVerdict::kCannotTell)
-    return text + "All together cannot tell: " + repetition.together.reason + ".\n";
+    return text + "All together: CANNOT_TELL: " + repetition.together.reason + ".\n";
   if (repetition.parameters.empty()) return text;
   std::vector<std::vector<std::string>> rows{{"parameter", "unit", "all"}};
   for (const std::string& log : repetition.logs) rows[0].push_back(log);
@@ -178,7 +178,7 @@ std::string textOf(const Repetition& repetition) {
     rows.back().push_back(saidOwner(parameter));
   }
   return text + "\n" + tableText(rows) + "\nFrom " + threeDigits(repetition.needed) +
-         " sigma between two logs on it is no chance, with " +
+         " sigma between two logs on it is significant, with " +
          std::to_string(repetition.parameters.size()) + " parameters and " +
          std::to_string(logs * (logs - 1) / 2) + (logs == 2 ? " pair" : " pairs") + " of logs.\n";
 }

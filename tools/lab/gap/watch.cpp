@@ -15,23 +15,23 @@
 namespace tread::gap {
 namespace {
 
-constexpr int64_t kBefore = 8'000'000;    // [us] before a reading, so that its entry is known
-constexpr int64_t kBehind = 1'500'000;    // [us] behind it, for messages and rows that end later
-constexpr int64_t kMostJump = 5'000'000;  // [us] no driving goes on over more
-constexpr double kSure = 2.0;             // deviations said with a size
+constexpr int64_t kBefore = 8'000'000;    // [us] before a reading, to determine its entry motion
+constexpr int64_t kBehind = 1'500'000;    // [us] after it, for late messages and rows
+constexpr int64_t kMostJump = 5'000'000;  // [us] a longer gap ends the driving
+constexpr double kSure = 2.0;             // standard deviations for reporting a size
 
 int64_t microseconds(double seconds) {
   return std::llround(1e6 * seconds);
 }
 
-/// How a part is said to have changed.
+/// Wording for a changed part.
 struct PartWords {
   const char* subject;
-  const char* more;  ///< what a positive change is
+  const char* more;  ///< meaning of a positive change
   const char* less;
   const char* unit;
-  double factor;       ///< of the number into that unit
-  const char* causes;  ///< what it may come from
+  double factor;       ///< conversion to that unit
+  const char* causes;  ///< possible causes
 };
 
 PartWords partWords(ChangedPart part) {
@@ -51,7 +51,7 @@ PartWords partWords(ChangedPart part) {
           "ms",           1000.0,  "the link, the controller or time stamps"};
 }
 
-/// "6 % less than the model says (4 to 8 %)".
+/// For instance "6 % less than the model says (4 to 8 %)".
 std::string sizeOf(const NoticedGap& gap, const PartWords& words) {
   const double size = words.factor * std::abs(gap.change);
   const double error = words.factor * kSure * gap.uncertainty;
@@ -62,9 +62,9 @@ std::string sizeOf(const NoticedGap& gap, const PartWords& words) {
          words.unit + ")";
 }
 
-/// Whether a model drives otherwise late in a session: on an empty battery, hot, on other ground.
+/// Whether the model depends on the session: empty battery, heat, other ground.
 bool dependsOnSession(const VehicleModel& vehicle) {
-  constexpr double kLate = 1e6;  // [s] later than any moment that an effect may have
+  constexpr double kLate = 1e6;  // [s] later than any change point
   EntryState fresh, late;
   late.context.session_time = kLate;
   late.context.battery_drop = 0.2;
@@ -97,10 +97,10 @@ std::string WallClock::timeOf(int64_t utime, int64_t begin) const {
 WatchedDrive::WatchedDrive(ModelDocument model, const WatchLimits& limits)
     : model_(std::move(model)), limits_(limits), watch_(limits) {
   if (dependsOnSession(model_.vehicle))
-    throw std::runtime_error(
-        model_.vehicle.name +
-        ": watch sees seconds, and this model depends on what was before them (time, battery, "
-        "heat); take such an effect out of it");
+    throw std::runtime_error(model_.vehicle.name +
+                             ": watch compares seconds of driving, but this model depends on the "
+                             "time before them (time, battery, "
+                             "heat); remove such an effect from it");
 }
 
 void WatchedDrive::startAt(int64_t utime) {
@@ -137,7 +137,7 @@ std::optional<WatchLine> WatchedDrive::take(const LogEvent& event) {
 }
 
 std::optional<WatchLine> WatchedDrive::evaluate() {
-  // A robot that stands shows nothing, not even the kind of its commands.
+  // A standing robot shows nothing, not even the kind of its commands.
   if (driven_ < next_) return std::nullopt;
   const Drive drive = toDrive(toDriveLog("watch", {recent_.begin(), recent_.end()}));
   if (drive.segments.empty()) return std::nullopt;
@@ -161,7 +161,7 @@ std::string WatchedDrive::wordsOf(const NoticedGap& gap) const {
   const PartWords words = partWords(gap.part);
   const std::string since =
       "since " + clock_.timeOf(microseconds(gap.since), begin_.value_or(0)) + " ";
-  if (gap.as_model) return since + words.subject + " as the model says again";
+  if (gap.as_model) return since + words.subject + " as the model predicts again";
   return since + words.subject + " " + sizeOf(gap, words) + ": " + words.causes;
 }
 

@@ -14,35 +14,36 @@
 
 namespace tread::gap {
 
-/// Relates the robot's clock to the time of day.
+/// Converts the robot's clock to the time of day.
 class WallClock {
  public:
-  /// From any process's HEALTH; virtual time has none.
+  /// From any process's HEALTH; virtual time has no UTC.
   void set(int64_t utime, int64_t utc);
-  /// "14:03:20" in the host's time zone, or "312 s" after `begin` where no clock is known.
+  /// "14:03:20" in the host's time zone, or "312 s" after `begin` if no UTC is known.
   std::string timeOf(int64_t utime, int64_t begin) const;
 
  private:
-  std::optional<int64_t> ahead_;  ///< [us] of UTC before the robot's clock
+  std::optional<int64_t> ahead_;  ///< [us] UTC minus the robot's clock
 };
 
-/// One line on what is new.
+/// One line on a new difference.
 struct WatchLine {
   std::string text;
-  bool as_model = false;  ///< nothing that was said holds any more
+  bool as_model = false;  ///< all reported differences are gone
 };
 
-/// Compares a drive with a model while it goes on.
-/** Messages come in the order of a log. A reading needs some ten seconds of INS and MOTOR without a
- * gap; where a clock jumps or a channel is silent the watch goes on behind it. */
+/// Compares a drive with a model while it runs.
+/** Messages come in the order of a log. A reading needs about 10 s of INS and MOTOR without a gap;
+ * after a clock jump or a silent channel the watch continues with a new reading. */
 class WatchedDrive {
  public:
-  /// Throws std::runtime_error with one line for a model whose terms depend on what was before the
-  /// last seconds: time, battery, heat.
+  /// Throws std::runtime_error with one line for a model whose terms depend on the past: time,
+  /// battery, heat.
   WatchedDrive(ModelDocument model, const WatchLimits& limits);
 
-  /// What is new; mostly nothing.
-  /** Throws std::runtime_error with one line where the commands are not the model's. */
+  /// A new difference, if any.
+  /** Throws std::runtime_error with one line if the commands are of another kind than the model's.
+   */
   std::optional<WatchLine> take(const LogEvent& event);
   /// [s] of driving that was compared.
   double compared() const { return compared_; }
@@ -59,8 +60,8 @@ class WatchedDrive {
   std::deque<LogEvent> recent_;
   std::optional<int64_t> begin_;  ///< [us] of the first message
   int64_t newest_ = 0;            ///< [us]
-  int64_t next_ = 0;              ///< [us] begin of the next reading
-  int64_t driven_ = 0;            ///< [us] when it last drove
+  int64_t next_ = 0;              ///< [us] start of the next reading
+  int64_t driven_ = 0;            ///< [us] last time of driving
   double compared_ = 0.0;
 };
 

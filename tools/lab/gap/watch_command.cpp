@@ -37,14 +37,14 @@ int watchLogs(const WatchOptions& options, const ModelDocument& model) {
     }
   const auto seconds = static_cast<int64_t>(drive.compared());
   if (seconds == 0)
-    throw std::runtime_error(log.damage.empty()
-                                 ? options.logs.front() +
-                                       ": no ten seconds of driving with INS and MOTOR; give a log "
-                                       "of a drive"
-                                 : log.damage);
+    throw std::runtime_error(
+        log.damage.empty()
+            ? options.logs.front() +
+                  ": less than ten seconds of driving with INS and MOTOR; give a log "
+                  "of a drive"
+            : log.damage);
   if (!log.damage.empty()) std::cout << log.damage << '\n';
-  if (!anything)
-    std::cout << "nothing new beyond chance in " << seconds << " s of driving" << std::endl;
+  if (!anything) std::cout << "nothing new in " << seconds << " s of driving" << std::endl;
   return anything ? kSomethingNew : 0;
 }
 
@@ -60,14 +60,16 @@ int watchRobot(const WatchOptions& options, const ModelDocument& model) {
 void addWatch(CLI::App& app, int& status) {
   const auto options = std::make_shared<WatchOptions>();
   CLI::App* command = app.add_subcommand(
-      "watch", "while the robot drives: what is new against its model, one line each");
+      "watch", "compare a driving robot with its model and report new differences, one line each");
   command->footer(
       "Reads INS and MOTOR from the bus and compares the last seconds of driving with the model:\n"
-      "what each drive gives, how it turns, when commands act. A change that lasts is said once, "
+      "the speed of each drive, the turning, the delay of commands. A lasting change is reported "
+      "once, "
       "on\n"
-      "the terminal, in HEALTH of gap_watch and as a MARK in the log. With LOGS the same of a\n"
-      "recording. On ground that is not the model's both drives and the turning differ: give a\n"
-      "model of the ground that is driven on. Exit status: 0 nothing new, 10 something, 2 bad "
+      "the terminal, in HEALTH of gap_watch and as a MARK in the log. With LOGS it reads a\n"
+      "recording instead. On another ground than the model's both drives and the turning differ: "
+      "use a\n"
+      "model of that ground. Exit status: 0 nothing new, 10 something, 2 bad "
       "input.");
   command->add_option("LOGS", options->logs,
                       "LCM logs instead of the bus; several are parts of one recording");
@@ -77,7 +79,7 @@ void addWatch(CLI::App& app, int& status) {
       ->check(CLI::Range(0.005, 0.5));
   command
       ->add_option("--hours", options->limits.hours,
-                   "of driving between two false alarms, at least, on average [h]")
+                   "least mean driving time between false alarms [h]")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 1e6));
   command->add_option("--lcm-url", options->lcm_url, "LCM provider");

@@ -10,17 +10,17 @@
 
 namespace tread::gap {
 
-/// Reports what is new against the model: on the terminal, in HEALTH of gap_watch, as a MARK for
-/// the log.
-/** If the robot's commands are of another kind than the model's, this is reported once, as FAILED;
- * the node goes on silently. */
+/// Reports new differences from the model: on the terminal, in HEALTH of gap_watch, and as a MARK
+/// for the log.
+/** If the robot's commands are of another kind than the model's, it reports this once, as FAILED,
+ * and then stays silent. */
 class WatchNode : public Node {
  public:
   WatchNode(Bus& bus, const ModelDocument& model, const WatchLimits& limits);
 
   int64_t period() const override { return 100'000; }
   void step(int64_t utime) override;
-  /// Whether something was new.
+  /// Whether there was a difference.
   bool anything() const { return anything_; }
 
  private:

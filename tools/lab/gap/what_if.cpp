@@ -19,7 +19,7 @@ using namespace report;
 
 namespace {
 
-/// Whether two names share a word of three letters or more: slip and slip_ratio.
+/// Whether two names share a word of three or more letters, as slip and slip_ratio.
 bool resemble(const std::string& name, const Effect& effect) {
   size_t begin = 0;
   while (begin < name.size()) {
@@ -31,7 +31,7 @@ bool resemble(const std::string& name, const Effect& effect) {
   return false;
 }
 
-/// An effect by name, else an error that lists the names which are near.
+/// An effect by name; otherwise an error that lists similar names.
 const Effect& effectOrNear(const std::string& name) {
   std::vector<std::string> all;
   std::vector<std::string> near;
@@ -57,7 +57,7 @@ std::string parameterNames(const Effect& effect) {
   return joinWords(names);
 }
 
-/// The name under which people set the size of an effect.
+/// Name by which people set the size of an effect.
 std::string firstStrength(const Effect& effect) {
   const EffectParameter& first = effect.parameters.front();
   return first.reciprocal() ? first.natural_name : first.name;
@@ -68,7 +68,7 @@ void setEffect(ModelDocument& model, const Effect& effect, const std::string& na
     const bool natural = parameter.reciprocal() && name == parameter.natural_name;
     if (!natural && name != parameter.name) continue;
     if (natural && value == 0.0)
-      throw std::runtime_error(name + "=0: a limit of 0 lets nothing move");
+      throw std::runtime_error(name + "=0: with a limit of 0 nothing can move");
     const double held = natural ? 1.0 / value : value;
     if (held < parameter.min || held > parameter.max)
       throw std::runtime_error(effect.name + "." + name + "=" + formatNumber(value) +
@@ -78,7 +78,7 @@ void setEffect(ModelDocument& model, const Effect& effect, const std::string& na
     valueOf(model, parameter) = held;
     return;
   }
-  throw std::runtime_error("'" + name + "' is no parameter of " + effect.name + "; it has " +
+  throw std::runtime_error("'" + name + "' is not a parameter of " + effect.name + "; it has " +
                            parameterNames(effect));
 }
 
@@ -114,13 +114,13 @@ std::vector<Pose2> posesOf(const std::vector<MotionSample>& motion) {
   return poses;
 }
 
-/// Millimetres below a decimetre; nobody measures tenths of them.
+/// In millimetres below 10 cm, without fractions.
 std::string shownDistance(double distance) {
   return std::abs(distance) < 0.1 ? formatted("%.0f mm", 1000.0 * distance)
                                   : formatted("%.2f m", distance);
 }
 
-/// Tenths of a degree; no -0.0.
+/// Tenths of a degree, without -0.0.
 std::string shownAngle(double angle) {
   const double tenths = std::round(10.0 * angle * 180.0 / kPi);
   return formatted("%.1f deg", tenths == 0.0 ? 0.0 : 0.1 * tenths);
@@ -174,15 +174,15 @@ Table tableOf(const LogComparison& comparison) {
   return table;
 }
 
-/// What full speed is in the manoeuvres, and why.
+/// Full speed of the manoeuvres and its reason.
 std::string fullSpeedText(const ModelDocument& first, double full) {
   if (first.vehicle.kind == CommandKind::kPower)
     return "full power (" + threeDigits(first.vehicle.full_speed) + " m/s by the model)";
   const std::string speed = threeDigits(full) + " m/s";
   if (!first.envelope || first.envelope->v <= 0.0)
-    return speed + " (the model's file does not say what it was made from)";
-  return speed + " (a quarter beyond the " + threeDigits(first.envelope->v) +
-         " m/s that the model was made from)";
+    return speed + " (the model's file has no envelope)";
+  return speed + " (a quarter above the " + threeDigits(first.envelope->v) +
+         " m/s of the model's envelope)";
 }
 
 }  // namespace
@@ -202,7 +202,7 @@ void turnOn(ModelDocument& model, const Effect& effect) {
 
 namespace {
 
-/// Takes an unnamed term out of a model; false if it has none by that name.
+/// Removes an unnamed term from a model; false if there is none of that name.
 bool removeTerm(ModelDocument& model, const std::string& name) {
   std::vector<UnnamedTerm>& terms = model.vehicle.unnamed;
   const auto term = std::find_if(terms.begin(), terms.end(),
@@ -248,7 +248,8 @@ std::string settingOf(const ModelDocument& first, const ModelDocument& second,
                      fullSpeedText(first, fullCommand(first, second)) + ".";
   if (!log_file.empty()) text += " Log: " + log_file + ".";
   return text +
-         " Before: the model as it is; after: what if. Headings: after less before, left positive.";
+         " Before: the model as it is; after: the changed model. Headings: after minus before, "
+         "left positive.";
 }
 
 std::vector<ManoeuvreComparison> compareModels(const ModelDocument& first,
@@ -291,7 +292,7 @@ std::string textOf(const std::vector<ManoeuvreComparison>& comparisons) {
   }
   if (!any)
     text +=
-        "No manoeuvre shows a difference. What depends on slope, battery, heat or time wants "
+        "No manoeuvre shows a difference. Effects of slope, battery, heat or time need "
         "--pitch, --roll, --battery-drop, --minutes or --worked.\n";
   return text;
 }
@@ -320,19 +321,19 @@ Page pageOf(const std::string& question, const std::string& setting,
   for (const ManoeuvreComparison& comparison : comparisons)
     table.rows.push_back(
         {comparison.name, shownDistance(comparison.position), shownAngle(comparison.yaw)});
-  page.first = {
-      Paragraph{"The same commands, simulated with the model as it is and as it would be; "
-                "differences after two seconds."},
-      Paragraph{setting}, table};
-  page.sections.push_back({"Manoeuvres",
-                           {Pictures{picturesOf(comparisons),
-                                     "Orange, dashed: as it is. Blue: what if. Ahead is up."}}});
+  page.first = {Paragraph{"The same commands, simulated with the present and the changed model; "
+                          "differences after two seconds."},
+                Paragraph{setting}, table};
+  page.sections.push_back(
+      {"Manoeuvres",
+       {Pictures{picturesOf(comparisons),
+                 "Orange, dashed: present model. Blue: changed model. Ahead is up."}}});
   for (const LogComparison& comparison : on_log)
     page.sections.push_back(
         {"On the log",
-         {tableOf(comparison),
-          Pictures{picturesOf(comparison),
-                   "The executions on which the two differ most; old: as it is, new: what if."}}});
+         {tableOf(comparison), Pictures{picturesOf(comparison),
+                                        "The executions with the largest differences; old: present "
+                                        "model, new: changed model."}}});
   return page;
 }
 

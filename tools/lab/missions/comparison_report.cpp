@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Executions on the new surface after which the text shows the pooled ratios.
+/// Numbers of executions on the new surface for which the text shows pooled ratios.
 constexpr size_t kShownAfter[] = {0, 5, 10, 20};
 
 /// One rule on some executions.
@@ -52,7 +52,7 @@ std::vector<Row> rowsOfWorlds(const RuleComparison& comparison, const Omniscient
   return rows;
 }
 
-/// Errors of the oracle; its settling is left empty.
+/// Errors of the oracle, which has no settling.
 Row omniscientRow(const std::vector<MissionResult>& results, const Omniscient& omniscient) {
   Row row;
   row.rule = "omniscient";
@@ -64,7 +64,7 @@ Row omniscientRow(const std::vector<MissionResult>& results, const Omniscient& o
   return row;
 }
 
-/// Each rule on the executions of the first rule's drives.
+/// Each rule's predictions for the executions of the first rule's drives.
 std::vector<Row> rowsOfExecutions(const RuleComparison& comparison, const Omniscient& omniscient) {
   std::vector<Row> rows;
   const std::vector<MissionResult>& results = comparison.batches.front().results;
@@ -95,8 +95,8 @@ void printTable(std::ostream& out, const std::vector<Row>& rows) {
   for (const Row& row : rows) printErrors(out, row.rule, "all on one surface", row.all);
 }
 
-/// Difference of a mean error to that of another rule on the same executions; missions are what is
-/// independent, so the interval is over them.
+/// Difference between the mean errors of two rules on the same executions. Missions are
+/// independent, so the interval is over missions.
 struct Difference {
   double position = 0.0, yaw = 0.0;            ///< [m], [rad]; negative is better
   double half_position = 0.0, half_yaw = 0.0;  ///< half the 95 % interval
@@ -137,7 +137,7 @@ void printDifferences(std::ostream& out, const std::vector<MissionResult>& resul
   if (results.empty() || results.front().shadow_rules.size() < 2) return;
   const std::vector<learner::Rule>& rules = results.front().shadow_rules;
   out << "  less than " << rules.front()
-      << " on them (negative is better), with the 95 % interval over missions:\n";
+      << " on these executions (negative is better), with the 95 % interval over missions:\n";
   const auto around = [](MeanError ErrorsAroundChanges::*part) -> PartOf {
     return [part](const std::vector<MissionResult>& of, const ErrorOf& error) {
       return errorsAroundChanges(of, error).*part;
@@ -166,7 +166,7 @@ std::string firstWithin(const std::vector<double>& ratios) {
   return "never";
 }
 
-/// Pooled ratios after 0, 5, 10 and 20 executions; a dash where too few changes have that many.
+/// Pooled ratios after 0, 5, 10 and 20 executions; a dash if too few changes have that many.
 std::string ratiosText(const std::vector<double>& ratios) {
   std::string text;
   for (const size_t n : kShownAfter)
@@ -177,7 +177,7 @@ std::string ratiosText(const std::vector<double>& ratios) {
 void printSettling(std::ostream& out, const Row& row, const char* which, const Settling& settling) {
   if (settling.changes == 0) return;
   out << formatted(
-      "  %-12s %-10s %7d %8d  %11s %5s %5s  %9s %5s  %s  %s\n", row.rule.c_str(), which,
+      "  %-12s %-10s %7d %8d  %11s %5s %5s  %11s %5s  %s  %s\n", row.rule.c_str(), which,
       settling.changes, settling.missions, countText(settling.position).c_str(),
       countText(settling.yaw).c_str(), countText(settling.both).c_str(),
       firstWithin(settling.position_ratio).c_str(), firstWithin(settling.yaw_ratio).c_str(),
@@ -186,11 +186,13 @@ void printSettling(std::ostream& out, const Row& row, const char* which, const S
 
 void printSettlingTable(std::ostream& out, const std::vector<Row>& rows) {
   out << formatted(
-      "  executions on a new surface until the mean error of the next %zu is within %.1f of the "
-      "omniscient one's,\n  as the median of changes and of all changes pooled, and that error "
-      "over the omniscient one's after 0, 5, 10, 20:\n",
+      "  executions on a new surface until the mean error of the next %zu is at most %.1f times "
+      "the "
+      "omniscient one's:\n  median over the changes, and all changes pooled; then the ratio of the "
+      "two errors after 0, 5, 10 and 20 executions:\n",
       Settling::kWindow, Settling::kWithin);
-  out << "  rule         surface    changes missions    median: m   rad  both  pooled: m   rad     "
+  out << "  rule         surface    changes missions  median: pos   yaw  both  pooled: pos   yaw   "
+         "  "
          "position after 0 5 10 20       yaw after 0 5 10 20\n";
   for (const Row& row : rows) printSettling(out, row, "any", row.settling);
   for (const Row& row : rows) printSettling(out, row, "first met", row.first_met);
@@ -198,7 +200,7 @@ void printSettlingTable(std::ostream& out, const std::vector<Row>& rows) {
 }
 
 void printDrives(std::ostream& out, const RuleComparison& comparison) {
-  out << "  rule         missions  arrived  refused  idle  stopped  contacts  metres  patterns\n";
+  out << "  rule         missions  arrived  refused  idle  stopped  contacts  path [m]  patterns\n";
   for (const MissionBatch& batch : comparison.batches) {
     double metres = 0.0;
     int patterns = 0;
@@ -207,11 +209,46 @@ void printDrives(std::ostream& out, const RuleComparison& comparison) {
       patterns += result.completed;
     }
     out << formatted(
-        "  %-12s %8zu %8d %8d %5d %8d %9d %7.0f %9d\n", batch.rule.c_str(), batch.results.size(),
+        "  %-12s %8zu %8d %8d %5d %8d %9d %9.0f %9d\n", batch.rule.c_str(), batch.results.size(),
         countOf(batch, MissionOutcome::kArrived), countOf(batch, MissionOutcome::kRefused),
         countOf(batch, MissionOutcome::kIdle), countOf(batch, MissionOutcome::kStopped),
         collisionsOf(batch), metres, patterns);
   }
+}
+
+/// A rule's error, only for executions that the oracle predicts, too.
+ErrorOf whereKnown(ErrorOf error, const Omniscient& omniscient) {
+  return [error = std::move(error), &omniscient](
+             const ScoredExecution& execution,
+             uint64_t seed) -> std::optional<report::PredictionError> {
+    if (!omniscient.errorOf(execution, seed)) return std::nullopt;
+    return error(execution, seed);
+  };
+}
+
+/// For the headline: how much of the way from `off` to the oracle each rule closes, on the same
+/// executions; empty if `off` is not among the rules or the oracle knows too little.
+std::string closedText(const std::vector<MissionResult>& results, const Omniscient& omniscient) {
+  if (results.empty()) return "";
+  const std::vector<learner::Rule>& rules = results.front().shadow_rules;
+  const auto off = std::find(rules.begin(), rules.end(), "off");
+  if (off == rules.end()) return "";
+  const auto settled = [&](const ErrorOf& error) {
+    return errorsAroundChanges(results, whereKnown(error, omniscient)).settled;
+  };
+  const MeanError none = settled(errorByRule(static_cast<size_t>(off - rules.begin())));
+  const MeanError best = omniscientRow(results, omniscient).errors.settled;
+  if (none.position <= best.position || none.yaw <= best.yaw) return "";
+  std::string text;
+  for (size_t i = 0; i < rules.size(); ++i) {
+    if (rules[i] == "off") continue;
+    const MeanError mine = settled(errorByRule(i));
+    text += formatted("%s%s %.0f %% (yaw %.0f %%)", text.empty() ? "" : ", ", rules[i].c_str(),
+                      100.0 * (none.position - mine.position) / (none.position - best.position),
+                      100.0 * (none.yaw - mine.yaw) / (none.yaw - best.yaw));
+  }
+  if (text.empty()) return "";
+  return "; closes of the way from off to omniscient, 5..15 executions after a change: " + text;
 }
 
 /// JSON has no infinity: null = never.
@@ -255,6 +292,8 @@ double timeOf(const MissionResult& result) {
 
 void printComparison(std::ostream& out, const RuleComparison& comparison) {
   const Omniscient omniscient = omniscientOf(comparison);
+  out << outcomesOf(comparison.batches)
+      << closedText(comparison.batches.front().results, omniscient) << '\n';
   out << "the same worlds, each rule drives:\n";
   printDrives(out, comparison);
   const std::vector<Row> own = rowsOfWorlds(comparison, omniscient);
@@ -318,9 +357,8 @@ void printOmniscient(std::ostream& out, const OmniscientComparison& comparison) 
                    comparison.learning.rule.c_str(),
                    countOf(comparison.omniscient, MissionOutcome::kArrived), ratios.size());
   if (ratios.empty()) return;
-  out << formatted(
-      "time to the goal over the omniscient robot's: median %.3f, p90 %.3f, worst %.3f\n",
-      quantileOf(ratios, 0.5), quantileOf(ratios, 0.9), ratios.back().ratio());
+  out << formatted("time to the goal, learning / omniscient: median %.3f, p90 %.3f, worst %.3f\n",
+                   quantileOf(ratios, 0.5), quantileOf(ratios, 0.9), ratios.back().ratio());
   for (size_t i = 0; i < std::min(kShown, ratios.size()); ++i) {
     const TimeRatio& at = ratios[ratios.size() - 1 - i];
     out << formatted("  seed %-6llu %.2f  (%.1f s, %.1f s)\n",

@@ -23,15 +23,15 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kPlain = 1000.0;  ///< [m] places of worlds lie within it
-/// Around all that a world holds [m].
+constexpr double kPlain = 1000.0;  ///< [m] all coordinates of a world must be within it
+/// Margin around everything in a world [m].
 constexpr double kBorder = 10.0;
-/// Of discs: higher than any range finder of a robot [m].
+/// Height of the discs, above any range finder [m].
 constexpr double kDiscHeight = 1.0;
-/// The metric's top speed [m/s].
+/// Reference speed of the metric [m/s].
 constexpr double kMetricSpeed = 2.0;
 
-/// Where a run begins and ends; as shipped, those of the BARN benchmark.
+/// Start and goal of a run; by default those of the BARN benchmark.
 struct Course {
   Pose2 start{-2.25, 3.0, kPi / 2.0};
   Vector2d goal{-2.25, 13.0};
@@ -49,7 +49,7 @@ MissionWorld worldOf(const Course& course, sim::WorldDescription description, do
   return world;
 }
 
-/// Around the course and all discs.
+/// Bounding box of the course and all discs.
 sim::Extent boundsOf(const Course& course, const std::vector<sim::Obstacle>& discs) {
   sim::Extent bounds = sim::extentOf({course.start.position(), course.goal});
   for (const sim::Obstacle& disc : discs) {
@@ -62,7 +62,7 @@ sim::Extent boundsOf(const Course& course, const std::vector<sim::Obstacle>& dis
   return bounds;
 }
 
-/// Lengths of reference paths [m], by world; empty where there is no table.
+/// Lengths of reference paths [m] by world; empty if there is no table.
 std::map<std::string, double> pathsBeside(const std::string& file) {
   std::map<std::string, double> paths;
   const auto index = std::filesystem::path(file).parent_path() / "index.csv";
@@ -86,7 +86,7 @@ class DiscFile {
     if (!unpacked.problem().empty()) throw ConfigError(unpacked.problem());
     for (std::string line; std::getline(lines, line);) take(line);
     if (worlds_.empty())
-      throw ConfigError(file_ + ": holds no world; lines are \"world x y radius\" in metres");
+      throw ConfigError(file_ + ": contains no world; lines are \"world x y radius\" in metres");
     const std::map<std::string, double> paths = pathsBeside(file_);
     std::vector<MissionWorld> worlds;
     for (sim::WorldDescription& world : worlds_) {
@@ -166,7 +166,7 @@ std::vector<MissionWorld> readListed(const std::string& file) {
     description.name = name;
     worlds.push_back(worldOf(own, std::move(description), path));
   }
-  if (worlds.empty()) throw reader.error("worlds", "holds no world; list worlds, or name discs");
+  if (worlds.empty()) throw reader.error("worlds", "contains no world; give worlds or discs");
   reader.finish();
   return worlds;
 }

@@ -6,8 +6,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "common/config/config_folder.hpp"
 #include "common/config/command_line.hpp"
+#include "common/config/config_folder.hpp"
 #include "common/config/outputs.hpp"
 #include "common/config/scalars.hpp"
 #include "common/report/text.hpp"
@@ -35,7 +35,7 @@ struct Arguments {
   std::optional<uint64_t> show;
   std::string picture;  ///< empty = kPicture
   std::string log;
-  std::string simulator;  ///< configuration with the place to drive in; empty = drawn by the seed
+  std::string simulator;     ///< configuration with the world; empty = drawn by the seed
   std::vector<double> goal;  ///< [m] in map, with simulator
   std::string truth;
   std::string robot = shippedConfig() + "/robots/teodor";
@@ -43,65 +43,67 @@ struct Arguments {
   bool compare_omniscient = false;
   std::string worlds;               ///< file of given worlds; empty = drawn by the seeds
   std::vector<std::string> only;    ///< names of some of them; empty = all
-  GivenGround ground;               ///< of all of them
-  std::vector<std::string> speeds;  ///< ways to choose the speed, to compare; empty = as configured
+  GivenGround ground;               ///< ground of all worlds
+  std::vector<std::string> speeds;  ///< speed methods to compare; empty = as configured
 };
 
 std::string refusalOfRule(const std::string& word) {
   if (patternSourceOf(word)) return {};
-  return "no rule of learning: " + word + "; there are " + joinWords(learner::ruleNames());
+  return "unknown learning rule: " + word + "; there are " + joinWords(learner::ruleNames());
 }
 
 void defineWorlds(CLI::App& app, Arguments& arguments) {
   CLI::Option* worlds =
       app.add_option("--worlds", arguments.worlds,
                      "drive the worlds of this file against the clock: \"world x y radius\" lines "
-                     "as the BARN benchmark's, or YAML (tools/lab/missions/README.md)")
+                     "as in the BARN benchmark, or YAML (tools/lab/missions/README.md)")
           ->excludes("--missions")
           ->excludes("--world")
           ->excludes("--length")
           ->excludes("--compare-omniscient")
           ->excludes("--speeds")
           ->excludes("--simulator");
-  app.add_option("--only", arguments.only, "names of some of those worlds")
+  app.add_option("--only", arguments.only, "drive only these worlds of the file")
       ->delimiter(',')
       ->needs(worlds);
   app.add_option("--surface", arguments.ground.surface,
-                 "ground of all of them (default: as they say, tarmac)")
+                 "ground of all worlds (default: that of each world, else tarmac)")
       ->needs(worlds);
   app.add_option("--friction", arguments.ground.friction,
-                 "its friction in the place of that surface's (default: of ice)")
+                 "friction of that surface (without --surface: of ice)")
       ->check(CLI::Range(0.01, 2.0))
       ->needs(worlds);
 }
 
 void define(CLI::App& app, Arguments& arguments) {
   app.add_option("--missions", arguments.missions, "how many")->check(CLI::Range(1, 100000));
-  app.add_option("--seed", arguments.seed, "seed of the first one; the others count up from it");
+  app.add_option("--seed", arguments.seed,
+                 "seed of the first mission; the others count up from it");
   app.add_option("--world", arguments.world, "kind of world (see tools/lab/missions/README.md)")
       ->check(CLI::IsMember(worldKinds()));
   CLI::Option* one =
       app.add_option("--rule", arguments.rule,
-                     "rule of learning (default: as in learner.yaml); with --worlds also what "
+                     "learning rule (default: that of learner.yaml); with --worlds also what "
                      "--rules takes")
           ->check(CLI::Validator(refusalOfRule, "RULE"));
   CLI::Option* several =
       app.add_option(
              "--rules", arguments.rules,
-             "compare rules: each drives all missions, and all judge the first one's drives; with "
-             "--worlds also omniscient, RULE+true_means and RULE+true_covariances: all or a part "
-             "of the true patterns in the place of what is learned")
+             "compare rules: each drives all missions, and all predict the first one's drives; "
+             "with "
+             "--worlds also omniscient, RULE+true_means and RULE+true_covariances: all or part "
+             "of the true patterns replace the learned ones")
           ->delimiter(',')
           ->check(CLI::Validator(refusalOfRule, "RULE"))
           ->excludes(one);
   app.add_flag("--compare-omniscient", arguments.compare_omniscient,
-               "drive all missions, and once more without learning: the planner is given the true "
-               "patterns of the ground below it; ratio of times to the goal")
+               "drive all missions, and again without learning: the planner gets the true "
+               "patterns of the ground under the robot; prints the ratio of the times to the goal")
       ->excludes(several);
   app.add_option(
          "--speeds", arguments.speeds,
-         "compare speeds: always fast or slow, by what is seen or felt of the ground, or by "
-         "both, learned; each drives all missions")
+         "compare speed methods: always fast or slow, by the seen or the felt ground, or by "
+         "both (learned); each drives all missions")
       ->delimiter(',')
       ->check(CLI::IsMember(speedMethods()))
       ->excludes(several);
@@ -109,14 +111,16 @@ void define(CLI::App& app, Arguments& arguments) {
                  "shortest straight line to the goal [m]; longer ones stay longer on each "
                  "surface")
       ->check(CLI::Range(25.0, 300.0));
-  app.add_option("--faults", arguments.fault_file, "YAML file with faults of messages and nodes");
-  app.add_option("--threads", arguments.threads, "missions at the same time")
+  app.add_option(
+      "--faults", arguments.fault_file,
+      "YAML file with faults of messages and nodes, for instance config/missions/faults.yaml");
+  app.add_option("--threads", arguments.threads, "number of missions at the same time")
       ->check(CLI::Range(1, 64));
   Outputs outputs(app);
   outputs.file("--json", arguments.json, "write the report to this file");
   app.add_option("--show", arguments.show,
                  "draw the mission with this seed, with --worlds the world of this name; with "
-                 "--rules, how each drives it, side by side");
+                 "--rules each rule's drive, side by side");
   outputs.file("--picture", arguments.picture,
                std::string("file of that picture (PNG); default ") + kPicture);
   outputs.derived([&arguments] {
@@ -139,10 +143,10 @@ void define(CLI::App& app, Arguments& arguments) {
                           ->needs(place);
   place->needs(goal);
   outputs.file("--truth", arguments.truth,
-               "record what really happened in the mission with seed --seed (CSV)");
+               "record the true motion in the mission with seed --seed (CSV)");
   app.add_option("--robot", arguments.robot, "folder with the robot's configuration files");
   app.add_option("--set", arguments.overrides,
-                 "PROCESS.KEY=VALUE in the place of what that process's file says; "
+                 "PROCESS.KEY=VALUE overrides a value in that process's file; "
                  "planner.margins.growth=0 drives without inflation by uncertainty")
       ->expected(1)
       ->take_all();
@@ -174,7 +178,7 @@ BatchOrder orderOf(const Arguments& arguments, const std::string& name, bool fir
   return order;
 }
 
-/// One drive in full, several side by side.
+/// Draws one drive per batch, side by side.
 void draw(const Arguments& arguments, const std::vector<const MissionBatch*>& batches) {
   if (!arguments.show) return;
   if (batches.size() == 1) {
@@ -203,8 +207,9 @@ MissionBatch driveLearning(const Arguments& arguments, const RobotConfig& robot)
 
 void compareOmniscient(const Arguments& arguments, const RobotConfig& robot) {
   if (robot.world.changesOnTheWay())
-    throw std::invalid_argument("--compare-omniscient: in the world " + robot.world.name +
-                                " the vehicle changes on its way; there is no one truth of it");
+    throw std::invalid_argument(
+        "--compare-omniscient: in the world " + robot.world.name +
+        " the vehicle changes on its way, so it has no single true pattern set");
   OmniscientComparison comparison;
   std::cout << "learning" << std::endl;
   comparison.learning = driveLearning(arguments, robot);
@@ -254,7 +259,7 @@ void compareSpeeds(const Arguments& arguments, const RobotConfig& robot) {
   if (!arguments.json.empty()) writeSpeeds(arguments.json, comparison);
 }
 
-/// True patterns are of known ground; built in are those that worlds do not bring themselves.
+/// True patterns for the worlds' surfaces; built-in ones unless the worlds define their own.
 TruePatterns truePatternsIn(const std::vector<MissionWorld>& worlds, const RobotConfig& robot) {
   std::vector<sim::SurfaceParameters> surfaces;
   for (const MissionWorld& world : worlds)
@@ -300,14 +305,13 @@ void driveGivenWorlds(Arguments arguments, const RobotConfig& robot) {
   if (!arguments.json.empty()) writeWorlds(arguments.json, batches);
 }
 
-/// What only given worlds can be driven with is refused elsewhere.
+/// Options that need given worlds are refused without them.
 void refuseTruth(const Arguments& arguments) {
   std::vector<std::string> words = arguments.rules;
   if (!arguments.rule.empty()) words.push_back(arguments.rule);
   for (const std::string& word : words)
     if (patternSourceOf(word)->truth)
-      throw std::invalid_argument(word +
-                                  " needs --worlds; elsewhere there is --compare-omniscient");
+      throw std::invalid_argument(word + " needs --worlds; without it use --compare-omniscient");
 }
 
 void drive(const Arguments& arguments) {
@@ -330,13 +334,13 @@ void drive(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Drives seeded missions in virtual time: the whole robot on changing ground.",
+  CLI::App app{"Drives seeded missions of the complete robot on changing ground, in virtual time.",
                "tread-missions"};
   Arguments arguments;
   define(app, arguments);
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   return runProgram("tread-missions", [&] {
-    // --show alone means: that mission.
+    // --show alone selects that mission.
     if (arguments.show && arguments.worlds.empty() && app.count("--seed") == 0 &&
         arguments.missions == 1)
       arguments.seed = *arguments.show;

@@ -18,9 +18,10 @@
 namespace tread::missions {
 namespace {
 
-/// Of a timed run's tolerance, so that the planner aims well within it: 0.6 m where that is 1 m.
+/// Share of a timed run's tolerance that the planner gets, so that it aims well inside: 0.6 m of 1
+/// m.
 constexpr double kAskedShare = 0.6;
-constexpr int64_t kTick = 50'000;  ///< [us] between looks at the robot
+constexpr int64_t kTick = 50'000;  ///< [us] between checks of the robot
 
 double threadSeconds() {
   timespec time{};
@@ -28,7 +29,7 @@ double threadSeconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// Adds the prediction errors of the shadow rules.
+/// Adds the shadow rules' prediction errors.
 void addShadows(report::ShadowLearners& shadows, MissionResult& result) {
   shadows.finish();
   result.shadow_rules = shadows.rules();
@@ -47,7 +48,7 @@ std::string titleOf(const MissionResult& result) {
       result.reason.empty() ? "" : ": ", result.reason.c_str());
 }
 
-/// The threads that share the missions of one order.
+/// Threads that share the missions of one order.
 class BatchRun {
  public:
   BatchRun(const RobotConfig& robot, const BatchOrder& order) : robot_(robot), order_(order) {}

@@ -16,10 +16,11 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Around start and goal: room to turn on the spot.
+/// Radius around start and goal that stays free, for turning on the spot.
 constexpr double kFreeRadius = 2.2;
 
-/// Draws numbers in the same way on every machine (the standard's distributions do not).
+/// A random generator with the same numbers on every platform (the standard's distributions
+/// differ).
 class Rng {
  public:
   explicit Rng(uint64_t seed) : engine_(seed) {}
@@ -34,7 +35,7 @@ class Rng {
   std::mt19937_64 engine_;
 };
 
-/// Obstacles in the frame of the way: start in the origin, goal on the x axis.
+/// Obstacles in a frame with the start at the origin and the goal on the x axis.
 struct Layout {
   FootprintSize robot;  ///< its outline
   double length = 0.0;
@@ -62,11 +63,11 @@ double distanceTo(const sim::Obstacle& obstacle, const Vector2d& p) {
   return inside ? 0.0 : nearest;
 }
 
-/// Distance between two obstacles; 0 where they touch at a corner.
+/// Distance between two obstacles; 0 if they touch.
 double gapBetween(const sim::Obstacle& a, const sim::Obstacle& b) {
   if (a.isDisc()) return std::max(0.0, distanceTo(b, a.centre) - a.radius);
   if (b.isDisc()) return gapBetween(b, a);
-  // Convex polygons that do not overlap are nearest at a corner of one of them.
+  // The shortest distance of disjoint convex polygons is at a corner of one of them.
   double gap = 1e9;
   for (const Vector2d& corner : a.corners) gap = std::min(gap, distanceTo(b, corner));
   for (const Vector2d& corner : b.corners) gap = std::min(gap, distanceTo(a, corner));
@@ -78,8 +79,8 @@ bool nearEnds(const Layout& layout, const sim::Obstacle& obstacle) {
          distanceTo(obstacle, {layout.length, 0.0}) < kFreeRadius;
 }
 
-/// Adds obstacles that belong together unless one is near the start or the goal, or nearer to
-/// another obstacle than `gap` [m].
+/// Adds a group of obstacles unless one is near start or goal, or closer than `gap` [m] to another
+/// obstacle.
 bool addApart(Layout& layout, const std::vector<sim::Obstacle>& parts, double gap) {
   for (const sim::Obstacle& part : parts) {
     if (nearEnds(layout, part)) return false;
@@ -90,7 +91,7 @@ bool addApart(Layout& layout, const std::vector<sim::Obstacle>& parts, double ga
   return true;
 }
 
-/// A wall across the way with one gap beside the straight line.
+/// A wall across the way with one gap off the straight line.
 void addWall(Layout& layout, Rng& rng, double x) {
   const double yaw = kPi / 2 + rng.between(-0.3, 0.3);
   const double gap = rng.between(narrowestGap(layout.robot), narrowestGap(layout.robot) + 0.92);
@@ -109,14 +110,14 @@ void addWall(Layout& layout, Rng& rng, double x) {
            2.0);
 }
 
-/// A pocket that opens towards the start and lies on the straight line.
+/// A pocket on the straight line that opens towards the start.
 void addPocket(Layout& layout, Rng& rng, double x) {
   const double width = rng.between(3.0, 5.0);
   const double depth = rng.between(2.0, 4.0);
   const Pose2 back{x, rng.between(-0.8, 0.8), rng.between(-0.3, 0.3)};
   const double height = rng.between(0.9, 1.6);
   const double thickness = 0.3;
-  // The sides overlap the back by its thickness, so that no slit is left.
+  // The sides overlap the back by its thickness, which leaves no slit.
   addApart(layout,
            {sim::boxObstacle(back, thickness, width, height),
             sim::boxObstacle(back * Pose2{-depth / 2, width / 2 - thickness / 2, 0.0},
@@ -148,8 +149,8 @@ bool lineBlocked(const Layout& layout) {
   return false;
 }
 
-/// Whether a disc of the robot's half width plus 12 cm finds a way: necessary for the footprint to
-/// find one.
+/// Whether a disc of half the robot's width plus 12 cm finds a path: a necessary condition for the
+/// footprint.
 bool hasWay(const Layout& layout) {
   constexpr double kCell = 0.2;
   constexpr double kSide = 14.0;
@@ -224,7 +225,7 @@ void addSurfaces(MissionWorld& world, Rng& rng, double length, const Pose2& T_ma
   }
 }
 
-/// Covers each border with a stretch; on the straight line no two meet.
+/// Covers each border with a stretch; on the straight line the stretches are disjoint.
 void addStretches(MissionWorld& world, Rng& rng, const WorldKind& kind) {
   world.description.surfaces = kind.surfaces;
   if (kind.between.empty()) return;
@@ -237,8 +238,7 @@ void addStretches(MissionWorld& world, Rng& rng, const WorldKind& kind) {
   world.surface_changes *= 2;
 }
 
-/// Two or three stretches with bumps, as wide as the obstacles lie, so that no way leads round
-/// them.
+/// Two or three bumpy stretches, as wide as the obstacle field, so that no path avoids them.
 void addRoughGround(MissionWorld& world, Rng& rng, const WorldKind& kind, const Pose2& T_map_way) {
   if (!kind.rough) return;
   const int stretches = 2 + rng.below(2);
@@ -262,7 +262,7 @@ void addTerrain(MissionWorld& world, Rng& rng) {
     const double k = 2.0 * kPi / rng.between(14.0, 35.0);
     const double direction = rng.between(0.0, 2.0 * kPi);
     wave.k = {k * std::cos(direction), k * std::sin(direction)};
-    // Together at most 5 % of slope.
+    // At most 5 % slope in total.
     wave.amplitude = rng.between(0.0, 0.05) / waves / k;
     wave.phase = rng.between(0.0, 2.0 * kPi);
     world.description.terrain.waves.push_back(wave);
@@ -280,7 +280,7 @@ sim::Obstacle moved(const sim::Obstacle& obstacle, const Pose2& T_map_way) {
 
 MissionWorld makeMissionWorld(uint64_t seed, const FootprintSize& robot, double shortest,
                               const WorldKind& kind) {
-  // Neighbouring seeds must not give similar engines: spread them first (Weyl constant).
+  // Neighbouring seeds would give similar generators: spread them first (Weyl constant).
   Rng rng(seed * 0x9e3779b97f4a7c15ull + 1);
   MissionWorld world;
   world.seed = seed;

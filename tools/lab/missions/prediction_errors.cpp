@@ -12,7 +12,7 @@ namespace {
 
 using Executions = std::vector<const ScoredExecution*>;
 
-/// Sums that become means.
+/// Sums for means.
 struct ErrorSums {
   MeanError error;
   double metres = 0.0;
@@ -28,7 +28,7 @@ struct ErrorSums {
     radians += execution.turned;
   }
 
-  /// Executions with index first..last (1-based), clipped to what there is.
+  /// Executions with index first..last (1-based), clipped to the existing ones.
   void add(const Executions& executions, uint64_t seed, size_t first, size_t last,
            const ErrorOf& errorOf) {
     for (size_t i = first; i <= std::min(last, executions.size()); ++i)
@@ -63,8 +63,7 @@ struct SumsAround {
   }
 };
 
-/// Walks through one mission and adds the executions whose index since the last change is within
-/// [first, last].
+/// Adds a mission's executions whose index since the last change is within [first, last].
 void addAfterChanges(const MissionResult& result, int first, int last,
                      std::map<std::pair<std::string, std::string>, ErrorSums>& sums) {
   size_t change = 0;
@@ -151,10 +150,10 @@ std::vector<ErrorAfterChange> errorsAfterChange(const std::vector<MissionResult>
 
 namespace {
 
-constexpr size_t kKnownAfter = 10;     ///< executions on a surface that make it one met before
-constexpr size_t kFewestChanges = 10;  ///< that a pooled ratio stands on
+constexpr size_t kKnownAfter = 10;     ///< executions on a surface after which it counts as known
+constexpr size_t kFewestChanges = 10;  ///< changes needed for a pooled ratio
 
-/// Errors of a rule and of the omniscient one in one execution.
+/// Errors of a rule and of the oracle in one execution.
 struct Pair {
   double position, yaw;
   double best_position, best_yaw;
@@ -183,7 +182,7 @@ bool within(double error, double best) {
   return error <= Settling::kWithin * best;
 }
 
-/// When the first window fulfils a condition, or how long none did.
+/// Index of the first window that meets a condition, or of the last one if none does (censored).
 template <class Condition>
 std::pair<int, bool> timeOf(const Segment& segment, Condition condition) {
   const size_t windows = windowsIn(segment);

@@ -80,13 +80,12 @@ std::vector<Stop> StopDetector::stops(int64_t start, bool arrived) const {
 
 namespace {
 
-constexpr double kArrivedWithin =
-    0.8;                              ///< [m] of the true pose: tolerance of the goal and INS error
-constexpr double kClockStarts = 0.1;  ///< [m] from the start, of a timed run
-constexpr double kIdleAfter = 60.0;   ///< [s] without moving 10 cm
-constexpr double kRefusedAfter = 15.0;  ///< [s] of blocked or unreachable without a break
+constexpr double kArrivedWithin = 0.8;  ///< [m] true pose: tolerance of the goal plus INS error
+constexpr double kClockStarts = 0.1;    ///< [m] from the start: the clock of a timed run starts
+constexpr double kIdleAfter = 60.0;     ///< [s] within 10 cm
+constexpr double kRefusedAfter = 15.0;  ///< [s] blocked or unreachable without interruption
 constexpr int64_t kSurfaceConfirmed =
-    1'000'000;  ///< [us] on a new surface before it counts as a change
+    1'000'000;  ///< [us] on a new surface until it counts as a change
 
 }  // namespace
 
@@ -151,7 +150,7 @@ void Referee::hear(const plan_t& message) {
   result_.flips.push_back(*flip);
 }
 
-/// The first pattern of a plan is the one that runs.
+/// The first pattern of a plan is being executed.
 void Referee::notePlan(const plan_t& message) {
   if (message.expansions == 0) return;
   result_.plans.expansions.push_back(message.expansions);
@@ -217,7 +216,7 @@ void Referee::hear(const learning_t& message) {
 }
 
 void Referee::hear(const plan_tree_t& message) {
-  // The last plans before the goal are short; the one worth drawing was made on the way.
+  // The last plans before the goal are short; draw one from further away.
   if (!tree_.empty() && toGo() < 10.0) return;
   tree_ = report::edgesOf(message);
 }
@@ -274,7 +273,7 @@ void Referee::noteContacts() {
     result_.contacts[i].penetration = truth.collisions[i].penetration;
 }
 
-/// Where the body touches, the simulator keeps it where it last stood free.
+/// At a contact the simulator keeps the body at its last free pose.
 void Referee::noteClearance() {
   const FootprintSize& outline = system_.robot().settings().vehicle.outline;
   const Pose2 T_map_middle = last_pose_ * Pose2{(outline.front - outline.rear) / 2.0, 0.0, 0.0};
@@ -336,7 +335,7 @@ void Referee::judge() {
   if (plan_.plan_status == plan_t::PLAN_ARRIVED) {
     if (toGo() <= kArrivedWithin) return end(MissionOutcome::kArrived, "");
     return end(MissionOutcome::kStopped,
-               "the planner believes that it has arrived, the true pose says no");
+               "the planner reports arrival, but the true pose is outside the goal's tolerance");
   }
   const std::string plan = operators::statusWord(plan_.plan_status) + ": " + plan_.reason;
   if (refused_since_ && static_cast<double>(now - *refused_since_) * 1e-6 > kRefusedAfter)

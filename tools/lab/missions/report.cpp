@@ -22,6 +22,7 @@ bool isDigit(char c) {
 
 void printShares(std::ostream& out, const MissionBatch& batch) {
   const auto total = static_cast<double>(std::max<size_t>(1, batch.results.size()));
+  out << "outcome   missions  [%]\n";
   for (const MissionOutcome outcome :
        {MissionOutcome::kArrived, MissionOutcome::kRefused, MissionOutcome::kIdle,
         MissionOutcome::kStopped, MissionOutcome::kContact}) {
@@ -36,7 +37,7 @@ void printShares(std::ostream& out, const MissionBatch& batch) {
   }
 }
 
-/// The most frequent one first.
+/// Prints the most frequent one first.
 void printReasons(std::ostream& out, const std::map<std::string, int>& counts) {
   std::vector<std::pair<int, std::string>> reasons;
   for (const auto& [reason, count] : counts) reasons.emplace_back(-count, reason);
@@ -63,7 +64,7 @@ void printSteadiness(std::ostream& out, const std::vector<MissionResult>& result
   printReasons(out, steadiness.disarmed);
   int refused = 0;
   for (const auto& [reason, count] : steadiness.refused) refused += count;
-  out << formatted("executions %d, of which nothing was learned from %d\n", steadiness.executions,
+  out << formatted("executions %d, of which %d were not learned from\n", steadiness.executions,
                    refused);
   printReasons(out, steadiness.refused);
 }
@@ -90,7 +91,17 @@ void printErrors(std::ostream& out, const MissionBatch& batch, int first, int la
                      all.position / all.count, all.yaw / all.count);
 }
 
-/// Position and yaw error; a dash where nothing was measured.
+/// For the headline: the error of predictions after changes of surface; empty if there were none.
+std::string errorsInShort(const MissionBatch& batch) {
+  const ErrorsAroundChanges errors = errorsAroundChanges(batch.results, errorAsDriven());
+  if (errors.after.count == 0 || errors.settled.count == 0) return "";
+  return formatted(
+      "; prediction error after a change of surface %.3f m %.3f rad (patterns 1..3), then %.3f m "
+      "%.3f rad (5..15)",
+      errors.after.position, errors.after.yaw, errors.settled.position, errors.settled.yaw);
+}
+
+/// Position and yaw error; a dash if not measured.
 std::string errorText(const MeanError& error) {
   return error.count == 0 ? "-" : formatted("%.3f m %.3f rad", error.position, error.yaw);
 }
@@ -136,7 +147,7 @@ void addSteadiness(Json& json, const MissionBatch& batch) {
   for (const auto& [reason, count] : steadiness.refused) json["refusals"][reason] = count;
 }
 
-/// null where nothing was measured.
+/// null if not measured.
 void addError(Json& json, const std::string& when, const MeanError& error) {
   json[when + "_m"] = error.count > 0 ? Json(error.position) : Json(nullptr);
   json[when + "_rad"] = error.count > 0 ? Json(error.yaw) : Json(nullptr);
@@ -254,6 +265,22 @@ std::string resultOf(const MissionBatch& batch, uint64_t seed) {
   return words;
 }
 
+std::string outcomesOf(const std::vector<MissionBatch>& batches, const std::string& what) {
+  const size_t count = batches.empty() ? 0 : batches.front().results.size();
+  std::string arrived, contacts;
+  for (const MissionBatch& batch : batches) {
+    const std::string separator = arrived.empty() ? "" : ", ";
+    const int arrivals = countOf(batch, MissionOutcome::kArrived);
+    arrived += separator + batch.rule + formatted(" %d", arrivals);
+    contacts += separator + batch.rule + formatted(" %d", collisionsOf(batch));
+  }
+  const std::string all = formatted("%zu %s%s", count, what.c_str(), count == 1 ? "" : "s");
+  if (batches.size() != 1) return all + " each: arrived " + arrived + "; contacts " + contacts;
+  return all + formatted(": %d arrived, contacts %d",
+                         countOf(batches.front(), MissionOutcome::kArrived),
+                         collisionsOf(batches.front()));
+}
+
 std::string lineOf(const MissionResult& result) {
   if (result.timed) return timedLineOf(result);
   return formatted(
@@ -279,6 +306,7 @@ std::string crossingsOf(const MissionResult& result) {
 }
 
 void printSummary(std::ostream& out, const MissionBatch& batch) {
+  out << outcomesOf({batch}) << errorsInShort(batch) << '\n';
   printShares(out, batch);
   int blocked = 0;
   for (const MissionResult& result : batch.results) blocked += result.line_blocked ? 1 : 0;
@@ -324,7 +352,7 @@ nlohmann::ordered_json batchJson(const MissionBatch& batch) {
 }
 
 void writeJsonFile(const std::string& path, const nlohmann::ordered_json& json) {
-  // A reason comes from a message, which may have been broken: its bytes need not be UTF-8.
+  // A reason may come from a corrupted message, so its bytes need not be UTF-8.
   writeText(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n');
 }
 

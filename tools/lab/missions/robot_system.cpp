@@ -20,22 +20,22 @@
 namespace tread::missions {
 namespace {
 
-/// How long each node takes on the robot's two cores [us], as delays in virtual time. Rounded up
-/// from what benchmarks and HEALTH show on a machine of that class.
+/// Computing time of each node on the robot's two cores [us], as a delay in virtual time. Rounded
+/// up from benchmarks and HEALTH on a machine of that class.
 std::map<std::string, NodeTiming> usualTiming() {
   return {{"ins_driver", {100, 0}},    {"scan_matching", {2'000, 0}}, {"lidar_driver", {200, 300}},
           {"mapping", {8'000, 1'700}}, {"planner", {15'000, 3'100}},  {"learner", {1'000, 5'300}},
           {"motor_bridge", {100, 700}}};
 }
 
-/// Of every robot, and what only some have.
+/// Nodes of every robot and optional ones.
 std::vector<std::string> possibleNodes() {
   std::vector<std::string> names = robotNodes();
   names.push_back("scan_matching");
   return names;
 }
 
-/// The faults with "every receiver" spelled out.
+/// The faults with "every receiver" expanded.
 FaultPlan onTheRobot(const FaultPlan& faults) {
   FaultPlan spelled;
   spelled.nodes = faults.nodes;
@@ -50,7 +50,7 @@ FaultPlan onTheRobot(const FaultPlan& faults) {
   return spelled;
 }
 
-/// The files of a robot's folder, with overrides of their keys.
+/// The files of a robot's folder with overridden keys.
 class RobotFiles {
  public:
   RobotFiles(std::string folder, const std::vector<std::string>& overrides)
@@ -127,7 +127,7 @@ void requireEmulated(const std::string& device, const std::string& folder) {
 
 }  // namespace
 
-/// The driver's session, with its scans changed on their way to the bus.
+/// The driver's session; scans are altered on their way to the bus.
 class RobotSystem::DisturbedDevice : public lidar::ScanDevice {
  public:
   DisturbedDevice(std::unique_ptr<lidar::ScanDevice> device,
@@ -204,7 +204,7 @@ RobotSystem::RobotSystem(const RobotConfig& config, const sim::WorldDescription&
   settings.robot.start = T_map_start;
   settings.robot.start_utime = bus_->now();
   settings.robot.seed = seed;
-  // Goals are in the map, which begins where the robot is told that it stands.
+  // Without an INS the map begins at the given start pose, and goals are in the map.
   if (config_.scan_matching && !config_.hasIns())
     config_.scan_matching->matcher.start = T_map_start;
   devices_ = std::make_unique<sim::SimulatedDevices>(std::make_shared<const sim::World>(world),
@@ -279,10 +279,11 @@ namespace {
 const std::string kOperatorName = "mission operator";
 constexpr int64_t kGoalPeriod = 1'000'000;
 constexpr int64_t kGoalPatience =
-    1'500'000;  ///< [us] until a goal that the planner does not follow is given anew
-constexpr int64_t kFirstArming = 3'000'000;  ///< [us] after the start: all processes are up by then
-constexpr int64_t kArmAgainAfter = 2'000'000;  ///< [us] of standing disarmed: time to look around
-constexpr int64_t kArmRepeats = 1'000'000;     ///< [us] for which ARM is repeated
+    1'500'000;  ///< [us] until a goal that the planner does not follow is sent again
+constexpr int64_t kFirstArming = 3'000'000;  ///< [us] after the start, when all processes are up
+/// [us] disarmed at standstill, as for a person to look around
+constexpr int64_t kArmAgainAfter = 2'000'000;
+constexpr int64_t kArmRepeats = 1'000'000;  ///< [us] ARM is repeated
 
 }  // namespace
 

@@ -28,29 +28,28 @@
 
 namespace tread::missions {
 
-/// What of the true patterns an experiment gives the planner.
+/// Part of the true patterns that the planner gets in an experiment.
 enum class TrueShare {
-  kAll,         ///< means and covariances; nobody learns
-  kMeans,       ///< trajectories and classes, with the covariances of a rule that learns beside
-  kCovariances  ///< of the ends, with the trajectories of that rule
+  kAll,         ///< means and covariances; there is no learner
+  kMeans,       ///< trajectories and classes; covariances from a learning rule
+  kCovariances  ///< covariances of the ends; trajectories from that rule
 };
 
-/// What an omniscient robot would know: the patterns as each surface truly makes them.
-/** The simulator's ground truth executes every pattern on level ground of the surface, entered in
- * the steady motion of its entry class, without the ground's chance. That chance is in the
- * covariances: those of so many disturbed executions. Classes get the steady twists of the surface.
- * What even this robot does not know: slopes, and where within a pattern the surface changes. */
+/// Knowledge of an omniscient robot: each pattern as each surface really executes it.
+/** The simulator executes every pattern on level ground of the surface, entered in the steady
+ * motion of its entry class, without random disturbances. Covariances come from kDisturbed
+ * disturbed executions. Classes get the surface's steady twists. Slopes, and the position of a
+ * surface change within a pattern, are unknown even to this robot. */
 class TruePatterns {
  public:
-  /// For all built-in surfaces and some more; of a vehicle with speed loops, where the set asks
-  /// for speeds.
+  /// For all built-in surfaces and some more; for a vehicle with speed loops if the set commands
+  /// speeds.
   TruePatterns(const PatternSet& shipped, const sim::VehicleParameters& vehicle,
                const std::vector<sim::SurfaceParameters>& more = {});
 
-  /// The set of a surface under a version; throws std::out_of_range for a surface that is not
-  /// known.
+  /// The set of a surface under a version; throws std::out_of_range for an unknown surface.
   PatternSet on(const std::string& surface, int64_t version) const;
-  /// A learned set with the true means or covariances of a surface in the place of its own.
+  /// A learned set with its means or covariances replaced by the surface's true ones.
   PatternSet mixedInto(const PatternSet& learned, const std::string& surface,
                        TrueShare share) const;
 
@@ -58,14 +57,14 @@ class TruePatterns {
   std::map<std::string, PatternSetContent> by_surface_;
 };
 
-/// True patterns for a planner, and how many of them.
+/// True patterns for a planner, and which part of them.
 struct Knowledge {
-  const TruePatterns* patterns = nullptr;  ///< if given; they must outlive who is told of them
+  const TruePatterns* patterns = nullptr;  ///< if given; must outlive the planner
   TrueShare share = TrueShare::kAll;
 };
 
-/// In the learner's place: publishes the true set of the ground that the body stands on.
-/** A new version whenever that becomes another one; repeated as the learner repeats its own. */
+/// Replaces the learner: publishes the true set of the ground under the body.
+/** A new version at each change of ground; repeated as the learner repeats its own. */
 class TruePatternsNode : public Node {
  public:
   TruePatternsNode(const TruePatterns& patterns, const sim::SimulatedRobot& robot, Bus& bus)
@@ -81,40 +80,42 @@ class TruePatternsNode : public Node {
   const sim::SimulatedRobot& robot_;
   learner::SetPublisher publisher_;
   std::string surface_;
-  int64_t version_;  ///< begins with the seconds, so that a restarted node counts on
+  /// starts with the time in seconds, so that a restarted node continues upwards
+  int64_t version_;
   int64_t next_repeat_ = 0;
 };
 
-/// The configurations of all processes of one robot, as the files of its folder have them.
+/// Configurations of all processes of one robot, as in its folder.
 struct RobotConfig {
   explicit RobotConfig(learner::LearnerNodeConfig learner_config)
       : learner(std::move(learner_config)) {}
 
-  learner::LearnerNodeConfig learner;                              ///< with the shipped pattern set
-  ins::InsDriverConfig ins_driver;                                 ///< where the robot has an INS
-  std::optional<scan_matching::ScanMatchingConfig> scan_matching;  ///< where the robot has it
+  learner::LearnerNodeConfig learner;  ///< with the shipped pattern set
+  ins::InsDriverConfig ins_driver;     ///< if the robot has an INS
+  /// if the robot has scan matching
+  std::optional<scan_matching::ScanMatchingConfig> scan_matching;
   lidar::LidarDriverConfig lidar_driver;
   mapping::MappingConfig mapping;
   planner::PlannerConfig planner;
   motor::MotorBridgeConfig motor_bridge;
-  sim::RobotSettings simulated;              ///< what the simulator drives in its place
-  std::map<std::string, NodeTiming> timing;  ///< how long each node computes, as a model
-  WorldKind world;                           ///< that its missions take place in
+  sim::RobotSettings simulated;              ///< the simulator's counterpart
+  std::map<std::string, NodeTiming> timing;  ///< model of each node's computing time
+  WorldKind world;                           ///< world of the missions
 
-  /// Else scan matching is in the INS's place.
+  /// Otherwise scan matching replaces the INS.
   bool hasIns() const { return !scan_matching || scan_matching->fills_in; }
 };
 
-/// Names of the processes that a robot with an INS has on the bus; scan_matching may be there, too.
+/// Bus names of the processes of a robot with an INS; scan_matching is optional.
 const std::vector<std::string>& robotNodes();
 
 /// Reads a robot's folder (config/robots/teodor: one file a process); throws ConfigError with one
 /// clear line.
-/** An override is "process.key=value" or "process.section.key=value": it replaces what the file of
- * that process says. */
+/** An override is "process.key=value" or "process.section.key=value" and replaces the value in the
+ * file of that process. */
 RobotConfig readRobot(const std::string& folder, const std::vector<std::string>& overrides = {});
 
-/// Puts the robot into a kind of world; throws ConfigError with one clear line.
+/// Applies a kind of world to the robot; throws ConfigError with one clear line.
 void enterWorld(RobotConfig& robot, const std::string& kind);
 
 /// Reads a fault file: `messages` (channel, receiver, drop, duplicate, corrupt, reorder, reorder_s,
@@ -124,13 +125,13 @@ FaultPlan readFaultFile(const std::string& path);
 
 /// The whole robot and its world on a virtual bus: real nodes, real device bytes, real messages.
 /** Device lines are in-memory pipes between drivers and emulators. Links, stores and the simulated
- * robot outlive a node that is killed. A fault of messages to every receiver affects only the
- * robot's processes; observers outside receive every message unharmed. */
+ * robot survive the killing of a node. Message faults for every receiver affect only the robot's
+ * processes, not outside observers. */
 class RobotSystem {
  public:
-  /// `rule`: of learning; empty = the configuration's. `known`: all true patterns take the
-  /// learner's place (TruePatternsNode); a share of them is put into each set that it publishes, as
-  /// they are on the ground below the body when the set is new.
+  /// `rule`: learning rule; empty = that of the configuration. `known`: if all true patterns are
+  /// given, TruePatternsNode replaces the learner; if a part, it is put into each set that the
+  /// learner publishes, for the ground under the body at that time.
   RobotSystem(const RobotConfig& config, const sim::WorldDescription& world,
               const Pose2& T_map_start, uint64_t seed, const std::string& rule,
               const FaultPlan& faults, const Knowledge& known = {}, sim::RobotParts parts = {});
@@ -139,9 +140,9 @@ class RobotSystem {
   VirtualBus& bus() { return *bus_; }
   const sim::SimulatedRobot& robot() const { return devices_->robot(); }
   sim::SimulatedDevices& devices() { return *devices_; }
-  /// Cuts or mends a device's line: "ins" or "motor".
+  /// Disconnects or reconnects a device's line: "ins" or "motor".
   void connect(const std::string& device, bool connected);
-  /// Changes each scan that the range finder's driver has read.
+  /// Alters each scan that the range finder's driver has read.
   void disturbScans(std::function<void(lidar::RangeScan&)> disturb) {
     disturb_scan_ = std::move(disturb);
   }
@@ -158,28 +159,29 @@ class RobotSystem {
 
   RobotConfig config_;
   Knowledge known_;
-  std::unique_ptr<Link> ins_line_, ins_device_;        ///< both ends of the INS line
-  std::unique_ptr<Link> motor_line_, motor_device_;    ///< both ends of the motor controller's line
-  std::unique_ptr<Link> laser_line_, laser_device_;    ///< both ends of the range finder's line
-  std::unique_ptr<Link> ground_line_, ground_device_;  ///< the same of the one at the ground
+  std::unique_ptr<Link> ins_line_, ins_device_;      ///< both ends of the INS line
+  std::unique_ptr<Link> motor_line_, motor_device_;  ///< both ends of the motor controller's line
+  std::unique_ptr<Link> laser_line_, laser_device_;  ///< both ends of the range finder's line
+  /// the same for the one that looks at the ground
+  std::unique_ptr<Link> ground_line_, ground_device_;
   std::unique_ptr<sim::SimulatedDevices> devices_;
   std::function<void(lidar::RangeScan&)> disturb_scan_;
   MemoryStore ins_store_;
   MemoryStore learner_store_;
-  std::unique_ptr<VirtualBus> bus_;  ///< last: its nodes refer to the rest
+  std::unique_ptr<VirtualBus> bus_;  ///< last: its nodes refer to the other members
 };
 
-/// Of goals in missions [m].
+/// Position tolerance of goals in missions [m].
 inline constexpr double kGoalTolerance = 0.6;
 
-/// The person at the remote control: sends the goal, arms, and arms again after a failsafe.
+/// The remote operator: sends the goal, arms, and arms again after a failsafe.
 class Operator {
  public:
-  /// `tolerance` [m]: of the goal.
+  /// `tolerance` [m] of the goal.
   Operator(Bus& bus, const Pose2& T_map_goal, double tolerance = kGoalTolerance);
 
   void step(int64_t utime);
-  /// How often it had to arm again.
+  /// Number of repeated armings.
   int rearmed() const { return arming_ - 1 < 0 ? 0 : arming_ - 1; }
 
  private:
@@ -196,8 +198,8 @@ class Operator {
   int64_t start_;
   int64_t next_goal_ = 0;
   int64_t given_ = 0;      ///< [us]
-  int armed_ = 0;          ///< the arming that the goal was given after
-  int64_t goal_id_ = 0;    ///< a new one after each arming: an earlier goal counts for nothing
+  int armed_ = 0;          ///< arming before the present goal
+  int64_t goal_id_ = 0;    ///< new after each arming: earlier goals are void
   int64_t arm_until_ = 0;  ///< ARM is repeated until then
   int64_t disarmed_since_ = -1;
   int arming_ = 0;

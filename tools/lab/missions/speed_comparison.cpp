@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The slowest class in which the robot drives ahead, with room for what is learned [m/s].
+/// Slowest class of forward motion, with a margin for learning [m/s].
 double slowSpeed(const PatternSet& set) {
   double slowest = 1e9;
   for (const MotionClass& motion : set.content().classes)
@@ -54,7 +54,7 @@ Mean meanOf(const MissionBatch& batch, const std::function<double(const MissionR
   return {mean, 1.96 * std::sqrt(variance / count)};
 }
 
-/// What is printed of each way: a name with its unit, and the number of a mission.
+/// A printed column: name with unit, and the value of a mission.
 struct Column {
   const char* name;
   std::function<double(const MissionResult&)> of;
@@ -100,7 +100,8 @@ RobotConfig withSpeedBy(const std::string& method, RobotConfig robot) {
 }
 
 void printSpeeds(std::ostream& out, const SpeedComparison& comparison) {
-  out << formatted("\n%-8s %8s %9s", "speed", "arrived", "contacts");
+  out << '\n' << outcomesOf(comparison.batches) << '\n';
+  out << formatted("%-8s %8s %9s", "speed", "arrived", "contacts");
   for (const Column& column : columns()) out << formatted(" %16s", column.name);
   out << '\n';
   for (const MissionBatch& batch : comparison.batches) {
@@ -113,7 +114,7 @@ void printSpeeds(std::ostream& out, const SpeedComparison& comparison) {
     }
     out << '\n';
   }
-  out << "means over missions with their 95 % intervals; the referee's truth, not the robot's\n";
+  out << "means over missions with their 95 % intervals, from the true motion, not from the INS\n";
 }
 
 void writeSpeeds(const std::string& path, const SpeedComparison& comparison) {

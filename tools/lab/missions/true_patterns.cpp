@@ -15,14 +15,14 @@ namespace tread::missions {
 namespace {
 
 constexpr double kStep = 1e-3;      // of the simulator [s]
-constexpr int kStepsPerNoise = 10;  // it disturbs anew every 10 ms
+constexpr int kStepsPerNoise = 10;  // simulator steps between disturbances: every 10 ms
 constexpr double kEntry = 3.0;      // [s] until a motion is steady
 /// From the bridge's stamp until the power changes: half a step of the bridge, the line, the
 /// controller.
 constexpr double kCommandDelay = 0.010;  // [s]
-constexpr int kDisturbed = 60;           // executions that a covariance is taken of
+constexpr int kDisturbed = 60;           // executions per covariance
 
-/// What the motors get of a command: power, or what holds the speeds that it asks for.
+/// Motor input for a command: the power, or the output of the speed loops.
 class DriveInput {
  public:
   DriveInput(const sim::VehicleParameters& vehicle, CommandKind kind, size_t motors)
@@ -33,7 +33,7 @@ class DriveInput {
   sim::MotorPower power(const Command& command, const sim::Plant& vehicle) {
     sim::MotorValues power{command[0], command[1] / steering_};
     for (size_t k = 2; k < loops_.size(); ++k) power[k] = command[k];
-    // Where a controller holds speeds it does so as the simulated one that has no loop of its own.
+    // A speed controller works like the simulated one without its own loop.
     for (size_t k = 0; k < loops_.size() && holds_speeds_; ++k)
       power[k] = loops_[k].step(command[k], vehicle.motor(k).speed, kStep);
     return sim::MotorPower::of(power);
@@ -45,7 +45,7 @@ class DriveInput {
   std::vector<sim::SpeedLoop> loops_;
 };
 
-/// Velocities of the body through an execution, step by step, without chance.
+/// Body velocity at each step of an execution, without disturbances.
 std::vector<Twist2> velocitiesOf(const MotionPattern& pattern, const Command& entry,
                                  const PatternSet& set, const sim::VehicleParameters& parameters,
                                  const sim::SurfaceParameters& surface) {
@@ -77,7 +77,7 @@ Pose2 endOf(const std::vector<Twist2>& velocities, const sim::SurfaceParameters&
   return pose;
 }
 
-/// Of the ends of disturbed executions, in the frame of the start.
+/// Covariance of the ends of disturbed executions, in the frame of the start.
 PoseCovariance covarianceOf(const std::vector<Twist2>& velocities,
                             const sim::SurfaceParameters& surface) {
   sim::MotionNoise noise(1, kStep * kStepsPerNoise);

@@ -18,7 +18,7 @@ std::string worldFolder() {
   return shippedConfig() + "/missions/worlds";
 }
 
-/// A drive, a payload or a battery that fails while it drives.
+/// A drive, payload or battery that changes while driving.
 class ChangingVehicle final : public sim::Plant {
  public:
   ChangingVehicle(const sim::VehicleParameters& before, const WorldKind& kind)
@@ -39,7 +39,7 @@ class ChangingVehicle final : public sim::Plant {
  private:
   sim::TrackedVehicle vehicle_;
   sim::VehicleParameters later_;
-  double left_to_drive_;  ///< [m] until it is the later one
+  double left_to_drive_;  ///< [m] until the change
 };
 
 PatternSet shippedOf(ConfigReader patterns) {
@@ -53,7 +53,7 @@ PatternSet shippedOf(ConfigReader patterns) {
 
 std::vector<std::string> worldKinds() {
   std::vector<std::string> names;
-  std::error_code missing;  // where the folder was moved away, one kind is left
+  std::error_code missing;  // without the folder only the default kind is left
   for (const auto& file : std::filesystem::directory_iterator(worldFolder(), missing))
     names.push_back(file.path().stem().string());
   std::sort(names.begin(), names.end());

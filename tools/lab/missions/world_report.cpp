@@ -24,7 +24,7 @@ constexpr const char* kOmniscient = "omniscient";
 const std::pair<std::string, TrueShare> kShares[] = {
     {"+true_means", TrueShare::kMeans}, {"+true_covariances", TrueShare::kCovariances}};
 
-/// JSON has no infinity, and no number that is none.
+/// JSON has neither infinity nor NaN.
 Json orNull(double number) {
   return std::isfinite(number) ? Json(number) : Json(nullptr);
 }
@@ -77,6 +77,14 @@ Json timedJson(const MissionBatch& batch) {
 double meanErrorCm(const std::vector<MissionResult>& results) {
   const MeanError error = meanErrorOf(results, errorAsDriven());
   return error.count > 0 ? 100.0 * error.position : std::nan("");
+}
+
+std::string metricsText(const std::vector<MissionBatch>& batches) {
+  std::string text;
+  for (const MissionBatch& batch : batches)
+    text += (text.empty() ? "; metric " : ", ") + batch.rule +
+            formatted(" %.3f", timedSummaryOf(batch.results).metric);
+  return text;
 }
 
 }  // namespace
@@ -165,20 +173,23 @@ PairedMetric pairedMetric(const std::vector<MissionResult>& mine,
 }
 
 void printWorlds(std::ostream& out, const std::vector<MissionBatch>& batches) {
-  out << formatted("\n%-28s %6s %8s %8s %8s %7s %7s %7s %10s %7s %6s %8s %8s %13s\n", "", "worlds",
-                   "success", "contact", "timeout", "metric", "time s", "metres", "clearance",
-                   "least m", "stops", "stood s", "error cm", "sigmas cm");
+  out << '\n' << outcomesOf(batches, "world") << metricsText(batches) << '\n';
+  out << "success, contact, timeout: shares; stops and stood: per run; sigmas: next pattern, "
+         "plan\n";
+  out << formatted("%-28s %6s %8s %8s %8s %7s %8s %8s %13s %9s %6s %9s %10s %13s\n", "rule",
+                   "worlds", "success", "contact", "timeout", "metric", "time [s]", "path [m]",
+                   "clearance [m]", "least [m]", "stops", "stood [s]", "error [cm]", "sigmas [cm]");
   for (const MissionBatch& batch : batches) {
     const TimedSummary s = timedSummaryOf(batch.results);
     out << formatted(
-        "%-28s %6zu %8.3f %8.3f %8.3f %7.4f %7.1f %7.1f %10.3f %7.3f %6.1f %8.1f %8.1f %6.1f "
+        "%-28s %6zu %8.3f %8.3f %8.3f %7.4f %8.1f %8.1f %13.3f %9.3f %6.1f %9.1f %10.1f %6.1f "
         "%6.1f\n",
         batch.rule.c_str(), batch.results.size(), s.success, s.contact, s.timeout, s.metric, s.time,
         s.metres, s.clearance, s.least_clearance, s.stops, s.stood, meanErrorCm(batch.results),
         100.0 * s.next_sigma, 100.0 * s.end_sigma);
   }
   if (batches.size() < 2) return;
-  out << "metric less that of " << batches.front().rule
+  out << "metric minus that of " << batches.front().rule
       << " in the same worlds, with the 95 % interval over them:\n";
   for (size_t i = 1; i < batches.size(); ++i) {
     const PairedMetric d = pairedMetric(batches[i].results, batches.front().results);

@@ -55,7 +55,7 @@ bool moves(const std::vector<Pose2>& poses) {
   return path > kLeastPath || turn > kLeastTurn;
 }
 
-/// The poses of a piece, relative to the first one, as an INS with these properties says them.
+/// A model's motion under the drive's commands, starting from rest.
 std::vector<Pose2> posesOf(const std::vector<MotionSample>& motion, const MeasurementModel& ins,
                            double begin, size_t samples) {
   const auto at = [&](size_t sample) {
@@ -110,7 +110,7 @@ Points pointsOf(const std::vector<Pose2>& poses) {
 }
 
 Style styleOf(const std::vector<std::string>& names, size_t model) {
-  // The last model is the one to judge; the others are red and dashed.
+  // The last model is the evaluated one; the others are red and dashed.
   const bool last = model + 1 == names.size();
   return {last ? report::kBlue : report::kRed, last ? 2.0 : 1.8, !last, names[model]};
 }
@@ -147,7 +147,7 @@ void drawPiece(Picture& page, Box box, const ComparedPiece& piece,
   panel.finish();
 }
 
-/// Median error over the horizon; `yaw` chooses which.
+/// Median error over the horizon; `yaw` selects heading instead of position.
 void drawErrors(Picture& page, Box box, const std::vector<ComparedPiece>& pieces,
                 const std::vector<std::string>& names, bool yaw) {
   const size_t samples = pieces.front().measured.size();

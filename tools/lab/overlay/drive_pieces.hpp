@@ -19,8 +19,8 @@ gap::Drive readLoggedDrive(const std::vector<std::string>& logs, std::string& pr
 
 inline constexpr double kSample = 0.1;  ///< [s] between the poses of a piece
 
-/// A piece of a drive: what was measured, and what models make of the same commands from the
-/// measured pose at its beginning on. Poses relative to that one, at 0, kSample, 2 kSample, ...
+/// A piece of a drive: the measurement, and each model's prediction for the same commands from the
+/// measured start. Poses are relative to the start, at 0, kSample, 2 kSample, ...
 struct ComparedPiece {
   double begin = 0.0;  ///< [s] of the drive
   std::vector<Pose2> measured;
@@ -30,24 +30,23 @@ struct ComparedPiece {
   double yawError(size_t model, size_t sample) const;       ///< [rad]
 };
 
-/// The drive in pieces of a length [s], without those in which the vehicle hardly moved, the INS
-/// was silent for more than 0.3 s, or that a segment (see Drive) begins less than 3 s before.
-/** A model drives from the beginning of its segment on, so that its tracks and delays are under
- * way; it knows slopes and battery as the log does, and its INS part is between it and what is
- * compared.
- * Throws std::runtime_error if the models take another kind of command than was given. */
+/// Cuts a drive into pieces of a length [s], and leaves out those with little motion, an INS gap
+/// above 0.3 s, or less than 3 s of log before them.
+/** Each model simulates the preceding 3 s from rest, which initializes its tracks and delays. It
+ * gets slopes and battery from the log, and its INS part is applied to its poses. Throws
+ * std::runtime_error if the models need another kind of command. */
 std::vector<ComparedPiece> replay(const gap::Drive& drive, const std::vector<ModelDocument>& models,
                                   double length);
 
-/// Median over the pieces of the errors of a model at a sample: [m] and [rad].
+/// A model's median errors over the pieces at a sample: [m] and [rad].
 struct MedianErrors {
   double position = 0.0;
   double yaw = 0.0;
 };
 MedianErrors medianErrors(const std::vector<ComparedPiece>& pieces, size_t model, size_t sample);
 
-/// Draws six pieces, evenly chosen over the drive, as measured and by model, and how the models'
-/// median errors grow.
+/// Draws six pieces, evenly distributed over the drive, as measured and by model, and the growth of
+/// the models' median errors.
 /** Throws std::runtime_error with one clear line if the file cannot be written. */
 void drawOverlay(const std::string& path, const std::string& title,
                  const std::vector<ComparedPiece>& pieces,

@@ -25,15 +25,15 @@ struct Arguments {
 void describe(CLI::App& app, Arguments& arguments) {
   app.add_option("logs", arguments.logs, "LCM log; several are parts of one recording, in order")
       ->required();
-  app.add_option("--model", arguments.models, "model file; again for another one beside it")
+  app.add_option("--model", arguments.models, "model file; repeatable")
       ->required()
       ->expected(1)
       ->take_all();
-  app.add_option("--length", arguments.length, "s that are predicted from each measured pose")
+  app.add_option("--length", arguments.length, "time predicted from each measured pose [s]")
       ->check(CLI::Range(1.0, 60.0))
       ->capture_default_str();
   Outputs(app).file("--picture", arguments.picture, "file of the picture (PNG)");
-  app.add_option("--title", arguments.title, "of the picture");
+  app.add_option("--title", arguments.title, "title of the picture");
 }
 
 void tell(const std::string& file, const std::vector<ComparedPiece>& pieces, size_t model,
@@ -62,7 +62,7 @@ int run(const Arguments& arguments) {
   if (pieces.empty())
     throw std::runtime_error(arguments.logs.front() + ": no " + std::to_string(arguments.length) +
                              " s of driving with INS in one piece; try a smaller --length");
-  std::printf("median errors of %zu pieces of the drive, each from its measured pose on:\n",
+  std::printf("median errors of %zu pieces of the drive, each predicted from its measured start:\n",
               pieces.size());
   for (size_t m = 0; m < models.size(); ++m) tell(arguments.models[m], pieces, m, arguments.length);
   if (!arguments.picture.empty()) {
@@ -77,7 +77,7 @@ int run(const Arguments& arguments) {
 int main(int argc, char** argv) {
   return runProgram("tread-overlay", [&] {
     CLI::App app{
-        "Drives a log's commands through model files once more, and compares with what the INS "
+        "Simulates a log's commands with model files and compares the result with the INS "
         "measured.",
         "tread-overlay"};
     Arguments arguments;

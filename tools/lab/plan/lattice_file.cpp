@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMostReach = 1e3;  // [m]
 
-/// The poses of a primitive that moves begin behind its start.
+/// The poses of a moving primitive begin after its start: adds the start.
 void addStart(const PrimitiveFile& file, LatticePrimitive& primitive) {
   const Pose2 start{0.0, 0.0, file.headings[static_cast<size_t>(primitive.start_bin)]};
   const Pose2& first = primitive.poses.front();
@@ -43,7 +43,7 @@ LatticePrimitive readPrimitive(ConfigReader& reader, const PrimitiveFile& file) 
   return primitive;
 }
 
-/// The file's own counts, where it has them, are those of what it holds.
+/// Counts in the file must match its content.
 void checkCount(ConfigReader& reader, const char* key, size_t found, const char* of) {
   if (!reader.has(key)) return;
   int64_t count = 0;

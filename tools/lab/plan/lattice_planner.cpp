@@ -50,8 +50,8 @@ LatticePlanner::LatticePlanner(const CellCosts& costs, double cell_size, int bin
 PathAnswer LatticePlanner::answer(const planner::PathQuery& query,
                                   const planner::StopPredicate& stop,
                                   const planner::PathEvents& events) {
-  if (!rules_.isFree(query.T_map_start.position())) return refused("the start lies on obstacles");
-  if (!rules_.isFree(query.T_map_goal.position())) return refused("the goal lies on obstacles");
+  if (!rules_.isFree(query.T_map_start.position())) return refused("the start is on an obstacle");
+  if (!rules_.isFree(query.T_map_goal.position())) return refused("the goal is on an obstacle");
   planner::SearchProblem problem;
   problem.T_map_start = query.T_map_start;
   problem.start_class = patterns_.restClass();
@@ -75,7 +75,7 @@ PathAnswer LatticePlanner::answer(const planner::PathQuery& query,
   return answer;
 }
 
-/// Cells and headings are numbers there: start and goal are moved to the middle of theirs.
+/// The lattice has discrete cells and headings: start and goal are moved to their centres.
 void LatticePlanner::placeOnLattice(planner::SearchProblem& problem) const {
   const double bin = 2.0 * kPi / search_.config().heading_bins;
   for (Pose2* pose : {&problem.T_map_start, &problem.goal.T_map_goal}) {

@@ -13,22 +13,23 @@
 // SBPL's lattice problem for our search (SBPL: environment_navxythetalat, BSD).
 namespace tread::plan {
 
-/// Costs of cells for a point that drives over their centres.
+/// Cell costs for a point that passes through cell centres.
 /** Cells begin at (0, 0). */
 class CellCosts {
  public:
-  /// `costs` row by row from y = 0, x fastest. `blocked_from`: cells that cost so much are blocked.
+  /// `costs` row by row from y = 0, x fastest. Cells with a cost of at least `blocked_from` are
+  /// blocked.
   CellCosts(int width, int height, std::vector<uint8_t> costs, int blocked_from)
       : width_(width), height_(height), costs_(std::move(costs)), blocked_from_(blocked_from) {}
 
-  /// Cost of a cell; -1 where it is blocked or outside.
+  /// Cost of a cell; -1 if it is blocked or outside.
   int at(CellIndex cell) const {
     if (cell.x < 0 || cell.y < 0 || cell.x >= width_ || cell.y >= height_) return -1;
     const int cost = costs_[static_cast<size_t>(cell.y) * static_cast<size_t>(width_) +
                             static_cast<size_t>(cell.x)];
     return cost >= blocked_from_ ? -1 : cost;
   }
-  /// Greatest cost of the cells at these offsets from a cell; -1 if one of them is blocked.
+  /// Largest cost of the cells at these offsets from a cell; -1 if one of them is blocked.
   int worst(CellIndex from, const std::vector<CellIndex>& offsets) const {
     int worst = at(from);
     for (const CellIndex& offset : offsets) {
@@ -46,8 +47,8 @@ class CellCosts {
   int blocked_from_;
 };
 
-/// SBPL's rules: a primitive begins in its heading bin only, and costs its own cost times one more
-/// than the greatest cost of the cells that it passes.
+/// SBPL's rules: a primitive starts only in its heading bin, and costs its own cost times one plus
+/// the largest cost of the cells that it passes.
 class LatticeRules : public planner::EdgeRules {
  public:
   LatticeRules(CellCosts costs, double cell_size, std::vector<SearchPrimitive> primitives)
@@ -68,14 +69,14 @@ class LatticeRules : public planner::EdgeRules {
   std::vector<SearchPrimitive> primitives_;  // by id
 };
 
-/// Finds the cheapest plan of a point on SBPL's lattice; the goal is one cell and one heading.
+/// Finds the cheapest plan for a point on SBPL's lattice; the goal is one cell and one heading.
 class LatticePlanner {
  public:
-  /// `bins`: headings of the lattice. The id of a primitive is its place.
+  /// `bins`: headings of the lattice. The id of a primitive is its index.
   LatticePlanner(const CellCosts& costs, double cell_size, int bins,
                  const std::vector<SearchPrimitive>& primitives);
 
-  /// Unreachable is certain: all states of the lattice were seen.
+  /// "Unreachable" is certain: all states of the lattice were expanded.
   planner::PathAnswer answer(const planner::PathQuery& query, const planner::StopPredicate& stop,
                              const planner::PathEvents& events = {});
   const planner::PatternSearch& search() const { return search_; }

@@ -15,19 +15,19 @@ using namespace tread::plan;
 
 void describeQuery(CLI::App& app, Outputs& outputs, PlanOptions& options) {
   app.add_option("--start", options.start,
-                 "x,y,yaw [m, m, rad] in the map's frame; else the .cfg's own");
-  app.add_option("--goal", options.goal, "x,y,yaw, as the start");
+                 "x,y,yaw [m, m, rad] in the map's frame; default: that of the .cfg");
+  app.add_option("--goal", options.goal, "x,y,yaw like --start");
   app.add_option("--tolerance", options.tolerance,
-                 "METRES,RADIANS from the goal within which a plan may end")
+                 "METRES,RADIANS around the goal in which a plan may end")
       ->capture_default_str();
   app.add_flag("--come-close", options.come_close,
-               "plan to where the vehicle can come nearest if the goal cannot be reached");
+               "plan to the nearest reachable place if the goal is unreachable");
   app.add_option("--queries", options.queries,
-                 "file of many queries, x y yaw x y yaw (start, goal) a line");
-  app.add_option("--random", options.random, "so many random queries whose start and goal are free")
+                 "file of queries, one line x y yaw x y yaw (start, goal) each");
+  app.add_option("--random", options.random, "number of random queries with free start and goal")
       ->check(CLI::Range(int64_t{1}, int64_t{1'000'000}));
-  app.add_option("--seed", options.seed, "of the random queries")->capture_default_str();
-  app.add_option("--apart", options.apart, "m that their start and goal are apart at least")
+  app.add_option("--seed", options.seed, "seed of the random queries")->capture_default_str();
+  app.add_option("--apart", options.apart, "least distance of their start and goal [m]")
       ->check(CLI::Range(0.0, 1e5))
       ->capture_default_str();
   outputs.file("--write-queries", options.write_queries, "file to write the random queries to");
@@ -35,13 +35,15 @@ void describeQuery(CLI::App& app, Outputs& outputs, PlanOptions& options) {
 
 void describeRobot(CLI::App& app, PlanOptions& options) {
   app.add_option("--footprint", options.footprint,
-                 "LENGTH,WIDTH of the robot [m], its origin in the middle");
-  app.add_option("--radius", options.radius, "m of a round robot; 0 = a point")
+                 "LENGTH,WIDTH of the robot [m], with its origin in the middle");
+  app.add_option("--radius", options.radius, "radius of a round robot [m]; 0 = a point")
       ->check(CLI::Range(0.0, 100.0));
-  app.add_option("--speed", options.speed, "m/s of .mprim patterns; else the .cfg's own, else 1")
+  app.add_option("--speed", options.speed,
+                 "speed of .mprim patterns [m/s]; default: that of the .cfg, else 1")
       ->check(CLI::Range(1e-3, 100.0));
-  app.add_option("--turn-time", options.turn_time,
-                 "s that .mprim patterns turn by 45 degrees in; else the .cfg's own, else 2")
+  app.add_option(
+         "--turn-time", options.turn_time,
+         "time of .mprim patterns to turn by 45 degrees [s]; default: that of the .cfg, else 2")
       ->check(CLI::Range(1e-3, 1e4));
 }
 
@@ -50,24 +52,26 @@ void describe(CLI::App& app, PlanOptions& options) {
   app.add_option("--map", options.map,
                  "nav2 or ROS map (.yaml with .pgm) or SBPL environment (.cfg)")
       ->required();
-  app.add_option(
-         "--patterns", options.patterns,
-         "our pattern file (.yaml), or the primitives of SBPL (.mprim) or nav2 (.json): those of "
-         "start angle 0")
+  app.add_option("--patterns", options.patterns,
+                 "pattern file (.yaml), or primitives of SBPL (.mprim) or nav2 (.json), of which "
+                 "only those with "
+                 "start angle 0")
       ->required();
-  app.add_flag("--mprim-exact", options.exact,
-               "all of the .mprim, each from its own start angle, and SBPL's whole costs");
+  app.add_flag(
+      "--mprim-exact", options.exact,
+      "use all .mprim primitives, each from its own start angle, with SBPL's integer costs");
   describeRobot(app, options);
   Outputs outputs(app);
   describeQuery(app, outputs, options);
   app.add_option("--deadline-ms", options.deadline_ms,
-                 "ms after which the best so far is the answer; else 1000, --mprim-exact none")
+                 "planning time after which the best plan so far is the answer [ms]; default 1000, "
+                 "with --mprim-exact none")
       ->check(CLI::Range(1.0, 1e9));
   outputs.file("--json", options.json, "file to write the answer to");
   outputs.file("--picture", options.picture, "PNG of map, search tree and plan");
 }
 
-/// What all queries share counts for the only one.
+/// Preparation counts for the single query.
 int planOne(const PlanTask& task, const PlanOptions& options) {
   TaskPlanner planner(task);
   const PlanQuery& query = task.queries.front();
@@ -97,7 +101,8 @@ int planMany(const PlanTask& task, const PlanOptions& options) {
 int run(int argc, char** argv) {
   PlanOptions options;
   CLI::App app{
-      "Plans with motion patterns on a map. Ends with 0 if there is a plan, or after many queries; "
+      "Plans with motion patterns on a map. Exit status: 0 if there is a plan, or after many "
+      "queries; "
       "1 if the goal is unreachable or none was found in time; 2 for bad input.",
       "tread-plan"};
   describe(app, options);

@@ -17,7 +17,7 @@ namespace {
 
 enum class Mode { kTrinary, kScale, kRaw };
 
-/// How a nav2 map's file says its pixels are to be read.
+/// How a nav2 map's file interprets its pixels.
 struct PixelRule {
   Mode mode = Mode::kTrinary;
   bool negate = false;
@@ -29,7 +29,7 @@ Cell ofOccupancy(double percent) {
   return percent >= 100.0 ? kObstacle : static_cast<Cell>(percent);
 }
 
-/// The cell of a pixel's brightness 0..1, as nav2's map server has it.
+/// The cell for a pixel's brightness 0..1, as in nav2's map server.
 Cell cellOf(double shade, const PixelRule& rule) {
   if (rule.mode == Mode::kRaw) {
     const double value = std::round(shade * 255.0);
@@ -71,18 +71,20 @@ Grid gridOf(const GreyImage& image, double resolution, const PixelRule& rule) {
   return grid;
 }
 
-/// The grey by which map_saver writes the unknown; nav2's usual free_thresh of 0.25 makes it free.
+/// The grey value that map_saver writes for unknown cells; nav2's usual free_thresh of 0.25 makes
+/// them free.
 constexpr uint8_t kUnknownGrey = 205;
 
 std::string unknownAsFree(const GreyImage& image, const PixelRule& rule) {
   const auto count = std::count(image.pixels.begin(), image.pixels.end(), kUnknownGrey);
   if (count == 0 || image.white != 255 || !isFree(cellOf(kUnknownGrey / 255.0, rule))) return {};
-  return std::to_string(count) + " cells of grey 205, by which map_saver writes the unknown, are " +
+  return std::to_string(count) +
+         " cells of grey 205, which map_saver writes for unknown cells, are " +
          "free by free_thresh " + formatNumber(rule.free) +
          ", as nav2 reads it; with mode: trinary and free_thresh: 0.196 they are unknown";
 }
 
-/// Keys that we do not know are others' business and stay unread.
+/// Unknown keys belong to other programs and are ignored.
 MapFile readNav2(const std::string& path) {
   ConfigReader reader = ConfigReader::fromFile(path);
   MapFile map;
@@ -117,7 +119,7 @@ GreyImage readHeader(Tokenizer& tokens) {
   image.height = static_cast<int>(tokens.integer("the height", 1, kLongestSide));
   if (static_cast<int64_t>(image.width) * image.height > kMostCells)
     throw tokens.error("more than " + std::to_string(kMostCells) + " pixels");
-  image.white = static_cast<int>(tokens.integer("the greatest grey value", 1, 65'535));
+  image.white = static_cast<int>(tokens.integer("the largest grey value", 1, 65'535));
   if (image.white > 255) throw tokens.error("two bytes a pixel; convert the picture to 8 bits");
   return image;
 }
@@ -127,17 +129,17 @@ GreyImage readHeader(Tokenizer& tokens) {
                      " pixels; it is truncated");
 }
 
-/// Why a P5 picture has more bytes than pixels, from what follows its header.
+/// Why a P5 picture has more bytes than pixels, from the bytes after its header.
 std::string surplusReason(std::string_view rest) {
   if (rest.substr(0, 2).find('#') != std::string_view::npos)
-    return "a comment stands behind the greatest grey value, where PGM allows none";
+    return "there is a comment after the largest grey value, where PGM allows none";
   if (rest.substr(0, 2) == "\r\n")
-    return "CR LF stands behind the greatest grey value, where PGM allows one byte";
-  return "PGM allows nothing behind the pixels";
+    return "there is CR LF after the largest grey value, where PGM allows one byte";
+  return "PGM allows nothing after the pixels";
 }
 
-/// P5: one blank behind the header, then a byte a pixel and nothing else: whatever is inserted
-/// shifts the picture.
+/// P5: one blank after the header, then one byte per pixel and nothing else, since an additional
+/// byte would shift the picture.
 void readBytes(Tokenizer& tokens, GreyImage& image) {
   const size_t count = pixelCount(image);
   const std::string_view rest = tokens.rest();
@@ -153,23 +155,23 @@ void readBytes(Tokenizer& tokens, GreyImage& image) {
 
 void readNumbers(Tokenizer& tokens, GreyImage& image) {
   const size_t count = pixelCount(image);
-  // A pixel is a digit and a blank at least: nothing is reserved for what cannot be there.
+  // A pixel has at least a digit and a blank: do not reserve memory for pixels that cannot exist.
   if (tokens.left() + 1 < 2 * count) throwTruncated(tokens, tokens.left() / 2, count);
   image.pixels.reserve(count);
   while (image.pixels.size() < count)
     image.pixels.push_back(static_cast<uint8_t>(tokens.integer("a pixel", 0, image.white)));
   if (!tokens.atEnd())
-    throw tokens.error("more follows behind the last of " + std::to_string(count) + " pixels");
+    throw tokens.error("there is more text after the last of " + std::to_string(count) + " pixels");
 }
 
-/// What stands before the cells.
+/// The header before the cells.
 struct Header {
   int width = 0;
   int height = 0;
   double cell_size = 0.0;
 };
 
-/// Reads the value of a key of the header.
+/// Readers for the values of the header's keys.
 using Readers = std::map<std::string, std::function<void()>>;
 
 Readers readersOf(Tokenizer& tokens, Header& header, MapFile& map) {
@@ -210,7 +212,7 @@ std::string keysWithout(const Readers& readers, const std::set<std::string>& see
   return joinWords(keys);
 }
 
-/// Up to and with the word "environment:".
+/// Reads up to and including the word "environment:".
 Header readHeader(Tokenizer& tokens, MapFile& map) {
   Header header;
   const Readers readers = readersOf(tokens, header, map);
@@ -220,9 +222,9 @@ Header readHeader(Tokenizer& tokens, MapFile& map) {
     if (key == "environment:") break;
     const auto reader = readers.find(key);
     if (reader == readers.end())
-      throw tokens.error(formatText(key) + " is no key of an SBPL environment (x, y, theta); " +
+      throw tokens.error(formatText(key) + " is not a key of an SBPL environment (x, y, theta); " +
                          "missing so far: " + keysWithout(readers, seen));
-    if (!seen.insert(key).second) throw tokens.error(key + " stands there twice");
+    if (!seen.insert(key).second) throw tokens.error(key + " is given twice");
     reader->second();
   }
   if (seen.size() < readers.size())
@@ -235,7 +237,7 @@ std::vector<uint8_t> readCosts(Tokenizer& tokens, const Header& header) {
   const std::string size = std::to_string(header.width) + " x " + std::to_string(header.height);
   if (count > kMostCells)
     throw tokens.error(size + " are more than " + std::to_string(kMostCells) + " cells");
-  // A cost is a digit and a blank at least: nothing is reserved for what cannot be there.
+  // A cost has at least a digit and a blank: do not reserve memory for costs that cannot exist.
   if (static_cast<int64_t>(tokens.left()) + 1 < 2 * count)
     throw tokens.error("the file is too short for the costs of " + size +
                        " cells; it is truncated");
@@ -267,7 +269,7 @@ Grid gridForPoint(const MapFile& map) {
 
 Grid grownBy(const Grid& grid, double radius) {
   const ClearanceField clearance(grid, true);
-  // The field is exact at a cell's centre; its corners may have that much less room.
+  // The clearance is exact at a cell's centre; its corners may have that much less.
   const double needed = radius + grid.cellSize() * std::sqrt(0.5);
   Grid grown = grid;
   for (int y = grid.lower().y; y < grid.lower().y + grid.height(); ++y)
@@ -283,7 +285,7 @@ GreyImage parsePgm(std::string bytes, const std::string& name) {
   Tokenizer tokens(std::move(bytes), name, '#');
   const std::string kind(tokens.peek().substr(0, 8));
   if (kind != "P2" && kind != "P5")
-    throw tokens.error("is no PGM picture, which begins with P5 or P2; convert it to PGM");
+    throw tokens.error("is not a PGM picture (which begins with P5 or P2); convert it to PGM");
   tokens.expect(kind);
   GreyImage image = readHeader(tokens);
   if (kind == "P5") {

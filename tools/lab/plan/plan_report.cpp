@@ -19,13 +19,13 @@ using Json = nlohmann::ordered_json;
 using planner::PathEnd;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // JSON writes it as null
 
-/// As JSON has it.
+/// Name in the JSON.
 const char* nameOf(PathEnd end) {
   if (end == PathEnd::kSolved) return "solved";
   return end == PathEnd::kUnreachable ? "unreachable" : "none_in_time";
 }
 
-/// What many answers have in common.
+/// Totals over many answers.
 struct Totals {
   size_t solved = 0;
   size_t unreachable = 0;
@@ -79,7 +79,7 @@ Json spreadJson(const std::vector<double>& values) {
           {"max", nearestRank(values, 1.0)}};
 }
 
-/// A number of a plan, or null where there is no plan.
+/// A number of a plan; null without a plan.
 Json ofPlan(const PlanAnswer& answer, double value) {
   return answer.poses.empty() ? Json(nullptr) : Json(value);
 }
@@ -92,7 +92,7 @@ std::string spreadText(const std::string& what, const std::vector<double>& value
 }
 
 std::string planText(const PlanAnswer& answer) {
-  // Costs of a lattice are whole numbers, others need no more than three decimals.
+  // Lattice costs are integers, the others need at most three decimals.
   return std::to_string(answer.patterns.size()) + " patterns, " + fixed(answer.time, 1) + " s, " +
          fixed(answer.length, 2) + " m, cost " +
          formatNumber(std::round(answer.cost * 1000.0) / 1000.0);
@@ -126,7 +126,7 @@ constexpr double kMargin = 70.0;     // [pixels] around the panel for its axes
 constexpr double kLongest = 1000.0;  // [pixels] longer side of the panel
 constexpr double kShortest = 300.0;  // [pixels]
 
-/// The part of the map's frame that the grid's window covers.
+/// The part of the map's frame covered by the grid.
 struct Extent {
   Vector2d low{1e9, 1e9};
   Vector2d high{-1e9, -1e9};
@@ -154,14 +154,14 @@ Extent extentOf(const PlanScene& scene) {
   return extent;
 }
 
-/// The panel's size follows the map's shape.
+/// The panel's size follows the map's proportions.
 Box boxFor(const Extent& extent) {
   const double scale = kLongest / extent.size().maxCoeff();
   return {kMargin, kMargin, std::max(kShortest, extent.size().x() * scale),
           std::max(kShortest, extent.size().y() * scale)};
 }
 
-/// Cells that are not free, equal neighbours of a row as one.
+/// Draws cells that are not free; equal neighbours in a row as one.
 void drawCells(Panel& panel, const PlanScene& scene, double metres_per_pixel) {
   const CellIndex low = scene.grid.lower();
   for (int y = low.y; y < low.y + scene.grid.height(); ++y) {
@@ -172,7 +172,7 @@ void drawCells(Panel& panel, const PlanScene& scene, double metres_per_pixel) {
       while (x < end && scene.grid.at({x, y}) == cell) ++x;
       if (isFree(cell)) continue;
       const double grey = cell == kUnknown ? 0.8 : 0.15;
-      // Half a pixel more: without it smoothed edges leave bright seams between rows.
+      // Half a pixel of overlap: anti-aliasing would leave bright seams between rows.
       const auto run = corners(scene, {first, y}, {x, y + 1}, metres_per_pixel / 2.0);
       panel.polygon({run.begin(), run.end()}, {grey, grey, grey});
     }
@@ -194,13 +194,13 @@ void drawFootprints(Panel& panel, const PlanScene& scene) {
   }
 }
 
-/// A dot and the way it looks.
+/// A dot with its heading.
 void drawPose(Panel& panel, const Pose2& T_map_body, double length, Colour colour) {
   panel.dot(T_map_body.position(), colour, 6.0);
   panel.line({T_map_body.position(), T_map_body * Vector2d(length, 0.0)}, {colour, 3.0, false, ""});
 }
 
-/// Below the map, where it hides nothing.
+/// Below the map, so that it hides nothing.
 void drawLegend(report::Picture& sheet, const PlanScene& scene, const Box& box) {
   double x = box.x;
   const double y = box.y + box.height + 50.0;
@@ -283,7 +283,7 @@ Json answersJson(const std::vector<PlanQuery>& queries, const std::vector<PlanAn
 }
 
 void writeJson(const std::string& path, const Json& json) {
-  // A name comes from a file, which may have been broken: its bytes need not be UTF-8.
+  // A name comes from a file that may be corrupted: its bytes need not be UTF-8.
   writeText(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 

@@ -25,7 +25,7 @@ double seconds(double length, double turn, const PrimitivePace& pace) {
   return std::max(length / pace.speed, turn / ((kPi / 4.0) / pace.turn_time));
 }
 
-/// Poses from the start pose on in its frame, the start itself first.
+/// Poses in the start pose's frame, including the start.
 std::vector<Pose2> fromStart(const LatticePrimitive& primitive, double heading) {
   const Pose2 T_map_start{0.0, 0.0, heading};
   std::vector<Pose2> poses{{}};
@@ -34,7 +34,7 @@ std::vector<Pose2> fromStart(const LatticePrimitive& primitive, double heading) 
     pose.yaw = poses.back().yaw + wrapAngle(pose.yaw - poses.back().yaw);
     poses.push_back(pose);
   }
-  // Numbers in files are rounded to a tenth of a millimetre and of a milliradian.
+  // Numbers in files are rounded to .1 mm and .1 mrad.
   const Pose2& first = poses[1];
   if (std::hypot(first.x, first.y) < 1e-4 && std::abs(first.yaw) < 1e-4)
     poses.erase(poses.begin() + 1);
@@ -47,8 +47,8 @@ double turnBetween(double from, double to) {
   return difference > kPi ? std::abs(difference - 2.0 * kPi) : difference;
 }
 
-/// The lattice's cell of a coordinate; behind the start's cell SBPL counts a border to the cell
-/// before it, which no pose of a sensible set meets.
+/// Lattice cell of a coordinate. For negative coordinates SBPL assigns a border to the cell before
+/// it, which no pose of a valid set reaches.
 int cellOf(double from_corner, double resolution) {
   return static_cast<int>(std::floor(from_corner / resolution));
 }
@@ -66,7 +66,7 @@ std::vector<CellIndex> passedCells(const LatticePrimitive& primitive, double res
 constexpr int kMostBins = 720;
 constexpr int kMostPrimitives = 100'000;
 constexpr int kMostPoses = 10'000;
-constexpr int kFarthest = 10'000;  // [cells] that a primitive may reach
+constexpr int kFarthest = 10'000;  // [cells] longest primitive
 constexpr int kDearest = 100'000;
 constexpr double kFarthestPose = 1e3;  // [m]
 constexpr double kMostTurn = 100.0;    // [rad]
@@ -82,7 +82,7 @@ std::vector<double> evenHeadings(int bins) {
   return headings;
 }
 
-/// The lines "angle:0 0.000" of a set whose bins are uneven.
+/// Lines "angle:0 0.000" of a set with uneven bins.
 std::vector<double> statedHeadings(Tokenizer& tokens, int bins) {
   std::vector<double> headings;
   for (int i = 0; i < bins; ++i) {
@@ -111,13 +111,13 @@ void readHeader(Tokenizer& tokens, PrimitiveFile& file) {
   file.headings = stated ? statedHeadings(tokens, bins) : evenHeadings(bins);
 }
 
-/// Bins may be written as one turn more or less.
+/// Bins may be off by a full turn.
 int wrapBin(int bin, int bins) {
   return (bin % bins + bins) % bins;
 }
 
 bool isNear(const Pose2& pose, double x, double y, double resolution) {
-  // Numbers in files are rounded to a tenth of a millimetre.
+  // Numbers in files are rounded to .1 mm.
   const double reach = resolution / 2.0 + 1e-4;
   return std::abs(pose.x - x) <= reach && std::abs(pose.y - y) <= reach;
 }
@@ -227,7 +227,8 @@ PrimitiveFile parsePrimitives(std::string text, const std::string& name) {
   }
   tokens.inside("");
   if (!tokens.atEnd())
-    throw tokens.error("more follows behind the last of " + std::to_string(count) + " primitives");
+    throw tokens.error("there is more text after the last of " + std::to_string(count) +
+                       " primitives");
   return file;
 }
 

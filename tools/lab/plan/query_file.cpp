@@ -37,7 +37,8 @@ std::string formatPose(const Pose2& pose) {
 
 constexpr size_t kDrawsEach = 1000;
 
-/// Draws poses over a grid's window; the standard's distributions differ by library, this does not.
+/// Draws poses over a grid's window, the same on every platform (the standard's distributions
+/// differ).
 class Draw {
  public:
   Draw(const Grid& grid, uint64_t seed) : grid_(grid), random_(seed) {}
@@ -96,11 +97,11 @@ std::vector<PlanQuery> randomQueries(const Grid& grid, const Pose2& T_map_grid,
     if (draws == 0)
       throw std::runtime_error("only " + std::to_string(queries.size()) + " of " +
                                std::to_string(wanted.count) +
-                               " random queries found; the map has too little free room for the "
-                               "footprint, or start and goal shall be too far apart");
+                               " random queries found; the map has too little free space for the "
+                               "footprint, or --apart is too large");
     const Pose2 pose = draw.pose();
     if (!is_free(pose)) continue;
-    // A pair that is too near is dropped as a whole: its start may have nothing far enough away.
+    // Too close pairs are dropped as a whole: the start may have nothing far enough away.
     if (has_start && (pose.position() - start.position()).norm() > wanted.apart)
       queries.push_back({T_map_grid * start, T_map_grid * pose});
     has_start = !has_start;

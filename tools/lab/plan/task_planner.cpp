@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kDeadline = 1000.0;  // [ms]
 
-/// Numbers with commas between, as many as `form` has names.
+/// Comma-separated numbers, as many as `form` has names.
 std::vector<double> readList(const std::string& option, const std::string& text,
                              const std::string& form, size_t count, Range range) {
   std::vector<double> values;
@@ -55,7 +55,7 @@ RobotShape readShape(const PlanOptions& options, const MapFile& map) {
   }
   if (!options.radius && map.costs.empty())
     throw std::runtime_error(
-        "the map says nothing of the robot; give --footprint LENGTH,WIDTH or --radius (0 = a "
+        "the map does not describe the robot; give --footprint LENGTH,WIDTH or --radius (0 = a "
         "point)");
   return {0.0, 0.0, options.radius.value_or(0.0)};
 }
@@ -108,7 +108,7 @@ std::vector<PlanQuery> theQuery(const PlanOptions& options, const MapFile& map) 
   const auto start = readPose("--start", options.start, map.T_map_start);
   const auto goal = readPose("--goal", options.goal, map.T_map_goal);
   if (!start || !goal)
-    throw std::runtime_error("from where to where? Give --start and --goal, --queries or --random");
+    throw std::runtime_error("no query; give --start and --goal, --queries or --random");
   return {{*start, *goal}};
 }
 
@@ -135,9 +135,9 @@ using Clock = std::chrono::steady_clock;
 constexpr double kPoint = 1e-3;  // [m]
 constexpr size_t kDrawnNodes = 60'000;
 
-/// Takes the time of one query [ms].
+/// Measures the time of one query [ms].
 struct Watch {
-  /// `spent` of the deadline is over already.
+  /// `spent` of the deadline has already passed.
   explicit Watch(std::optional<double> until = std::nullopt, double spent = 0.0) : deadline(until) {
     if (deadline) deadline = std::max(0.0, *deadline - spent);
   }
@@ -145,13 +145,13 @@ struct Watch {
   double now() const {
     return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
   }
-  /// A little before the deadline: the rest is needed to put the answer together.
+  /// Slightly before the deadline: the rest is needed to assemble the answer.
   bool isLate() const { return deadline && now() >= *deadline - std::min(2.0, *deadline / 20); }
 
   Clock::time_point begin = Clock::now();
   std::optional<double> deadline;
   std::optional<double> searching;  ///< when the heuristics were computed
-  std::optional<double> first;      ///< when the first plan was there
+  std::optional<double> first;      ///< when the first plan was found
 };
 
 double peakMegabytes() {
@@ -166,7 +166,7 @@ FootprintSize footprintOf(const RobotShape& shape) {
   return {length / 2.0, length / 2.0, width / 2.0};
 }
 
-/// How finely sweeps are checked: a point must not jump over a cell.
+/// Resolution of sweep checks: a point must not skip a cell.
 planner::SweepResolution sweepResolution(const PlanTask& task) {
   planner::SweepResolution step;
   if (task.shape.isRectangle()) return planner::resolutionFor(footprintOf(task.shape), 0.0, step);

@@ -15,7 +15,7 @@
 
 namespace tread::plan {
 
-/// What the command line of tread-plan says.
+/// Options of tread-plan.
 struct PlanOptions {
   std::string map;
   std::string patterns;
@@ -38,7 +38,7 @@ struct PlanOptions {
   std::string picture;
 };
 
-/// The robot's outline about its origin: a rectangle, or a disc where it has no length.
+/// The robot's outline around its origin: a rectangle, or a disc if it has no length.
 struct RobotShape {
   double length = 0.0;  ///< [m]
   double width = 0.0;   ///< [m]
@@ -48,44 +48,42 @@ struct RobotShape {
   bool isPoint() const { return !isRectangle() && radius <= 0.0; }
 };
 
-/// All that is to be planned, read and checked.
+/// Everything to plan, read and checked.
 struct PlanTask {
   MapFile map;
-  Grid grid;  ///< of the map, for this robot; of a round one for its centre: obstacles are grown
+  Grid grid;  ///< the map for this robot; for a round robot with grown obstacles
   RobotShape shape;
-  std::optional<PatternSet> patterns;       ///< of ours
-  std::optional<PrimitiveFile> primitives;  ///< or of a lattice planner
-  PrimitivePace pace;                       ///< of those
-  bool exact = false;                       ///< and used on their lattice
+  std::optional<PatternSet> patterns;       ///< pattern set
+  std::optional<PrimitiveFile> primitives;  ///< or lattice primitives
+  PrimitivePace pace;                       ///< of the primitives
+  bool exact = false;                       ///< use the primitives on their lattice
   double position_tolerance = 0.25;         ///< [m]
   double yaw_tolerance = 0.26;              ///< [rad]
   bool come_close = false;
-  std::optional<double> deadline_ms;  ///< none = until nothing is left to search
+  std::optional<double> deadline_ms;  ///< none = until the search is complete
   std::vector<PlanQuery> queries;
-  bool many = false;  ///< a report on all queries is wanted, not a plan
+  bool many = false;  ///< report on all queries instead of a plan
 };
 
-/// Reads what the options name; writes the random queries if they are wanted.
-/** Throws std::runtime_error with one line for what cannot be read, and for options that contradict
- * each other. */
+/// Reads the inputs that the options name; writes random queries if requested.
+/** Throws std::runtime_error with one line for unreadable inputs and contradictory options. */
 PlanTask loadTask(const PlanOptions& options);
 
-/// Whether the robot stands free at a pose in the grid's frame: nothing unknown or blocked under
-/// it.
+/// Whether the robot is free at a pose in the grid's frame: nothing unknown or blocked under it.
 bool standsFree(const PlanTask& task, const ClearanceField& clearance, const Pose2& T_grid_body);
 
-/// Answers queries of a task with the planner's core, and takes the time.
+/// Answers the queries of a task with the planner's core, and measures the time.
 class TaskPlanner {
  public:
-  /// Works out what all queries share. Throws std::runtime_error with one line for a pattern set
-  /// that nobody can drive with.
+  /// Prepares what all queries share. Throws std::runtime_error with one line for an unusable
+  /// pattern set.
   explicit TaskPlanner(const PlanTask& task);
 
-  /// The answer; its total_ms is without preparationMs(). Of the deadline `spent_ms` are over.
+  /// Its total_ms excludes preparationMs(). `spent_ms` of the deadline have passed.
   PlanAnswer answer(const PlanQuery& query, double spent_ms = 0.0);
-  /// [ms] that patterns, clearance and connected areas took.
+  /// [ms] for patterns, clearance and connected areas.
   double preparationMs() const { return preparation_ms_; }
-  /// What the last query's picture shows.
+  /// Picture of the last query.
   PlanScene scene(const PlanQuery& query, const PlanAnswer& answer) const;
 
  private:
@@ -104,10 +102,10 @@ class TaskPlanner {
                                   const PlanAnswer& answer) const;
 
   const PlanTask& task_;
-  std::vector<SearchPrimitive> primitives_;  // if those of a file are used
+  std::vector<SearchPrimitive> primitives_;  // if a file's primitives are used
   std::unique_ptr<planner::PatternTable> patterns_;
   std::unique_ptr<planner::PathPlanner> planner_;
-  std::unique_ptr<LatticePlanner> lattice_;  // in its place if the primitives are used exactly
+  std::unique_ptr<LatticePlanner> lattice_;  // replaces it if the primitives are used exactly
   double preparation_ms_ = 0.0;
 };
 

@@ -18,7 +18,7 @@ bool isBlank(char c) {
   return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f';
 }
 
-/// A word as a message quotes it: one short line, whatever bytes it has.
+/// A word for a message: one short line, whatever bytes it contains.
 std::string quoted(std::string_view word) {
   constexpr size_t kLongest = 40;
   return formatText(std::string(word.substr(0, kLongest))) + (word.size() > kLongest ? "..." : "");
@@ -107,9 +107,10 @@ ConfigError Tokenizer::error(const std::string& problem) const {
 }
 
 std::string readWhole(const std::string& path) {
-  constexpr std::streamsize kLargest = 256 << 20;  // maps of 8000 x 8000 cells as text fit
+  constexpr std::streamsize kLargest = 256 << 20;  // enough for text maps of 8000 x 8000 cells
   std::error_code none;
-  if (std::filesystem::is_directory(path, none)) throw ConfigError(path + ": is a folder, no file");
+  if (std::filesystem::is_directory(path, none))
+    throw ConfigError(path + ": is a folder, not a file");
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file)
@@ -120,7 +121,7 @@ std::string readWhole(const std::string& path) {
     file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
     text.append(piece, 0, static_cast<size_t>(file.gcount()));
     if (static_cast<std::streamsize>(text.size()) > kLargest)
-      throw ConfigError(path + ": is larger than 256 MB; no map or set of patterns is");
+      throw ConfigError(path + ": is larger than 256 MB, too large for a map or pattern set");
   } while (file);
   return text;
 }

@@ -11,37 +11,36 @@
 
 namespace tread::plan {
 
-/// The words of a text one after the other, for the formats of others that are no YAML.
-/** A byte order mark is passed over; UTF-16 throws. What is missing, no number or out of its range
- * throws ConfigError with "name:line: what". */
+/// Splits a text into words, for foreign formats other than YAML.
+/** A byte order mark is skipped; UTF-16 throws. Missing words, wrong numbers and values out of
+ * range throw ConfigError "name:line: error". */
 class Tokenizer {
  public:
-  /// `name` stands for the file in messages; from `comment` on to the end of its line nothing
-  /// counts.
+  /// `name` replaces the file in messages; `comment` begins a comment up to the end of the line.
   Tokenizer(std::string text, std::string name, char comment = '\0');
 
-  /// Whether nothing but blanks and comments is left.
+  /// Whether only blanks and comments are left.
   bool atEnd();
-  /// The next word without taking it; empty at the end. It lives as long as this does.
+  /// The next word without consuming it; empty at the end. It is valid as long as this object.
   std::string_view peek();
-  /// `what` it should be is told where the text ends before it.
+  /// `what` is expected; it is named in the error if the text ends.
   std::string_view next(const std::string& what);
-  /// Takes exactly this word.
+  /// Consumes exactly this word.
   void expect(const std::string& word);
   int64_t integer(const std::string& what, int64_t min, int64_t max);
   double number(const std::string& what, Range range, const std::string& unit);
-  /// x, y [m] and heading [rad] of `what`, no greater than these.
+  /// x, y [m] and heading [rad] of `what`, limited to these magnitudes.
   Pose2 pose(const std::string& what, double farthest, double most_turn);
 
-  /// Characters that were not taken yet.
+  /// Unread characters.
   size_t left() const { return text_.size() - at_; }
-  /// All of them; no word can be taken after that.
+  /// All unread characters; ends the reading of words.
   std::string_view rest();
-  /// Of the word that was taken last, from 1.
+  /// Line of the last word, from 1.
   int line() const { return word_line_; }
-  /// An error at the line of the word that was taken last.
+  /// An error at the line of the last word.
   ConfigError error(const std::string& problem) const;
-  /// Words that errors begin with from here on, for instance "primitive 3"; empty = none.
+  /// Prefix of errors from here on, for instance "primitive 3"; empty = none.
   void inside(const std::string& part) { part_ = part; }
 
  private:
@@ -52,8 +51,8 @@ class Tokenizer {
   std::string part_;
   char comment_;
   size_t at_ = 0;
-  int line_ = 1;       // of at_
-  int word_line_ = 1;  // of the word that was taken last
+  int line_ = 1;       // line of at_
+  int word_line_ = 1;  // line of the last word
 };
 
 /// A file's text; throws ConfigError with one line for a folder, what cannot be read, and what is

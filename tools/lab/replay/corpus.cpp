@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// An MCAP file as the log that it was made of, gone with this.
+/// The original log of an MCAP file, deleted by the destructor.
 class UnpackedLog {
  public:
   explicit UnpackedLog(const std::string& path) : path_(path) {
@@ -45,7 +45,7 @@ class UnpackedLog {
   bool made_ = false;
 };
 
-/// Those of one process, without its name.
+/// The overrides of one process, without its name.
 std::vector<std::string> overridesOf(const std::vector<std::string>& overrides,
                                      const std::string& process) {
   std::vector<std::string> own;

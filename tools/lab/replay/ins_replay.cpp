@@ -21,31 +21,31 @@ namespace tread {
 namespace {
 
 constexpr double kDegPerRad = 180.0 / kPi;
-/// After the last bytes, so that the last epoch ends and HEALTH holds the final counts.
+/// After the last bytes: the last epoch ends and HEALTH gets the final counts.
 constexpr int64_t kAfterwardsUs = 200'000;
-/// A burst larger than this is played in pieces, as a line would deliver it.
+/// A larger burst is played in pieces, as a line would deliver it.
 constexpr size_t kPieceBytes = 4096;
 constexpr int64_t kPieceUs = 5'000;
-constexpr int64_t kUntimedUs = 100'000;      ///< between bursts whose times do not tell it
-constexpr int64_t kMaxPauseUs = 60'000'000;  ///< a longer one is shortened to it
+constexpr int64_t kUntimedUs = 100'000;      ///< between bursts without a usable time
+constexpr int64_t kMaxPauseUs = 60'000'000;  ///< longer pauses are shortened to it
 
-/// Bytes that came together.
+/// Bytes that arrived together.
 struct Burst {
   int64_t utime = 0;  ///< [us] since the log's start
   std::string bytes;
 };
 using MakeScout = std::function<std::unique_ptr<ins::InsSource>()>;
 
-/// From one burst to the next, by the device's or the capture's times.
+/// Pause between two bursts, by the times of the device or the capture.
 int64_t pauseBetween(int64_t before, int64_t after) {
   return after > before ? std::min(after - before, kMaxPauseUs) : kUntimedUs;
 }
 
-/// Cuts a log of bytes where a message tells another time than the one before.
+/// Cuts a log of bytes at each change of the messages' time stamp.
 std::vector<Burst> cutByMessages(const std::string& log, ins::InsSource& scout) {
   std::vector<Burst> bursts(1);
   std::optional<int64_t> time;
-  size_t message = 0;  // where the one under way began
+  size_t message = 0;  // start of the current message
   for (size_t i = 0; i < log.size(); ++i) {
     const auto now = static_cast<int64_t>(i);
     scout.push(std::string_view(log).substr(i, 1), now);
@@ -71,7 +71,7 @@ std::vector<Burst> cutNmea(const std::string& log) {
   return bursts;
 }
 
-/// In how many of these payloads the instrument was understood.
+/// Number of payloads that the instrument's decoder understood.
 int64_t messagesIn(const std::vector<CapturedPayload>& payloads, ins::InsSource& scout) {
   int64_t messages = 0;
   int64_t now = 0;
@@ -84,7 +84,7 @@ int64_t messagesIn(const std::vector<CapturedPayload>& payloads, ins::InsSource&
   return messages;
 }
 
-/// What a capture holds, by stream, and in `notes` what was left out.
+/// Content of a capture by stream; `notes` gets what was left out.
 std::map<std::string, std::vector<CapturedPayload>> streamsOf(const std::string& file,
                                                               std::string& notes) {
   std::map<std::string, std::vector<CapturedPayload>> streams;
@@ -114,8 +114,8 @@ std::vector<Burst> cutCapture(const std::string& file, const MakeScout& make_sco
     most = std::max(most, messages);
   }
   if (found == nullptr) {
-    notes += "in none of the capture's " + std::to_string(streams.size()) +
-             " streams of UDP and TCP is a message of this instrument\n";
+    notes += "none of the capture's " + std::to_string(streams.size()) +
+             " UDP and TCP streams contains a message of this instrument\n";
     return {};
   }
   notes += "played: " + found->first + "\n";
@@ -167,8 +167,8 @@ int64_t sumOf(const ins::ReasonCounts& counts) {
   return sum;
 }
 
-/// GPS counts weeks modulo 1024: a receiver with an old firmware dates 19.6 years back. A date that
-/// would lie ahead of today if it had done so is right.
+/// GPS counts weeks modulo 1024, so a receiver with old firmware is 19.6 years behind. A date is
+/// taken as correct if the corrected one would be in the future.
 std::string dateOf(int64_t utc) {
   constexpr int64_t kEra = 1024 * int64_t{7} * 86400;
   const auto written = [](int64_t seconds) {
@@ -196,7 +196,7 @@ void writePose(std::ostream& out, const char* which, const std::optional<ins_t>&
       << " s" << dateOf(message->device_utc) << "\n";
 }
 
-/// Headings drawn along a track, whatever its length.
+/// Number of headings drawn along a track.
 constexpr size_t kHeadings = 40;
 
 std::vector<Pose2> posesOf(const InsReplay& replay) {

@@ -9,17 +9,17 @@
 namespace tread::replay {
 namespace {
 
-/// From the start of a process to its first message on the robot, at most [us].
+/// Longest time from a process's start to its first message [us].
 constexpr int64_t kLongestStart = 10'000'000;
 
-/// A whole LEARNER_STATE.
+/// A complete LEARNER_STATE.
 struct Snapshot {
   size_t event = 0;  ///< index of its last part
   int64_t seq = 0;   ///< of its first part
   std::string text;
 };
 
-/// The states whose parts are all in the log.
+/// States with all parts in the log.
 std::vector<Snapshot> snapshotsOf(const RobotLog& log) {
   std::vector<Snapshot> whole;
   Snapshot current;
@@ -39,7 +39,7 @@ std::vector<Snapshot> snapshotsOf(const RobotLog& log) {
   return whole;
 }
 
-/// The first state of each life: seq begins anew with each start.
+/// The first state of each life: seq restarts with each start.
 std::vector<Snapshot> beginningsOf(const std::vector<Snapshot>& snapshots) {
   std::vector<Snapshot> beginnings;
   int64_t last_seq = -1;
@@ -50,8 +50,7 @@ std::vector<Snapshot> beginningsOf(const std::vector<Snapshot>& snapshots) {
   return beginnings;
 }
 
-/// Boot id of the learner that was alive at an event: the one that its next HEALTH names, else the
-/// last one before.
+/// Boot id of the learner at an event: from its next HEALTH, else from the previous one.
 int64_t bootIdAt(const RobotLog& log, size_t event) {
   const std::vector<Said<health_t>>& health = log.healthOf("learner");
   if (health.empty()) return log.events[event].utime;
@@ -59,7 +58,7 @@ int64_t bootIdAt(const RobotLog& log, size_t event) {
   return (next == health.end() ? health.back() : *next).message.boot_id;
 }
 
-/// First event that a process heard which was started at `boot_id`.
+/// First event received by a process that was started at `boot_id`.
 size_t firstHeard(const RobotLog& log, size_t before, int64_t boot_id) {
   const int64_t published = log.events[before].utime;
   if (boot_id > published || published - boot_id > kLongestStart) return before;
@@ -80,7 +79,7 @@ std::vector<PatternSet> setsBefore(const RobotLog& log, size_t end, int64_t vers
   return sets;
 }
 
-/// A start gives the stored set a new number; executions under way name the old one.
+/// A start renumbers the stored set; running executions still name the old number.
 std::vector<PatternSet> storedSet(const PatternSet& renumbered) {
   PatternSetContent content = renumbered.content();
   if (content.parent_version < 1) return {};
@@ -104,8 +103,8 @@ LearnerLife lifeOf(const RobotLog& log, const Snapshot& snapshot, const PatternS
   return life;
 }
 
-/// Whether a life may be replayed from its state: every execution that it will handle must name a
-/// set that the log holds, or it would be scored with nothing.
+/// Whether a life can be replayed from its state: every execution to be handled must name a set in
+/// the log, else it could not be scored.
 bool namesKnownSets(const RobotLog& log, const LearnerLife& life) {
   std::set<int64_t> known;
   for (const PatternSet& set : life.earlier) known.insert(set.version());
@@ -123,8 +122,8 @@ bool namesKnownSets(const RobotLog& log, const LearnerLife& life) {
   return true;
 }
 
-/// The first state of a log that begins in the middle from which all can be replayed; the first of
-/// all if there is none.
+/// For a log that begins in the middle of a life: the first state from which everything can be
+/// replayed; the first of all if there is none.
 std::vector<Snapshot> fromReplayable(const RobotLog& log, std::vector<Snapshot> snapshots,
                                      const PatternSet& shipped) {
   for (size_t i = 0; i < snapshots.size() && snapshots[i].seq > 0; ++i) {
@@ -148,7 +147,7 @@ std::vector<LearnerLife> learnerLives(const RobotLog& log, const PatternSet& shi
   if (lives.empty())
     throw std::runtime_error(
         log.name +
-        ": no whole LEARNER_STATE, so it is not known where the learner began; record from its "
+        ": no complete LEARNER_STATE, so the learner's initial state is unknown; record from its "
         "start, or use --model or --patterns for a log without a learner");
   return lives;
 }

@@ -14,7 +14,7 @@
 namespace tread::replay {
 namespace {
 
-/// The commands of an execution by index, as applied.
+/// The applied commands of an execution, by index.
 using AppliedCommands = std::map<int32_t, Command>;
 
 Command commandIn(const motor_t& motor) {
@@ -33,14 +33,14 @@ std::map<ExecutionKey, AppliedCommands> appliedCommands(const DriveLog& log) {
   return commands;
 }
 
-/// The kinds of the last command that belongs to an execution; without one, of a model.
+/// Kinds of the last command of an execution; if there is none, those of a model.
 std::vector<CommandKind> kindsIn(const DriveLog& log, const VehicleModel& model) {
   for (auto motor = log.motor.rbegin(); motor != log.motor.rend(); ++motor)
     if (motor->execution_id != 0 && motor->command_index >= 0) return kindsFrom(*motor);
   return kindsOf(model.channels());
 }
 
-/// The series that was applied in an execution; a sample that the log misses holds the one before.
+/// The applied series of an execution; a sample missing in the log holds the previous command.
 std::vector<Command> seriesOf(const AppliedCommands& applied, int32_t count) {
   std::vector<Command> series;
   Command held = applied.begin()->second;
@@ -52,7 +52,7 @@ std::vector<Command> seriesOf(const AppliedCommands& applied, int32_t count) {
   return series;
 }
 
-/// A class for each pattern: what it does depends on the steady motion in which it begins.
+/// One class per pattern, as its motion depends on the steady motion in which it begins.
 void addPattern(PatternSetContent& content, const VehicleModel& model, int id,
                 const std::vector<Command>& commands) {
   MotionPattern pattern;
@@ -77,8 +77,7 @@ void addPattern(PatternSetContent& content, const VehicleModel& model, int id,
 constexpr int64_t kSecond = 1'000'000;
 constexpr const char* kNode = "learner";
 
-/// Plays the events of a log and writes into EXECUTION the versions that this learner had
-/// published.
+/// Plays the events of a log; EXECUTION gets the versions that this learner has published.
 class Player {
  public:
   Player(VirtualBus& bus, Commitment commitment) : bus_(bus), commitment_(commitment) {}
@@ -109,7 +108,7 @@ class Player {
   std::map<ExecutionKey, int64_t> versions_;
 };
 
-/// The same log with the events that a learner hears, and executions in the order of their ends.
+/// The learner's inputs from a log, with executions ordered by their ends.
 DriveLog learnersPart(DriveLog log) {
   const auto ignore = [](const auto&) {};
   log.events.erase(std::remove_if(log.events.begin(), log.events.end(),
@@ -133,7 +132,7 @@ DriveLog readLearnerLog(const std::string& path) {
   log.name = std::filesystem::path(path).stem().string();
   if (log.executions.empty())
     throw std::runtime_error(path +
-                             ": no execution that has ended; a log with INS, MOTOR and EXECUTION "
+                             ": no completed execution; a log with INS, MOTOR and EXECUTION "
                              "is needed (tread-import makes one)");
   return log;
 }
@@ -186,7 +185,7 @@ LearnerRun runLearner(const DriveLog& log, const learner::LearnerNodeConfig& con
               [&](Bus& end) { return std::make_unique<learner::LearnerNode>(config, end, store); });
   Player player(bus, commitment);
   for (const LogEvent& event : log.events) player.play(event);
-  // Executions without INS at their end are given up after a while; HEALTH follows within a second.
+  // Executions without INS at their end are given up after a while; HEALTH follows within 1 s.
   bus.runUntil(bus.now() + config.settle_us + config.give_up_us + 2 * kSecond);
   run.set = static_cast<const learner::LearnerNode*>(bus.node(kNode))->set();
   return run;

@@ -14,17 +14,16 @@
 
 namespace tread::replay {
 
-/// What the learner reads of a drive: only INS, MOTOR and EXECUTION events, in the robot's
-/// time; executions in order of their end. `name` stands for the log in reports.
+/// The learner's inputs from a drive: INS, MOTOR and EXECUTION events in the robot's time,
+/// executions ordered by their ends. `name` is the log's name in reports.
 DriveLog toLearnerLog(const std::string& name, std::vector<LogEvent> events);
 
-/// Reads a log file, whose name without ending stands for it; throws std::runtime_error with one
-/// clear line if nothing in it can be replayed.
+/// Reads a log file, named after the file without extension; throws std::runtime_error with one
+/// clear line if it contains nothing to replay.
 DriveLog readLearnerLog(const std::string& path);
 
-/// One pattern for each pattern id among the completed executions of a log, predicted by a model:
-/// the commands that were applied in the first of them, entered in the steady motion of their first
-/// command.
+/// One pattern for each pattern id among the completed executions of a log: the applied commands of
+/// the first one, entered in the steady motion of its first command, with a model's prediction.
 /** Throws std::runtime_error with one clear line if the log's commands are not of the model's kind.
  */
 PatternSet predictedSet(const DriveLog& log, const VehicleModel& model);

@@ -42,7 +42,7 @@ std::vector<learning_t> filtered(const std::vector<learning_t>& learned, const B
   return result;
 }
 
-/// Measured, and scored against the set that its record names.
+/// Measured, and scored against the set named in its record.
 bool isScored(const learning_t& learned) {
   return learned.accepted && std::isfinite(learned.error_position);
 }
@@ -54,7 +54,7 @@ Belongs isOfClass(const PatternSet& set, const std::string& name) {
   };
 }
 
-/// One group of executions: a line per run.
+/// One group of executions, a line per run.
 void writeGroup(std::ostream& out, const std::string& name, const std::vector<LearnerRun>& runs,
                 const Belongs& belongs) {
   bool first = true;
@@ -93,7 +93,7 @@ void writeIntake(std::ostream& out, const DriveLog& log, const LearnerRun& run) 
   if (!run.health.empty()) out << "  HEALTH at the end: " << run.health << "\n";
 }
 
-/// Which guards held corrections back, and how often.
+/// Counts of the guards that limited corrections.
 void writeGuards(std::ostream& out, const LearnerRun& run) {
   std::map<std::string, int> guards;
   for (const learning_t& learned : run.learned) {
@@ -107,21 +107,21 @@ void writeGuards(std::ostream& out, const LearnerRun& run) {
   for (const auto& [guard, count] : guards) out << formatted("  %5d %s\n", count, guard.c_str());
 }
 
-/// How far the vehicle drove and turned against what the set says that learning begins with.
+/// Measured driving and turning relative to the initial set of the learner.
 std::string groundLine(const std::vector<learning_t>& learned) {
   double way = 0.0, predicted_way = 0.0, turn = 0.0, predicted_turn = 0.0;
   for (const learning_t& one : learned) {
     if (!isScored(one)) continue;
     way += std::hypot(one.measured_end[0], one.measured_end[1]);
     predicted_way += std::hypot(one.predicted_end[0], one.predicted_end[1]);
-    // Against the prediction's direction.
+    // Opposite to the prediction's direction.
     turn += one.predicted_end[2] < 0.0 ? -one.measured_end[2] : one.measured_end[2];
     predicted_turn += std::abs(one.predicted_end[2]);
   }
   if (predicted_way <= 0.0 || predicted_turn <= 0.0) return "";
   return formatted(
-      "On this ground the vehicle came %.0f %% as far and turned %.0f %% as much as the set "
-      "says that learning begins with.\n",
+      "On this ground the vehicle drove %.0f %% as far and turned %.0f %% as much as the initial "
+      "set predicts.\n",
       100.0 * way / predicted_way, 100.0 * turn / predicted_turn);
 }
 
@@ -137,7 +137,7 @@ std::string resultLine(const DriveLog& log, const std::vector<LearnerRun>& runs)
   return result + "\n";
 }
 
-/// On how many executions a run predicted better than the first one.
+/// Number of executions that a run predicted better than the first run did.
 void writeComparison(std::ostream& out, const std::vector<LearnerRun>& runs) {
   const std::vector<learning_t>& base = runs.front().learned;
   for (size_t r = 1; r < runs.size(); ++r) {
@@ -151,12 +151,13 @@ void writeComparison(std::ostream& out, const std::vector<LearnerRun>& runs) {
       position += other.error_position < base[i].error_position ? 1 : 0;
       yaw += std::abs(other.error_yaw) < std::abs(base[i].error_yaw) ? 1 : 0;
     }
-    out << formatted("  '%s' is nearer than '%s' in %zu of %zu positions and %zu of %zu yaws\n",
-                     runs[r].title.c_str(), runs.front().title.c_str(), position, all, yaw, all);
+    out << formatted(
+        "  '%s' predicts better than '%s' in %zu of %zu positions and %zu of %zu yaws\n",
+        runs[r].title.c_str(), runs.front().title.c_str(), position, all, yaw, all);
   }
 }
 
-/// What a part of the picture shows: position [m] or yaw [deg].
+/// Quantity of a part of the picture: position [m] or yaw [deg].
 struct ErrorKind {
   std::string label;
   double (*of)(const learning_t&);
@@ -271,7 +272,8 @@ std::string steeredClass(const MotionPattern& pattern, const CommandChannels& ch
   return std::string(drive > 0.0 ? "forward" : "reverse") + (steering > little ? " turn" : "");
 }
 
-/// Of a holonomic base, whose commands tell little without its wheels' places: where it goes.
+/// For a holonomic base, whose commands mean little without the wheels' positions: the direction of
+/// motion.
 std::string directionClass(const MotionPattern& pattern) {
   const Pose2& end = pattern.end();
   const double way = pattern.pathLength(), turned = std::abs(end.yaw);

@@ -6,8 +6,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "common/config/config_folder.hpp"
 #include "common/config/command_line.hpp"
+#include "common/config/config_folder.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/config/outputs.hpp"
 #include "common/pattern/pattern_file.hpp"
@@ -26,7 +26,7 @@ using namespace tread;
 
 namespace {
 
-/// Files for the results, besides the terminal.
+/// Output files, in addition to the terminal.
 struct Output {
   std::string report;
   std::string picture;
@@ -49,7 +49,7 @@ void say(const std::string& report, const Output& output) {
   if (!output.report.empty()) writeText(output.report, report);
 }
 
-/// Options of every command, and whether a comparison found a difference.
+/// Common options of all commands, and whether a comparison found a difference.
 struct Arguments {
   std::string log;
   std::string config;
@@ -70,12 +70,13 @@ void replayInsLog(const Arguments& arguments) {
 }
 
 void addIns(CLI::App& app, Arguments& arguments) {
-  CLI::App& command =
-      *app.add_subcommand("ins", "what an INS said, as bytes or as a capture, through ins_driver");
+  CLI::App& command = *app.add_subcommand(
+      "ins", "recorded bytes of an INS, or a network capture, through ins_driver");
   command.add_option("log", arguments.log, "bytes of the device, or a capture (pcap, pcapng)")
       ->required();
-  command.add_option("--config", arguments.config,
-                     "configuration of ins_driver: its `source` names the instrument; else nmea");
+  command.add_option(
+      "--config", arguments.config,
+      "configuration of ins_driver, whose `source` names the instrument; default: nmea");
   addOutput(command, arguments.output);
   command.callback([&arguments] { replayInsLog(arguments); });
 }
@@ -88,7 +89,8 @@ void replayMappingLog(const Arguments& arguments) {
 }
 
 void addMapping(CLI::App& app, Arguments& arguments) {
-  CLI::App& command = *app.add_subcommand("mapping", "range scans with poses through mapping");
+  CLI::App& command =
+      *app.add_subcommand("mapping", "recorded range scans with poses through mapping");
   command.add_option("log", arguments.log, "CARMEN log (*.log.gz, *.clf) or LCM log of an MBot")
       ->required();
   addOutput(command, arguments.output);
@@ -106,7 +108,7 @@ void replayMatchingLog(const Arguments& arguments) {
 
 void addMatching(CLI::App& app, Arguments& arguments) {
   CLI::App& command = *app.add_subcommand(
-      "matching", "the scans of such a recording through scan matching, against its poses");
+      "matching", "the scans of such a recording through scan matching, compared with its poses");
   command.add_option("log", arguments.log, "as for mapping")->required();
   command.add_option("--config", arguments.config, "configuration of scan_matching");
   addOutput(command, arguments.output);
@@ -126,11 +128,12 @@ void comparePlanner(Arguments& arguments) {
 }
 
 void addPlanner(CLI::App& app, Arguments& arguments) {
-  CLI::App& command = *app.add_subcommand(
-      "planner",
-      "the log of a running robot through the planner; code 1 if different or not compared");
+  CLI::App& command = *app.add_subcommand("planner",
+                                          "a robot's log through the planner, compared with its "
+                                          "PLANs; code 1 if different or not compared");
   command.add_option("log", arguments.log, "LCM log")->required();
-  command.add_option("--config", arguments.config, "configuration of the planner; else the log's");
+  command.add_option("--config", arguments.config,
+                     "configuration of the planner; default: that of the log");
   addReport(command, arguments.output);
   command.callback([&arguments] { comparePlanner(arguments); });
 }
@@ -143,11 +146,12 @@ struct LearnerArguments : Arguments {
   std::string poses = kIns.name;
 };
 
-/// A robot's log: its own sets and reports are compared.
+/// For a robot's log: compares with its own sets and reports.
 void compareLearner(LearnerArguments& arguments) {
   const RobotLog log = readRobotLog({arguments.log});
   const auto config = [&] {
-    if (arguments.config.empty()) return report::learnerConfigOf(log, shippedConfig() + "/patterns");
+    if (arguments.config.empty())
+      return report::learnerConfigOf(log, shippedConfig() + "/patterns");
     ConfigReader reader = ConfigReader::fromFile(arguments.config);
     return learner::readLearnerConfig(reader);
   };
@@ -156,7 +160,7 @@ void compareLearner(LearnerArguments& arguments) {
   arguments.different = !check.equal();
 }
 
-/// A robot's log: what its learner would have made of the poses of another channel.
+/// For a robot's log: the learner's result with poses from another channel.
 void compareLearnedPoses(const LearnerArguments& arguments) {
   std::string problem;
   const std::vector<LogEvent> events = readEvents({arguments.log}, problem);
@@ -173,7 +177,7 @@ void compareLearnedPoses(const LearnerArguments& arguments) {
       arguments.output);
 }
 
-/// A log without a learner: how well the rules would have predicted its executions.
+/// For a log without a learner: how well the rules predict its executions.
 void replayLearner(LearnerArguments& arguments) {
   const tread::DriveLog log = replay::readLearnerLog(arguments.log);
   const PatternSet set = arguments.model.empty()
@@ -182,10 +186,10 @@ void replayLearner(LearnerArguments& arguments) {
   if (!arguments.write_patterns.empty()) writeText(arguments.write_patterns, formatPatterns(set));
   learner::LearnerNodeConfig config(set);
   std::string notes =
-      "Each execution is scored with the newest set when it began, as a planner knows it;\n"
-      "'prompt': with the newest when it ended, when all before it were learned.\n";
+      "Each execution is scored with the newest set at its beginning, as a planner has it;\n"
+      "'prompt': with the newest set at its end, after all earlier ones were learned.\n";
   if (!arguments.model.empty()) {
-    // A model that is wrong about a steady turn is wrong about the twist in which it is entered.
+    // A model that is wrong about a steady turn is also wrong about the entry twist.
     config.limits.entry_speed = config.limits.entry_yaw_rate =
         std::numeric_limits<double>::infinity();
     notes += "The gate on the entry twist was off.\n";
@@ -208,31 +212,31 @@ void replayLearner(LearnerArguments& arguments) {
 
 void addLearner(CLI::App& app, LearnerArguments& arguments) {
   CLI::App& command = *app.add_subcommand("learner",
-                                          "a log of executions through the learner; without "
-                                          "--model and --patterns the log of a running "
-                                          "robot, whose sets are compared: code 1 if different");
+                                          "a log of executions through the learner. Without "
+                                          "--model and --patterns a robot's own log, "
+                                          "compared with its sets: code 1 if different");
   command.add_option("log", arguments.log, "LCM log with INS, MOTOR and EXECUTION")->required();
   command.add_option("--config", arguments.config,
-                     "configuration of the learner for a robot's log; else the log's");
-  auto* source = command.add_option_group("prediction", "where the first predictions come from");
+                     "configuration of the learner for a robot's log; default: that of the log");
+  auto* source = command.add_option_group("prediction", "source of the first predictions");
   source->add_option("--model", arguments.model,
-                     "vehicle model file: predicts a pattern for each pattern id of the log");
+                     "vehicle model file, which predicts a pattern for each pattern id of the log");
   source->add_option("--patterns", arguments.patterns, "pattern file");
   source->require_option(0, 1);
-  command.add_option("--rule", arguments.rules, "beside 'off'; several with commas between")
+  command.add_option("--rule", arguments.rules, "rules in addition to 'off', separated by commas")
       ->delimiter(',')
       ->check(CLI::IsMember(learner::ruleNames()))
       ->capture_default_str();
   command
       .add_option("--poses", arguments.poses,
-                  "SCAN_MATCHING: what the log's learner would have made of these poses, beside "
-                  "those of INS")
+                  "SCAN_MATCHING: compare the learner's results with these poses and with "
+                  "those of the INS")
       ->check(CLI::IsMember({kIns.name, kScanMatching.name}))
       ->excludes(source->get_option("--model"))
       ->excludes(source->get_option("--patterns"));
   addOutput(command, arguments.output)
       .file("--write-patterns", arguments.write_patterns,
-            "write the set that learning begins with into a pattern file");
+            "write the initial set of the learner into a pattern file");
   command.callback([&arguments] {
     if (arguments.poses != kIns.name) return compareLearnedPoses(arguments);
     if (arguments.model.empty() && arguments.patterns.empty()) return compareLearner(arguments);
@@ -249,14 +253,15 @@ struct CorpusArguments {
 };
 
 void addCorpus(CLI::App& app, CorpusArguments& arguments) {
-  CLI::App& command = *app.add_subcommand(
-      "corpus",
-      "all logs of a folder through planner and learner: what the code of today, or another "
-      "configuration, changes; code 1 if anything");
-  command.add_option("folder", arguments.folder, "with *.lcmlog and *.mcap")->required();
+  CLI::App& command = *app.add_subcommand("corpus",
+                                          "all logs of a folder through planner and learner: "
+                                          "differences due to the present code or another "
+                                          "configuration; code 1 if there are any");
+  command.add_option("folder", arguments.folder, "folder with *.lcmlog and *.mcap")->required();
   command
       .add_option("--set", arguments.overrides,
-                  "PROCESS.KEY=VALUE in the place of what the logs say: planner.margins.plan=0.1")
+                  "PROCESS.KEY=VALUE overrides the logs' configuration, for instance "
+                  "planner.margins.plan=0.1")
       ->expected(1)
       ->take_all();
   addThreads(command, arguments.threads);
@@ -297,7 +302,7 @@ int parseAndRun(int argc, char** argv) {
   Arguments mapping_arguments;
   Arguments matching_arguments;
   RecipeArguments recipe_arguments;
-  CLI::App app{"Recorded logs through the real nodes, on the virtual bus"};
+  CLI::App app{"Replays recorded logs through the real nodes on a virtual bus."};
   app.require_subcommand(0, 1);
   addRecipe(app, recipe_arguments);
   addLearner(app, learner_arguments);

@@ -24,17 +24,17 @@ constexpr int64_t kStartUs = 2'000'000;
 
 // CARMEN logs.
 constexpr int64_t kInsPeriodUs = 20'000;
-constexpr double kSpeed = 1.0;              // [m/s]
-constexpr double kLongestWay = 1000.0;      // [m] between two poses; such logs have one a metre
-constexpr double kTurnRate = 0.5;           // [rad/s]
+constexpr double kSpeed = 1.0;          // [m/s]
+constexpr double kLongestWay = 1000.0;  // [m] between two poses; such logs have about one per metre
+constexpr double kTurnRate = 0.5;       // [rad/s]
 constexpr double kCarmenLaserHeight = 0.3;  // [m] not in the logs
-/// Ranges from here on [m] mean that no echo came back.
+/// Larger ranges [m] mean no echo.
 constexpr double kNoReturn = 80.0;
 
 // The MBot's logs.
 constexpr int64_t kSweepUs = 200'000;
 constexpr double kMbotLaserHeight = 0.15;  // [m]
-constexpr double kNearest = 0.12;          // [m] nearer returns are the robot's own
+constexpr double kNearest = 0.12;          // [m] closer returns hit the robot itself
 constexpr double kFarthest = 6.0;          // [m]
 
 ins_t insAt(int64_t utime, const Pose2& pose) {
@@ -60,7 +60,7 @@ scan_t scanFrom(int64_t utime, double laser_height) {
   return message;
 }
 
-/// `problem`: one clear line if the file ends too early.
+/// `problem`: one clear line if the file is truncated.
 std::vector<std::string> linesOf(const std::string& path, std::string& problem) {
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
   if (!file) throw std::runtime_error(path + ": cannot be opened");
@@ -69,8 +69,9 @@ std::vector<std::string> linesOf(const std::string& path, std::string& problem) 
   int got = 0;
   while ((got = gzread(file.get(), buffer, sizeof(buffer))) > 0)
     text.append(buffer, static_cast<size_t>(got));
-  if (got < 0) throw std::runtime_error(path + ": is damaged: its compressed bytes do not unpack");
-  // A file that is cut off gives what it has, and this error.
+  if (got < 0)
+    throw std::runtime_error(path + ": is damaged: its compressed bytes cannot be unpacked");
+  // Of a truncated file the existing part is returned, with this error.
   int error = Z_OK;
   gzerror(file.get(), &error);
   if (error == Z_BUF_ERROR)
@@ -92,7 +93,7 @@ scan_t scanAt(int64_t utime, const lidar::RangeScan& scan) {
   return message;
 }
 
-/// INS messages on the arc between two poses, the second one included.
+/// INS messages on the arc between two poses, including the second one.
 void drive(const Pose2& from, const Pose2& to, int64_t start, int64_t end,
            std::vector<ins_t>& poses) {
   const Pose2 step = between(from, {to.x, to.y, from.yaw + wrapAngle(to.yaw - from.yaw)});
@@ -116,13 +117,13 @@ mapping::MappingConfig outdoorConfig() {
   config.map.window_tiles = 14;
   config.map.robot = {0.25, 0.25, 0.21};
   config.map.obstacle.robot_height = 1.2;
-  config.map.ground.slope_doubt = 0.0;  // the poses are level: nothing is known of slopes
+  config.map.ground.slope_doubt = 0.0;  // the poses are level, slopes are unknown
   return config;
 }
 
 /// A CARMEN text log with corrected poses, plain or gzipped.
-/** Such logs have a pose about every metre and no times. Times are made up as if the robot had
- * driven at 1 m/s and turned at no more than 0.5 rad/s between the poses, along arcs. */
+/** Such logs have a pose about every metre and no times. The times are generated for 1 m/s and at
+ * most 0.5 rad/s between the poses, along arcs. */
 void readCarmenLog(const std::string& path, MappingRecording& recording) {
   recording.config = outdoorConfig();
   Pose2 last;
@@ -148,10 +149,10 @@ void readCarmenLog(const std::string& path, MappingRecording& recording) {
   }
   if (recording.scans.empty())
     throw std::runtime_error(
-        path + ": holds no FLASER or ROBOTLASER1 line; is it a CARMEN log with poses?");
+        path + ": contains no FLASER or ROBOTLASER1 line; is it a CARMEN log with poses?");
 }
 
-/// What a message of that project holds, by its fields; nothing if it is of another type or broken.
+/// Fields of a message of that project; nullopt if it has another type or is damaged.
 std::optional<std::map<std::string, std::vector<double>>> foreignNumbers(const LogEvent& event,
                                                                          const char* type) {
   const MessageTypes& types = recordings::foreignTypes();
@@ -164,7 +165,7 @@ std::optional<ins_t> poseOf(const LogEvent& event, int64_t utime) {
   return insAt(utime, {pose->at("x")[0], pose->at("y")[0], pose->at("theta")[0]});
 }
 
-/// Beams without an echo stay in the slice as NaN: a point's index gives its time.
+/// Beams without an echo stay in the slice as NaN, because a point's index determines its time.
 std::vector<float> pointOf(double range, double clockwise) {
   if (!(range > kNearest) || !(range < kFarthest)) return std::vector<float>(3, std::nanf(""));
   return {static_cast<float>(range * std::cos(clockwise)),
@@ -193,7 +194,7 @@ mapping::MappingConfig indoorConfig() {
   config.map.start_free_radius = 0.2;
   config.map.obstacle = {0.05, 0.3};
   config.map.ground.slope_doubt = 0.0;  // a level floor
-  config.max_ins_gap = 0.3;             // the motion capture loses the robot now and then
+  config.max_ins_gap = 0.3;             // the motion capture sometimes loses the robot
   return config;
 }
 
@@ -211,10 +212,10 @@ void number(std::vector<Message>& messages) {
   for (size_t i = 0; i < messages.size(); ++i) messages[i].seq = static_cast<int64_t>(i);
 }
 
-/// An LCM log of an MBot (2017): LIDAR and TRUE_POSE of types of its own.
-/** Its beams run clockwise and unevenly, so each sweep becomes a slice of points. A sweep is taken
- * to end when it was logged: that fits the poses, which are stamped on arrival too, better than the
- * stamps of LIDAR. */
+/// An LCM log of an MBot (2017): LIDAR and TRUE_POSE in their own types.
+/** Its beams run clockwise with uneven spacing, so each sweep becomes a slice of points. A sweep is
+ * assumed to end at its logging time: this agrees better with the poses, which are also stamped on
+ * arrival, than the stamps of LIDAR. */
 void readMbotLog(const std::string& path, MappingRecording& recording) {
   recording.config = indoorConfig();
   DriveReader log({path});
@@ -233,7 +234,7 @@ void readMbotLog(const std::string& path, MappingRecording& recording) {
   }
   recording.problem = log.problem();
   if (recording.scans.empty())
-    throw std::runtime_error(path + ": holds no LIDAR message of the MBot's type");
+    throw std::runtime_error(path + ": contains no LIDAR message of the MBot's type");
 }
 
 bool endsWith(const std::string& text, const std::string& ending) {

@@ -13,11 +13,11 @@
 namespace tread {
 namespace {
 
-/// Poses go on so long after the last scan, and then tiles and counts come out.
+/// Poses continue for this time after the last scan, until tiles and counters are published.
 constexpr int64_t kPosesAfterUs = 200'000;
 constexpr int64_t kAfterwardsUs = 2'000'000;
 
-/// Puts a tile over what is known; what it does not know stays.
+/// Copies a tile's known cells into the map; unknown cells leave it unchanged.
 void take(const map_tile_t& message, TileMap& map) {
   Tile tile{message.tile_x, message.tile_y, message.utime, message.cells};
   const auto known = map.tiles().find({tile.tile_x, tile.tile_y});
@@ -43,7 +43,7 @@ void play(const MappingRecording& recording, VirtualBus& bus) {
   posesUntil(bus.now() + kPosesAfterUs);
 }
 
-/// The smallest window that holds every tile.
+/// The smallest window that contains all tiles.
 Grid windowOf(const TileMap& map) {
   if (map.tiles().empty()) return Grid(map.cellSize(), {}, 0, 0);
   CellIndex low{map.tiles().begin()->first.first, map.tiles().begin()->first.second};

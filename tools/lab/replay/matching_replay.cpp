@@ -22,19 +22,19 @@ using scan_matching::MatchedPose;
 constexpr double kMetre = 1.0;              // [m]
 constexpr int64_t kTwoSeconds = 2'000'000;  // [us]
 constexpr int64_t kMaxGap = 300'000;        // [us] between true poses
-constexpr int64_t kDelayed = 150'000;       // [us] on the way, more than usual
-constexpr int64_t kAround = 500'000;        // [us] around a delay in which no true pose is believed
+constexpr int64_t kDelayed = 150'000;       // [us] of delay above the usual one
+constexpr int64_t kAround = 500'000;        // [us] around a delay in which true poses are not used
 constexpr double kMostSlip = 0.3;           // [m] sideways between two scans
 
-/// A measured pose with the true one.
+/// A measured pose and the true one.
 struct Compared {
   const MatchedPose* measured;
   Pose2 T_map_true;
-  double way = 0.0;  ///< [m] of the truth so far
+  double way = 0.0;  ///< [m] of the true path so far
 };
 
-/// Whether the true body went sideways as no vehicle on wheels or tracks does: the reference has an
-/// error there. On an arc the chord lies at half of the turn.
+/// Whether the true body moved sideways as no wheeled or tracked vehicle does: an error of the
+/// reference. On an arc the chord's direction is half of the turn.
 bool slips(const Compared& last, const MatchedPose& next, const Pose2& T_map_true) {
   if (next.utime - last.measured->utime > kTwoSeconds) return false;
   const Pose2 step = between(last.T_map_true, T_map_true);
@@ -42,11 +42,11 @@ bool slips(const Compared& last, const MatchedPose& next, const Pose2& T_map_tru
   return std::abs(step.y * std::cos(half) - step.x * std::sin(half)) > kMostSlip;
 }
 
-/// A stretch without a new track in it.
+/// A stretch without a new track.
 using Stretch = std::vector<Compared>;
 
-/// Covariance of the pose of `b` as seen from `a`, in a's axes: what drift added between them, and
-/// both poses' own.
+/// Covariance of the pose of `b` relative to `a`, in a's axes: the drift between them, and both
+/// poses' own.
 Eigen::Matrix3d relativeCovariance(const MatchedPose& a, const MatchedPose& b) {
   Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
   J(0, 2) = -(b.T_map_body.y - a.T_map_body.y);
@@ -60,7 +60,7 @@ Eigen::Matrix3d relativeCovariance(const MatchedPose& a, const MatchedPose& b) {
   return R * in_map * R.transpose();
 }
 
-/// Sums while pairs are added.
+/// Running sums over pairs.
 class Sums {
  public:
   void add(const Compared& a, const Compared& b) {
@@ -138,8 +138,8 @@ void endOf(const Stretch& stretch, TrackComparison& comparison) {
   comparison.end_yaw_std = std::sqrt(covariance(2, 2));
 }
 
-/// When messages came late over the recorder's network [us], by the range finder's own clock: the
-/// true poses came over the same one, so that their times are not known then either.
+/// Times at which messages arrived late over the recorder's network [us], by the range finder's
+/// clock. True poses came over the same network, so their times are not reliable then.
 std::vector<int64_t> delaysOf(const MappingRecording& recording) {
   std::vector<int64_t> delayed;
   int64_t least = INT64_MAX;
@@ -242,7 +242,7 @@ MatchingReplay replayMatching(const MappingRecording& recording,
       ++replay.outcomes["refused: " + refusal];
       continue;
     }
-    // The motion is that of the device's clock, the true pose that of the recorder's.
+    // The motion has the device's clock, the true pose the recorder's.
     if (!recording.device_times.empty()) {
       const int64_t ahead = recording.device_times[i] - sweep->last;
       sweep->first += ahead;
@@ -276,7 +276,7 @@ std::string reportOf(const MatchingReplay& replay) {
       << " ms of CPU a scan, at most " << replay.cpu_max_ms << '\n';
   if (!replay.problem.empty()) out << "  " << replay.problem << '\n';
   out << reportOf(replay.comparison) << std::setprecision(4)
-      << "  three scans in a row, each on one other alone: " << replay.closure.yaw.size()
+      << "  three consecutive scans, each pair matched separately: " << replay.closure.yaw.size()
       << " triangles, open by a median of " << quantile(replay.closure.position, 0.5) << " m "
       << quantile(replay.closure.yaw, 0.5) << " rad, 95 % "
       << quantile(replay.closure.position, 0.95) << " m " << quantile(replay.closure.yaw, 0.95)

@@ -25,7 +25,7 @@ double wayOf(const MappingRecording& recording) {
   return way;
 }
 
-/// The scans of each pass with the poses around them.
+/// The scans of each pass with the surrounding poses.
 std::vector<MappingRecording> passesOf(const MappingRecording& recording, double way) {
   std::vector<MappingRecording> passes;
   std::optional<Pose2> last;
@@ -57,7 +57,7 @@ std::vector<MappingRecording> passesOf(const MappingRecording& recording, double
   return passes;
 }
 
-/// Whether an obstacle lies within `reach` cells, along a row or a column or across.
+/// Whether an obstacle is within `reach` cells, in both directions.
 bool obstacleWithin(const Grid& grid, CellIndex cell, int reach) {
   for (int y = -reach; y <= reach; ++y)
     for (int x = -reach; x <= reach; ++x)
@@ -75,7 +75,7 @@ void compare(const Grid& pass, const Grid& other, PassPairs& pairs) {
   for (int y = from.y; y < top; ++y)
     for (int x = from.x; x < right; ++x) {
       if (pass.at({x, y}) != kObstacle) continue;
-      // Behind the other's wall it knows nothing, and still says where the wall is.
+      // Behind the other pass's wall it knows nothing, but the wall itself is known.
       const bool far = obstacleWithin(other, {x, y}, kFar);
       if (!far && other.at({x, y}) == kUnknown) continue;
       ++pairs.cells;

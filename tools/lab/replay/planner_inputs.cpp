@@ -15,7 +15,7 @@
 namespace tread::replay {
 namespace {
 
-/// A pair in the other order shows in one step, or in a few that follow each other.
+/// A swapped pair shows in one step, or in a few consecutive ones.
 constexpr size_t kNearSteps = 10;
 
 /// Finds inputs by channel, utime and seq.
@@ -29,7 +29,7 @@ class InputIndex {
     }
   }
 
-  /// The newest input that a program names; of several the nearest in time.
+  /// The newest input named by a program; if ambiguous the nearest in time.
   std::optional<size_t> find(const program_t& program) const {
     const auto found =
         places_.find({program.newest_input, program.newest_input_utime, program.newest_input_seq});
@@ -47,13 +47,13 @@ class InputIndex {
   std::map<std::tuple<std::string, int64_t, int64_t>, std::vector<size_t>> places_;
 };
 
-/// A step of which both are known: how many messages it had heard, and where they end in the log.
+/// A step with a known number of received messages and their end in the log.
 struct Known {
   size_t step;
-  int64_t offset;  ///< end in the log less number heard: the same while nothing is lost
+  int64_t offset;  ///< end in the log minus number received: constant while nothing is lost
 };
 
-/// Whether the offset soon comes back to what it was: then nothing was lost.
+/// Whether the offset returns soon: then nothing was lost.
 bool comesBack(const std::vector<Known>& known, size_t from, int64_t offset) {
   const size_t end = std::min(known.size(), from + kNearSteps);
   return std::any_of(known.begin() + static_cast<std::ptrdiff_t>(from),
@@ -61,8 +61,8 @@ bool comesBack(const std::vector<Known>& known, size_t from, int64_t offset) {
                      [offset](const Known& other) { return other.offset == offset; });
 }
 
-/// Two messages within microseconds may reach recorder and planner in different orders. A step
-/// between them, or just behind them, is then off by one, and later ones are not.
+/// Two messages within microseconds may reach recorder and planner in different order. A step
+/// between or just after them is then off by one, later ones are not.
 void reorder(Hearing& hearing, const std::vector<Known>& known) {
   int64_t offset = known.empty() ? 0 : known.front().offset;
   for (size_t i = 0; i < known.size(); ++i) {
@@ -74,9 +74,9 @@ void reorder(Hearing& hearing, const std::vector<Known>& known) {
       continue;
     }
     if (off > 0 && until < 2) continue;
-    if (off < 0) ++until;  // the one behind the newest had been heard before it
+    if (off < 0) ++until;  // the one after the newest had been received earlier
     std::swap(hearing.inputs[until - 2], hearing.inputs[until - 1]);
-    if (off > 0) --until;  // the one before the newest had not been heard
+    if (off > 0) --until;  // the one before the newest had not been received
     ++hearing.reordered;
   }
 }
@@ -90,13 +90,13 @@ void countLosses(Hearing& hearing, const std::vector<LoggedStep>& steps,
     const int64_t heard = steps[step].program.inputs_heard -
                           (first ? 0 : steps[known[i - 1].step].program.inputs_heard);
     const int64_t held = static_cast<int64_t>(hearing.until[step]) - static_cast<int64_t>(from);
-    // What it heard before the log begins is no loss.
+    // Messages received before the log begins are not lost.
     if (heard > held && !(first && from == 0)) hearing.lacking += heard - held;
     if (held > heard) hearing.beyond += held - heard;
   }
 }
 
-/// Assigns inputs by time to steps whose newest message is unknown, between the known neighbours.
+/// Assigns inputs by time to steps with an unknown newest message, between the known neighbours.
 void fillByTime(const RobotLog& log, Hearing& hearing, const std::vector<LoggedStep>& steps,
                 const std::vector<bool>& found) {
   size_t limit = hearing.inputs.size();
@@ -119,7 +119,7 @@ void fillByTime(const RobotLog& log, Hearing& hearing, const std::vector<LoggedS
 }  // namespace
 
 std::vector<PlannerInput> plannerInputs(const RobotLog& log, const planner::PlannerConfig& config) {
-  // A planner that only listens takes in what a planner takes in.
+  // A passive planner, to find out its inputs.
   LogBus bus(0);
   const planner::PlannerNode listener(config, bus);
   std::vector<PlannerInput> inputs;
@@ -162,16 +162,16 @@ Hearing hearingOf(const RobotLog& log, std::vector<PlannerInput> inputs,
 
 std::string hearingLine(const Hearing& hearing) {
   const size_t end = hearing.until.empty() ? hearing.from : hearing.until.back();
-  std::string line = "by its PROGRAMs the planner heard " + std::to_string(end - hearing.from) +
+  std::string line = "by its PROGRAMs the planner received " + std::to_string(end - hearing.from) +
                      " messages of the log";
   const auto add = [&line](int64_t count, const std::string& what) {
     if (count > 0) line += "; " + std::to_string(count) + " " + what;
   };
   add(hearing.reordered, "pairs in the other order");
-  add(hearing.lacking, "that it heard are not in the log");
-  add(hearing.beyond, "of the log it did not hear (replayed all the same)");
+  add(hearing.lacking, "that it received are not in the log");
+  add(hearing.beyond, "of the log it did not receive (replayed nevertheless)");
   add(hearing.by_time,
-      "steps name a message that is not in the log (the time tells what they had)");
+      "steps name a message that is not in the log (their inputs are assigned by time)");
   return line;
 }
 

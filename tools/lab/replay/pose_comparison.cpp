@@ -12,7 +12,7 @@
 namespace tread::replay {
 namespace {
 
-/// The same drive, with another channel's poses in the place of INS.
+/// The same drive with another channel's poses instead of INS.
 std::vector<LogEvent> posesFrom(const std::string& channel, std::vector<LogEvent> events) {
   events.erase(std::remove_if(events.begin(), events.end(),
                               [](const LogEvent& event) { return event.channel == kIns.name; }),

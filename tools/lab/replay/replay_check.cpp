@@ -14,7 +14,7 @@
 namespace tread::replay {
 namespace {
 
-/// What each process hears; a test compares it with what the nodes subscribe to.
+/// Inputs of each process; a test compares them with the nodes' subscriptions.
 const std::map<std::string, std::set<std::string>>& inputs() {
   static const std::map<std::string, std::set<std::string>> kInputs{
       {"learner", {"INS", "MOTOR", "EXECUTION"}},
@@ -30,7 +30,7 @@ const std::map<std::string, std::set<std::string>>& inputs() {
 void ReplayCheck::noteLog(const RobotLog& log, const std::string& process) {
   notes.push_back(intakeLine(log, process, playedChannels(process)));
   for (const auto& [channel, missing] : log.missing)
-    notes.push_back("the log misses " + std::to_string(missing) + " messages on " + channel);
+    notes.push_back("the log lacks " + std::to_string(missing) + " messages on " + channel);
   if (!log.problem.empty()) notes.push_back(log.problem);
 }
 
@@ -61,7 +61,7 @@ std::string differenceText(const ReplayCheck& check) {
 
 namespace {
 
-/// Compares two messages of one type field by field and remembers the first field that differs.
+/// Compares two messages of one type field by field and stores the first difference.
 template <class Message>
 class FieldComparison {
  public:
@@ -86,7 +86,7 @@ class FieldComparison {
     if (!found_.empty() || same(log, replay)) return;
     found_ = name + ": log " + text(log) + ", replay " + text(replay);
   }
-  /// Lists of one length.
+  /// Arrays of equal length.
   template <class Numbers>
   void numbers(const std::string& name, const Numbers& log, const Numbers& replay) {
     for (size_t i = 0; i < std::size(log); ++i)
@@ -110,7 +110,7 @@ class FieldComparison {
     }
   }
 
-  /// To the bit, so that an unknown value (NaN) equals itself.
+  /// Bitwise, so that an unknown value (NaN) equals itself.
   template <class Value>
   bool same(const Value& a, const Value& b) const {
     if constexpr (std::is_floating_point_v<Value>)
@@ -253,7 +253,7 @@ std::string differenceOf(const plan_t& log, const plan_t& replay) {
     compare.numbers(at + " covariance", log.covariance[i], replay.covariance[i]);
   }
   compare.field("time to go [s]", &M::time_to_go);
-  // Plans of older logs have none.
+  // Plans in older logs have no risk.
   if (std::isfinite(log.risk)) {
     compare.field("risk", &M::risk);
     compare.field("risk per metre", &M::risk_per_metre);
@@ -290,7 +290,7 @@ std::string recipeFor(const std::string& process, const std::string& log) {
   for (const ChannelSpec& channel : kChannels)
     if (channel.publisher == process) own += (own.empty() ? "" : ", ") + std::string(channel.name);
   const std::string url = "'udpm://239.255.76.67:7669?ttl=0'";
-  return "# a bus of its own (LCM tells buses apart by port only), and a state of its own in "
+  return "# a separate bus (LCM distinguishes buses by port only), and a separate state in "
          "--config\n"
          "tread-" +
          process + " --config FILE --lcm-url " + url +

@@ -15,20 +15,20 @@
 namespace tread::replay {
 namespace {
 
-/// The replay goes on so long after the log: what was under way comes out [us].
+/// The replay continues after the log, for output that is still pending [us].
 constexpr int64_t kAfterwards = 100'000;
 
-/// Yaw is unwrapped from the first INS on: a replay that begins later rounds otherwise.
+/// Yaw is unwrapped from the first INS on, so a replay with a later start rounds differently.
 constexpr double kMiddleTolerance = 1e-9;
 
 using SetParts = std::map<int32_t, pattern_set_part_t>;
 
-/// What the learner published: in the log, or in a replay.
+/// Messages published by a learner, in the log or in a replay.
 struct Published {
-  std::map<int64_t, SetParts> sets;  ///< by version and number of the part
+  std::map<int64_t, SetParts> sets;  ///< by version and part number
   std::map<ExecutionKey, learning_t> learned;
   std::vector<LogEvent> events;
-  /// Published by the replay when the log's learner, or the recorder, may have been gone.
+  /// Published by the replay when the log's learner, or the recorder, may already have stopped.
   std::set<int64_t> late_versions;
   std::set<ExecutionKey> late_learned;
 
@@ -45,7 +45,7 @@ struct Published {
   }
 };
 
-/// When the learner published for the last time in a life; 0 if never.
+/// Time of the learner's last message in a life; 0 if it published none.
 int64_t lastMessageOf(const RobotLog& log, const LearnerLife& life) {
   const auto [from, to] = notesBetween(log.healthOf("learner"), life.first_event, life.end_event);
   const size_t health = from == to ? life.first_event : std::prev(to)->event;
@@ -57,7 +57,7 @@ int64_t lastMessageOf(const RobotLog& log, const LearnerLife& life) {
   return from == to ? 0 : log.events[health].utime;
 }
 
-/// Times at which the learner stepped, of the steps that say it: those that sent its HEALTH [us].
+/// Times of the learner's steps that are known because they published HEALTH [us].
 std::vector<int64_t> knownSteps(const RobotLog& log, const LearnerLife& life) {
   std::vector<int64_t> steps;
   const auto [from, to] = notesBetween(log.healthOf("learner"), life.first_event, life.end_event);
@@ -73,8 +73,8 @@ void playLife(const RobotLog& log, const LearnerLife& life,
   LogBus bus(life.boot_id);
   learner::LearnerNode node(config, bus, store);
   node.resume(life.state, life.earlier);
-  // What it heard just before a step and what just behind decides what it publishes: steps are
-  // where it says, and a period apart between.
+  // Messages just before or after a step decide what it publishes: steps are at the known times,
+  // and one period apart in between.
   const int64_t begin = log.events[life.first_event].utime;
   const std::vector<int64_t> known = knownSteps(log, life);
   size_t next_known = 0;
@@ -112,7 +112,7 @@ Published replayed(const RobotLog& log, const std::vector<LearnerLife>& lives,
   return published;
 }
 
-/// What the log holds from where the replay begins.
+/// Messages in the log from the start of the replay on.
 Published publishedInLog(const RobotLog& log, const LearnerLife& first) {
   Published published;
   for (size_t i = first.first_event; i < log.events.size(); ++i) published.take(log.events[i]);
@@ -135,8 +135,8 @@ std::string partsDifference(const SetParts& log, const SetParts& replay, double 
   return "";
 }
 
-/// Versions that a newer one of the same parent overtook before they were sent: while an execution
-/// runs, a busy host's learner has several ready at once.
+/// Versions that a newer one of the same parent replaced before they were sent: during an execution
+/// a busy host's learner may finish several.
 std::set<int64_t> overtaken(const Published& in_log, const Published& replay) {
   std::map<int64_t, int64_t> newest;  // by parent
   for (const auto& [version, parts] : in_log.sets)

@@ -14,7 +14,7 @@
 namespace tread::replay {
 namespace {
 
-/// Steps in a row [1]: more than this is not a loss but a broken number.
+/// More consecutive lost steps [1] mean a corrupted number, not a loss.
 constexpr int64_t kMostLost = 100;
 
 /// One step of a planner with its messages.
@@ -22,7 +22,7 @@ struct Step : LoggedStep {
   std::optional<plan_t> plan;
 };
 
-/// One start of a planner.
+/// One run of a planner process.
 struct Life {
   int64_t run_id = 0;
   bool from_start = false;
@@ -30,7 +30,7 @@ struct Life {
   Hearing hearing;
 };
 
-/// The planner also stepped where the recorder lost its PROGRAM.
+/// Adds steps whose PROGRAM the recorder has lost.
 void addLost(std::vector<Step>& steps, const program_t& next) {
   if (steps.empty()) return;
   const program_t last = steps.back().program;
@@ -44,14 +44,14 @@ void addLost(std::vector<Step>& steps, const program_t& next) {
   }
 }
 
-/// A planner that is shut down publishes an empty PROGRAM, which is no step. A last step that looks
-/// like it is not compared.
+/// A planner that shuts down publishes an empty PROGRAM, which is no step. A last step that looks
+/// like one is not compared.
 void dropFarewell(std::vector<Step>& steps) {
   const Step& last = steps.back();
   if (steps.size() > 1 && last.program.running.num_commands == 0 && !last.plan) steps.pop_back();
 }
 
-/// Why a log has no planner that can be replayed.
+/// Why the planner of a log cannot be replayed.
 std::string noPlanner(const RobotLog& log) {
   for (const LogEvent& event : log.events)
     if (event.channel == kProgram.name)
@@ -78,7 +78,7 @@ std::vector<Life> livesIn(const RobotLog& log) {
   return lives;
 }
 
-/// The planners of the log, and what each had heard before its steps.
+/// The planner's lives in the log, with the messages received before each step.
 std::vector<Life> heardLives(const RobotLog& log, const planner::PlannerConfig& config) {
   std::vector<Life> lives = livesIn(log);
   if (lives.empty()) throw std::runtime_error(log.name + noPlanner(log));
@@ -88,13 +88,12 @@ std::vector<Life> heardLives(const RobotLog& log, const planner::PlannerConfig& 
   return lives;
 }
 
-/// The count of expansions at which the robot's deadline ended the search of a step; 0 = it did
-/// not.
+/// Number of expansions at which the robot's deadline ended a step's search; 0 = it did not.
 int32_t cutOf(const Step& step, int64_t deadline) {
   return step.plan && step.plan->search_time > deadline ? step.plan->expansions : 0;
 }
 
-/// The node's messages of a step; appends them to `all`.
+/// The node's messages of a step; they are appended to `all`.
 Step messagesOf(LogBus& bus, std::vector<LogEvent>& all) {
   Step step{};
   for (LogEvent& event : bus.takePublished()) {
@@ -106,8 +105,8 @@ Step messagesOf(LogBus& bus, std::vector<LogEvent>& all) {
   return step;
 }
 
-/// Gives a planner what it overhears (HEALTH, FENCES), between its inputs as they lie in the log.
-/** PROGRAM neither names nor counts these messages. */
+/// Feeds HEALTH and FENCES to a planner, between its inputs in the order of the log.
+/** PROGRAM does not name or count these messages. */
 class Overhearing {
  public:
   Overhearing(const RobotLog& log, const Hearing& hearing, LogBus& bus)
@@ -115,7 +114,7 @@ class Overhearing {
     if (hearing.from > 0) next_ = hearing.inputs[hearing.from - 1].event + 1;
   }
 
-  /// What lies in the log before an input, and was received before a time.
+  /// Feeds the messages before an input that were received before a time.
   void until(size_t input, int64_t utime) {
     const bool at_end = input >= hearing_.inputs.size();
     const size_t end = at_end ? log_.events.size() : hearing_.inputs[input].event;
@@ -129,10 +128,10 @@ class Overhearing {
   const RobotLog& log_;
   const Hearing& hearing_;
   LogBus& bus_;
-  size_t next_ = 0;  ///< event
+  size_t next_ = 0;  ///< next event
 };
 
-/// A life of the real planner, from the log.
+/// Replays a life with the real planner.
 std::vector<Step> replayed(const RobotLog& log, const Life& life,
                            const planner::PlannerConfig& config, std::vector<LogEvent>& all) {
   const Hearing& hearing = life.hearing;
@@ -204,7 +203,7 @@ std::vector<LogEvent> replayAll(const RobotLog& log, const std::vector<Life>& li
 std::string verdictOf(const PlannerCheck& check) {
   if (check.compared == 0) return "not compared";
   if (check.equal()) return "EQUAL";
-  return check.lacking > 0 ? "DIFFERENT, but it had heard messages that the log lacks"
+  return check.lacking > 0 ? "DIFFERENT, but it had received messages that the log lacks"
                            : "DIFFERENT";
 }
 

@@ -18,11 +18,11 @@ using scan_matching::Registration;
 using scan_matching::ScanMatcherConfig;
 using scan_matching::ScanPoint;
 
-constexpr double kPriorStd = 0.3;     // [m], and a third of it in rad: hardly anything is known
-constexpr double kLongestSide = 3.0;  // [m] from the first to the third
-constexpr int64_t kLongestTime = 5'000'000;  // [us] the same
+constexpr double kPriorStd = 0.3;            // [m], and a third of it in rad: a weak prior
+constexpr double kLongestSide = 3.0;         // [m] largest distance from the first to the third
+constexpr int64_t kLongestTime = 5'000'000;  // [us] longest time from the first to the third
 
-/// Where the body was at the second of two scans, as seen from the first.
+/// Pose of the body at the second of two scans relative to the first.
 struct Step {
   Pose2 T_first_second;
   Matrix3d covariance;  ///< of x, y, yaw in the axes of the first
@@ -49,14 +49,14 @@ std::optional<Step> stepBetween(const MatchedSweep& first, const MatchedSweep& s
       laid.overlap < config.min_overlap)
     return std::nullopt;
   const Matrix3d covariance = laid.information.inverse();
-  // Rank deficient where weights were limited so far that a direction is left with nothing.
+  // Rank deficient if limited weights leave no information on a direction.
   for (int axis = 0; axis < 3; ++axis)
     if (!(covariance(axis, axis) > 0.0 && covariance(axis, axis) < prior.covariance(axis, axis)))
       return std::nullopt;
   return Step{laid.T_map_body, covariance};
 }
 
-/// Covariance of one step after the other, in the axes of the first.
+/// Covariance of two consecutive steps, in the axes of the first.
 Matrix3d chained(const Step& a, const Step& b) {
   const Pose2 end = a.T_first_second * b.T_first_second;
   Matrix3d swing = Matrix3d::Identity();

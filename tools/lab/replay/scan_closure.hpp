@@ -9,27 +9,28 @@
 
 namespace tread {
 
-/// A sweep and the pose that scan matching gave it.
+/// A sweep and its pose from scan matching.
 struct MatchedSweep {
   scan_matching::Sweep sweep;
   scan_matching::MatchedPose pose;
 };
 
-/// Whether what scans tell of each other fits together; no other reference has a part in it.
-/** Of three scans in a row each is laid onto each other one alone: from the first to the second and
- * on to the third must lead where the first to the third leads. The three share scans, so that
- * their errors are not quite independent, as is assumed. */
+/// Checks scans for mutual consistency, without another reference.
+/** Of three consecutive scans each pair is matched separately: first to second to third must agree
+ * with first to third. The pairs share scans, so their errors are not quite independent, as is
+ * assumed. */
 struct ScanClosure {
-  std::vector<double> position;  ///< [m] by which triangles do not close
+  std::vector<double> position;  ///< [m] closing errors of the triangles
   std::vector<double> yaw;       ///< [rad]
   double normalized_position =
-      0.0;                      ///< root mean square per axis over the told deviation; 1 = honest
+      /// root mean square per axis relative to the published standard deviation; 1 = consistent
+      0.0;
   double normalized_yaw = 0.0;  ///< the same
-  double within_two = 0.0;      ///< share of all axes within two told standard deviations
-  int64_t undetermined = 0;     ///< triangles of which a side tells nothing about some direction
+  double within_two = 0.0;      ///< share of all axes within two published standard deviations
+  int64_t undetermined = 0;     ///< triangles with a side that does not determine some direction
 };
 
-/// Triangles of scans in a row whose poses are known and connected.
+/// Triangles of consecutive scans with known, connected poses.
 ScanClosure closureOf(const std::vector<MatchedSweep>& sweeps,
                       const scan_matching::ScanMatcherConfig& config);
 

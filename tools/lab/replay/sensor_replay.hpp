@@ -21,40 +21,41 @@ namespace tread {
 /// A recording of range scans with poses, as Tread's messages.
 struct MappingRecording {
   std::string name;
-  std::vector<ins_t> poses;   ///< in order of time
-  std::vector<scan_t> scans;  ///< in order of time
-  /// [us] of the scans' last beams by the range finder's own clock, where it is steadier than their
+  std::vector<ins_t> poses;   ///< ordered by time
+  std::vector<scan_t> scans;  ///< ordered by time
+  /// [us] times of the scans' last beams by the range finder's clock, if it is steadier than their
   /// utime; else empty.
   std::vector<int64_t> device_times;
-  int64_t skipped = 0;            ///< lines or messages of the recording that were not whole
-  std::string problem;            ///< one clear line if the file is damaged; what is whole was read
-  mapping::MappingConfig config;  ///< that fits its robot and its surroundings
+  int64_t skipped = 0;  ///< incomplete lines or messages of the recording
+  std::string problem;  ///< one clear line if the file is damaged; the undamaged part was read
+  mapping::MappingConfig config;  ///< for its robot and environment
 };
 
-/// Reads a recording by its name: *.gz and *.clf as CARMEN text with corrected poses (FLASER
-/// lines), others as the LCM log of an MBot (2017).
-/** Throws std::runtime_error with one clear line if it cannot be read or holds no scan. */
+/// Reads a recording: *.gz and *.clf as CARMEN text with corrected poses (FLASER lines), other
+/// names as the LCM log of an MBot (2017).
+/** Throws std::runtime_error with one clear line if it cannot be read or contains no scan. */
 MappingRecording readMappingRecording(const std::string& path);
 
 /// The output of mapping for a recording.
 struct MappingReplay {
   std::string name;
-  TileMap map{0.1, 32};          ///< all that was ever known, also after the window had moved on
+  TileMap map{0.1, 32};          ///< everything ever known, also outside of the present window
   std::vector<TimedPose> track;  ///< of the body
   int64_t scans = 0;             ///< in the recording
-  int64_t skipped = 0;           ///< not whole in the recording
-  std::string problem;           ///< one clear line if the recording is damaged
-  std::map<std::string, int64_t> counters;  ///< mapping's own, from its last HEALTH
+  int64_t skipped = 0;           ///< incomplete ones in the recording
+  std::string problem;           ///< damage of the recording in one line
+  std::map<std::string, int64_t> counters;  ///< counters of the last HEALTH
   int64_t tiles = 0;                        ///< messages on MAP
   double duration = 0.0;                    ///< [s] of the recording
-  std::string health;  ///< line of HEALTH at the end of the scans; empty if all is well
-  Grid window;         ///< the whole map
+  std::string health;                       ///< HEALTH at the end of the scans; empty if healthy
+  Grid window;                              ///< the whole map
 };
 
-/// Plays a recording to the real mapping node on the virtual bus. Same recording, same result.
+/// Plays a recording to the real mapping node on the virtual bus. The same recording gives the same
+/// result.
 MappingReplay replayMapping(const MappingRecording& recording);
 
-/// Scans in, taken, refused with reasons; the way, the area known: a few lines of text.
+/// Scans received, used, refused with reasons; path length, known area: a few lines of text.
 std::string reportOf(const MappingReplay& replay);
 
 /// Draws the map with the track; throws std::runtime_error if the file cannot be written.
@@ -65,19 +66,19 @@ struct InsReplay {
   ins::InsTally tally;
   ins::AssemblerCounts epochs;
   std::optional<ins::GeoOrigin> origin;
-  std::vector<ins_t> track;         ///< every INS message, in the order of publication
+  std::vector<ins_t> track;         ///< every INS message, in order
   std::optional<ins_t> first_pose;  ///< first with position and heading
   std::optional<ins_t> last_pose;   ///< last likewise
   int64_t poses = 0;                ///< messages with position and heading
-  std::string health;               ///< last line of HEALTH; empty if all is well
-  std::string remedy;               ///< why all messages were refused; empty = not all, or no idea
-  std::string notes;                ///< what of the log was not played, and why; lines of text
+  std::string health;               ///< last reason of HEALTH; empty if healthy
+  std::string remedy;               ///< likely cause if all messages were refused; else empty
+  std::string notes;  ///< parts of the log that were not played, with reasons; lines of text
 };
 
-/// Plays the bytes of a device, or a capture (pcap, pcapng) of its datagrams or its TCP stream, to
-/// the real ins_driver node on the virtual bus, in the log's own time.
-/** Messages start at utime 1 s. The same log gives the same messages. Of a capture that stream is
- * played in which the instrument speaks. */
+/// Plays a device's bytes, or a capture (pcap, pcapng) of its datagrams or TCP stream, to the real
+/// ins_driver node on the virtual bus, in the log's own time.
+/** Messages start at utime 1 s. The same log gives the same messages. From a capture the stream
+ * with the instrument's data is played. */
 InsReplay replayIns(const std::string& log, ins::InsDriverConfig config);
 
 /// The same from a file; throws std::runtime_error with one clear line if it cannot be read.

@@ -117,9 +117,10 @@ TEST_CASE("what cannot be left out and rules that nobody knows are refused in on
   CHECK_THROWS_WITH(runAdaptation(one, few(), nullptr), Catch::Contains("nothing can be left out"));
   Settings settings = few();
   settings.rules = {kOff, "oracle"};
-  CHECK_THROWS_WITH(runAdaptation(one, settings, nullptr), Catch::Contains("no rule 'oracle'"));
+  CHECK_THROWS_WITH(runAdaptation(one, settings, nullptr),
+                    Catch::Contains("unknown rule 'oracle'"));
   settings.rules = {"slip"};
-  CHECK_THROWS_WITH(runAdaptation(one, settings, nullptr), Catch::Contains("'off' is needed"));
+  CHECK_THROWS_WITH(runAdaptation(one, settings, nullptr), Catch::Contains("'off' is required"));
   settings.rules = {kOff, kOff};
   CHECK_THROWS_WITH(runAdaptation(one, settings, nullptr), Catch::Contains("there twice"));
 }

@@ -42,7 +42,7 @@ TEST_CASE("a folder of drives becomes a page, a picture and two tables") {
   CHECK(result.says("vehicle drawn robot left out: 0 pieces"));
   CHECK(result.says("90 % regions of multi_model that hold the next execution"));
   const std::string page = out.text("made/adaptation.html");
-  CHECK(page.find("multi_model against no learning") != std::string::npos);
+  CHECK(page.find("multi_model relative to no learning") != std::string::npos);
   CHECK(page.find("95 % interval") != std::string::npos);
   CHECK(samples::isPng(out.text("made/adaptation.png")));
   CHECK(out.text("made/adaptation.csv").find("session,\"drawn robot\",5,slip,10,") !=
@@ -56,7 +56,7 @@ TEST_CASE("what cannot be done is refused in one line") {
   refuses("--recordings /nowhere", "neither sessions.csv");
   const std::string folder = writeDriving(drives, {{"a", "grass", 2}, {"b", "grass", 2}});
   refuses("--recordings " + folder, "nothing can be left out");
-  refuses("--recordings " + folder + " --rules off,oracle", "there is no rule 'oracle'");
+  refuses("--recordings " + folder + " --rules off,oracle", "unknown rule 'oracle'");
   refuses("--recordings " + folder + " --set ground.nothing=1", "nothing");
 }
 

@@ -42,7 +42,7 @@ TEST_CASE("a change inside a run is noticed, and the next pieces are predicted b
           seamMapping() + " " + folder.path("drive.csv") + " --out " + folder.path("out"));
   INFO(result.printed);
   REQUIRE(result.status == 0);
-  CHECK(result.says("12 runs, 12 changes of ground; after 12 of them the motion is another one"));
+  CHECK(result.says("12 runs, 12 changes of ground; after 12 of them the motion differs"));
   const std::string csv = folder.text("out/crossings.csv");
   const auto errorOf = [&](const std::string& rule, const std::string& phase) {
     return rowOf(csv, rule + "," + phase)[2];
@@ -68,7 +68,7 @@ TEST_CASE("runs on one ground have no change, and hardly a false alarm") {
                                    folder.path("drive.csv") + " --out " + folder.path("out"));
   INFO(result.printed);
   REQUIRE(result.status == 0);
-  CHECK(result.says("after 0 of them the motion is another one"));
+  CHECK(result.says("after 0 of them the motion differs"));
   const std::vector<double> noticed = rowOf(folder.text("out/noticed.csv"), "multi_model");
   CHECK(noticed[0] == 20.0);
   CHECK(noticed[1] <= 1.0);
@@ -85,7 +85,7 @@ TEST_CASE("crossings refuses what it cannot do in one line") {
     CHECK(result.says(words));
   };
   const std::string drive = " --mapping " + seamMapping() + " " + folder.path("drive.csv");
-  refuses("--rules oracle" + drive, "there is no rule 'oracle'");
+  refuses("--rules oracle" + drive, "unknown rule 'oracle'");
   refuses("--cut 10" + drive, "no run is left");
   refuses("--set ground.nothing=1" + drive, "nothing");
   refuses("--mapping " + seamMapping() + " " + folder.path("none.csv"), "none.csv");

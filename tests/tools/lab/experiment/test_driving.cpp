@@ -123,7 +123,7 @@ TEST_CASE("a folder without recordings is refused, a session without driving is 
       readRecordings(writeDriving(other, {{"good", "grass"}, {"short", "grass", 1, 0.5, 1}}));
   CHECK(found.sessions.size() == 1);
   REQUIRE(found.notes.size() == 1);
-  CHECK_THAT(found.notes[0], Catch::Contains("short: not two seconds"));
+  CHECK_THAT(found.notes[0], Catch::Contains("short: less than two seconds"));
 }
 
 }  // namespace

@@ -137,7 +137,8 @@ TEST_CASE("the usual methods with extras: lines are short, variants are told") {
   CHECK(regions[0] == "from,to,quantity,rule,execution,share");
   CHECK(regions.size() == 1 + 4 * 12 * 4);  // multi_model with each history
   const std::string report = contentOf(folder / "out/report.html");
-  for (const char* words : {"over 5 excitation runs of 40", "On other terms", "multi_model_unmet"})
+  for (const char* words :
+       {"over 5 excitation runs of 40", "Under other conditions", "multi_model_unmet"})
     CHECK(report.find(words) != std::string::npos);
   const std::string figures = contentOf(folder / "out/key_figures.txt");
   for (const std::string& method : defaultMethods())
@@ -208,9 +209,9 @@ TEST_CASE("the real recordings are compared by one command") {
 TEST_CASE("what cannot be done is one clear line") {
   const Folder folder;
   const std::string world = "--world " + kWorlds + "transitions_symmetric.yaml ";
-  refuses(world + "--rules off,magic", "there is no rule 'magic'; known are off");
+  refuses(world + "--rules off,magic", "unknown rule 'magic'; known are off");
   refuses(world + "--rules off,off", "twice");
-  refuses(world + kFour + " --sequence left,port", "there is no pattern 'port'");
+  refuses(world + kFour + " --sequence left,port", "unknown pattern 'port'");
   refuses(world + kFour + " --robot husky", "--robot");
   refuses(world + kFour + " --out /proc/nowhere", "/proc/nowhere");
   refuses("--world " + kWorlds + "demo.yaml", "simulator");

@@ -94,7 +94,7 @@ TEST_CASE("what several logs share is the vehicle's, what differs is the day's")
   task.train.push_back(syntheticDrive(syntheticVehicle(), 120.0, 1));
   CHECK_THROWS_WITH(repeatLogs(task, kSilent), Catch::StartsWith("synthetic: only 120 s"));
   task.train.resize(1);
-  CHECK_THROWS_WITH(repeatLogs(task, kSilent), "repeat: one log repeats nothing; give two or more");
+  CHECK_THROWS_WITH(repeatLogs(task, kSilent), "repeat: one log is not enough; give two or more");
 }
 
 TEST_CASE("logs of which one is frozen midway repeat nothing, and say which") {
@@ -110,7 +110,7 @@ TEST_CASE("logs of which one is frozen midway repeat nothing, and say which") {
   CHECK(repetition.alone[0].verdict == GapVerdict::kNoDiscrepancy);
   CHECK(repetition.alone[1].verdict == GapVerdict::kCannotTell);
   CHECK(repetition.together.verdict == GapVerdict::kCannotTell);
-  CHECK(textOf(repetition).find("All together cannot tell: day2: the INS is frozen.") !=
+  CHECK(textOf(repetition).find("All together: CANNOT_TELL: day2: the INS is frozen.") !=
         std::string::npos);
 }
 

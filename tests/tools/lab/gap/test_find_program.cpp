@@ -96,10 +96,10 @@ TEST_CASE("a decision that makes no sense ends with 2 and one line, before a log
   const std::pair<std::string, std::string> kBad[] = {
       {asphalt + " --accept yaw_pul", "did you mean yaw_pull?"},
       {asphalt + " --reject grip", "'grip' is no effect of the catalogue"},
-      {asphalt + " --accept yaw_pull --reject yaw_pull", "yaw_pull is accepted and rejected"},
+      {asphalt + " --accept yaw_pull --reject yaw_pull", "yaw_pull is both accepted and rejected"},
       {asphalt + " --accept yaw_pull yaw_pull", "yaw_pull is named twice"},
       {folder.path("on.yaml") + " --reject slip_ratio", "the model has this effect"},
-      {asphalt + " --by Anna", "nothing is decided"}};
+      {asphalt + " --by Anna", "no decision is given"}};
   for (const auto& [arguments, words] : kBad) {
     const Run bad = run(find + arguments);
     INFO(arguments << "\n" << bad.printed);

@@ -78,7 +78,7 @@ TEST_CASE("bad input ends with 2 and one line that says what and where") {
       {"what-if " + grass, "nothing to change"},
       {"what-if " + grass + "--remove slip_ratio", "it is off in this model"},
       {"what-if " + grass + "--add slip_ratio --set slip=3", "not plausible"},
-      {"what-if " + grass + "--add slip_ratio --set slop=0.3", "no parameter of slip_ratio"},
+      {"what-if " + grass + "--add slip_ratio --set slop=0.3", "not a parameter of slip_ratio"},
       {"what-if " + grass + "--add icr_offset",
        "it is already on in this model; another size: --set icr_offset.offset=NUMBER"},
       {"what-if " + grass + "--add slip", "did you mean "},

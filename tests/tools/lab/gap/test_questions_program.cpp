@@ -29,7 +29,7 @@ TEST_CASE("what-if shows what an effect does, as numbers and as pictures") {
   CHECK(without.says("fast turn on the spot"));
   CHECK(folder.text("w.svg").find("</svg>") != std::string::npos);
   CHECK(without.says("teodor_grass.yaml. Full speed of the manoeuvres: full power (1.10 m/s"));
-  CHECK(without.says("Before: the model as it is; after: what if."));
+  CHECK(without.says("Before: the model as it is; after: the changed model."));
   CHECK(without.says(" mm "));
   const Run level = run(model + "--add slope_pitch");
   CHECK(level.says("No manoeuvre shows a difference"));
@@ -46,7 +46,7 @@ TEST_CASE("what-if simulates the executions of a log") {
   INFO(of_log.printed);
   CHECK(of_log.status == 0);
   CHECK(of_log.says("executions of the log"));
-  CHECK(of_log.says("Full speed of the manoeuvres: 1 m/s (the model's file does not say"));
+  CHECK(of_log.says("Full speed of the manoeuvres: 1 m/s (the model's file has no envelope"));
   CHECK(of_log.says("drive.lcmlog. Before: "));
   CHECK(of_log.says("before: model as it is"));
   CHECK(folder.text("w.html").find("On the log") != std::string::npos);
@@ -81,7 +81,7 @@ TEST_CASE("the order in which plan is given two effects makes no difference") {
   CHECK(one.printed == other.printed);
   CHECK(one.says("if it is yaw pull"));
   CHECK(one.says("if it is left-right asymmetry"));
-  CHECK(one.says("warning: no envelope in it; the plan asks for up to "));
+  CHECK(one.says("warning: it has no envelope; the plan commands up to "));
 }
 
 TEST_CASE("a plan stays within what the model was made from, unless a person asks for more") {
@@ -122,7 +122,7 @@ TEST_CASE("where no drive tells two effects apart, plan names the measurement th
   CHECK(plan.status == 1);
   CHECK(plan.says("Measure the lever arm with a tape."));
   CHECK(run("plan slope_pitch slip_ratio --model " + kModels + "teodor_tarmac.yaml")
-            .says("shows in none of these manoeuvres on level ground"));
+            .says("is not visible in any of these manoeuvres on level ground"));
 }
 
 TEST_CASE("compare tells which parameters moved from one log to another") {
@@ -217,7 +217,7 @@ TEST_CASE("repeat wants two logs, and refuses what is none in one line") {
   const Run alone = run("repeat " + folder.path("a.lcmlog") + model);
   INFO(alone.printed);
   CHECK(alone.status == 2);
-  CHECK(alone.says("repeat: one log repeats nothing; give two or more"));
+  CHECK(alone.says("repeat: one log is not enough; give two or more"));
   const Run twice =
       run("repeat " + folder.path("a.lcmlog") + " " + folder.path("a.lcmlog") + model);
   CHECK(twice.status == 2);

@@ -85,7 +85,7 @@ TEST_CASE("the headline says the verdict in words, and the first screen the gain
         "The INS, not the vehicle: INS mounted askew");
   const std::string text = markdown(GapVerdict::kFound);
   CHECK(has(text,
-            "2 s end-pose error on driving it has not seen: 0.642 -> 0.451 m, heading 20.5 -> 10.7 "
+            "2 s end-pose error on held-out driving: 0.642 -> 0.451 m, heading 20.5 -> 10.7 "
             "deg (median of 60 executions"));
   CHECK(text.find("2 s end-pose error") < text.find("## What was found"));
   CHECK(has(text, "reaches 0.290 m and 5.73 deg"));
@@ -126,8 +126,8 @@ TEST_CASE("what is left without a name is drawn beside the headline") {
   }
   CHECK(restPictures(finding).svg.size() == 3);
   std::ostringstream html;
-  CHECK(markdownOf(reportPage(finding, {})).find("What is left, over what it depends on") !=
-        std::string::npos);
+  CHECK(markdownOf(reportPage(finding, {}))
+            .find("Residuals over the variables that they depend on") != std::string::npos);
 }
 
 TEST_CASE("after an effect stands where the wheel speeds say that it is") {
@@ -153,7 +153,7 @@ TEST_CASE("after it stands whether it is load, as the motor currents say") {
   CHECK_THAT(witnessSentences(effect),
              Catch::Contains("rise by 12.0 % per percent (10.0 to 14.0): it is load"));
   effect.currents = CurrentWitness{0.9, 0.2, 1.6};
-  CHECK_THAT(witnessSentences(effect), Catch::Contains("do not tell whether it is load"));
+  CHECK_THAT(witnessSentences(effect), Catch::Contains("do not show whether it is load"));
   effect.currents = CurrentWitness{0.1, -0.1, 0.3};
   CHECK_THAT(witnessSentences(effect),
              Catch::EndsWith("by 0.1 % per percent (-0.1 to 0.3): the drive gives less, or the "
@@ -185,18 +185,18 @@ TEST_CASE("after it stands whether it is the battery, as the voltage says") {
   effect.voltage = VoltageWitness{0.02, 0.0, 0.04};
   CHECK_THAT(witnessSentences(effect), Catch::EndsWith("(0 to 4 %): it is not the battery."));
   effect.voltage = VoltageWitness{0.5, 0.2, 0.8};
-  CHECK_THAT(witnessSentences(effect), Catch::EndsWith("tell whether it is the battery."));
+  CHECK_THAT(witnessSentences(effect), Catch::EndsWith("show whether it is the battery."));
 }
 
 TEST_CASE("a report shows where, how, step by step, the parameters and what else it could be") {
   const std::string text = markdown(GapVerdict::kFound);
   for (const char* words : {"Where simulation and measurement disagree",
                             "Executions, as measured and as predicted",
-                            "holds 9 of 10 of all 60 such executions",
+                            "contain 9 of 10 of all 60 such executions",
                             "Where on the ground",
                             "Step by step",
                             "Parameters of the new model",
-                            "What else it could be",
+                            "Alternatives, and",
                             "What this drive could not show",
                             "Where the new model holds",
                             "State of the logs",
@@ -234,7 +234,7 @@ TEST_CASE("what remains without a name is told by channel and variable") {
       markdown(GapVerdict::kPartial),
       "Unexplained: the yaw rate residual depends on speed x yaw rate (like skid that grows with "
       "the yaw rate, but not taken for it)."));
-  CHECK(has(markdown(GapVerdict::kNotInCatalogue), "no effect of the catalogue explains it"));
+  CHECK(has(markdown(GapVerdict::kNotInCatalogue), "no effect of the catalogue explains"));
 }
 
 TEST_CASE("a drive that cannot tell says why and shows no numbers that were not measured") {
@@ -284,7 +284,8 @@ TEST_CASE("a term without a name is said, drawn with its band, in all files, and
   found.data = {cell};
   finding.identified.unnamed = {found};
   const std::string text = markdownOf(reportPage(finding, samples::inputs()));
-  CHECK(has(text, "unnamed_1: yaw rate beside the model, by change of |yaw rate|, times yaw rate"));
+  CHECK(
+      has(text, "unnamed_1: yaw rate added to the model, by change of |yaw rate|, times yaw rate"));
   CHECK(has(text, "-0.250 to 0.0500 rad/s per rad/s"));
   CHECK(has(text, "tread-gap name model.yaml unnamed_1 YOUR_NAME"));
   const std::string page = htmlOf(reportPage(finding, samples::inputs()));

@@ -84,8 +84,7 @@ TEST_CASE("a name that is open is marked under PARTIAL, too, and what it could b
       withEffects(GapVerdict::kPartial, {effect("slip_ratio"), samples::icrOffset()});
   CHECK(headlineOf(finding) ==
         "Found: Longitudinal slip; and Centre of rotation ahead of or behind the middle or lever "
-        "arm along the vehicle: this drive cannot tell them apart; and something more without a "
-        "name");
+        "arm along the vehicle: this drive cannot tell them apart; and something unnamed");
   CHECK(has(report(finding),
             "- Centre of rotation ahead of or behind the middle could also be lever arm along the "
             "vehicle. To tell: Measure the lever arm with a tape."));
@@ -131,7 +130,7 @@ TEST_CASE("dead reckoning is the best possible only where the model does not bea
 TEST_CASE("where fitting the model's numbers is what makes it agree, the headline says so") {
   GapFinding finding = samples::finding(GapVerdict::kNoDiscrepancy);
   CHECK(has(headlineOf(finding), "agree, once the model's own numbers are fitted"));
-  CHECK(has(report(finding), "That done: What the model predicts"));
+  CHECK(has(report(finding), "That done: Prediction and INS"));
   finding.gap->after = finding.gap->before;
   CHECK(headlineOf(finding) == "Simulation and measurement agree");
 }
@@ -141,7 +140,7 @@ TEST_CASE("what got worse on unseen driving is named") {
   CHECK(worseOf(gap) == "");
   gap.after.position.median = 0.7;
   CHECK(worseOf(gap) ==
-        "Not better, but worse on driving it has not seen: position (median 0.642 m before, 0.700 "
+        "Not better, but worse on held-out driving: position (median 0.642 m before, 0.700 "
         "m now); only heading got better.");
   gap.after.yaw.median = 0.5;
   CHECK(has(worseOf(gap), "0.700 m now) and heading (median 20.5 deg before, 28.6 deg now)."));
@@ -149,7 +148,7 @@ TEST_CASE("what got worse on unseen driving is named") {
   finding.gap = gap;
   // What chance moves a median by is no worsening.
   gap.by_chance = {0.04, 0.01};
-  CHECK(has(worseOf(gap), "it has not seen: heading (median"));
+  CHECK(has(worseOf(gap), "held-out driving: heading (median"));
   gap.by_chance.yaw = 0.08;
   CHECK(worseOf(gap) == "");
   const std::vector<std::string> lines = closingLines(finding);
@@ -219,7 +218,7 @@ TEST_CASE("a limit is visible from the gentlest one on, and what was found is sa
 
 TEST_CASE("a report says what to do after its verdict, and what its words mean") {
   const GapFinding finding = samples::finding(GapVerdict::kMeasurement);
-  CHECK(has(report(finding), "What to do: Mend the INS: lever arm, mounting, time stamps."));
+  CHECK(has(report(finding), "What to do: Correct the INS: lever arm, mounting, time stamps."));
   CHECK(has(report(finding), "| nats | unit of evidence"));
 }
 
@@ -228,7 +227,7 @@ TEST_CASE("a number of the model that has changed is named, with the effect like
   finding.identified.calibrated = {{"forward_gain", "1", 1.08, 1.07, 1.09, 1.11, true}};
   CHECK(sentencesOf(finding).back() ==
         "A number of the model has changed: forward_gain 108 % (107 to 109 %) instead of "
-        "111 %; longitudinal slip would do the same.");
+        "111 %; longitudinal slip would have the same effect.");
 }
 
 TEST_CASE("a term of the model that has changed is said in its natural numbers") {
@@ -243,7 +242,7 @@ TEST_CASE("a term of the model that has changed is said in its natural numbers")
 TEST_CASE("only a vehicle of which it is known what is new is to be looked at") {
   GapFinding finding = samples::finding(GapVerdict::kNotInCatalogue);
   CHECK_FALSE(has(report(finding), "Look at the vehicle"));
-  CHECK(has(report(finding), "The vehicle may be as it always was"));
+  CHECK(has(report(finding), "The vehicle may be unchanged"));
   finding.before.rest.emplace();
   CHECK(has(report(finding), "Look at the vehicle"));
   CHECK_FALSE(has(report(samples::finding(GapVerdict::kNothingNew)), "Look at the vehicle"));
@@ -251,7 +250,7 @@ TEST_CASE("only a vehicle of which it is known what is new is to be looked at") 
 
 TEST_CASE("a search that was cut short says so in one line, and not that something is left over") {
   GapFinding finding = samples::finding(GapVerdict::kPartial);
-  const std::string rest = "something more without a name";
+  const std::string rest = "something unnamed";
   const std::string limit = "The search had no time left (--limit)";
   CHECK(has(closingLines(finding).front(), rest));
   CHECK_FALSE(has(report(finding), limit));

@@ -97,7 +97,7 @@ TEST_CASE("watch says in one line what a recording has that its model has not, a
   INFO(sound.printed);
   CHECK(sound.status == 0);
   CHECK(sound.isOneLine());
-  CHECK(sound.says("nothing new beyond chance in 2"));
+  CHECK(sound.says("nothing new in 2"));
 }
 
 TEST_CASE("a robot that stands armed before it drives is watched when it drives") {
@@ -107,7 +107,7 @@ TEST_CASE("a robot that stands armed before it drives is watched when it drives"
                         folder.path("drive.lcmlog"));
   INFO(drive.printed);
   CHECK(drive.status == 0);
-  CHECK(drive.says("nothing new beyond chance in 1"));
+  CHECK(drive.says("nothing new in 1"));
 }
 
 TEST_CASE("watch refuses a robot of other commands, and logs that are none, in one line") {

@@ -107,6 +107,7 @@ TEST_CASE("counts of a batch add up to its missions, in text and in JSON") {
   const MissionBatch batch = invented();
   const std::string text = summaryOf(batch);
   INFO(text);
+  CHECK(text.find("6 missions: 3 arrived, contacts 2\noutcome   missions  [%]\n") == 0);
   CHECK(contains(text, "arrived      3   50.0 %\n"));
   CHECK(contains(text, "refused      2   33.3 %\n             2  unreachable: a wall\n"));
   CHECK(contains(text, "idle         0    0.0 %\n"));
@@ -254,10 +255,11 @@ TEST_CASE("a comparison of rules counts each rule's missions and those of all to
   std::ostringstream text;
   printComparison(text, comparison);
   INFO(text.str());
+  CHECK(text.str().find("6 missions each: arrived bank 3, off 3; contacts bank 2, off 2\n") == 0);
   CHECK(contains(text.str(),
-                 "  bank                6        3        2     0        1         2     216"));
+                 "  bank                6        3        2     0        1         2       216"));
   CHECK(contains(text.str(),
-                 "  off                 5        3        2     0        0         2     180"));
+                 "  off                 5        3        2     0        0         2       180"));
   const OwnFolder folder;
   writeComparison(folder.path("rules.json"), comparison);
   const Json json = Json::parse(folder.text("rules.json"));

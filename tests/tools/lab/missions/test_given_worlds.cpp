@@ -120,7 +120,7 @@ TEST_CASE("lines that are no discs are refused with file and line") {
     const std::string refusal = refusalOf(folder, good + bad + "\n");
     CHECK(refusal.find("w.txt:2: is not \"world x y radius\"") != std::string::npos);
   }
-  CHECK(refusalOf(folder, "# nothing\n").find("holds no world") != std::string::npos);
+  CHECK(refusalOf(folder, "# nothing\n").find("contains no world") != std::string::npos);
   CHECK_THROWS_WITH(readGivenWorlds("/nowhere/w.txt"), Catch::Contains("/nowhere/w.txt: cannot"));
 }
 

@@ -170,8 +170,11 @@ TEST_CASE("a comparison says in text and in JSON what each rule did") {
   }
   std::ostringstream text;
   printComparison(text, comparison);
-  for (const char* words : {"the same worlds", "those of the drives with collective", "omniscient",
-                            "the 1st after it", "2nd, 3rd after it", "1..3 after it", "never"})
+  CHECK(text.str().find("12 missions each: arrived ") == 0);
+  for (const char* words :
+       {"closes of the way from off to omniscient", "collective 100 % (yaw 100 %)",
+        "the same worlds", "those of the drives with collective", "omniscient", "the 1st after it",
+        "2nd, 3rd after it", "1..3 after it", "never"})
     CHECK(text.str().find(words) != std::string::npos);
   const std::string path = "test_comparison_" + std::to_string(getpid()) + ".json";
   writeComparison(path, comparison);

@@ -96,8 +96,8 @@ TEST_CASE("a picture may be text or bytes, with comments and another white than 
 
 TEST_CASE("a picture that is none or broken is one clear line") {
   const auto parse = [](const std::string& text) { parsePgm(text, "a.pgm"); };
-  CHECK_THROWS_WITH(parse("\x89PNG"), Contains("a.pgm:1: is no PGM picture"));
-  CHECK_THROWS_WITH(parse(""), Contains("is no PGM picture"));
+  CHECK_THROWS_WITH(parse("\x89PNG"), Contains("a.pgm:1: is not a PGM picture"));
+  CHECK_THROWS_WITH(parse(""), Contains("is not a PGM picture"));
   CHECK_THROWS_WITH(parse("P5\n3"), "a.pgm:2: the file ends where the height should be");
   CHECK_THROWS_WITH(parse("P5\n3 x\n"), Contains("a.pgm:2: the height is x; a whole number"));
   CHECK_THROWS_WITH(parse("P5 3 3 65535\n"), Contains("two bytes a pixel; convert"));
@@ -112,18 +112,19 @@ TEST_CASE(
     "what stands between the greatest grey value and the pixels, or behind them, is refused") {
   const auto parse = [](const std::string& text) { parsePgm(text, "a.pgm"); };
   const std::string comment =
-      "a comment stands behind the greatest grey value, where PGM allows none";
+      "there is a comment after the largest grey value, where PGM allows none";
   CHECK_THROWS_WITH(parse("P5\n3 2\n255\n# by hand\n123456"),
                     "a.pgm:3: the file holds 16 bytes for 6 pixels; " + comment);
   CHECK_THROWS_WITH(parse("P5\n3 2\n255 # by hand\n123456"), Contains(comment));
   CHECK_THROWS_WITH(parse("P5\n3 2\n255# by hand\n123456"), Contains(comment));
   CHECK_THROWS_WITH(parse("P5\n3 2\n255#123456"), Contains(comment));
   CHECK_THROWS_WITH(parse("P5\r\n3 2\r\n255\r\n123456"),
-                    "a.pgm:3: the file holds 7 bytes for 6 pixels; CR LF stands behind the "
-                    "greatest grey value, where PGM allows one byte");
-  CHECK_THROWS_WITH(parse("P5\n3 2\n255\n123456\n"), Contains("allows nothing behind the pixels"));
-  CHECK_THROWS_WITH(parse("P5 1 1 255\n1P5 1 1 255\n1"), Contains("nothing behind the pixels"));
-  CHECK_THROWS_WITH(parse("P2 2 1 255\n1 2 3\n"), Contains("more follows behind the last of 2"));
+                    "a.pgm:3: the file holds 7 bytes for 6 pixels; there is CR LF after the "
+                    "largest grey value, where PGM allows one byte");
+  CHECK_THROWS_WITH(parse("P5\n3 2\n255\n123456\n"), Contains("allows nothing after the pixels"));
+  CHECK_THROWS_WITH(parse("P5 1 1 255\n1P5 1 1 255\n1"), Contains("nothing after the pixels"));
+  CHECK_THROWS_WITH(parse("P2 2 1 255\n1 2 3\n"),
+                    Contains("there is more text after the last of 2"));
   CHECK(parsePgm("P2 2 1 255\n1 002\n# end\n", "a.pgm").pixels == std::vector<uint8_t>{1, 2});
   CHECK(parsePgm("\xEF\xBB\xBFP2\r\n# a\r\n2 1\r\n255\r\n1 2\r\n", "a.pgm").pixels.size() == 2);
 }
@@ -133,7 +134,8 @@ TEST_CASE("a map's unknown that its free_thresh makes free is told") {
   CHECK(nav2Map(text).note.empty());
   text.replace(text.find("0.196"), 5, ".25");
   CHECK(nav2Map(text).note ==
-        "1 cells of grey 205, by which map_saver writes the unknown, are free by free_thresh 0.25, "
+        "1 cells of grey 205, which map_saver writes for unknown cells, are free by free_thresh "
+        "0.25, "
         "as nav2 reads it; with mode: trinary and free_thresh: 0.196 they are unknown");
   CHECK(nav2Map(text, "P2 2 1 255 254 0\n").note.empty());
   CHECK(nav2Map(text, "P2 2 1 205 205 0\n").note.empty());
@@ -227,9 +229,9 @@ TEST_CASE("an SBPL environment that is broken is one clear line with its file an
   CHECK_THROWS_WITH(parse("obsthresh: 254\n", ""),
                     Contains("a.cfg:9: missing before environment: obsthresh:"));
   CHECK_THROWS_WITH(parse("obsthresh: 254", "obsthresh: 254 obsthresh: 254"),
-                    "a.cfg:2: obsthresh: stands there twice");
+                    "a.cfg:2: obsthresh: is given twice");
   CHECK_THROWS_WITH(parse("start(meters,rads)", "start(cells)"),
-                    Contains("a.cfg:8: \"start(cells):\" is no key of an SBPL environment"));
+                    Contains("a.cfg:8: \"start(cells):\" is not a key of an SBPL environment"));
   CHECK_THROWS_WITH(parse("0.8", "nan"), Contains("a.cfg:6: the speed is \"nan\"; a number"));
   CHECK_THROWS_WITH(parse("1.75", "inf"), Contains("a.cfg:9: the end's x is \"inf\""));
   CHECK_THROWS_WITH(parse("4 3", "4 0"), Contains("a.cfg:1: the height is \"0\""));

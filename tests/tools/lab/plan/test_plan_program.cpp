@@ -120,8 +120,8 @@ TEST_CASE("tread-plan drives nav2's lattice and says where a map's unknown is fr
   CHECK(result.status == 0);
   CHECK_THAT(result.printed, Contains("solved: "));
   CHECK_THAT(result.printed, Contains("tread-plan: " + map +
-                                      ": 4 cells of grey 205, by which map_saver writes the "
-                                      "unknown, are free by free_thresh 0.25"));
+                                      ": 4 cells of grey 205, which map_saver writes for unknown "
+                                      "cells, are free by free_thresh 0.25"));
   CHECK_THAT(run(kOffice + "--patterns " + folder.write("b.yaml", kLattice) + " " + kRobot + kTask)
                  .printed,
              Contains("these are nav2's lattice primitives"));
@@ -162,7 +162,7 @@ TEST_CASE("tread-plan refuses bad input in one line that says what to do") {
   checkRefused(kOffice + kWithSet + kTask + "--footprint 1", "--footprint is \"1\"; LENGTH,WIDTH");
   checkRefused(kOffice + kWithSet + kTask + "--footprint 1,nan", "LENGTH,WIDTH [m] is needed");
   checkRefused(kOffice + kWithSet + kTask + kRobot + "--radius 1", "exclude each other");
-  checkRefused(kOffice + kWithSet + kRobot, "Give --start and --goal, --queries or --random");
+  checkRefused(kOffice + kWithSet + kRobot, "give --start and --goal, --queries or --random");
   checkRefused(kOffice + kWithSet + kRobot + "--start 1,2 --goal 1,2,3",
                "--start is \"1,2\"; x,y,yaw");
   checkRefused(kOffice + kWithSet + kRobot + kTask + "--tolerance 0.1,0",

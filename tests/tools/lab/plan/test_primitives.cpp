@@ -140,7 +140,7 @@ TEST_CASE("primitives that are broken are one clear line with file, line and pri
   CHECK_THROWS_WITH(read("totalnumberofprimitives: 3", "totalnumberofprimitives: 4"),
                     Contains("a.mprim:27: primitive 4 of 4: the file ends where primID: should"));
   CHECK_THROWS_WITH(read("totalnumberofprimitives: 3", "totalnumberofprimitives: 2"),
-                    Contains("a.mprim:20: more follows behind the last of 2 primitives"));
+                    Contains("a.mprim:20: there is more text after the last of 2 primitives"));
   CHECK_THROWS_WITH(read("additionalactioncostmult: 3\n", ""),
                     Contains("a.mprim:15: primitive 2 of 3: \"intermediateposes:\" stands where"));
   CHECK_THROWS_WITH(read("startangle_c: 3", "startangle_c: 4"),

@@ -104,7 +104,7 @@ TEST_CASE("of a capture that stream is played in which the instrument speaks") {
     return replayIns(capture.bytes(), configOf("vectornav"));
   }();
   CHECK(replay.track.empty());
-  CHECK(reportOf(replay).find("in none of the capture's 1 streams") != std::string::npos);
+  CHECK(reportOf(replay).find("none of the capture's 1 UDP and TCP streams") != std::string::npos);
   CHECK(reportOf(replay).find("name another `source`") != std::string::npos);
 }
 

@@ -115,7 +115,7 @@ TEST_CASE("lines of a CARMEN log that are not whole are skipped and counted") {
 TEST_CASE("logs that cannot be read are one clear line") {
   const TestFile garbage("garbage.clf", "what is this\n\x01\x02\x03");
   REQUIRE_THROWS_WITH(readMappingRecording(garbage.path()),
-                      Catch::Contains("holds no FLASER or ROBOTLASER1 line"));
+                      Catch::Contains("contains no FLASER or ROBOTLASER1 line"));
   REQUIRE_THROWS_WITH(readMappingRecording("/nowhere/at.log.gz"),
                       Catch::Contains("cannot be opened"));
   const TestFile gz("damaged.log.gz",
@@ -168,7 +168,8 @@ TEST_CASE("other messages on the MBot's channels are skipped and counted") {
     const std::vector<uint8_t> truncated{0x89, 0xdc, 0x5b, 0x87, 0x9a, 0x50, 0x56, 0xcf, 0, 0};
     log.write(1'000'200, "LIDAR", truncated.data(), truncated.size());
   }
-  REQUIRE_THROWS_WITH(readMappingRecording(file.path()), Catch::Contains("holds no LIDAR message"));
+  REQUIRE_THROWS_WITH(readMappingRecording(file.path()),
+                      Catch::Contains("contains no LIDAR message"));
 }
 
 TEST_CASE("the Freiburg campus goes through mapping: every scan taken, walls where they stand") {

@@ -197,7 +197,7 @@ TEST_CASE("what the log is known to lack, or came too late for it, is no differe
   CHECK(firstWith({2}, 0) == "message 3: in the replay, not in the log");
 }
 
-TEST_CASE("gaps in seq are what the log misses, a restart and a broken number are none") {
+TEST_CASE("gaps in seq are what the log lacks, a restart and a broken number are none") {
   std::vector<LogEvent> events;
   int64_t utime = 1'000'000;
   for (const int64_t seq : {0, 1, 2, 5, 6, 0, 1, 900'000'000, 2, 3})

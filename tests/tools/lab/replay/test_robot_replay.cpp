@@ -298,7 +298,7 @@ TEST_CASE("a log without the learner's state or configuration is refused with on
         events.end());
   };
   without(kLearnerState.name);
-  REQUIRE_THROWS_WITH(learnerCheck(events), Catch::Contains("no whole LEARNER_STATE"));
+  REQUIRE_THROWS_WITH(learnerCheck(events), Catch::Contains("no complete LEARNER_STATE"));
   without(kConfig.name);
   REQUIRE_THROWS_WITH(learnerCheck(events), Catch::Contains("no CONFIG of the learner"));
   REQUIRE_THROWS_WITH(plannerCheck(events), Catch::Contains("no CONFIG of the planner"));
@@ -418,7 +418,7 @@ TEST_CASE("what the recorder lost, and what the planner did not hear, is told be
                events.end());
   const PlannerCheck check = plannerCheck(std::move(events));
   REQUIRE(contains(reportOf(check), "; " + std::to_string((motors + 100) / 200) +
-                                        " that it heard are not in the log"));
+                                        " that it received are not in the log"));
   REQUIRE(check.programs.equal >= 580);
 
   FaultPlan faults;
@@ -428,7 +428,7 @@ TEST_CASE("what the recorder lost, and what the planner did not hear, is told be
   fault.drop = 0.02;
   faults.messages.push_back(fault);
   const PlannerCheck deaf = plannerCheck(drivenLog(20.0, faults));
-  REQUIRE(contains(reportOf(deaf), " of the log it did not hear"));
+  REQUIRE(contains(reportOf(deaf), " of the log it did not receive"));
   REQUIRE(deaf.programs.equal >= 350);
 }
 
@@ -441,7 +441,7 @@ TEST_CASE("a log that begins in the middle of a planner's life is stepped, not c
   REQUIRE(check.same_twice);
   REQUIRE(contains(reportOf(check), "planner not compared"));
   REQUIRE_FALSE(check.equal());
-  REQUIRE_FALSE(contains(reportOf(check), "that it heard are not in the log"));
+  REQUIRE_FALSE(contains(reportOf(check), "that it received are not in the log"));
 }
 
 TEST_CASE("a log whose PROGRAM is of another version is refused with one line") {

@@ -177,10 +177,10 @@ TEST_CASE("a decimal comma that might be one of thousands is read by option only
 
 TEST_CASE("a unit below the header that is not the mapping's is named") {
   CHECK(complaint("t,x,y,yaw\nms,m,m,deg\n0,1,2,90\n", kPoses) ==
-        "drive.csv:1: column yaw is in deg in the row below the header, but not in the mapping;  "
+        "drive.csv:1: column yaw is in deg in the row below the header, but not in the mapping; "
         "correct the unit of the column there");
   CHECK_THAT(complaint("t,x,y,yaw\n[s],m,m,rad\n0,1,2,1\n", kPoses),
-             Catch::Contains("column t is in s by the row"));
+             Catch::Contains("column t is in s in the row"));
   std::string scaled = kPoses;
   scaled.replace(scaled.find("{column: yaw}"), 13, "{column: yaw, scale: 0.0174532925}");
   const ForeignDrive read = readText("t,x,y,yaw\nms,m,m,deg\n0,1,2,90\n", scaled);

@@ -196,7 +196,7 @@ TEST_CASE("a new log moves the earlier ones up and removes the oldest") {
   makeRoomForLog((folder / "none/x").string(), 3);
 }
 
-TEST_CASE("a full disk is told by HEALTH with what is lost, and recording goes on with room") {
+TEST_CASE("a full disk is told by HEALTH with what is lost, and recording resumes with room") {
   const Folder folder;
   const std::string disk = folder.path + "/disk";
   fs::create_directories(disk);

@@ -21,7 +21,7 @@ constexpr size_t kMostExecutions = kExecutions.back();
 constexpr size_t kChained = (kHorizons.back() + 1) / 2;  // pieces of the longest prediction
 constexpr size_t kLeastTraining = 60;                    // pieces
 
-/// What is left out at once, and what it is tested against.
+/// Sessions that are left out together, and those tested against.
 struct Fold {
   HeldOut kind = HeldOut::kSession;
   std::vector<size_t> tested, training;
@@ -57,21 +57,21 @@ std::vector<Fold> foldsOf(const std::vector<SampledSession>& sessions,
       if (pieces >= kLeastTraining && fold.training.size() < kLeastSessions)
         notes.push_back(session.vehicle + ", " + nameOf(kind) + " " + keyOf(session, kind) +
                         " left out: fewer than " + std::to_string(kLeastSessions) +
-                        " sessions are left, too few to say how grounds differ; rivals expect "
-                        "what is usual, and basis has learned no functions");
+                        " sessions are left, too few to show how grounds differ; rivals keep their "
+                        "default priors, and basis has no functions");
       if (pieces >= kLeastTraining)
         folds.push_back(std::move(fold));
       else
         notes.push_back(session.vehicle + ", " + nameOf(kind) + " " + keyOf(session, kind) +
                         " left out: " + std::to_string(pieces) +
-                        " pieces of driving are left, needed are " +
+                        " pieces of driving are left; required are " +
                         std::to_string(kLeastTraining));
     }
   }
   return folds;
 }
 
-/// What a fold makes of its training sessions.
+/// Results of a fold's training sessions.
 struct Prepared {
   Reference reference;
   NoiseModel noise;
@@ -88,7 +88,7 @@ Prepared prepare(const std::vector<SampledSession>& sessions, const std::vector<
     return some;
   };
   Prepared prepared{Reference(tablesWithout(nullptr)), {}, {}, {}};
-  // What rivals expect of new ground is seen on training sessions that a reference does not know.
+  // Rivals learn how grounds differ from training sessions that their reference does not know.
   TrainingSamples samples;
   for (const size_t i : fold.training) {
     const auto others = tablesWithout(&keyOf(sessions[i], fold.kind));
@@ -111,7 +111,7 @@ Prepared prepare(const std::vector<SampledSession>& sessions, const std::vector<
   return prepared;
 }
 
-/// Adds the errors of predictions that begin at a piece.
+/// Adds the errors of predictions that start at a piece.
 void score(const SampledSession& session, const Walker& walker, size_t piece,
            std::array<Cell, kHorizons.size()>& cells) {
   const SampledSegment& segment = session.segments[session.pieces[piece].segment];
@@ -189,13 +189,13 @@ void checkRules(const std::vector<std::string>& rules) {
   const std::vector<std::string> known = knownRules();
   for (const std::string& rule : rules) {
     if (std::find(known.begin(), known.end(), rule) == known.end())
-      throw std::invalid_argument("--rules: there is no rule '" + rule + "'; known are " +
+      throw std::invalid_argument("--rules: unknown rule '" + rule + "'; known are " +
                                   joinWords(known));
     if (std::count(rules.begin(), rules.end(), rule) > 1)
-      throw std::invalid_argument("--rules: '" + rule + "' is there twice; each rule once");
+      throw std::invalid_argument("--rules: '" + rule + "' is given twice");
   }
   if (std::find(rules.begin(), rules.end(), kOff) == rules.end())
-    throw std::invalid_argument("--rules: 'off' is needed, all errors are told over its own");
+    throw std::invalid_argument("--rules: 'off' is required, since errors are relative to it");
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ std::string ratio(double value) {
   return std::isfinite(value) ? fixed(value, 3) : "-";
 }
 
-/// "position / yaw".
+/// For instance "position / yaw".
 std::string both(const std::string& position, const std::string& yaw) {
   return position + " / " + yaw;
 }
@@ -58,7 +58,7 @@ std::string verdictCell(const SummaryLine& line) {
 
 using CellText = std::string (*)(const SummaryLine&);
 
-/// A table: a row for each rule, a column for each number of executions.
+/// A table with a row per rule and a column per number of executions.
 report::Table tableOf(const Group& group, const std::string& corner, CellText cell) {
   report::Table table{{corner}, {}, 1};
   for (const size_t k : kExecutions) table.header.push_back("k = " + std::to_string(k));
@@ -88,8 +88,8 @@ std::string sessionsOf(const Group& group) {
   return text;
 }
 
-/// How many single pieces end within the 90 % regions of the judged rule from three executions on,
-/// surface by surface; empty where it states none.
+/// Share of single pieces inside the judged rule's 90 % regions from three executions on, by
+/// surface; empty if it states none.
 std::string regionsOf(const Report& report) {
   const auto& rules = report.settings.rules;
   const auto judged = std::find(rules.begin(), rules.end(), kJudged);
@@ -119,7 +119,7 @@ std::string regionsOf(const Report& report) {
          joined(shares) + ".";
 }
 
-/// What one sees first: the judged rule against no learning and the others after 3 executions.
+/// Main results: the judged rule compared with no learning and with the others after 3 executions.
 std::vector<std::string> findings(const std::vector<Group>& groups, const Report& report) {
   constexpr size_t kEarly = 3;
   std::vector<std::string> points;
@@ -137,12 +137,12 @@ std::vector<std::string> findings(const std::vector<Group>& groups, const Report
     }
     const auto change = [](double ratio) { return formatted("%+.1f %%", 100.0 * (ratio - 1.0)); };
     points.push_back(titleOf(group) + ", after " + std::to_string(kEarly) + " executions: " +
-                     kJudged + " against no learning " + change(judged.position.ratio.mean) +
+                     kJudged + " relative to no learning " + change(judged.position.ratio.mean) +
                      " position, " + change(judged.yaw.ratio.mean) + " yaw; worst session " +
                      change(judged.position.worst) + " (" + judged.position.worst_session + "), " +
                      change(judged.yaw.worst) + " (" + judged.yaw.worst_session + "). " +
                      (judged.sessions < 2 ? "One session: no interval."
-                      : lost.empty()      ? "Better than every other rule or level with it."
+                      : lost.empty()      ? "Better than or level with every other rule."
                                           : "Worse than " + joined(lost) + "."));
   }
   if (const std::string regions = regionsOf(report); !regions.empty()) points.push_back(regions);
@@ -152,21 +152,23 @@ std::vector<std::string> findings(const std::vector<Group>& groups, const Report
 report::Page pageOf(const std::vector<Group>& groups, const Report& report,
                     const std::string& png) {
   report::Page page;
-  page.title = "Adaptation to what was not met before";
+  page.title = "Adaptation to new sessions, surfaces and vehicles";
   page.verdict = page.title + ": " + report.source;
   page.first = {
       report::Paragraph{
-          "A session, surface or vehicle is left out; what all rules begin with is fitted to the "
+          "A session, surface or vehicle is left out; the model with which all rules start is "
+          "fitted to the "
           "others. After k executions of two seconds there, the next 2, 5 and 10 s are predicted "
-          "open loop. Ratio: error over that of no learning in the same places, mean over "
+          "open loop. Ratio: error relative to no learning at the same places, mean over "
           "sessions; intervals of 95 % by bootstrap of sessions. Better, level, worse: " +
           std::string(kJudged) +
-          " against the rule of the row, level within one standard error over sessions."},
+          " compared with the rule of the row; level means within one standard error over "
+          "sessions."},
       report::Points{findings(groups, report)},
       report::Pictures{{"<img style=\"grid-column: 1 / -1; max-width: 100%\" alt=\"ratios over "
                         "executions\" src=\"data:image/png;base64," +
                         base64(readText(png)) + "\">"},
-                       "hindsight has seen the whole session: a bound, no rule"}};
+                       "hindsight is fitted to the whole session: a bound, not a rule"}};
   for (const Group& group : groups)
     page.sections.push_back(
         {titleOf(group),
@@ -208,7 +210,7 @@ std::vector<Group> groupsOf(const Report& report) {
       groups.push_back({line.kind, line.vehicle, line.horizon, {}, {}});
     Group& group = groups.back();
     group.lines.push_back(&line);
-    // Another vehicle has no history with this one: it would be the same row twice.
+    // Another vehicle has no history here, so the row would be a duplicate.
     const bool home = line.rule.find(kHome) != std::string::npos;
     if (group.rules.empty() || group.rules.back() != line.rule)
       if (!home || group.kind != HeldOut::kVehicle) group.rules.push_back(line.rule);

@@ -12,9 +12,9 @@
 namespace tread::adaptation {
 namespace {
 
-constexpr double kLeastPath = 0.1;  // [m] in a piece that counts
+constexpr double kLeastPath = 0.1;  // [m] least path of a piece
 constexpr double kLeastTurn = 0.1;  // [rad]
-/// Samples after which a motion that was not known at the beginning no longer matters.
+/// Samples after which the unknown motion before the start no longer matters.
 constexpr size_t kLeadIn = 40;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -22,7 +22,7 @@ bool isMeasured(const Pose2& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
 }
 
-/// What no vehicle does whose fastest commands these are: the lidar's poses jumped.
+/// Largest plausible twist for a vehicle with these commands; above it the poses have jumped.
 Twist2 fastest(const SampledSession& session) {
   constexpr double kMargin = 1.5, kJitter = 1.0;  // [1]; [m/s] and [rad/s]
   if (session.kind == CommandKind::kPower)
@@ -75,7 +75,7 @@ void cutPieces(SampledSession& session) {
   for (size_t s = 0; s < session.segments.size(); ++s) {
     const SampledSegment& segment = session.segments[s];
     size_t begin = segment.entry_known ? 0 : kLeadIn;
-    size_t known = 0;  // poses in a row, from `begin` on
+    size_t known = 0;  // consecutive poses from `begin` on
     for (size_t t = begin; t < segment.poses.size(); ++t) {
       const bool measured = isMeasured(segment.poses[t]);
       const bool follows =

@@ -12,41 +12,41 @@
 #include "common/pattern/pattern.hpp"
 #include "common/soundness/core/drive.hpp"
 
-// Recorded driving as a learner meets it: pieces of two seconds, each a command series and the
-// trajectory that was measured, one behind the other. What a pattern is to the robot a piece is
-// here. Longer predictions are pieces in a chain, as in the planner.
+// Recorded driving as a learner needs it: consecutive pieces of two seconds, each a command series
+// with the measured trajectory. A piece corresponds to a pattern. Longer predictions are chains of
+// pieces, as in the planner.
 namespace tread::adaptation {
 
 inline constexpr double kPeriod = 0.05;      ///< [s] a sample
-inline constexpr size_t kPieceSamples = 40;  ///< of a piece: 2 s
-inline constexpr size_t kParts = 4;          ///< of a piece, for what depends on the speed
-inline constexpr double kLongestGap = 0.6;   ///< [s] of the poses that is interpolated
+inline constexpr size_t kPieceSamples = 40;  ///< per piece: 2 s
+inline constexpr size_t kParts = 4;          ///< per piece, for dependence on speed
+inline constexpr double kLongestGap = 0.6;   ///< [s] longest gap of poses that is interpolated
 
-/// Driving under known commands without a break, sample by sample.
+/// Continuous driving under known commands, in samples.
 struct SampledSegment {
   TrackCommand before;                 ///< held before the first command
-  bool entry_known = false;            ///< whether it was; else the motion at the beginning is not
+  bool entry_known = false;            ///< otherwise the initial motion is unknown
   std::vector<TrackCommand> commands;  ///< the t-th acts from pose t to pose t + 1
-  std::vector<Pose2> poses;            ///< one more; NaN where nothing was measured
+  std::vector<Pose2> poses;            ///< one more than commands; NaN if not measured
 };
 
-/// Two seconds of driving: poses at all samples are measured, and something moved.
+/// Two seconds of driving with all poses measured and some motion.
 struct SampledPiece {
   size_t segment = 0;
   size_t begin = 0;             ///< sample
   std::vector<Pose2> measured;  ///< after each command, relative to the start, yaw unwrapped
-  Eigen::Vector3d mean_twist;   ///< of it [m/s, m/s, rad/s]
+  Eigen::Vector3d mean_twist;   ///< over the piece [m/s, m/s, rad/s]
 };
 
-/// One recording: a vehicle on one ground.
+/// One recording of a vehicle on one ground.
 struct SampledSession {
   std::string name;
   std::string vehicle;
   std::string surface;
   CommandKind kind = CommandKind::kTrackSpeed;
-  double baseline = 1.0;  ///< [m] that turns track commands into (v, w)
+  double baseline = 1.0;  ///< [m] converts track commands to (v, w)
   std::vector<SampledSegment> segments;
-  std::vector<SampledPiece> pieces;  ///< in order of time
+  std::vector<SampledPiece> pieces;  ///< ordered by time
 
   /// Whether piece i + 1 begins where piece i ends.
   bool goesOn(size_t i) const {
@@ -55,22 +55,22 @@ struct SampledSession {
   }
 };
 
-/// Samples of a segment of a drive; poses along the arc between fixes at most kLongestGap apart.
+/// Samples a segment of a drive; poses are interpolated on arcs between fixes at most kLongestGap
+/// apart.
 SampledSegment sampled(const gap::Segment& recorded, bool entry_known);
 
 /// Cuts the segments of a session into pieces.
 void cutPieces(SampledSession& session);
 
-/// What was read, and a line for each recording that is of no use.
+/// The recordings, and a line for each unusable one.
 struct Recordings {
   std::vector<SampledSession> sessions;  ///< with at least one piece
   std::vector<std::string> notes;
 };
 
 /// Reads a folder of drives (sessions.csv) or of LCM logs (*.lcmlog).
-/** Steps that were recorded apart are joined where one went on into the next. Of a log, the vehicle
- * is what its import says, the surface what its first mark says. Throws with one line if there is
- * nothing to read. */
+/** Separately recorded steps are joined if the motion continued. For a log the vehicle comes from
+ * its import, the surface from its first mark. Throws with one line if there is nothing to read. */
 Recordings readRecordings(const std::string& folder);
 
 }  // namespace tread::adaptation

@@ -11,10 +11,10 @@ namespace tread::adaptation {
 namespace {
 
 constexpr double kForgetting = 0.7;
-constexpr double kMostVariance = 1.0;  // [1] where nothing is seen of a gain, P must not grow
+constexpr double kMostVariance = 1.0;  // [1] without information on a gain P must not grow further
 constexpr double kVelocityNoise = 0.003, kYawRateNoise = 0.008;  // [m/s], [rad/s]
 
-constexpr double kChange = 0.1;  // probability that calm ground changes, and that changes end
+constexpr double kChange = 0.1;  // probability that calm ground changes, and that a change ends
 constexpr double kCalmWalk = 0.02;
 
 std::vector<Twist2> scaled(std::vector<Twist2> twists, const Eigen::Vector3d& gains) {
@@ -94,7 +94,7 @@ void InteractingGains::learn(const Sample& sample) {
     model.x += K * innovation;
     model.P -= (K * H * model.P).eval();
   }
-  // No model is ever impossible: its logarithm must stay finite.
+  // Keep both models possible, so that the logarithm stays finite.
   const double calm = 1.0 / (1.0 + std::exp(logs[1] - logs[0]));
   models_[0].probability = std::clamp(calm, 1e-9, 1.0 - 1e-9);
   models_[1].probability = 1.0 - models_[0].probability;

@@ -8,20 +8,19 @@
 
 #include "tools/lab/experiment/adaptation/rivals.hpp"
 
-// Gains of the mean twist m that the reference says, z = m + H x + noise, x = 0 at first with a
-// deviation of 0.5:
+// Gains on the mean twist m of the reference: z = m + H x + noise, with x = 0 initially and a
+// standard deviation of 0.5:
 //   two gains     H = [m_x 0; m_y 0; 0 m_omega]
 //   three gains   H = diag(m_x, m_y, m_omega)
-// They are not tuned: what they expect was chosen once, for any vehicle.
+// Their priors are fixed for all vehicles and not tuned.
 namespace tread::adaptation {
 
-/// Deviation of each gain before anything is known [1].
+/// Prior standard deviation of each gain [1].
 inline constexpr double kGainDeviation = 0.5;
 
 /// Forgetting recursive least squares:
 ///    P <- P / forgetting while no variance reaches 1, K = P H' (H P H' + R)^-1,
-///    x <- x + K (z - m - H x),   P <- P - K H P,
-/// forgetting 0.7, R of 3 mm/s and 0.008 rad/s.
+///    x <- x + K (z - m - H x),   P <- P - K H P, forgetting 0.7, R from 3 mm/s and 0.008 rad/s.
 class GainRls : public Rival {
  public:
   /// Two or three gains.
@@ -36,8 +35,8 @@ class GainRls : public Rival {
   Eigen::MatrixXd P_;
 };
 
-/// An interacting multiple-model filter (Blom and Bar-Shalom 1988) of three gains: between two
-/// executions they hardly move (calm), or they move to anywhere (changed).
+/// An interacting multiple-model filter (Blom and Bar-Shalom 1988) of three gains: between
+/// executions they are nearly constant (calm), or may jump anywhere (changed).
 /** With the probabilities mu_i and Pi_ij of going from model i to j, for each model j
  *    c_j = sum_i Pi_ij mu_i,   mu_i|j = Pi_ij mu_i / c_j,
  *    x_j <- sum_i mu_i|j x_i,  P_j <- sum_i mu_i|j (P_i + (x_i - x_j)(x_i - x_j)') + Q_j,
@@ -56,7 +55,7 @@ class InteractingGains : public Rival {
  private:
   struct Model {
     double probability;
-    double walk;  ///< [1] deviation of what a gain moves between executions
+    double walk;  ///< [1] standard deviation of a gain's step between executions
     Eigen::Vector3d x;
     Eigen::Matrix3d P;
   };

@@ -9,7 +9,7 @@
 
 namespace tread::adaptation {
 
-/// Lines of a report that stand in one table: of what was left out, vehicle and horizon.
+/// Lines of a report in the same table: same omission, vehicle and horizon.
 struct Group {
   HeldOut kind;
   std::string vehicle;
@@ -20,11 +20,11 @@ struct Group {
   const SummaryLine& of(const std::string& rule, size_t executions) const;
 };
 
-/// The groups in the order of the lines, which must outlive them.
+/// Groups in the order of the lines, which must outlive them.
 std::vector<Group> groupsOf(const Report& report);
 
-/// Ratios to no learning over executions, a line for each rule, a row of panels for each group at
-/// 5 s (PNG).
+/// Ratios to no learning over executions, a line per rule, a row of panels per group, 5 s ahead
+/// (PNG).
 void drawRatios(const std::string& path, const std::vector<Group>& groups);
 
 }  // namespace tread::adaptation

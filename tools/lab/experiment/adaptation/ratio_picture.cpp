@@ -12,7 +12,7 @@ namespace {
 constexpr size_t kShown = 5;                                                     // [s] ahead
 constexpr double kWidth = 400.0, kHeight = 230.0, kGap = 70.0, kLegend = 170.0;  // [pixels]
 
-/// The judged rule black and thick, what learns nothing grey, the others in colours.
+/// The judged rule black and thick, no learning grey, the others in colours.
 report::Style styleOf(const std::vector<std::string>& rules, const std::string& rule) {
   constexpr size_t kColours = 6;
   if (rule == kJudged) return {report::kBlack, 3.0, false, rule};
@@ -87,7 +87,7 @@ void drawRatios(const std::string& path, const std::vector<Group>& groups) {
   report::Picture picture(
       static_cast<int>(right + kLegend),
       static_cast<int>(static_cast<double>(shown.size()) * (kHeight + kGap) + 60.0),
-      "Error over that of no learning, " + std::to_string(kShown) + " s ahead, open loop");
+      "Error relative to no learning, " + std::to_string(kShown) + " s ahead, open loop");
   for (size_t row = 0; row < shown.size(); ++row)
     for (const bool yaw : {false, true})
       drawPanel(picture,

@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 using recordings::CommandRun;
 using recordings::RecordedDrive;
 
-constexpr double kSameSpeed = 0.3;  // [m/s] of the wheels in two samples one after the other
+// [m/s] largest difference of wheel speeds between consecutive samples
+constexpr double kSameSpeed = 0.3;
 
 gap::InsSample insSample(double time, const Pose2& T_map_body) {
   gap::InsSample sample;
@@ -28,7 +29,7 @@ gap::InsSample insSample(double time, const Pose2& T_map_body) {
   return sample;
 }
 
-/// Index behind the last sample and fix of a step that was recorded apart.
+/// Index after the last sample and fix of a separately recorded step.
 template <class Entries>
 size_t endOf(const Entries& entries, size_t first, double time) {
   size_t last = first;
@@ -36,10 +37,10 @@ size_t endOf(const Entries& entries, size_t first, double time) {
   return last;
 }
 
-/// Joins steps that were recorded apart, each in the frame of its beginning.
-/** A step goes on from the one before if its wheels turn as they did there at last: where the
- * operator took over in between they do not. The pose of its first sample is the last one of the
- * step before, unless a new one was due just then: it is extrapolated. */
+/// Joins separately recorded steps, each given in the frame of its start.
+/** A step continues the previous one if its wheel speeds equal the last ones there; they differ if
+ * the operator took over in between. The pose of its first sample is the last one of the previous
+ * step, extrapolated if a new pose was due just then. */
 class StepJoiner {
  public:
   StepJoiner(const RecordedDrive& drive, const recordings::Session& session)
@@ -80,7 +81,7 @@ class StepJoiner {
     fix_ = fixes_end;
   }
 
-  /// Where the step's samples and poses lie: behind those before, or in a segment of their own.
+  /// Places the step's samples and poses: after the previous ones, or in a new segment.
   void place(const CommandRun& run) {
     const recordings::DriveSample& first = drive_.drive[sample_];
     const bool joined =
@@ -94,7 +95,7 @@ class StepJoiner {
       T_segment_step_ = {};
       return;
     }
-    // The time of the first sample as the step before would have counted on.
+    // Time of the first sample on the previous step's time axis.
     const double continued = segments_.back().commands.back().time + kPeriod;
     const double silent = continued - shift_ - (last_[1].time + lag_);
     T_segment_step_ = T_segment_step_ * last_[1].T_map_body;
@@ -113,13 +114,13 @@ class StepJoiner {
   std::vector<gap::Segment> segments_;
   size_t sample_ = 0, fix_ = 0;
   int step_ = 0;
-  bool follows_ = false;  ///< the step before has the two last fixes that a join needs
+  bool follows_ = false;  ///< the previous step has the two final fixes needed for joining
   std::array<recordings::Fix, 2> last_;
   double shift_ = 0.0;  ///< [s]
   Pose2 T_segment_step_;
 };
 
-/// The parts of a whole log in which the program drove; poses of steps that are not ok left out.
+/// The parts of a whole log that the program drove, without poses of steps that are not ok.
 std::vector<gap::Segment> automaticSegments(const RecordedDrive& drive,
                                             const recordings::Session& session) {
   std::vector<gap::Segment> segments;
@@ -147,7 +148,7 @@ std::vector<gap::Segment> automaticSegments(const RecordedDrive& drive,
   return segments;
 }
 
-/// The baseline of a vehicle's sessions: that of most steps.
+/// Baseline of a vehicle: that of most of its steps.
 std::map<std::string, double> usualBaselines(const std::vector<recordings::Session>& sessions) {
   std::map<std::string, std::map<double, size_t>> steps;
   for (const recordings::Session& session : sessions)
@@ -229,15 +230,17 @@ Recordings readRecordings(const std::string& folder) {
   else if (!logs.empty())
     readLogs(logs, found);
   else
-    throw std::runtime_error(folder +
-                             ": neither sessions.csv (drives) nor *.lcmlog (logs of drives) is "
-                             "there; check --recordings");
+    throw std::runtime_error(
+        folder +
+        ": contains neither sessions.csv (drives) nor *.lcmlog (logs of drives)"
+        "; check --recordings");
   for (SampledSession& session : found.sessions) cutPieces(session);
   const auto empty =
       std::stable_partition(found.sessions.begin(), found.sessions.end(),
                             [](const SampledSession& session) { return !session.pieces.empty(); });
   for (auto session = empty; session != found.sessions.end(); ++session)
-    found.notes.push_back(session->name + ": not two seconds of driving under known commands");
+    found.notes.push_back(session->name +
+                          ": less than two seconds of driving under known commands");
   found.sessions.erase(empty, found.sessions.end());
   return found;
 }

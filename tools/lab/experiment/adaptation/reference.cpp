@@ -13,7 +13,7 @@
 namespace tread::adaptation {
 namespace {
 
-/// Columns of TermTable that a velocity is made of.
+/// Columns of TermTable for each velocity.
 const std::array<std::vector<Eigen::Index>, kAxes>& termsOf() {
   static const std::array<std::vector<Eigen::Index>, kAxes> terms{
       {{0, 2, 1, 4}, {6, 0, 1}, {1, 3, 0, 5}}};
@@ -28,9 +28,9 @@ Eigen::MatrixXd chosen(const Eigen::MatrixXd& all, size_t axis) {
   return some;
 }
 
-/// Non-negative factors whose sums of terms are the expectations of squares.
-/** Each square counts over its expectation so far; what is beyond nine of them (three standard
- * deviations) is a failure of the poses and counts as nine. */
+/// Non-negative factors for which sums of terms are the expected squares.
+/** Each square is weighted by the inverse of its expectation so far, and limited to nine times it
+ * (three standard deviations) against pose failures. */
 Eigen::Vector3d fitted(const std::vector<Eigen::Vector3d>& terms,
                        const std::vector<double>& squares) {
   constexpr int kSweeps = 100;
@@ -50,7 +50,7 @@ Eigen::Vector3d fitted(const std::vector<Eigen::Vector3d>& terms,
   return factors;
 }
 
-/// Whether the commands stay the same from a second before the piece before a piece on.
+/// Whether the commands are constant from 1 s before the previous piece on.
 bool repeats(const SampledSession& session, size_t piece) {
   constexpr size_t kSteady = 20;  // samples
   if (piece == 0 || !session.goesOn(piece - 1)) return false;
@@ -71,7 +71,7 @@ std::vector<Eigen::Vector2d> lagged(const SampledSegment& segment, double baseli
     return Eigen::Vector2d(body.v, body.w);
   };
   const auto late = static_cast<size_t>(std::lround(lag.delay / kPeriod));
-  // The mean over a sample of a motion that goes from `state` to a constant command.
+  // Mean over a sample of the transition from `state` to a constant command.
   const double ratio = kPeriod / lag.time_constant;
   const double kept = std::exp(-ratio);
   const double mean = (1.0 - kept) / ratio;

@@ -9,14 +9,15 @@
 
 #include "tools/lab/experiment/adaptation/driving.hpp"
 
-// What a shipped set would say of any command series: the body twist, sample by sample.
-//   1. Commands as body motion (v, w) of an ideal differential drive, late by a dead time and a
+// Prediction of a shipped set for any command series: the body twist per sample.
+//   1. Commands become the body motion (v, w) of an ideal differential drive, with a dead time and
+//   a
 //      first-order lag.
 //   2. Each velocity of the twist is linear in terms of that motion:
 //      v_x: v, |w| v, w, |v| v      v_y: v w, v, w      omega: w, |v| w, v, |w| w.
-//   3. Coefficients fit the mean twists of the training pieces (Huber's loss, each piece over its
-//      noise); lags are those of the smallest error.
-// All rules begin with this and correct it.
+//   3. Coefficients are fitted to the mean twists of the training pieces (Huber loss, weighted by
+//      noise); the lags are those with the smallest error.
+// All rules start with this model and correct it.
 namespace tread::adaptation {
 
 inline constexpr size_t kAxes = 3;  ///< v_x, v_y, omega
@@ -27,11 +28,11 @@ struct Lag {
   double time_constant = 0.0;
 };
 
-/// (v, w) of the commands of a segment under a lag, a mean for each sample [m/s, rad/s].
+/// (v, w) of a segment's commands after a lag, mean of each sample [m/s, rad/s].
 std::vector<Eigen::Vector2d> lagged(const SampledSegment& segment, double baseline, const Lag& lag);
 
-/// Variances of a piece's mean twist on the same ground: a + b v^2 + c w^2 of the mean |v| and |w|,
-/// for each velocity. What stands here is expected where too few were recorded.
+/// Variance of a piece's mean twist on unchanged ground: a + b v^2 + c w^2 of the mean |v| and |w|,
+/// for each velocity. The defaults apply if too few pieces were recorded.
 struct NoiseModel {
   std::array<Eigen::Vector3d, kAxes> factors{Eigen::Vector3d{0.0025, 0.0025, 0.0025},
                                              Eigen::Vector3d{0.0025, 0.0025, 0.0025},
@@ -40,19 +41,20 @@ struct NoiseModel {
   Eigen::Vector3d of(const Eigen::Vector2d& speed) const;
 };
 
-/// What a piece tells beside the reference.
+/// Residual of a piece relative to the reference.
 struct Sample {
-  std::array<Eigen::Vector2d, kParts> speeds;  ///< mean v_x and omega of each part, by reference
-  Eigen::Vector3d twist;                       ///< mean twist, by reference
-  Eigen::Vector3d residual;                    ///< measured mean twist less that of the reference
-  Eigen::Vector3d noise;                       ///< its variance
-  bool repeats = false;                        ///< under the steady command of the sample before
+  /// mean v_x and omega of each part, from the reference
+  std::array<Eigen::Vector2d, kParts> speeds;
+  Eigen::Vector3d twist;     ///< mean twist, from the reference
+  Eigen::Vector3d residual;  ///< measured mean twist minus that of the reference
+  Eigen::Vector3d noise;     ///< its variance
+  bool repeats = false;      ///< under the same steady command as the previous sample
 
   /// Mean |v| and |w|.
   Eigen::Vector2d meanSpeed() const;
 };
 
-/// Means of the terms over each piece, for each lag: what a reference is fitted to.
+/// Means of the terms over each piece, for each lag: the data of a reference fit.
 class TermTable {
  public:
   explicit TermTable(const SampledSession& session);
@@ -70,12 +72,12 @@ class TermTable {
   Eigen::MatrixXd twists_;
 };
 
-/// The model that all rules begin with.
+/// The model that all rules start with.
 class Reference {
  public:
-  /// Fits lags and coefficients to the pieces of some sessions; there must be at least ten.
+  /// Fits lags and coefficients to the pieces of some sessions; at least ten pieces are needed.
   explicit Reference(const std::vector<const TermTable*>& training);
-  /// Fits the coefficients alone, with the lags of another.
+  /// Fits only the coefficients, with the lags of another reference.
   Reference(const std::vector<const TermTable*>& training, const Reference& lags);
 
   /// Twists of all samples of a segment.
@@ -90,21 +92,21 @@ class Reference {
   std::array<Eigen::VectorXd, kAxes> coefficients_;
 };
 
-/// Twists of a reference on a whole session, by piece.
+/// A reference's twists for a whole session, by piece.
 struct Predicted {
   std::vector<std::vector<Twist2>> twists;  ///< by piece and sample
-  std::vector<Sample> samples;              ///< by piece; their noise is not yet known
+  std::vector<Sample> samples;              ///< by piece; their noise is still unset
 };
 Predicted predicted(const SampledSession& session, const Reference& reference);
 
 /// Poses after each sample of twists that are held for `period` [s].
 std::vector<Pose2> integrated(const std::vector<Twist2>& twists, double period = kPeriod);
 
-/// What a reference says of a series of samples; nothing is measured of it yet.
+/// Prediction for a series of samples, without measurement.
 Sample sampleOf(const std::vector<Twist2>& twists);
 
-/// How executions scatter on the same ground: half the squared difference of two pieces one after
-/// the other under one steady command.
+/// Scatter of executions on unchanged ground: half the squared difference of consecutive pieces
+/// under one steady command.
 NoiseModel noiseOf(const std::vector<std::vector<Sample>>& sessions);
 
 }  // namespace tread::adaptation

@@ -8,10 +8,11 @@
 namespace tread::adaptation {
 namespace {
 
-/// Beyond so many standard deviations an innovation counts linearly (Huber): poses jump at times.
+/// Standard deviations beyond which an innovation has linear influence (Huber), because poses may
+/// jump.
 constexpr double kHuber = 2.5;
 
-/// How much more a sample is taken to scatter, its innovation y of variance S being what it is.
+/// Factor on a sample's variance, given its innovation y of variance S.
 double inflation(double y, double S) {
   return std::max(1.0, std::abs(y) / (kHuber * std::sqrt(S)));
 }

@@ -12,8 +12,8 @@
 
 #include "tools/lab/experiment/adaptation/reference.hpp"
 
-// What others do about unknown ground, on the same reference and the same pieces. Each learns the
-// residual twist, velocity by velocity, as a function of the speed (v, w) that the reference says:
+// Other methods for unknown ground, on the same reference and pieces. Each learns the residual
+// twist, per velocity, as a function of the reference's speed (v, w):
 //   constant   a forward and a yaw gain, by least squares over all executions so far
 //   kalman     the same two gains as a random walk, by a Kalman filter
 //   slip       slip regression: v_x: v, |w| v, w; v_y: v w, v, w; omega: w, |v| w, v; recursive
@@ -26,14 +26,13 @@
 //   rls3       the same with three gains: of v_x, v_y and omega
 //   imm        those three gains by an interacting multiple-model filter: calm or changed
 //   gp         a Gaussian process over (v, w), squared exponential kernel with two length scales
-// All but the gains take an innovation beyond 2.5 standard deviations for that much less certain
-// (Huber), as the poses jump at times. What each expects beforehand is tuned on the training
-// sessions alone: prior deviations, forgetting, noise and the number of functions by the likelihood
-// of the next execution, the process by its marginal likelihood, over runs of 31 pieces that begin
-// with a fresh rival.
+// All but the gains weight innovations beyond 2.5 standard deviations less (Huber), as poses may
+// jump. Priors are tuned on the training sessions only: prior deviations, forgetting, noise and the
+// number of functions by the likelihood of the next execution, the process by its marginal
+// likelihood, over runs of 31 pieces that begin with a new rival.
 namespace tread::adaptation {
 
-/// Samples of each training session, in order of time.
+/// Samples of each training session, ordered by time.
 using TrainingSamples = std::vector<std::vector<Sample>>;
 
 /// Learns the residual of one velocity.
@@ -41,19 +40,19 @@ class AxisRival {
  public:
   virtual ~AxisRival() = default;
   virtual void learn(const Sample& sample) = 0;
-  /// Residual at a speed (v, w).
+  /// Residual at the speed (v, w).
   virtual double offset(const Eigen::Vector2d& speed) const = 0;
   virtual std::unique_ptr<AxisRival> clone() const = 0;
 };
 
-/// Functions of the speed, as a row of numbers.
+/// Functions of the speed, as a row vector.
 using Functions = std::function<Eigen::VectorXd(const Eigen::Vector2d& speed)>;
 
-/// What a linear rival expects before it learns.
+/// Prior of a linear rival.
 struct LinearTuning {
   Eigen::VectorXd deviation;  ///< prior standard deviation of each coefficient
-  double forgetting = 1.0;    ///< [1] weight of what was known at each execution
-  double walk = 0.0;          ///< [1] variance that each execution adds, over the prior one
+  double forgetting = 1.0;    ///< [1] weight of the past per execution
+  double walk = 0.0;          ///< [1] variance added per execution, relative to the prior
   double noise = 1.0;         ///< [1] factor on the variances of the samples
 };
 
@@ -62,15 +61,14 @@ struct LinearTuning {
 ///    h h' P / (..)
 class LinearRival : public AxisRival {
  public:
-  /// Begins with coefficients `start`, zero where there are none.
+  /// Starts with the coefficients `start`, or with zero if it is empty.
   LinearRival(size_t axis, Functions functions, const LinearTuning& tuning,
               const Eigen::VectorXd& start = {});
 
   void learn(const Sample& sample) override;
   double offset(const Eigen::Vector2d& speed) const override;
   std::unique_ptr<AxisRival> clone() const override { return std::make_unique<LinearRival>(*this); }
-  /// One step of the filter, h the functions at the sample; the logarithm of the density that was
-  /// expected of the residual.
+  /// One filter step with the functions h at the sample; returns the log density of the residual.
   static double step(const LinearTuning& tuning, const Eigen::VectorXd& h, double residual,
                      double noise, Eigen::VectorXd& x, Eigen::MatrixXd& P);
   /// Mean of the functions over a sample's parts.
@@ -84,15 +82,15 @@ class LinearRival : public AxisRival {
   Eigen::MatrixXd P_;
 };
 
-/// Of a Gaussian process.
+/// Hyperparameters of a Gaussian process.
 struct KernelTuning {
   double deviation = 0.1;            ///< of the residual [m/s] or [rad/s]
   Eigen::Vector2d length{1.0, 1.0};  ///< of v [m/s] and w [rad/s]
   double noise = 1.0;                ///< [1] factor on the variances of the samples
 };
 
-/// Samples are means over their parts, so that the kernel of two samples is the mean over pairs.
-/** The covariance of all samples is L L', grown by a row with each. */
+/// Samples are means over their parts, so the kernel of two samples is the mean over pairs.
+/** The covariance of all samples is L L'; each sample appends a row to L. */
 class GaussianProcess : public AxisRival {
  public:
   GaussianProcess(size_t axis, const KernelTuning& tuning)
@@ -103,14 +101,14 @@ class GaussianProcess : public AxisRival {
   std::unique_ptr<AxisRival> clone() const override {
     return std::make_unique<GaussianProcess>(*this);
   }
-  /// Sum of the logarithms of the densities of samples, each given those before.
+  /// Sum of the log densities of samples, each given the previous ones.
   static double logLikelihood(size_t axis, const KernelTuning& tuning, const Sample* samples,
                               size_t count);
 
  private:
   Eigen::Index axis_;
   KernelTuning tuning_;
-  /// Takes a sample; the logarithm of the density that was expected of it.
+  /// Adds a sample; returns its log density.
   double extend(const Sample& sample);
 
   std::vector<Sample> samples_;
@@ -119,17 +117,18 @@ class GaussianProcess : public AxisRival {
   Eigen::VectorXd weights_;  ///< L'^-1 z
 };
 
-/// Learns how twists differ from the reference's.
+/// Learns the difference of twists from the reference.
 class Rival {
  public:
   virtual ~Rival() = default;
   virtual void learn(const Sample& sample) = 0;
-  /// The reference's twists of a piece, corrected; `sample` is what it says of the piece.
+  /// The reference's twists of a piece, corrected; `sample` is the reference's summary of the
+  /// piece.
   virtual std::vector<Twist2> corrected(std::vector<Twist2> twists, const Sample& sample) const = 0;
   virtual std::unique_ptr<Rival> clone() const = 0;
 };
 
-/// A rival that learns the three velocities apart.
+/// A rival that learns the three velocities separately.
 class AxisRivals : public Rival {
  public:
   explicit AxisRivals(std::array<std::unique_ptr<AxisRival>, kAxes> axes)
@@ -141,23 +140,22 @@ class AxisRivals : public Rival {
   std::unique_ptr<Rival> clone() const override { return std::make_unique<AxisRivals>(*this); }
 
  private:
-  std::array<std::unique_ptr<AxisRival>, kAxes> axes_;  ///< nullptr: this velocity is left
+  std::array<std::unique_ptr<AxisRival>, kAxes> axes_;  ///< nullptr: this velocity is not learned
 };
 
-/// Names of all rivals, in the order in which reports list them.
+/// All rivals, in the order of reports.
 const std::vector<std::string>& rivalNames();
 
-/// Slip regression fitted to a whole session at once (Huber's loss); it learns no more.
-/** No rival, as it knows what is to be predicted: a bound for what its terms can do. */
+/// Slip regression fitted to a whole session at once (Huber loss), without further learning.
+/** Not a rival, as it uses the data to be predicted: a bound for what its terms can represent. */
 std::unique_ptr<Rival> hindsight(const std::vector<Sample>& session);
 
-/// Fewer sessions do not say how grounds differ.
+/// Fewer sessions do not show how grounds differ.
 inline constexpr size_t kLeastSessions = 3;
 
-/// A rival that was tuned on training sessions, knowing nothing of the ground it meets.
-/** With fewer than kLeastSessions it keeps what is expected in general; there is no basis then.
- * What rls2, rls3 and imm expect is never tuned.
- * `seed` draws the random features. */
+/// A rival tuned on training sessions, without knowledge of the ground at hand.
+/** With fewer than kLeastSessions sessions it keeps the default prior, and there is no basis. The
+ * priors of rls2, rls3 and imm are never tuned. `seed` is for the random features. */
 std::unique_ptr<Rival> tunedRival(const std::string& name, const TrainingSamples& training,
                                   uint64_t seed);
 

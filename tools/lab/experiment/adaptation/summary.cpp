@@ -12,7 +12,7 @@ namespace tread::adaptation {
 namespace {
 
 constexpr int kResamples = 2000;
-constexpr double kNoDifference = 1e-6;  // [1] of ratios: rounding
+constexpr double kNoDifference = 1e-6;  // [1] rounding error of ratios
 
 double meanOf(const std::vector<double>& values) {
   double sum = 0.0;
@@ -20,7 +20,7 @@ double meanOf(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// The numbers of one quantity, one a session.
+/// Values of one quantity, one per session.
 struct Columns {
   std::vector<double> errors, ratios, judged;  ///< judged: ratios of the judged rule
   std::vector<std::string> sessions;

@@ -16,15 +16,15 @@
 namespace tread::adaptation {
 namespace {
 
-constexpr size_t kRun = 31;  // pieces of a run that tuning begins with a fresh rival
+constexpr size_t kRun = 31;  // pieces of a tuning run, which begins with a new rival
 
-/// A run of samples as rows of functions, so that tuning computes them once.
+/// A run of samples as rows of functions, computed once for all tuning steps.
 struct Rows {
   std::vector<Eigen::VectorXd> functions;
   std::vector<double> residuals, noise;
 };
 
-/// Runs of all sessions; those of session i only, or of all others.
+/// Runs of session i only, or of all other sessions.
 std::vector<Rows> runsOf(const std::vector<Sample>& session, const Functions& functions,
                          Eigen::Index axis) {
   std::vector<Rows> runs;
@@ -48,7 +48,7 @@ double logLikelihood(const LinearTuning& tuning, const std::vector<Rows>& runs) 
   return sum;
 }
 
-/// Climbs one number after the other, by factors that become finer.
+/// Coordinate ascent by factors, with decreasing step.
 template <class Goal>
 void climb(std::vector<double*> numbers, const Goal& goal) {
   double best = goal();
@@ -68,7 +68,7 @@ void climb(std::vector<double*> numbers, const Goal& goal) {
         }
 }
 
-/// What may change from execution to execution.
+/// Assumed change between executions.
 enum class Change { kNever, kForget, kWalk };
 
 LinearTuning tuned(LinearTuning tuning, const std::vector<Rows>& runs, Change change) {
@@ -110,7 +110,7 @@ std::unique_ptr<AxisRival> linearRival(size_t axis, const Functions& functions,
 }
 
 std::unique_ptr<AxisRival> gainRival(size_t axis, Change change, const TrainingSamples& training) {
-  if (axis == 1) return nullptr;  // what goes sideways has no gain
+  if (axis == 1) return nullptr;  // sideways motion has no gain
   const Functions own = [axis](const Eigen::Vector2d& speed) {
     return Eigen::VectorXd::Constant(1, speed[axis == 0 ? 0 : 1]);
   };
@@ -133,7 +133,7 @@ std::unique_ptr<AxisRival> slipRival(size_t axis, const TrainingSamples& trainin
   return linearRival(axis, slipTerms(axis), deviations[axis], Change::kForget, training);
 }
 
-/// Mean of |v| and |w| over training samples, at least 0.1: the scale of length.
+/// Mean of |v| and |w| over training samples, at least 0.1: the initial length scale.
 Eigen::Vector2d largestSpeed(const TrainingSamples& training) {
   Eigen::Vector2d largest(0.1, 0.1);
   for (const std::vector<Sample>& session : training)
@@ -167,7 +167,7 @@ class RandomFeatures {
   Eigen::Matrix<double, kCount, 1> phases_;
 };
 
-/// Weights of a session's residual map, drawn to zero by `deviation`.
+/// Weights of a session's residual map, shrunk to zero by `deviation`.
 Eigen::VectorXd mapOf(const std::vector<Sample>& session, const Functions& features,
                       Eigen::Index axis, double deviation) {
   constexpr Eigen::Index kCount = RandomFeatures::kCount;
@@ -181,7 +181,7 @@ Eigen::VectorXd mapOf(const std::vector<Sample>& session, const Functions& featu
   return information.ldlt().solve(sum);
 }
 
-/// The functions in which maps differ most, and how much each is in them.
+/// The functions with the largest differences between maps, and their sizes.
 struct Basis {
   Eigen::MatrixXd directions;  ///< features x count
   Eigen::VectorXd deviation;
@@ -190,7 +190,7 @@ struct Basis {
 Basis basisOf(const std::vector<Eigen::VectorXd>& maps, Eigen::Index count) {
   Eigen::MatrixXd all(static_cast<Eigen::Index>(maps.size()), RandomFeatures::kCount);
   for (size_t i = 0; i < maps.size(); ++i) all.row(static_cast<Eigen::Index>(i)) = maps[i];
-  // Singular values and right singular vectors, by the few rows.
+  // Singular values and right singular vectors, from the smaller Gram matrix.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> squared(all * all.transpose());
   count = std::min(count, all.rows());
   const Eigen::VectorXd values =
@@ -206,9 +206,10 @@ Functions functionsOf(const Functions& features, const Basis& basis) {
   };
 }
 
-/// The number of functions, forgetting and noise by sessions that the basis was not learned from.
+/// Number of functions, forgetting and noise are chosen on sessions that the basis was not learned
+/// from.
 std::unique_ptr<AxisRival> basisRival(size_t axis, const TrainingSamples& training, uint64_t seed) {
-  if (training.size() < kLeastSessions) return nullptr;  // one ground teaches no difference
+  if (training.size() < kLeastSessions) return nullptr;  // one ground shows no differences
   const auto column = static_cast<Eigen::Index>(axis);
   const Functions features = RandomFeatures(0.6 * largestSpeed(training), seed + axis);
   std::vector<Eigen::VectorXd> maps;
@@ -230,7 +231,7 @@ std::unique_ptr<AxisRival> basisRival(size_t axis, const TrainingSamples& traini
     }
     if (deviations.front().size() < count) break;
     for (const double forgetting : {1.0, 0.99, 0.97, 0.9}) {
-      // A factor on all prior deviations and one on the noise.
+      // Factors on all prior deviations and on the noise.
       double scale = 1.0, noise = 1.0;
       const auto goal = [&] {
         double sum = 0.0;
@@ -273,7 +274,7 @@ std::unique_ptr<AxisRival> axisRival(const std::string& name, size_t axis,
   if (name == "slip") return slipRival(axis, training);
   if (name == "basis") return basisRival(axis, training, seed);
   if (name == "gp") return gpRival(axis, training);
-  throw std::invalid_argument("there is no rival '" + name + "'");
+  throw std::invalid_argument("unknown rival '" + name + "'");
 }
 
 }  // namespace

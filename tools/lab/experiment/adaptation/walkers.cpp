@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t kHistory = 20;  // pieces
 
-/// A piece of a session, wherever it was driven.
+/// A piece and its session.
 struct Driven {
   const Known* known;
   size_t piece;
@@ -23,7 +23,7 @@ struct Driven {
   const SampledPiece& measured() const { return known->session.pieces[piece]; }
 };
 
-/// The piece as a pattern: predicted by the reference, and as exact as its noise says.
+/// A piece as a pattern: predicted by the reference, with the covariance of its noise.
 MotionPattern patternOf(const Driven& driven, int id) {
   const SampledPiece& piece = driven.measured();
   const auto begin = driven.known->session.segments[piece.segment].commands.begin() +
@@ -79,8 +79,8 @@ class RuleWalker : public Walker {
   }
 
   std::vector<Driven> pieces_;
-  size_t history_;  ///< so many of them come before the session
-  size_t first_;    ///< of the session, behind them
+  size_t history_;  ///< number of pieces before the session
+  size_t first_;    ///< first piece of the session, after the history
   std::unique_ptr<learner::LearningRule> rule_;
 };
 

@@ -12,20 +12,20 @@
 
 namespace tread::adaptation {
 
-/// A learner on the pieces of one walk.
+/// A learner that traverses the pieces of a session.
 class Walker {
  public:
   virtual ~Walker() = default;
   virtual void learn(size_t piece) = 0;
   /// Poses after each sample, relative to the piece's start.
   virtual std::vector<Pose2> predict(size_t piece) const = 0;
-  /// Of the last of them; nothing of who does not know it.
+  /// Covariance of the last pose; nullopt if the method has none.
   virtual std::optional<PoseCovariance> endCovariance(size_t /*piece*/) const {
     return std::nullopt;
   }
 };
 
-/// A session, and what the reference says of it.
+/// A session and the reference's predictions for it.
 struct Known {
   const SampledSession& session;
   Predicted reference;
@@ -33,21 +33,21 @@ struct Known {
 
 Known knownOf(const SampledSession& session, const Reference& reference, const NoiseModel& noise);
 
-/// A run of pieces of a training session that a rule has driven before, drawn by chance.
-/** Empty where there is no session. */
+/// A randomly drawn run of pieces of a training session that a rule executes first.
+/** Empty if there is no such session. */
 struct TrainingRun {
   const Known* known = nullptr;
   size_t begin = 0, end = 0;
 };
 TrainingRun drawnHistory(const std::vector<Known>& home, uint64_t seed);
 
-/// A rule of the learner in a session: its set is made of the pieces of its history, which it
-/// executes at once, and of the pieces [first, last) of the session.
+/// A learning rule in a session: its set consists of the pieces of its history, which it executes
+/// first, and the pieces [first, last) of the session.
 std::unique_ptr<Walker> ruleWalker(const learner::RuleConfig& config, const TrainingRun& history,
                                    const Known& known, size_t first, size_t last);
-/// A copy of a rival that was tuned beforehand.
+/// A copy of a tuned rival.
 std::unique_ptr<Walker> rivalWalker(const Rival& fresh, const Known& known);
-/// Knows the whole session and learns no more.
+/// Fitted to the whole session, without further learning.
 std::unique_ptr<Walker> hindsightWalker(const Known& known);
 
 }  // namespace tread::adaptation

@@ -24,10 +24,10 @@ using recordings::RecordedDrive;
 using recordings::RecordingError;
 using recordings::TimedGround;
 
-constexpr double kCompared = 2.0;       // [s] before and after a change, at most
-constexpr double kLeastCompared = 0.5;  // [s] that tell whether it is a real one
+constexpr double kCompared = 2.0;       // [s] longest span compared before and after a change
+constexpr double kLeastCompared = 0.5;  // [s] shortest span that shows whether it is real
 constexpr double kRealChange = 0.1;     // [1] of the speed
-constexpr double kSlowest = 0.01;       // [m/s] with which a border is met
+constexpr double kSlowest = 0.01;       // [m/s] least speed at a border
 constexpr double kSameTime = 1e-6;      // [s]
 
 double lengthOf(const CutPiece& piece) {
@@ -38,7 +38,7 @@ double endOf(const CutPiece& piece) {
   return piece.begin + lengthOf(piece);
 }
 
-/// The grounds of [begin, end), without those that are left again sooner than `shortest`.
+/// The grounds in [begin, end), without those shorter than `shortest`.
 std::vector<TimedGround> groundsWithin(const std::vector<TimedGround>& grounds, double begin,
                                        double end, double shortest) {
   std::vector<TimedGround> within;
@@ -52,7 +52,7 @@ std::vector<TimedGround> groundsWithin(const std::vector<TimedGround>& grounds, 
   return within;
 }
 
-/// Motion over a time within pieces one after the other; nothing where they do not cover it.
+/// Mean motion over a time span of consecutive pieces; nullopt if they do not cover it.
 std::optional<Twist2> twistOver(const std::vector<CutPiece>& pieces, double begin, double end) {
   Pose2 moved;
   double covered = 0.0;
@@ -71,7 +71,7 @@ std::optional<Twist2> twistOver(const std::vector<CutPiece>& pieces, double begi
   return twistTo(moved, covered);
 }
 
-/// Marks the changes after which the motion is another one.
+/// Marks the changes after which the motion differs.
 void findReal(CrossingRun& run, double border) {
   for (size_t i = 0; i < run.changes.size(); ++i) {
     const double time = run.changes[i].time;
@@ -88,7 +88,7 @@ void findReal(CrossingRun& run, double border) {
   }
 }
 
-/// Runs of pieces that follow each other under one command.
+/// Runs of consecutive pieces under one command.
 std::vector<std::vector<CutPiece>> inRuns(const std::vector<CutPiece>& pieces) {
   std::vector<std::vector<CutPiece>> runs;
   for (const CutPiece& piece : pieces) {
@@ -100,8 +100,7 @@ std::vector<std::vector<CutPiece>> inRuns(const std::vector<CutPiece>& pieces) {
   return runs;
 }
 
-/// Leaves out what lies before `known` pieces without a change; nothing is left where there are
-/// none.
+/// Drops the part before the first `known` pieces without a change; everything if there are none.
 void beginKnown(CrossingRun& run, size_t known) {
   for (size_t first = 0; first + known < run.pieces.size(); ++first) {
     const double begin = run.pieces[first].begin;
@@ -119,20 +118,21 @@ void beginKnown(CrossingRun& run, size_t known) {
   run.pieces.clear();
 }
 
-/// How pieces of unchanged ground scatter about their run's mean: medians, as poses may jump.
+/// Scatter of pieces of unchanged ground around their run's mean: medians, because poses may jump.
 struct Scatter {
-  double position = 0.0;  ///< deviation of x and of y of an end [m], over the size of the command
-  double yaw = 0.0;       ///< [rad]
+  /// standard deviation of an end's x and y [m], relative to the size of the command
+  double position = 0.0;
+  double yaw = 0.0;  ///< [rad]
 };
 
-/// Slippery ground scatters more for the way that is left: the command is what stays.
+/// Slippery ground scatters more per metre driven, so the scale is the command.
 double sizeOf(const Command& command) {
   double sum = 0.0;
   for (size_t c = 0; c < Command::kMaxChannels; ++c) sum += command[c] * command[c];
   return std::sqrt(sum);
 }
 
-/// The variance that makes sums of squares of so many normal numbers have this median.
+/// The variance for which sums of squares of normal numbers have this median.
 double varianceOf(std::vector<double> sums, double freedom) {
   const auto middle = sums.begin() + static_cast<std::ptrdiff_t>(sums.size() / 2);
   std::nth_element(sums.begin(), middle, sums.end());
@@ -166,13 +166,13 @@ Scatter scatterOf(const std::vector<CrossingDrives>& drives, size_t known) {
     }
   if (positions.empty())
     throw RecordingError(
-        "no run is left: commands must stay for --offset and more than --known pieces (--cut) of "
+        "no run is left: commands must last for --offset and more than --known pieces (--cut) of "
         "unchanged ground");
   const auto freedom = static_cast<double>(known - 1);
   return {std::sqrt(varianceOf(positions, 2.0 * freedom)), std::sqrt(varianceOf(yaws, freedom))};
 }
 
-/// What a run begins with: its known pieces, averaged, and how pieces scatter.
+/// Initial set of a run: its known pieces, averaged, with the scatter of pieces.
 PatternSet setOf(const CrossingRun& run, const CommandChannels& channels, const Scatter& scatter,
                  size_t known) {
   MotionPattern pattern;
@@ -248,7 +248,7 @@ class CrossingDrive {
   }
 
  private:
-  /// When the ground changed last before a time; nothing where it did not.
+  /// Last change of ground before a time; nullopt if there was none.
   const GroundChange* changeBefore(double time) const {
     const GroundChange* last = nullptr;
     for (const GroundChange& change : run_.changes)
@@ -256,7 +256,7 @@ class CrossingDrive {
     return last;
   }
 
-  /// Whether the ground may have changed before a time, borders being as inexact as they are.
+  /// Whether the ground may have changed before a time, given the uncertainty of borders.
   bool mayHaveChanged(double time) const {
     return std::any_of(run_.changes.begin(), run_.changes.end(), [&](const GroundChange& change) {
       return change.time - change.early < time - kSameTime;
@@ -273,7 +273,7 @@ class CrossingDrive {
 
   std::optional<PoseCovariance> covariance() const {
     if (errors_.rule != "off") return rule_->endCovariance(0);
-    // The mean of the known pieces is off by chance, too.
+    // The mean of the known pieces has an error, too.
     PoseCovariance of_one = set_.patterns()[0].end_covariance;
     for (double& entry : of_one) entry *= 1.0 + 1.0 / static_cast<double>(settings_.known);
     return of_one;
@@ -292,7 +292,7 @@ class CrossingDrive {
     if (isInside(predicted, end, *stated)) ++phase.inside;
   }
 
-  /// Watches the piece while it runs, then learns from it.
+  /// Watches the running piece, then learns from it.
   void learn(const CutPiece& piece) {
     learner::fill(piece.poses, numbers_);
     const auto samples = static_cast<Eigen::Index>(piece.poses.size());
@@ -386,7 +386,7 @@ std::vector<CrossingErrors> driveCrossings(const std::vector<CrossingDrives>& dr
   const std::vector<std::string> known = learnerNames();
   for (const std::string& rule : settings.rules)
     if (std::find(known.begin(), known.end(), rule) == known.end())
-      throw std::invalid_argument("--rules: there is no rule '" + rule + "'; known are " +
+      throw std::invalid_argument("--rules: unknown rule '" + rule + "'; known are " +
                                   joinWords(known));
   std::vector<CrossingErrors> all;
   const Scatter scatter = scatterOf(drives, settings.known);

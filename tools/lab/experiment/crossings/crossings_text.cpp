@@ -22,7 +22,7 @@ std::string heading(const char* title) {
   return line + "\n";
 }
 
-/// A row for each rule, a cell for each phase.
+/// A row per rule, a cell per phase.
 template <class Cell>
 std::string rowsOf(const std::vector<CrossingErrors>& errors, const Cell& cell) {
   std::string text;
@@ -50,9 +50,8 @@ std::string textOf(const std::vector<CrossingDrives>& drives) {
       real += static_cast<size_t>(std::count_if(run.changes.begin(), run.changes.end(),
                                                 [](const auto& change) { return change.real; }));
     }
-  return formatted(
-      "%zu runs, %zu changes of ground; after %zu of them the motion is another one\n\n", runs,
-      changes, real);
+  return formatted("%zu runs, %zu changes of ground; after %zu of them the motion differs\n\n",
+                   runs, changes, real);
 }
 
 std::string textOf(const std::vector<CrossingErrors>& errors) {
@@ -73,7 +72,7 @@ std::string textOf(const std::vector<CrossingErrors>& errors) {
                              : "-";
   });
   text +=
-      "\nnoticed while a piece runs: runs with a false alarm, and real changes within so many "
+      "\ndetected while a piece runs: runs with a false alarm, and real changes within so many "
       "seconds\n"
       "                   false of runs, driven          .5 s     .8    1.6    of  median\n";
   for (const CrossingErrors& one : errors) {

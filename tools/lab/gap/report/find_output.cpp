@@ -19,7 +19,7 @@ void add(std::vector<EffectDecision>& decisions, const std::string& name, bool a
     if (other.effect == effect.name)
       throw std::runtime_error(effect.name + (other.accepted == accepted
                                                   ? " is named twice; once is enough"
-                                                  : " is accepted and rejected; decide on one"));
+                                                  : " is both accepted and rejected; choose one"));
   decisions.push_back({effect.name, accepted, by});
 }
 
@@ -36,7 +36,7 @@ Json estimateJson(const ParameterEstimate& estimate) {
           {"high", number(estimate.high)}};
 }
 
-/// Adds an estimate under its name and, where people say its reciprocal, under that name, too.
+/// Adds an estimate under its name and, for a reciprocal, also under its natural name.
 void add(Json& parameters, const std::string& before_name, const ParameterEstimate& estimate) {
   parameters[before_name + lastPart(estimate.parameter)] = estimateJson(estimate);
   const ParameterEstimate natural = naturalEstimate(estimate);
@@ -44,7 +44,7 @@ void add(Json& parameters, const std::string& before_name, const ParameterEstima
     parameters[before_name + natural.parameter] = estimateJson(natural);
 }
 
-/// What a witness says; null where it does not tell.
+/// Answer of an additional measurement; null if it does not decide.
 Json answerJson(bool yes, bool no) {
   return yes == no ? Json(nullptr) : Json(yes);
 }
@@ -148,7 +148,7 @@ Json inputsJson(const std::vector<InputFile>& inputs) {
   return all;
 }
 
-/// Both halves of a covariance equal to the bit: rounding has made them differ, a file must not.
+/// Makes both halves equal to the bit: rounding made them differ.
 void makeSymmetric(std::vector<std::vector<double>>& matrix) {
   for (size_t i = 0; i < matrix.size(); ++i)
     for (size_t j = 0; j < i; ++j)
@@ -172,7 +172,8 @@ std::vector<EffectDecision> decisionsOf(const DecisionWords& words, const ModelD
                                ": the model has this effect; take it out of the model file first");
   }
   if (decisions.empty() && !words.by.empty())
-    throw std::runtime_error("--by " + words.by + ": nothing is decided; --accept or --reject");
+    throw std::runtime_error("--by " + words.by +
+                             ": no decision is given; add --accept or --reject");
   return decisions;
 }
 
@@ -234,12 +235,12 @@ void writeFinding(const std::string& folder, const GapFinding& finding,
   const Page page = reportPage(finding, inputs);
   if (hasNewModel(finding)) {
     const std::string model = formatModelDocument(newModel(finding, inputs));
-    parseModelDocument(model, folder + "/model.yaml");  // a file that nobody can read is none
+    parseModelDocument(model, folder + "/model.yaml");  // refuse to write an unreadable file
     writeText(folder + "/model.yaml", model);
   }
   writeText(folder + "/report.md", markdownOf(page));
   writeText(folder + "/report.html", htmlOf(page));
-  // Last: whoever finds the verdict finds the rest, too.
+  // Last: when the verdict exists, the other files do, too.
   writeText(folder + "/verdict.json", verdictJson(finding, inputs).dump(2) + "\n");
 }
 

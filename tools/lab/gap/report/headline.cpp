@@ -9,23 +9,24 @@ namespace {
 
 constexpr size_t kNamed = 3;  // effects that a line or a list of the first screen names
 
-/// Before what a fit came to that is none to build on.
-constexpr const char* kNoResult = "Where the fit ended, to look at and not to use:";
+/// For fits that must not be used.
+constexpr const char* kNoResult = "Where the fit ended, for information only:";
 
 constexpr const char* kCutShort =
     "The search had no time left (--limit): these are the best terms so far.";
 
-/// Of a model that does not say what it left unexplained, so that nobody knows what is new.
+/// For a model that does not record its unexplained residuals, so that new ones cannot be
+/// recognized.
 constexpr const char* kUnknownRest =
-    "The vehicle may be as it always was: this model does not say what it never explained. The new "
-    "one does (rest): the next find with it says what is new. Do not trust either where the "
+    "The vehicle may be unchanged: this model does not record its unexplained residuals. The new "
+    "one does (rest), so the next find with it reports what is new. Do not trust either where the "
     "residuals depend on something.";
 
 constexpr const char* kFittedNumbers =
-    "Numbers that the model already has were fitted to the log; they stand under the parameters. "
+    "Numbers of the model were refitted to the log; see the table of parameters. "
     "That done: ";
 
-/// Effects of the model that are other ones now.
+/// Effects of the model whose values have changed.
 std::vector<std::string> movedIn(const GapFinding& finding) {
   std::vector<std::string> names;
   for (const ParameterEstimate& estimate : finding.identified.calibrated) {
@@ -35,7 +36,7 @@ std::vector<std::string> movedIn(const GapFinding& finding) {
   return names;
 }
 
-/// Found effects; where there are none, those that have changed.
+/// Names of the found effects; if there are none, of those that changed.
 std::vector<std::string> namesOf(const GapFinding& finding) {
   std::vector<std::string> names;
   names.reserve(finding.identified.effects.size());
@@ -44,7 +45,7 @@ std::vector<std::string> namesOf(const GapFinding& finding) {
   return names.empty() ? movedIn(finding) : names;
 }
 
-/// Found effects of which this drive knows, or does not know, which one they are.
+/// Found effects that this drive does, or does not, identify uniquely.
 std::vector<const FoundEffect*> found(const GapFinding& finding, bool sure) {
   std::vector<const FoundEffect*> effects;
   for (const FoundEffect& effect : finding.identified.effects)
@@ -57,7 +58,7 @@ void byGain(std::vector<const FoundEffect*>& effects) {
                    [](const FoundEffect* a, const FoundEffect* b) { return a->gain > b->gain; });
 }
 
-/// "A or B"; of many "A or one of 4 others".
+/// "A or B"; for many "A or one of 4 others".
 std::string eitherOr(const FoundEffect& effect) {
   constexpr size_t kReadable = 2;
   std::vector<std::string> names = rivalsOf(effect);
@@ -68,7 +69,7 @@ std::string eitherOr(const FoundEffect& effect) {
   return joined(names, "or");
 }
 
-/// "A and B"; of many "A, B and 4 more", those that bring most first.
+/// "A and B"; for many "A, B and 4 more", those with the largest gain first.
 std::string someOf(std::vector<const FoundEffect*> effects) {
   byGain(effects);
   std::vector<std::string> names;
@@ -80,7 +81,7 @@ std::string someOf(std::vector<const FoundEffect*> effects) {
   return joined(names);
 }
 
-/// One line, whatever was found: names that are sure, then those that are not.
+/// Summary in one line: certain names, then uncertain ones.
 std::string foundWords(const GapFinding& finding) {
   const std::vector<const FoundEffect*> sure = found(finding, true);
   const std::vector<const FoundEffect*> open = found(finding, false);
@@ -93,7 +94,7 @@ std::string foundWords(const GapFinding& finding) {
          "not sure by name: " + someOf(open);
 }
 
-/// What each effect could be instead, and what tells: one point an effect.
+/// One point per effect: its alternatives, and how to distinguish them.
 void addRivals(const GapFinding& finding, Points& points) {
   for (const FoundEffect* effect : found(finding, false)) {
     std::vector<std::string> rivals = rivalsOf(*effect);
@@ -103,7 +104,7 @@ void addRivals(const GapFinding& finding, Points& points) {
   }
 }
 
-/// How to check the effects that bring most; those of the others stand further down.
+/// How to check the effects with the largest gain; the others follow further down.
 void addChecks(const GapFinding& finding, Points& points) {
   std::vector<const FoundEffect*> effects;
   for (const FoundEffect& effect : finding.identified.effects) effects.push_back(&effect);
@@ -114,14 +115,14 @@ void addChecks(const GapFinding& finding, Points& points) {
                            " in two minutes: " + checkOf(*effect));
 }
 
-/// What to do about effects whose size is no measurement.
+/// Advice on effects without a measured size.
 void addUnsized(const GapFinding& finding, Points& points) {
   for (const FoundEffect& effect : finding.identified.effects)
     if (std::any_of(
             effect.parameters.begin(), effect.parameters.end(),
             [&finding](const ParameterEstimate& estimate) { return isAtLimit(finding, estimate); }))
       points.items.push_back(shortTitleOf(effect.name) +
-                             " runs to the end of what is plausible. Drive what shows it (" +
+                             " runs to its plausibility limit. Drive what shows it (" +
                              withoutStop(effectNamed(effect.name).separates) +
                              "), or leave it out: --reject " + effect.name + ".");
 }
@@ -137,7 +138,7 @@ void addNext(const GapFinding& finding, std::vector<Block>& blocks) {
           (unseen <= kNamed
                ? inSentence(titlesOf(finding.identified.not_excited, shortTitleOf)) + "."
                : std::to_string(unseen) +
-                     " effects; they stand below, with what would show them."));
+                     " effects; they are listed below, with what would show them."));
   } else {
     addRivals(finding, points);
     if (finding.verdict != GapVerdict::kAmbiguous) addChecks(finding, points);
@@ -145,7 +146,7 @@ void addNext(const GapFinding& finding, std::vector<Block>& blocks) {
   if (!points.items.empty()) blocks.push_back(points);
 }
 
-/// Whether model and log agree only because numbers that the model has were fitted to the log.
+/// Whether model and log agree only because calibrated numbers were fitted to the log.
 bool isMadeByFit(const GapFinding& finding) {
   constexpr double kMuch = 0.75;
   if (!finding.gap || finding.identified.calibrated.empty()) return false;
@@ -159,29 +160,30 @@ std::string opening(const GapFinding& finding) {
     case GapVerdict::kNoDiscrepancy:
       return std::string(isMadeByFit(finding) ? kFittedNumbers : "") +
              std::string(
-                 "What the model predicts and what the INS measured differ by no more than chance, "
+                 "Prediction and INS measurement do not differ significantly, "
                  "over the whole catalogue and on all variables. Which effects would have been "
                  "seen, "
-                 "from which size on, stands below.") +
+                 "from which size on, is listed below.") +
              (finding.search.negligible.empty()
                   ? std::string()
                   : " Real, but too small to matter: " + titlesOf(finding.search.negligible) + ".");
     case GapVerdict::kNothingNew:
-      return "The log differs from the model as the drive did that the model was made from, and in "
+      return "The log differs from the model exactly as the drive did from which the model was "
+             "made, and in "
              "nothing else.";
     case GapVerdict::kNotInCatalogue:
       if (!finding.identified.unnamed.empty())
-        return "There is a disagreement, and no effect of the catalogue explains it. What of it "
-               "has a shape is a term of the new model, without a name.";
+        return "There is a disagreement that no effect of the catalogue explains. What "
+               "has a shape is an unnamed term of the new model.";
       if (!finding.identified.moved_terms.empty())
-        return "There is a disagreement, and no effect of the catalogue explains it: a term "
-               "without a name that the model has is another one now.";
-      return "There is a disagreement, and no effect of the catalogue explains it. A term by "
-             "another name would be a guess; the model stays as it was but for its calibration.";
+        return "There is a disagreement that no effect of the catalogue explains: an "
+               "unnamed term of the model has changed.";
+      return "There is a disagreement that no effect of the catalogue explains. Naming "
+             "another effect would be a guess; apart from the calibration the model is unchanged.";
     case GapVerdict::kCannotTell:
       return finding.reason + (finding.reason.empty() || finding.reason.back() == '.' ? "" : ".");
     case GapVerdict::kMeasurement:
-      return "The vehicle drives as the model says; what differs is how the INS reports it. Only "
+      return "The vehicle drives as the model predicts; the INS reports it differently. Only "
              "the measurement part of the model has changed.";
     default:
       return "";
@@ -196,14 +198,13 @@ std::string headlineOf(const GapFinding& finding) {
       return std::string("Simulation and measurement agree") +
              (isMadeByFit(finding) ? ", once the model's own numbers are fitted" : "");
     case GapVerdict::kNothingNew:
-      return "Nothing new: only what the model has never explained";
+      return "Nothing new: only the known residuals of the model";
     case GapVerdict::kFound:
     case GapVerdict::kAmbiguous:
       return foundWords(finding);
     case GapVerdict::kPartial:
-      return foundWords(finding) + (finding.search.cut_short
-                                        ? "; the search is not at its end"
-                                        : "; and something more without a name");
+      return foundWords(finding) +
+             (finding.search.cut_short ? "; the search is incomplete" : "; and something unnamed");
     case GapVerdict::kNotInCatalogue:
       return "Something that is not in the catalogue";
     case GapVerdict::kMeasurement:
@@ -216,7 +217,7 @@ std::string headlineOf(const GapFinding& finding) {
 
 namespace {
 
-/// "FOUND: Limit of turning power": the verdict's name says what the headline begins with.
+/// "FOUND: Limit of turning power": the verdict's name replaces the first word of the headline.
 std::string verdictLine(const GapFinding& finding) {
   const std::string found = "Found: ";
   std::string headline = headlineOf(finding);

@@ -16,7 +16,7 @@ double middle(const AtlasCell& cell) {
   return 0.5 * (cell.from + cell.to);
 }
 
-/// Means, bands and dots of one row of cells; cells without rows are left out.
+/// Means, bands and dots of one row of cells; skips empty cells.
 void draw(Chart& chart, const std::vector<AtlasCell>& cells, const char* colour, bool dashed) {
   std::vector<ChartPoint> low, mean, high;
   for (const AtlasCell& cell : cells) {
@@ -43,7 +43,7 @@ void include(ChartRange& range, const std::vector<AtlasCell>& cells) {
   }
 }
 
-/// Length of the heading at a path's end over the height of its picture.
+/// Length of the heading mark at a path's end, relative to the height of the picture.
 constexpr double kTip = 0.1;
 
 /// A point ahead of a pose.
@@ -110,9 +110,10 @@ std::string termPicture(const UnnamedTerm& term, const UnnamedFinding& found) {
 
 Pictures restPictures(const GapFinding& finding) {
   constexpr size_t kMost = 3;
-  Pictures rest{{},
-                "What is left, over what it depends on. Orange, dashed: the old model. Blue: "
-                "the new one, which should lie on 0."};
+  Pictures rest{
+      {},
+      "Residuals over the variables that they depend on. Orange, dashed: the old model. Blue: "
+      "the new one, which should lie on 0."};
   for (const AtlasCurve& curve : finding.atlas.curves)
     if (curve.unexplained && rest.svg.size() < kMost) rest.svg.push_back(atlasPicture(curve));
   return rest;
@@ -201,7 +202,7 @@ std::string placePicture(const std::vector<PlaceError>& places, bool after, doub
   const auto errorOf = [after](const PlaceError& place) {
     return after ? place.after : place.before;
   };
-  std::vector<PlaceError> order = places;  // the worst on top
+  std::vector<PlaceError> order = places;  // the largest errors on top
   std::stable_sort(order.begin(), order.end(), [&](const PlaceError& a, const PlaceError& b) {
     return errorOf(a) < errorOf(b);
   });
@@ -256,7 +257,7 @@ std::string gapPicture(const Gap& gap, bool yaw) {
   if (gap.floor) chart.field({2.7, 0.0}, {3.3, median(*gap.floor)}, kGreyInk);
   chart.labelBelow(1.0, "before");
   chart.labelBelow(2.0, "after");
-  // No floor where the model is below it.
+  // No floor if the model is below it.
   const std::string floor = gap.floor && after < median(*gap.floor) ? "dead reckoning" : "floor";
   if (gap.floor) chart.labelBelow(3.0, floor);
   chart.legend("before " + threeDigits(before), kBeforeColour);
@@ -267,7 +268,7 @@ std::string gapPicture(const Gap& gap, bool yaw) {
 
 namespace {
 
-/// Cells whose residual is there beyond chance.
+/// Cells with a significant residual.
 size_t marked(const std::vector<AtlasCell>& cells) {
   return static_cast<size_t>(
       std::count_if(cells.begin(), cells.end(), [](const AtlasCell& cell) { return cell.marked; }));
@@ -284,7 +285,7 @@ std::vector<std::string> mapPictures(const GapFinding& finding) {
   return pictures;
 }
 
-/// Logs in the order in which the drives were given: the model is none.
+/// Names of logs in the order of the drives; the model is not one.
 std::string logName(const std::vector<InputFile>& inputs, size_t drive) {
   std::vector<std::string> names;
   for (const InputFile::Role role : {InputFile::Role::kTrain, InputFile::Role::kTest})
@@ -296,7 +297,7 @@ std::string logName(const std::vector<InputFile>& inputs, size_t drive) {
   return name.size() <= kRoom ? name : name.substr(0, kRoom - 2) + "..";
 }
 
-/// Errors over the ground, log by log, before and after in the same colours.
+/// Error maps, one per log, before and after in the same colours.
 std::vector<std::string> placePictures(const GapFinding& finding,
                                        const std::vector<InputFile>& inputs) {
   std::map<size_t, std::vector<PlaceError>> logs;
@@ -310,15 +311,15 @@ std::vector<std::string> placePictures(const GapFinding& finding,
   return pictures;
 }
 
-/// Whose model predicted the executions that are shown.
+/// Which model predicted the shown executions.
 std::string predictedBy(const GapFinding& finding, const std::vector<InputFile>& inputs) {
   if (std::any_of(inputs.begin(), inputs.end(),
                   [](const InputFile& input) { return input.role == InputFile::Role::kTest; }))
     return "they are of the test logs.";
   if (finding.gap && finding.gap->structure_nested)
-    return "each is predicted by the model that the other half of the driving gave.";
-  return "each is predicted with parameters that the other half of the driving gave; the effects "
-         "were chosen with all of it.";
+    return "each is predicted by a model fitted to the other half of the driving.";
+  return "each is predicted with parameters fitted to the other half of the driving; the effects "
+         "were chosen with all driving.";
 }
 
 std::string remarkOf(const SearchStep& step) {
@@ -339,15 +340,15 @@ std::vector<Block> atlasBlocks(const GapFinding& finding) {
     before += marked(curve.before);
     after += marked(curve.after);
   }
-  blocks.push_back(Paragraph{
-      "Residuals, measured less predicted, over what they may depend on. Of all fields " +
-      std::to_string(before) + " were off beyond chance before and " + std::to_string(after) +
-      " are now (filled dots: beyond chance even for so many fields; intervals: 95 % each, over "
-      "blocks of driving)."});
+  blocks.push_back(
+      Paragraph{"Residuals, measured minus predicted, over what they may depend on. Of all cells " +
+                std::to_string(before) + " were significant before and " + std::to_string(after) +
+                " are now (filled dots: significant for so many cells; intervals: 95 % each, over "
+                "blocks of driving)."});
   if (const std::vector<std::string> maps = mapPictures(finding); !maps.empty())
     blocks.push_back(Pictures{maps,
-                              "Mean residual over speed and yaw rate; white is right, "
-                              "empty was not driven."});
+                              "Mean residual over speed and yaw rate; white is zero, "
+                              "empty cells were not driven."});
   Pictures curves{{}, "Orange, dashed: the old model. Blue: the new one."};
   for (const AtlasCurve& curve : finding.atlas.curves) curves.svg.push_back(atlasPicture(curve));
   blocks.push_back(curves);
@@ -359,25 +360,25 @@ std::vector<Block> executionsBlocks(const GapFinding& finding,
   if (finding.shown.overlays.empty()) return {};
   std::vector<Block> blocks;
   constexpr size_t kTypical = 6;
-  Pictures pictures{
-      {},
-      "Each from where it begins; ahead is up. Dots are where it ends, with the heading there. "
-      "Blue shade: 9 of 10 are within."};
+  Pictures pictures{{},
+                    "Each from its start; ahead is up. Dots: end positions with headings. "
+                    "Blue shade: 9 of 10 are within."};
   for (size_t i = 0; i < finding.shown.overlays.size(); ++i) {
     const Overlay& overlay = finding.shown.overlays[i];
     const std::string rank = i < kTypical ? "typical" : "worst";
     pictures.svg.push_back(overlayPicture(overlay, rank + ", " + threeDigits(overlay.begin) +
                                                        " s of " + logName(inputs, overlay.drive)));
   }
-  blocks.push_back(
-      Paragraph{"Six typical executions, then the three worst, none of them used for the fit: " +
-                predictedBy(finding, inputs)});
+  blocks.push_back(Paragraph{
+      "Six typical executions, then the three with the largest errors, none used for the fit: " +
+      predictedBy(finding, inputs)});
   if (!finding.shown.overlays.front().band.empty())
-    blocks.push_back(Paragraph{
-        "The shade is a 90 % band: the residual noise of the fitted model (for each channel a part "
-        "that is always there and one in proportion to the motion), carried along the predicted "
-        "path, times the factor with which it holds 9 of 10 of all " +
-        std::to_string(finding.shown.places.size()) + " such executions at each time."});
+    blocks.push_back(
+        Paragraph{"The shade is a 90 % band: the residual noise of the fitted model (for each "
+                  "channel a constant part "
+                  "and one in proportion to the motion), carried along the predicted "
+                  "path, scaled to contain 9 of 10 of all " +
+                  std::to_string(finding.shown.places.size()) + " such executions at each time."});
   blocks.push_back(pictures);
   return blocks;
 }
@@ -389,17 +390,18 @@ std::vector<Block> placesBlocks(const GapFinding& finding, const std::vector<Inp
   return {Pictures{
       placePictures(finding, inputs),
       "Position error at the end of each execution that was not used for the fit, where it was "
-      "driven; grey is right. Errors that gather in one place speak for the ground there."}};
+      "driven; grey is zero. Errors concentrated in one place point to the ground there."}};
 }
 
 std::vector<Block> stepsBlocks(const GapFinding& finding) {
   if (finding.search.steps.empty()) return {};
   std::vector<Block> blocks;
   blocks.push_back(Paragraph{
-      "Each step adds the effect that helps most on blocks of driving that were not fitted, or "
-      "takes one away again that the others make superfluous. Gains in log likelihood (nats) with "
+      "Each step adds the effect with the largest gain on blocks of driving that were not fitted, "
+      "or "
+      "removes one that the others make superfluous. Gains in log likelihood (nats) with "
       "standard error; p "
-      "is the chance of so large a score anywhere in the catalogue if nothing were there."});
+      "is the probability of such a score anywhere in the catalogue without any effect."});
   Table table{{"step", "effect", "remark", "score", "p", "gain"}, {}, 3};
   size_t number = 0;
   for (const SearchStep& step : finding.search.steps) {

@@ -19,13 +19,13 @@ std::string saidRange(const GapFinding& finding, const ParameterEstimate& estima
   return saidInterval(range->min, range->max, estimate.unit);
 }
 
-/// Before its effect was added a parameter was off.
+/// The value before; off for an effect that was added.
 std::string saidBefore(const ParameterEstimate& estimate, const ParameterEstimate& natural) {
   if (findEffectParameter(estimate.parameter) != nullptr && estimate.before == 0.0) return "off";
   return said(natural.before, saidUnit(natural));
 }
 
-/// What a parameter makes together with what it acts on top of.
+/// Sum of a parameter and the one that it adds to.
 std::string saidTotal(const GapFinding& finding, const ParameterEstimate& estimate) {
   const auto total = totalOf(estimate.parameter, finding.identified.model);
   return total ? total->name + " " + said(total->value, total->unit) : "";
@@ -41,7 +41,7 @@ void addRow(const GapFinding& finding, const ParameterEstimate& estimate, const 
                         saidTotal(finding, estimate)});
 }
 
-/// Takes away a last column that says nothing.
+/// Removes the last column if it is empty.
 void forgetEmptyTotals(Table& table) {
   for (const std::vector<std::string>& row : table.rows)
     if (!row.back().empty()) return;
@@ -49,7 +49,7 @@ void forgetEmptyTotals(Table& table) {
   for (std::vector<std::string>& row : table.rows) row.pop_back();
 }
 
-/// Pairs whose estimates move together.
+/// Pairs of strongly correlated estimates.
 Points highCorrelations(const ParameterCovariance& covariance) {
   Points points;
   const size_t size = std::min(covariance.parameters.size(), covariance.matrix.size());
@@ -60,12 +60,12 @@ Points highCorrelations(const ParameterCovariance& covariance) {
       if (std::abs(correlation) > 0.9)
         points.items.push_back(covariance.parameters[i] + " and " + covariance.parameters[j] +
                                ": correlation " + threeDigits(correlation) +
-                               "; only their combination is well known");
+                               "; only their combination is well determined");
     }
   return points;
 }
 
-/// Why two effects look the same, and what tells them apart; empty where no table knows them.
+/// Why two effects look the same and how to distinguish them; empty if no table has them.
 std::string groupWords(const std::string& effect, const std::string& other) {
   for (const ConfoundedGroup* group : confoundedGroupsOf(effect))
     if (contains(group->members, other))
@@ -85,7 +85,7 @@ std::string runnerUpWords(const RivalPair& pair) {
          threeDigits(pair.behind) + " \u00b1 " + threeDigits(pair.error) + " nats behind)";
 }
 
-/// What an effect may be taken for: its group first, then all others in one point.
+/// Alternatives of an effect: its group first, then all others in one point.
 void addOthers(const std::string& found, const std::vector<RivalPair>& pairs, Points& points) {
   std::vector<std::string> others;
   for (const RivalPair& pair : pairs) {
@@ -100,8 +100,7 @@ void addOthers(const std::string& found, const std::vector<RivalPair>& pairs, Po
                            joined(others, "or") + ". To tell: " + effectNamed(found).separates);
 }
 
-/// The smallest size that would have been found, as people say it; of a limit, which bites or does
-/// not, the gentlest one.
+/// Smallest size that would have been found, in natural units; for a limit the weakest one.
 std::string saidDetectable(const CandidateTest& test) {
   const EffectParameter* parameter = findEffectParameter(test.effect + "." + test.parameter);
   const bool limit = parameter != nullptr && parameter->reciprocal();
@@ -138,8 +137,8 @@ std::vector<Block> effectsBlocks(const GapFinding& finding) {
 std::vector<Block> unnamedBlocks(const GapFinding& finding) {
   std::vector<Block> blocks;
   Pictures pictures{{},
-                    "Dots: what the model without the term leaves, means over cells. Line: the "
-                    "term, with its 95 % band. Beyond its ends it stays as it is there."};
+                    "Dots: residuals of the model without the term, means over cells. Line: the "
+                    "term, with its 95 % band. Beyond its ends it is constant."};
   Commands names;
   for (const UnnamedFinding& found : finding.identified.unnamed) {
     const UnnamedTerm& term = *termOfPath(finding.identified.model, found.name + ".0");
@@ -148,8 +147,8 @@ std::vector<Block> unnamedBlocks(const GapFinding& finding) {
   }
   if (pictures.svg.empty()) return blocks;
   blocks.push_back(
-      Paragraph{"No effect of the catalogue has this shape. The new model simulates it all the "
-                "same; who knows what it is may give it a name:"});
+      Paragraph{"No effect of the catalogue has this shape. The new model simulates it "
+                "nevertheless; to give it a name:"});
   blocks.push_back(names);
   blocks.push_back(pictures);
   return blocks;
@@ -213,7 +212,7 @@ std::vector<Block> alternativesBlocks(const GapFinding& finding) {
       plans.lines.push_back("tread-gap plan " + pair.found + " " + pair.other +
                             " --model model.yaml");
   if (!plans.lines.empty()) {
-    blocks.push_back(Paragraph{"The shortest drive that tells two of them apart:"});
+    blocks.push_back(Paragraph{"The shortest drive that distinguishes two of them:"});
     blocks.push_back(plans);
   }
   return blocks;
@@ -225,8 +224,8 @@ std::vector<Block> notShownBlocks(const GapFinding& finding) {
   for (const std::string& name : finding.identified.not_excited)
     table.rows.push_back({titleOf(name), effectNamed(name).separates});
   if (!table.rows.empty()) {
-    blocks.push_back(Paragraph{
-        "These effects may be there: nothing in this drive would have made them visible."});
+    blocks.push_back(
+        Paragraph{"These effects may be present: this drive could not have shown them."});
     blocks.push_back(table);
   }
   if (!finding.search.negligible.empty())
@@ -259,14 +258,15 @@ std::vector<Block> candidatesBlocks(const GapFinding& finding) {
     table.rows.push_back({titleOf(test.effect), test.parameter, threeDigits(test.score),
                           saidChance(test.p_value), said(test.uniqueness, "1"),
                           isFound(finding, test.effect) ? "found" : saidDetectable(test)});
-  return {Paragraph{"The first test of each effect against the calibrated model. p is over the "
-                    "whole catalogue; "
-                    "own share is the part of its signature that no term of the model has; the "
-                    "last column is "
-                    "the smallest size that four of five drives like this one would have shown, of "
-                    "a limit the "
-                    "gentlest one."},
-          table};
+  return {
+      Paragraph{"The first test of each effect against the calibrated model. p is over the "
+                "whole catalogue; "
+                "own share is the part of its signature that no term of the model explains; the "
+                "last column is "
+                "the smallest size that four of five such drives would have shown, of "
+                "a limit the "
+                "gentlest one."},
+      table};
 }
 
 std::vector<Block> wordsBlocks() {
@@ -281,13 +281,13 @@ std::vector<Block> logsBlocks(const GapFinding& finding) {
   for (const LogNote& note : finding.source.log_notes)
     points.items.push_back((note.log.empty() ? "" : note.log + ": ") + note.what +
                            (note.fatal ? " (nothing can be concluded from this log)" : ""));
-  if (finding.source.log_notes.empty()) points.items.push_back("Nothing to remark.");
+  if (finding.source.log_notes.empty()) points.items.push_back("Nothing unusual.");
   blocks.push_back(points);
   if (finding.source.blocks > 0)
     blocks.push_back(Paragraph{std::to_string(finding.source.blocks) + " independent blocks of " +
                                threeDigits(finding.source.block_length) +
-                               " s; whatever is said about chance counts blocks, not "
-                               "samples. Test for what remains: p " +
+                               " s; all significance levels count blocks, not "
+                               "samples. Test of the residuals: p " +
                                saidChance(finding.adequacy.p_value) + "."});
   return blocks;
 }
@@ -309,18 +309,18 @@ Page reportPage(const GapFinding& finding, const std::vector<InputFile>& inputs)
                                      std::to_string(exitStatus(finding.verdict)) +
                                      (finding.verdict == GapVerdict::kCannotTell
                                           ? ". No model was written."
-                                          : ". Nothing is applied by itself: the new model is "
+                                          : ". Nothing is applied automatically: the new model is "
                                             "model.yaml."),
                                  true});
   const bool told = finding.verdict != GapVerdict::kCannotTell;
   std::vector<Section> sections{
       {told ? "What was found" : "Effects where the fit ended", effectsBlocks(finding)}};
-  sections.push_back({"Terms without a name", unnamedBlocks(finding)});
+  sections.push_back({"Unnamed terms", unnamedBlocks(finding)});
   for (Section& section : evidenceSections(finding, inputs)) sections.push_back(std::move(section));
   for (Section& section : std::vector<Section>{
            {told ? "Parameters of the new model" : "Parameters where the fit ended",
             parametersBlocks(finding)},
-           {"What else it could be, and the drive that tells", alternativesBlocks(finding)},
+           {"Alternatives, and the drive that decides", alternativesBlocks(finding)},
            {"What this drive could not show", notShownBlocks(finding)},
            {"What people decided", decisionsBlocks(finding)},
            {"Where the new model holds", envelopeBlocks(finding)},

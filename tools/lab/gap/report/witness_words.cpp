@@ -27,12 +27,12 @@ std::string wheelSentence(const FoundEffect& effect) {
                            (wheels.low > 1.0 ? "all of " + whole + " and more"
                                              : percent(wheels.share) + " % of " + whole) +
                            percents(wheels.low, wheels.high);
-  // A load slows the wheels, too.
+  // A load also slows the wheels.
   const bool by_load = effect.currents && effect.currents->saysLoad();
   if (wheels.saysDrive())
     return text + (by_load ? ": the wheels turn slower." : ": it is in the drive.");
   if (wheels.saysGround()) return text + ": it is under the wheels, not in the drive.";
-  return text + ": that does not tell whether it is in the drive.";
+  return text + ": that does not show whether it is in the drive.";
 }
 
 std::string currentSentence(const FoundEffect& effect) {
@@ -41,18 +41,18 @@ std::string currentSentence(const FoundEffect& effect) {
   const std::string size = " by " + fixed(currents.rise, 1) + " % per percent (" +
                            fixed(currents.low, 1) + " to " + fixed(currents.high, 1) + ")";
   if (currents.saysLoad())
-    return " Where it takes speed, the motor currents rise" + size +
+    return " Where it reduces speed, the motor currents rise" + size +
            ": it is load, on the ground or in the running gear.";
   if (!currents.saysNoLoad())
-    return " The motor currents do not tell whether it is load or in the drive.";
+    return " The motor currents do not show whether it is load or in the drive.";
   const std::string text =
-      " Where it takes speed, the motor currents do not rise as with a load, but" + size;
+      " Where it reduces speed, the motor currents do not rise as with a load, but" + size;
   if (effect.wheels && effect.wheels->saysDrive()) return text + ": the drive gives less.";
   if (effect.wheels && effect.wheels->saysGround()) return text + ": the tracks slip.";
   return text + ": the drive gives less, or the tracks slip.";
 }
 
-/// Whether an effect is the battery's by its name.
+/// Whether the effect's name says that it is the battery's.
 bool isOfBattery(const FoundEffect& effect) {
   const std::vector<EffectParameter>& parameters = effectNamed(effect.name).parameters;
   return std::any_of(parameters.begin(), parameters.end(),
@@ -70,7 +70,7 @@ std::string voltageSentence(const FoundEffect& effect) {
   if (voltage.saysOther())
     return " The battery voltage does not fall with it, " + size + ": it is not the battery.";
   return " The battery voltage falls with it, " + size +
-         ": that does not tell whether it is the battery.";
+         ": that does not show whether it is the battery.";
 }
 
 }  // namespace

@@ -46,7 +46,8 @@ std::string movedSentence(const ParameterEstimate& estimate) {
   if (estimate.parameter.find('.') == std::string::npos)
     return "A number of the model has changed: " + saidEstimate(estimate) + " instead of " +
            said(natural.before, saidUnit(natural)) + "; " +
-           inSentence(shortTitleOf(effectOfPath(estimate.parameter))) + " would do the same.";
+           inSentence(shortTitleOf(effectOfPath(estimate.parameter))) +
+           " would have the same effect.";
   return shortTitleOf(effectOfPath(estimate.parameter)) +
          ", which the model has, has changed: " + saidEstimate(estimate) + " instead of " +
          said(natural.before, saidUnit(natural)) + ".";
@@ -56,7 +57,7 @@ std::string withNumbers(const FoundEffect& effect, const std::vector<std::string
   std::vector<std::string> numbers;
   std::string direction;
   for (const ParameterEstimate& estimate : effect.parameters) {
-    // A limit that is hard has nothing beyond it to tell.
+    // A hard limit has no slope beyond it.
     if (lastPart(estimate.parameter) == "beyond" && estimate.value < 0.005) continue;
     numbers.push_back(saidEstimate(estimate));
     if (direction.empty()) direction = directionOf(estimate);
@@ -66,7 +67,7 @@ std::string withNumbers(const FoundEffect& effect, const std::vector<std::string
   if (!direction.empty()) text += "; " + direction;
   for (const std::string& total : totals) text += "; " + total;
   if (effect.accepted)
-    text += isShown(effect) ? " (accepted; the drive shows it, too)"
+    text += isShown(effect) ? " (accepted; the drive confirms it)"
                             : " (accepted; the drive alone does not show it: p " +
                                   saidChance(effect.p_value) + ")";
   return text + ".";
@@ -79,14 +80,14 @@ bool isKnown(const std::vector<RivalPair>& pairs, const std::string& one,
   });
 }
 
-constexpr double kNegligible = 0.01;  // of an error: less is no change
+constexpr double kNegligible = 0.01;  // relative to an error: less counts as no change
 
 std::string saidErrors(const EndErrors& errors, bool rms) {
   return saidDistance(rms ? errors.position.rms : errors.position.median) + " and " +
          saidAngle(rms ? errors.yaw.rms : errors.yaw.median);
 }
 
-/// Dead reckoning bounds what a model can do only as long as no model does better.
+/// The dead-reckoning floor is a bound only if no model is below it.
 std::string floorWords(const Gap& gap) {
   std::vector<std::string> better;
   if (gap.after.position.median < gap.floor->position.median) better.emplace_back("position");
@@ -134,7 +135,7 @@ ParameterEstimate naturalEstimate(const ParameterEstimate& estimate) {
   natural.unit = parameter->natural_unit;
   natural.value = naturalValue(*parameter, estimate.value);
   natural.before = naturalValue(*parameter, estimate.before);
-  // A reciprocal that may be 0 or less is no limit at all.
+  // A reciprocal of zero or less means no limit.
   natural.low = naturalValue(*parameter, std::max(0.0, estimate.high));
   natural.high = naturalValue(*parameter, std::max(0.0, estimate.low));
   return natural;
@@ -145,7 +146,7 @@ std::string saidUnit(const ParameterEstimate& natural) {
 }
 
 std::string saidIntervalOf(const ParameterEstimate& estimate) {
-  if (std::isinf(estimate.low) && std::isinf(estimate.high)) return "not seen in this drive";
+  if (std::isinf(estimate.low) && std::isinf(estimate.high)) return "not visible in this drive";
   const ParameterEstimate natural = naturalEstimate(estimate);
   return saidInterval(natural.low, natural.high, saidUnit(natural));
 }
@@ -209,7 +210,7 @@ std::string termCurveUnit(const UnnamedTerm& term) {
 std::string sentenceOf(const UnnamedFinding& found, const ModelDocument& model) {
   const UnnamedTerm& term = *termOfPath(model, found.name + ".0");
   const auto [least, most] = std::minmax_element(term.values.begin(), term.values.end());
-  return found.name + ": " + termChannelName(term.channel) + " beside the model, by " +
+  return found.name + ": " + termChannelName(term.channel) + " added to the model, by " +
          term.condition->name +
          (term.times == nullptr ? "" : std::string(", times ") + term.times->name) + ": " +
          saidInterval(*least, *most, termCurveUnit(term)) + " where " + term.condition->name +
@@ -252,7 +253,7 @@ std::vector<std::string> rivalsOf(const FoundEffect& effect) {
 
 std::string rivalTitle(const std::string& found, const std::string& other) {
   const std::string title = inSentence(shortTitleOf(other));
-  // A model may have a latency of the poses alone, which is another one.
+  // A model may also have a separate latency of the poses.
   if (effectNamed(other).kind() == EffectKind::kMeasurement)
     for (const ConfoundedGroup* group : confoundedGroupsOf(found))
       if (group->share != nullptr && contains(group->members, other))
@@ -295,8 +296,8 @@ std::vector<RivalPair> rivalPairs(const GapFinding& finding) {
 std::string gainOf(const Gap& gap) {
   std::string text =
       threeDigits(gap.horizon) +
-      " s end-pose error on driving it has not seen: " + threeDigits(gap.before.position.median) +
-      " -> " + saidDistance(gap.after.position.median) + ", heading " +
+      " s end-pose error on held-out driving: " + threeDigits(gap.before.position.median) + " -> " +
+      saidDistance(gap.after.position.median) + ", heading " +
       threeDigits(gap.before.yaw.median * 180.0 / kPi) + " -> " + saidAngle(gap.after.yaw.median) +
       " (median of " + std::to_string(gap.after.executions) + " executions; rms " +
       saidErrors(gap.before, true) + " -> " + saidErrors(gap.after, true) + ").";
@@ -322,7 +323,7 @@ std::string worseOf(const Gap& gap) {
     if (change.isBetter()) better = change.what;
   }
   if (worse.empty()) return "";
-  return "Not better, but worse on driving it has not seen: " + joined(worse) +
+  return "Not better, but worse on held-out driving: " + joined(worse) +
          (better.empty() ? "." : "; only " + better + " got better.");
 }
 
