@@ -18,7 +18,7 @@ namespace {
 using namespace tread;
 using namespace tread::testing;
 
-/// A key of this run alone.
+/// A key for this run only.
 struct Key {
   Key() : path("/tmp/tread_attack_" + std::to_string(getpid()) + ".key") { writeNewKey(path); }
   ~Key() { std::filesystem::remove(path); }
@@ -27,9 +27,9 @@ struct Key {
   const std::string path;
 };
 
-/// Of some messages of the motor bridge.
+/// Statistics of motor-bridge messages.
 struct Period {
-  double median = 0.0;  ///< [ms] between two MOTOR messages, as they say
+  double median = 0.0;  ///< [ms] between two MOTOR messages, by their time stamps
   double p99 = 0.0;     ///< [ms]
   double longest = 0.0;
   double step = 0.0;  ///< [ms] longest step of the bridge
@@ -89,7 +89,7 @@ class AttackBench {
     foreign_ += motor.motor_run_id != planner->second.boot_id;
   }
 
-  /// Drives to and fro for so long, by arming again where the machine has stalled.
+  /// Drives back and forth for `seconds`; arms again after a stall of the machine.
   Period drive(double seconds = 0.0) {
     run_.setGoal(side_ * 20.0, 0.0);
     const int again = run_.armedAgain();
@@ -136,7 +136,7 @@ class AttackBench {
     return stop.waitFor(0.0) && stop.exitCode() == 0;
   }
 
-  /// tread-stop; seconds to motors at zero, -1 = never.
+  /// Runs tread-stop; seconds until the motors are at zero, -1 = never.
   double stop() {
     const int64_t called = run_.now();
     if (!call({})) std::printf("  tread-stop has no answer\n");
@@ -149,7 +149,7 @@ class AttackBench {
     return zero ? 1e-6 * static_cast<double>(*zero - called) : -1.0;
   }
 
-  /// Nothing may move, though the operator's program lives and wants its goal.
+  /// Nothing may move, although the operator's program runs and repeats its goal.
   void mustStand(const char* what, int16_t state) {
     run_.wait(1.0);
     const int64_t from = run_.now();

@@ -11,7 +11,8 @@ namespace tread::testing {
 namespace {
 
 constexpr size_t kRemembered = 400;  // messages
-constexpr size_t kLarge = 3'000;     // bytes; such messages are few, or the rate is one of bytes
+// bytes; large messages are few, else the rate would be limited by bytes
+constexpr size_t kLarge = 3'000;
 constexpr uint64_t kLargeShare = 200;
 
 size_t hashOf(const std::vector<uint8_t>& bytes) {
@@ -25,7 +26,7 @@ bool isStop(const std::vector<uint8_t>& bytes) {
   return message.decode(bytes.data(), 0, size) == size && stops(message);
 }
 
-/// Anybody may stop the robot; who wants to move it does not.
+/// Messages that would stop the robot: anybody may send them, but they are no attack.
 bool wouldStop(const std::string& channel, const std::vector<uint8_t>& bytes) {
   return (channel == kEstop.name && isStop<estop_t>(bytes)) ||
          (channel == kArm.name && isStop<arm_t>(bytes)) ||
@@ -100,7 +101,7 @@ void Attacker::sendForged(const Channel<Message>& channel, Message message) {
   send(channel.name, bytes);
 }
 
-/// What would move the robot, or deceive it, if it were taken.
+/// Messages that would move or deceive the robot if accepted.
 void Attacker::forge() {
   switch (random_() % 8) {
     case 0: {

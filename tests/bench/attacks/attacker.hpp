@@ -17,8 +17,8 @@
 
 namespace tread::testing {
 
-/// Somebody on the robot's bus without its key: hears all, and sends what he makes up, what he has
-/// heard, and what he has heard with a changed byte, so many messages a second.
+/// An attacker on the robot's bus without its key: receives everything and sends forged messages,
+/// recorded ones, and recorded ones with a changed byte, at a given rate.
 class Attacker {
  public:
   Attacker(const std::string& url, double rate, uint64_t seed);
@@ -26,7 +26,7 @@ class Attacker {
   Attacker(const Attacker&) = delete;
   Attacker& operator=(const Attacker&) = delete;
 
-  /// Only listens where it is not set.
+  /// Only listens while not set.
   void attack(bool attacks) { attacks_ = attacks; }
   int64_t sent() const { return sent_; }
 
@@ -48,8 +48,8 @@ class Attacker {
   lcm::LCM lcm_;
   double rate_;
   std::mt19937_64 random_;
-  std::deque<Heard> heard_;           ///< the newest sealed ones of others
-  std::unordered_set<size_t> known_;  ///< hashes of what was heard or sent
+  std::deque<Heard> heard_;           ///< the newest sealed ones of other senders
+  std::unordered_set<size_t> known_;  ///< hashes of received or sent messages
   program_t program_{};               ///< the newest
   std::atomic<bool> attacks_{false};
   std::atomic<bool> stop_{false};

@@ -41,7 +41,8 @@ const std::vector<TrialGround>& grounds() {
   return both;
 }
 
-/// Nanoseconds to copy the numbers of the set once: what any rule that touches all of them pays.
+/// Nanoseconds to copy the numbers of the set once: the least cost of any rule that touches all of
+/// them.
 double copyTime() {
   size_t numbers = 0;
   for (const MotionPattern& pattern : grounds().front().averaged.patterns())

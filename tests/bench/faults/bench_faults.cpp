@@ -98,7 +98,7 @@ int drive(const Arguments& arguments) {
   return broken == 0 ? 0 : 1;
 }
 
-/// Missions whose operator falls silent for good: does the robot come back?
+/// Missions whose operator falls silent for good: does the robot return?
 int goBack(const Arguments& arguments) {
   const missions::RobotConfig robot = missions::readRobot(TREAD_CONFIG_DIR "/robots/teodor");
   int lost = 0, at_link = 0, at_start = 0, collided = 0, moving = 0;
@@ -129,17 +129,17 @@ int goBack(const Arguments& arguments) {
   return collided == 0 && moving == 0 ? 0 : 1;
 }
 
-/// What came of the missions with one lie of the range finder.
+/// Results of the missions with one lie of the range finder.
 struct EyeFigures {
   int missions = 0, moved = 0, brief = 0, collided = 0;
   double farthest = 0.0;
-  std::vector<double> after;  ///< [s] until it was named
+  std::vector<double> after;  ///< [s] until mapping reported it
 
   void count(const FaultyRun& run);
   void print(const char* name);
 };
 
-/// A lie that is over before it must be named.
+/// A lie that ends before it must be reported.
 bool isBrief(const FaultEffect& effect) {
   return effect.lasted < kNamedWithin && !effect.named_after;
 }
@@ -167,8 +167,7 @@ void EyeFigures::print(const char* name) {
       collided);
 }
 
-/// Missions whose range finder lies: is it named, and does the robot stop before it touches
-/// anything?
+/// Missions with a lying range finder: is it reported, and does the robot stop before a contact?
 int watchEyes(const Arguments& arguments) {
   const missions::RobotConfig robot = missions::readRobot(TREAD_CONFIG_DIR "/robots/teodor");
   std::map<FaultKind, EyeFigures> by_kind;
@@ -196,7 +195,7 @@ int watchEyes(const Arguments& arguments) {
   return collided == 0 ? 0 : 1;
 }
 
-/// What comes of each lie of each input.
+/// Effect of each lie of each input.
 int printTable(const Arguments& arguments) {
   const missions::RobotConfig robot = missions::readRobot(TREAD_CONFIG_DIR "/robots/teodor");
   std::vector<uint64_t> seeds;

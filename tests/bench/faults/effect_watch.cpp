@@ -8,9 +8,9 @@
 namespace tread::faults {
 namespace {
 
-constexpr int64_t kTogether = 20'000;    // [us] a fault that stops the motors at once
-constexpr int64_t kStands = 500'000;     // [us] of zero
-constexpr int64_t kForGood = 3'000'000;  // [us] no pause before a turn
+constexpr int64_t kTogether = 20'000;    // [us] window for a fault that stops the motors at once
+constexpr int64_t kStands = 500'000;     // [us] of zero commands
+constexpr int64_t kForGood = 3'000'000;  // [us] longer than the pause before a turn
 
 double seconds(int64_t us) {
   return static_cast<double>(us) * 1e-6;

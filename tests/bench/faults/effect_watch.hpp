@@ -11,8 +11,8 @@
 
 namespace tread::faults {
 
-/// Measures what comes of a fault, until the robot stands for good: disarmed, without a goal, or
-/// for three seconds.
+/// Measures the effect of a fault until the robot stands for good: disarmed, without a goal, or for
+/// three seconds.
 class EffectWatch {
  public:
   void receive(const health_t& health);
@@ -25,9 +25,9 @@ class EffectWatch {
   std::string motor_reason_, plan_reason_;
   bool disarmed_ = false, goal_lost_ = false;
   bool begun_ = false;
-  bool named_ = false;            ///< since the fault's begin
-  std::optional<int64_t> since_;  ///< [us] the robot moves under the fault
-  int64_t turned_ = 0;            ///< [us] when the motors turned last
+  bool named_ = false;            ///< reported since the fault's beginning
+  std::optional<int64_t> since_;  ///< [us] start of motion under the fault
+  int64_t turned_ = 0;            ///< [us] last motion of the motors
   double from_ = 0.0, yaw_ = 0.0;
   FaultEffect effect_;
 };

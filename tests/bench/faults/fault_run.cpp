@@ -25,7 +25,7 @@
 namespace tread::faults {
 namespace {
 
-constexpr int64_t kTick = 5'000;             // [us] between looks at the motors
+constexpr int64_t kTick = 5'000;             // [us] between checks of the motors
 constexpr int64_t kOperatorPeriod = 50'000;  // [us]
 constexpr int64_t kHandPeriod = 20'000;      // [us]
 constexpr int64_t kForgePeriod = 40'000;     // [us]
@@ -38,7 +38,7 @@ SealKey someKey() {
   return key;
 }
 
-/// What is wrong with the INS beyond its noise.
+/// Errors of the INS beyond its noise.
 class DisturbedIns : public sim::InsErrors {
  public:
   sim::InsInput sensed(int64_t utime, const sim::InsInput& truth) override {
@@ -47,7 +47,7 @@ class DisturbedIns : public sim::InsErrors {
     if (!frozen) last_ = truth;
     if (drift_since > 0) drift_ = 0.4 * static_cast<double>(utime - drift_since) * 1e-6;
     if (!mirrored) mirror_ = truth;
-    // About the way ahead when it began.
+    // Relative to the direction ahead when it began.
     const double left =
         2.0 * ((input.body.p_map - mirror_.body.p_map)
                    .head<2>()
@@ -81,7 +81,7 @@ class DisturbedIns : public sim::InsErrors {
   double drift_ = 0.0;
 };
 
-/// From the frame of the way into map.
+/// From the frame of the way to the map.
 std::vector<Fence> fencesOf(const Scenario& scenario, const missions::MissionWorld& world) {
   const Eigen::Vector2d way = world.T_map_goal.position() - world.T_map_start.position();
   const Pose2 T_map_way{world.T_map_start.x, world.T_map_start.y, std::atan2(way.y(), way.x())};
@@ -208,7 +208,7 @@ class Run {
     if (const auto program = messageOf(kProgram, message)) breaks(returns_.check(now, *program));
   }
 
-  /// What happened at all: a rule that nothing ever tries proves nothing.
+  /// Notes which situations occurred: a rule that is never exercised proves nothing.
   void note(const motor_t& motor) {
     const bool moves = motor.command[0] != 0.0F || motor.command[1] != 0.0F;
     const auto says = [&](const char* words) {
@@ -231,7 +231,7 @@ class Run {
     const auto size = static_cast<std::ptrdiff_t>(sizeWithoutSeal(bytes.data(), bytes.size()));
     Received message{now, channel, {bytes.begin(), bytes.begin() + size}};
     message.changed = sent_.count(hashOf(bytes)) == 0;
-    // With a key what nobody sealed counts for nothing, nor what was changed or comes again.
+    // With a key, unsealed, changed and repeated messages have no effect.
     const bool sealed = static_cast<size_t>(size) != bytes.size();
     const bool stop = (channel == "ESTOP" || channel == "ARM") && node == "motor_bridge";
     const bool counts = sealed && !message.changed;
@@ -255,7 +255,7 @@ class Run {
     return (arm && stops(*arm)) || (estop && stops(*estop));
   }
 
-  /// For replays: the newest genuine messages of a channel.
+  /// Stores the newest genuine messages of a channel for replays.
   void keep(const std::string& channel, const std::vector<uint8_t>& bytes) {
     for (const Fault& fault : schedule_.faults) {
       if (fault.kind != FaultKind::kReplay || fault.channel != channel || replaying_) continue;
@@ -290,7 +290,7 @@ class Run {
           breaks(node + ": a handler threw: " + bus_.statistics(node).last_refusal);
   }
 
-  /// The operator's fence before the driving robot, told three times.
+  /// The operator's fence ahead of the driving robot, sent three times.
   void putFence(int64_t since) {
     const Scenario& scenario = schedule_.scenario;
     if (!scenario.fence_at || since < *scenario.fence_at || operator_lost_) return;
@@ -314,7 +314,7 @@ class Run {
     breaks(fences_.check(now, truth.T_map_body, truth.v_body.v_x));
     result_.least_room = fences_.leastRoom();
   }
-  /// Whether the bridge, or what it says to the motors, is without effect.
+  /// Whether a fault disables the bridge or its commands to the motors.
   static bool blinds(const Fault& fault) {
     const bool ends = fault.kind == FaultKind::kKill || fault.kind == FaultKind::kHang;
     return fault.kind == FaultKind::kMotorLine || fault.kind == FaultKind::kBattery ||

@@ -48,7 +48,7 @@ const char* nameOf(FaultKind kind) {
 
 namespace {
 
-/// Kinds that drawSchedule() knows: more would change what each seed means.
+/// Kinds that drawSchedule() draws from: more would change the meaning of old seeds.
 constexpr auto kFirstKinds = static_cast<uint64_t>(FaultKind::kTilt);
 constexpr uint64_t kScenarioStream = 0x5ce9a210;
 constexpr uint64_t kScanStream = 0x11e5ca9;
@@ -107,7 +107,7 @@ double between(Draw& draw, double low, double high) {
   return low + (high - low) * draw.share();
 }
 
-/// A moment from `first` on, late only up to a share of the time.
+/// A time from `first` on, drawn from the first share of the interval.
 int64_t moment(Draw& draw, int64_t first, int64_t last, double share) {
   return first + static_cast<int64_t>(share * draw.share() * static_cast<double>(last - first));
 }

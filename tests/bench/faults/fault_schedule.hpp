@@ -13,7 +13,7 @@
 
 namespace tread::faults {
 
-/// Draws in the same way on every machine.
+/// Random draws, the same on every platform.
 class Draw {
  public:
   explicit Draw(uint64_t seed) : engine_(seed * 0x9e3779b97f4a7c15ULL + 77) {}
@@ -51,19 +51,19 @@ enum class FaultKind {
   kOperatorLost,
   kEstop,
   kDisarm,
-  kTilt,  ///< the INS tells a roll; not drawn by drawSchedule(), as the next
+  kTilt,  ///< the INS reports a roll; not drawn by drawSchedule(), like the following ones
   kScanFreeze,
-  kScanLag,  ///< old scans under new times
+  kScanLag,  ///< old scans with new times
   kScanMirror,
   kScanTurn,
   kScanFar,
   kScanZero,
-  kInsMirror,    ///< as if left were right
-  kDriveMirror,  ///< the motors' cables are swapped
+  kInsMirror,    ///< left and right exchanged
+  kDriveMirror,  ///< the motors' cables are exchanged
   kCount
 };
 
-/// In words.
+/// Text for a kind.
 const char* nameOf(FaultKind kind);
 
 struct Fault {
@@ -75,33 +75,34 @@ struct Fault {
   double strength = 0.0;  ///< 0..1
 };
 
-/// For how long a person drives by hand; all times in [us] since the start.
+/// A period of manual driving; all times in [us] since the start.
 struct HandStretch {
   int64_t from = 0;
-  int64_t until = 0;         ///< given back
+  int64_t until = 0;         ///< time of giving back
   int64_t silent_from = 0;   ///< the person's program is halted
-  int64_t silent_until = 0;  ///< ... and goes on
-  double released = 0.0;     ///< [1] share of the time after which the button is let go for a fifth
-  double forward = 0.0;      ///< [1] of the stick
+  int64_t silent_until = 0;  ///< ... and continues
+  /// [1] share of the time after which the button is released for a fifth of it
+  double released = 0.0;
+  double forward = 0.0;  ///< [1] of the stick
 };
 
-/// Something to drive by hand with that never tells a rest; all times in [us] since the start.
+/// A stick or program that never reports rest; all times in [us] since the start.
 struct HandLie {
   enum class Kind { kPad, kKeyboard, kPage };
   Kind kind = Kind::kPad;
-  uint64_t seed = 0;  ///< of what it tells
+  uint64_t seed = 0;  ///< of its values
   int64_t from = 0;
   int64_t until = 0;
   int64_t silent_from = 0;
   int64_t silent_until = 0;
 };
 
-/// What a mission has beside its faults. Fences are in the frame of the way: the start is its
-/// origin, the goal lies on its x axis.
+/// Further parts of a mission. Fences are in the frame of the way: origin at the start, x axis
+/// towards the goal.
 struct Scenario {
   std::vector<Fence> own_fences;    ///< of the robot's file
-  bool planner_knows = true;        ///< else only the bridge has them
-  std::optional<int64_t> fence_at;  ///< [us] the operator puts a fence before the driving robot
+  bool planner_knows = true;        ///< otherwise only the bridge has them
+  std::optional<int64_t> fence_at;  ///< [us] the operator adds a fence ahead of the driving robot
   double fence_ahead = 0.0;         ///< [m] from the body's origin to its near side
   double fence_width = 0.0;         ///< [m]
   std::optional<HandStretch> hand;
@@ -109,31 +110,31 @@ struct Scenario {
   bool go_back = false;  ///< `lost: go_back` in the robot's file
 };
 
-/// What goes wrong in one mission.
+/// The faults of one mission.
 struct FaultSchedule {
   uint64_t seed = 0;
   bool keyed = false;  ///< the robot and its operator have a key
   std::vector<Fault> faults;
   Scenario scenario;
   int64_t end() const;  ///< [us] of the last fault
-  /// Nobody tells of a stick at rest: nothing may move by hand.
+  /// No stick at rest is ever reported: manual control must not move the robot.
   bool onlyLies() const;
 };
 
-/// One to four faults between `first` and `last` [us], the same for the same seed.
+/// One to four faults between `first` and `last` [us], a function of the seed.
 FaultSchedule drawSchedule(uint64_t seed, int64_t first, int64_t last);
-/// Adds fences, a hand, a return, and faults of them, from draws of their own: what
-/// drawSchedule() drew stays as it is.
+/// Adds fences, manual driving, a return, and their faults from separate draws, which leaves the
+/// draws of drawSchedule() unchanged.
 void addScenario(FaultSchedule& schedule, int64_t first, int64_t last);
-/// In place of a hand one that lies.
+/// Replaces manual driving by a lying stick.
 void addLie(FaultSchedule& schedule, int64_t first, int64_t last);
-/// One fault of the range finder alone, at a drawn moment, mostly for good.
+/// One fault of the range finder at a random time, usually permanent.
 FaultSchedule drawScanFault(uint64_t seed, int64_t first, int64_t last);
-/// Those of messages, as the bus makes them.
+/// The message faults, for the bus.
 FaultPlan planOf(const FaultSchedule& schedule);
-/// "4.20 to 6.31 s: drop on MAP to planner, strength 0.52".
+/// For instance "4.20 to 6.31 s: drop on MAP to planner, strength 0.52".
 std::string describe(const Fault& fault);
-/// "fences in the file, by hand from 6.20 to 9.81 s"; empty if there is nothing.
+/// For instance "fences in the file, by hand from 6.20 to 9.81 s"; empty if there is nothing.
 std::string describe(const Scenario& scenario);
 
 }  // namespace tread::faults

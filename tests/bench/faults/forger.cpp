@@ -8,7 +8,7 @@
 
 namespace tread::faults {
 
-/// A set whose patterns turn and go otherwise than the vehicle does.
+/// A set with turns and speeds that differ from the vehicle's.
 std::optional<PatternSet> wrongSet(const PatternSet& shipped, double strength, int64_t version) {
   PatternSetContent content = shipped.content();
   content.parent_version = content.version;

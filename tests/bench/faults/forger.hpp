@@ -11,16 +11,17 @@
 
 namespace tread::faults {
 
-/// A set whose patterns turn and go otherwise than the vehicle does.
+/// A set with turns and speeds that differ from the vehicle's.
 std::optional<PatternSet> wrongSet(const PatternSet& shipped, double strength, int64_t version);
 
-/// Messages that a stranger may send.
+/// Messages of an attacker.
 class Forger {
  public:
   Forger(VirtualBus& bus, const Pose2& T_map_goal, const PatternSet& shipped)
       : bus_(bus), T_map_goal_(T_map_goal), shipped_(shipped) {}
 
-  /// One message on a channel; what is in it depends on `strength` 0..1 and on how many were sent.
+  /// One message on a channel; the content depends on `strength` 0..1 and on the number of messages
+  /// sent.
   void send(const std::string& channel, double strength);
 
  private:
@@ -37,7 +38,7 @@ class Forger {
   void manual(double strength);
   void fence(double strength);
   void stopping(double strength);
-  /// The operator's, or a stranger's.
+  /// The operator's name, or a stranger's.
   std::string name() const;
 
   VirtualBus& bus_;

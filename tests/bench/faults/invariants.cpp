@@ -13,15 +13,15 @@
 namespace tread::faults {
 namespace {
 
-constexpr int64_t kToZero = 250'000;        // [us] from a cause to zero
-constexpr int64_t kWatchdog = 280'000;      // [us] the same where the controller has to notice
-constexpr int64_t kNoticed = 30'000;        // [us] shorter faults may fall between steps
+constexpr int64_t kToZero = 250'000;        // [us] from a cause until the motors are at zero
+constexpr int64_t kWatchdog = 280'000;      // [us] the same if the controller has to detect it
+constexpr int64_t kNoticed = 30'000;        // [us] shorter faults may fall between two steps
 constexpr int64_t kProgramLease = 200'000;  // [us] at most
 constexpr int64_t kInsSilence = 100'000;    // [us]
 constexpr int64_t kInsAge = 300'000;        // [us]
 constexpr float kRest = 0.05F;              // [1] of the largest command
-constexpr int64_t kBump = 100'000;          // [us] for which a tilt may be beyond its limit
-constexpr int64_t kOneStep = 20'000;        // [us] of the bridge, and what delays it
+constexpr int64_t kBump = 100'000;          // [us] a tilt may exceed its limit
+constexpr int64_t kOneStep = 20'000;        // [us] step of the bridge, and its delays
 
 std::string at(const Pose2& pose) {
   return std::to_string(pose.x) + ", " + std::to_string(pose.y);
@@ -54,7 +54,7 @@ void MotorRule::receive(const Received& received) {
   } else if (const auto manual = messageOf(kManual, received)) {
     receiveManual(*manual, received.changed, now);
   }
-  // Both may come in one step of the bridge, in either order.
+  // Both may arrive within one step of the bridge, in either order.
   if (present(now) && now - arm_ <= kOneStep) armed_ = std::max(armed_, arm_);
 }
 
@@ -73,8 +73,8 @@ void MotorRule::receiveManual(const manual_t& message, bool changed, int64_t now
   if (possible && left <= kRest && right <= kRest) hand.rested = true;
   const bool may_move = holds && moves && hand.rested;
   const int64_t until = may_move ? message.seen_utime + limits_.hand_lease_us : now;
-  // Nobody outside can tell whether the bridge takes what was changed: it may move, and ends
-  // nothing.
+  // From outside it is unknown whether the bridge accepts a changed message: it may permit motion,
+  // but does not end any.
   if (possible && changed && holds) hand.until = std::max(hand.until, until);
   if (!possible || changed || message.seq <= hand.seq) return;
   hand.seq = message.seq;
@@ -156,7 +156,7 @@ std::string MotorRule::check(int64_t now, const std::array<double, 2>& power) {
     return "";
   }
   if (!forbidden_since_) {
-    // Of the time to stop 100 ms are over when a tilt is no bump.
+    // A tilt counts after 100 ms, which are part of the time to stop.
     forbidden_since_ = tilted_ ? now - kBump : now;
     why_ = reason;
   }
@@ -191,7 +191,7 @@ void PathRule::take(int64_t now, const map_tile_t& tile) {
   const bool possible = tile.utime > 0 && tile.utime <= now + 100'000 && side > 0 &&
                         tile.num_cells == side * side && tile.cell_size > 0.0;
   if (!possible) return;
-  // A map of another size is refused while the one in use goes on, and replaces it later.
+  // A map of another size is refused while the present one is alive, and replaces it later.
   const bool other = side != side_ || tile.cell_size != cell_;
   if (other && cell_ != 0.0 && now - taken_ < kForgotten) return;
   if (other) tiles_.clear();
@@ -213,7 +213,7 @@ void PathRule::take(int64_t now, const map_tile_t& tile) {
   }
 }
 
-/// Where the vehicle stands it may stand, whatever is not known there.
+/// Unknown cells are accepted where the vehicle stands.
 void PathRule::standOn(const Pose2& T_map_body) {
   if (cell_ == 0.0) return;
   const Grid lattice(cell_, {}, 0, 0);
@@ -257,7 +257,7 @@ std::string PathRule::checkStep(int64_t now, const plan_t& plan, size_t i) {
   const bool running = i == 0 && judged_at_.count(id) > 0;
   if (cell_ == 0.0 || running || judged_at_[id] == end) return "";
   judged_at_[id] = end;
-  // What was handed over with an older set is predicted anew with the one in use.
+  // A pattern from an older set is predicted again with the present one.
   const auto set = by_version_.find(plan.set_version);
   const MotionPattern* pattern =
       set == by_version_.end() ? nullptr : set->second.find(plan.pattern_id[i]);
@@ -266,7 +266,7 @@ std::string PathRule::checkStep(int64_t now, const plan_t& plan, size_t i) {
   const Pose2 T_map_end{plan.pose[i][0], plan.pose[i][1], plan.pose[i][2]};
   const Pose2 T_map_start = T_map_end * inverse(pattern->end());
   Blocked at_start = under(wide_, T_map_start, INT64_MAX);
-  // Leaving a place that is not free it looks at poses some way apart: a cell more between them.
+  // When it leaves a blocked place, poses are checked at intervals: allow one more cell.
   if (at_start.obstacles > 0) ++at_start.obstacles;
   if (at_start.all > 0) ++at_start.all;
   for (const Pose2& pose : pattern->trajectory) {

@@ -24,15 +24,15 @@
 
 namespace tread::faults {
 
-/// A message as a receiver was handed it, without its seal.
+/// A message as delivered to a receiver, without its seal.
 struct Received {
   int64_t utime = 0;  ///< [us] of receipt
   std::string channel;
   std::vector<uint8_t> bytes;
-  bool changed = false;  ///< on its way
+  bool changed = false;  ///< altered in transit
 };
 
-/// Decodes a message of a channel; nothing if it is of another channel or broken.
+/// Decodes a message of a channel; nullopt for another channel or a damaged message.
 template <class Message>
 std::optional<Message> messageOf(const Channel<Message>& channel, const Received& received) {
   if (received.channel != channel.name) return std::nullopt;
@@ -45,23 +45,22 @@ std::optional<Message> messageOf(const Channel<Message>& channel, const Received
   return std::nullopt;
 }
 
-/// What the robot's files say, as far as the motors' rule depends on it.
+/// Settings in the robot's files that the motors' rule depends on.
 struct MotorLimits {
   int64_t operator_lease_us = 1'000'000;  ///< [us]
   int64_t hand_lease_us = 200'000;        ///< [us] of MANUAL
   double tilt = 1e9;                      ///< [rad] hard limit of roll and pitch
-  bool go_back = false;                   ///< without its operator the armed robot may return
+  bool go_back = false;                   ///< the armed robot may return without its operator
 };
 
-/// The motors are at zero unless the bridge was told of an operator, an arming that nothing has
-/// ended since, and either a program that wants motion, an INS that goes on and no tilt beyond its
-/// limit, or a hand that holds the button, sees the robot, and was seen at rest.
-/** With `go_back` an armed robot may move without its operator, and then the planner's word decides
- * (ReturnRule); but arming it needs the operator. In the hand neither program nor INS is needed:
- * what a robot that may be in the hand lost of them asks for no ARM. A tilt beyond the limit in
- * three measurements and for 100 ms does, and programs wait until a measurement is within. Knows
- * only what the bridge was handed and what power reaches the motors; counts in favour of the
- * bridge what it cannot tell. */
+/// The motors must be at zero unless the bridge has received an operator, an arming that is still
+/// valid, and either a program with motion, a live INS and no tilt beyond its limit, or manual
+/// control with the button held, a recent view of the robot, and a stick measured at rest.
+/** With `go_back` an armed robot may move without its operator, which ReturnRule checks; arming
+ * needs the operator. Manual control needs neither program nor INS, so their loss requires no new
+ * ARM. A tilt beyond the limit does if it lasts for three measurements and 100 ms, and programs
+ * wait until a measurement is within. The rule knows only the messages delivered to the bridge and
+ * the power of the motors, and decides doubtful cases in favour of the bridge. */
 class MotorRule {
  public:
   explicit MotorRule(const MotorLimits& limits) : limits_(limits) {}
@@ -70,16 +69,17 @@ class MotorRule {
   /// The bridge was started or ended.
   void start(int64_t now);
   void end(int64_t now);
-  /// Power of both motors at a time; what is wrong, or empty. Call it every few milliseconds.
+  /// Power of both motors at a time; returns the violation, empty if none. Call every few
+  /// milliseconds.
   std::string check(int64_t now, const std::array<double, 2>& power);
 
  private:
-  /// A hand that was told of: which of its messages is the newest, and what it wants.
+  /// A station with manual control: its newest message and its state.
   struct Hand {
     int64_t seq = INT64_MIN;
     int64_t until = INT64_MIN / 2;  ///< [us] the tracks may move
-    bool holds = false;             ///< the robot may be in this hand
-    bool rested = false;            ///< seen at rest since it was last silent or not known
+    bool holds = false;             ///< the robot may be under its control
+    bool rested = false;            ///< measured at rest since it was last silent or unknown
     int64_t heard = INT64_MIN / 2;  ///< [us]
   };
 
@@ -88,31 +88,32 @@ class MotorRule {
   bool present(int64_t now) const;
   bool inHand() const;
   bool handMoves(int64_t now) const;
-  /// Why nothing may move, or empty. `faults` only: why arming is needed again.
+  /// Why nothing may move, or empty. `faults` only: why the robot must be armed again.
   std::string stopReason(int64_t now, bool faults) const;
   std::string programStopReason(int64_t now, bool faults) const;
 
   MotorLimits limits_;
   bool up_ = true;
   bool estop_ = false;
-  int64_t operator_seen_ = INT64_MIN / 2;   ///< [us] newest MOTOR that an operator has seen
+  int64_t operator_seen_ = INT64_MIN / 2;   ///< [us] newest MOTOR received by an operator
   int64_t program_until_ = INT64_MIN / 2;   ///< [us] lease of the newest PROGRAM
-  int64_t moving_until_ = INT64_MIN / 2;    ///< [us] lease of the newest one that wants motion
+  int64_t moving_until_ = INT64_MIN / 2;    ///< [us] lease of the newest PROGRAM with motion
   int64_t ins_utime_ = INT64_MIN / 2;       ///< [us] of the newest measurement
   int64_t ins_received_ = INT64_MIN / 2;    ///< [us]
   int64_t arm_ = INT64_MIN / 2;             ///< [us] newest ARM
-  int64_t armed_ = INT64_MIN / 2;           ///< [us] newest ARM beside an operator
+  int64_t armed_ = INT64_MIN / 2;           ///< [us] newest ARM in the presence of an operator
   std::map<int64_t, Hand> hands_;           ///< by station
   std::optional<int64_t> tilt_since_;       ///< [us] of the first measurement beyond the limit
-  int tilts_ = 0;                           ///< measurements beyond it in turn
+  int tilts_ = 0;                           ///< consecutive measurements beyond it
   bool tilted_ = false;                     ///< for 100 ms and three of them
-  int64_t needs_arm_ = 0;                   ///< [us] an ARM from before counts for nothing
+  int64_t needs_arm_ = 0;                   ///< [us] earlier ARMs are void
   std::optional<int64_t> fault_since_;      ///< [us]
   std::optional<int64_t> forbidden_since_;  ///< [us]
   std::string why_;
 };
 
-/// No pattern is handed over whose footprint meets what the planner's newest map has long had.
+/// No pattern may be sent whose footprint meets obstacles that the planner's newest map has had for
+/// long enough.
 class PathRule {
  public:
   explicit PathRule(const FootprintSize& footprint)
@@ -120,19 +121,19 @@ class PathRule {
 
   void receive(const Received& received);
   void start();
-  /// PLAN as the planner sends it; what is wrong, or empty.
+  /// PLAN as sent by the planner; returns the violation, empty if none.
   std::string check(int64_t now, const plan_t& plan);
   int64_t judged() const { return judged_; }
 
  private:
-  /// [m] by which corners may be cut between poses, and rounding.
+  /// [m] tolerance for corners cut between poses, and for rounding.
   static constexpr double kTolerance = 0.01;
-  /// [us] the planner takes a cycle to know, and 100 ms between two views of its map.
+  /// [us] the planner's reaction: one cycle, and 100 ms between two views of its map.
   static constexpr int64_t kDelay = 170'000;
   struct KnownTile {
     int64_t utime = 0;
     std::vector<Cell> cells;
-    std::vector<int64_t> since;  ///< [us] each cell is as it is since then
+    std::vector<int64_t> since;  ///< [us] time of each cell's last change
   };
   struct Blocked {
     int obstacles = 0;
@@ -145,8 +146,8 @@ class PathRule {
   std::string checkStep(int64_t now, const plan_t& plan, size_t i);
 
   Footprint bare_;
-  Footprint wide_;       ///< a little larger: around where a pattern begins
-  Footprint footprint_;  ///< a little smaller
+  Footprint wide_;       ///< slightly larger: around the start of a pattern
+  Footprint footprint_;  ///< slightly smaller
   static constexpr int64_t kForgotten = 3'000'000;  ///< [us] without a tile
   int64_t taken_ = 0;                               ///< [us] the last tile
   double cell_ = 0.0;
@@ -158,7 +159,7 @@ class PathRule {
   int64_t judged_ = 0;
 };
 
-/// Each message that a node must refuse is in its HEALTH a second later.
+/// Each message that a node must refuse appears in its HEALTH within 1 s.
 class CountRule {
  public:
   explicit CountRule(bool keyed) : keyed_(keyed) {}

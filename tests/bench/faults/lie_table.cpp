@@ -9,8 +9,8 @@ namespace {
 
 constexpr int64_t kBegin = 7'000'000;     // [us] since the start: it drives
 constexpr double kMission = 20.0;         // [s]
-constexpr double kHalfSecond = 0.645;     // strength of a delay by half a second
-constexpr double kMirrored = -1.4 / 1.2;  // ... of a pattern set whose turns are turned round
+constexpr double kHalfSecond = 0.645;     // strength of a delay of half a second
+constexpr double kMirrored = -1.4 / 1.2;  // ... for a pattern set with mirrored turns
 
 Lie lieOf(const char* input, const char* way, FaultKind kind, double strength = 1.0,
           const char* channel = "*") {

@@ -12,12 +12,12 @@ namespace tread::faults {
 namespace {
 
 constexpr double kTimeToStop = 0.9;         // [s] at its speed, from the message to standstill
-constexpr double kWellWithin = 0.3;         // [m] coming in, and turning there, it swings
-constexpr double kMisplaced = 0.05;         // [m] beyond what the INS itself allows for
+constexpr double kWellWithin = 0.3;         // [m] margin for swinging while it enters and turns
+constexpr double kMisplaced = 0.05;         // [m] beyond the INS's own uncertainty
 constexpr double kMisturned = 0.1;          // [rad]
-constexpr int64_t kKept = 2'000'000;        // [us] of true places
+constexpr int64_t kKept = 2'000'000;        // [us] history of true poses
 constexpr int64_t kAfterBlind = 1'500'000;  // [us] until it stands again
-constexpr int64_t kToSay = 250'000;         // [us] from a cause to the planner's word
+constexpr int64_t kToSay = 250'000;         // [us] from a cause to the planner's reaction
 const std::string kPerson = "mission operator";
 
 bool isPersons(const std::string& by) {
@@ -60,7 +60,7 @@ void FenceRule::receive(const Received& received) {
   }
 }
 
-/// Does the INS tell where the robot is?
+/// Is the pose of the INS correct?
 void FenceRule::compare(const Received& received) {
   const auto ins = messageOf(kIns, received);
   const auto told = ins ? planarPose(*ins) : std::nullopt;

@@ -15,24 +15,24 @@
 
 namespace tread::faults {
 
-/// The true outline goes over no fence of the robot's file, nor over one of the operator's that the
-/// bridge was handed, once it was within it with room to stop.
-/** While the INS tells the bridge another place than the true one, and while the bridge is gone,
- * halted or cut off from the motors, nobody can keep a fence: then it counts again once the outline
- * is well within. Fences of strangers are not judged: they may make room for others. */
+/// The true outline never crosses a fence of the robot's file, nor one of the operator's that the
+/// bridge has received, once it was inside with enough room to stop.
+/** While the INS's pose is wrong, or the bridge is gone, halted or disconnected from the motors, no
+ * fence can be kept; afterwards a fence applies again once the outline is well inside. Strangers'
+ * fences are not checked: they may be replaced by others. */
 class FenceRule {
  public:
   FenceRule(const std::vector<Fence>& own, const FootprintSize& outline);
 
-  /// What the bridge was handed.
+  /// A message delivered to the bridge.
   void receive(const Received& received);
-  /// The bridge was started: it knows the robot's own fences only.
+  /// The bridge was started: it has only the robot's own fences.
   void start();
   /// The bridge cannot act.
   void blind(int64_t now) { blind_ = now; }
-  /// The true pose and speed [m/s] at a time; what is wrong, or empty.
+  /// True pose and speed [m/s] at a time; returns the violation, empty if none.
   std::string check(int64_t now, const Pose2& T_map_body, double speed);
-  /// [m] least room to a fence that it was held to.
+  /// [m] least distance to a fence that applied.
   double leastRoom() const { return least_room_; }
 
  private:
@@ -40,7 +40,8 @@ class FenceRule {
     Fence fence;
     bool own = false;
     bool within = false;
-    double needed = 0.0;  ///< [m] of room until it counts, beside what it takes to stop
+    /// [m] required distance until it applies, in addition to the stopping distance
+    double needed = 0.0;
   };
   struct Place {
     int64_t utime;  ///< [us]
@@ -53,23 +54,23 @@ class FenceRule {
 
   FootprintSize outline_;
   std::vector<Watched> watched_;
-  std::deque<Place> places_;  ///< of the last moments, oldest first
-  bool misled_ = false;       ///< the newest INS tells another place
+  std::deque<Place> places_;  ///< history, oldest first
+  bool misled_ = false;       ///< the newest INS pose is wrong
   int64_t blind_ = INT64_MIN / 2;
   double least_room_ = std::numeric_limits<double>::infinity();
 };
 
-/// `lost: go_back`: while the planner has no operator it wants no motion but a return.
+/// `lost: go_back`: without an operator the planner may command only a return.
 class ReturnRule {
  public:
   explicit ReturnRule(int64_t operator_lease_us) : lease_(operator_lease_us) {}
 
-  /// What the planner was handed.
+  /// A message delivered to the planner.
   void receive(const Received& received);
   void start() { *this = ReturnRule(lease_); }
-  /// What the planner sends.
+  /// A message sent by the planner.
   void sent(const plan_t& plan) { returns_ = plan.goal_id < 0; }
-  /// What is wrong, or empty.
+  /// The violation; empty if none.
   std::string check(int64_t now, const program_t& program);
 
  private:

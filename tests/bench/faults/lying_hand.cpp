@@ -15,7 +15,7 @@
 namespace tread::faults {
 namespace {
 
-/// Whether something goes on or not, changing after 40 ms to a second.
+/// A state that toggles after random times of 40 ms to 1 s.
 class Toggle {
  public:
   bool at(int64_t now, Draw& draw) {
@@ -31,7 +31,7 @@ class Toggle {
   int64_t next_ = 0;
 };
 
-/// A pad of which at least one axis is never measured, or never in the middle.
+/// A pad with an axis that is never measured, or never centred.
 class LyingPad : public drive::Stick {
  public:
   LyingPad(uint64_t seed, bool& holds) : draw_(seed), holds_(holds) {
@@ -40,7 +40,7 @@ class LyingPad : public drive::Stick {
       axes_[draw_.below(2)].habit = Habit::kShakes;
     for (int i = 0; i < 2; ++i) {
       pad_.setRange(kCodes[i], 0, 255);
-      // The middle, too, is only what the kernel has kept.
+      // The centre, too, is only the kernel's stored value.
       pad_.begin(EV_ABS, kCodes[i], draw_.below(4) == 0 ? 128 : axes_[i].end);
     }
   }
@@ -76,7 +76,7 @@ class LyingPad : public drive::Stick {
   Axis axes_[2];
 };
 
-/// A key that is stuck since before the program's start.
+/// A key that has been stuck since before the program's start.
 class StuckKey : public drive::Stick {
  public:
   StuckKey(uint64_t seed, bool& holds)
@@ -99,7 +99,7 @@ class StuckKey : public drive::Stick {
   drive::KeyState keys_;
 };
 
-/// A page or program of somebody else, which tells no rest: at most one track of it, or none.
+/// A foreign page or program that never reports rest: at most one track, or none.
 class LyingPage {
  public:
   LyingPage(Bus& bus, uint64_t seed) : bus_(bus), draw_(seed), motor_(bus, kMotor) {}
@@ -114,7 +114,7 @@ class LyingPage {
     auto message = blank<manual_t>();
     message.utime = message.seen_utime = motor_.any() ? motor_.message().utime : now;
     message.seq = seq_ += static_cast<int64_t>(draw_.below(3));
-    // Two programs that take turns.
+    // Two programs in alternation.
     message.station = 501 + (second_.at(now, draw_) ? 1 : 0);
     message.operator_name = "mission operator";
     message.hold = button_.at(now, draw_);

@@ -10,21 +10,22 @@
 
 namespace tread::faults {
 
-/// tread-drive with a pad or a keyboard whose stick never rests, or a foreign program that says so,
-/// for one stretch of a mission: presses and releases the button, and falls silent in between.
+/// tread-drive with a pad or keyboard whose stick never rests, or an equivalent foreign program,
+/// for a period of a mission: it presses and releases the button and falls silent at times.
 class LyingHand {
  public:
   LyingHand(Bus& bus, const HandLie& lie);
 
-  /// Call every 20 ms or so; `since` the start of the mission [us].
+  /// Call about every 20 ms; `since`: start of the mission [us].
   void step(int64_t now, int64_t since);
   bool holds() const { return holds_; }
 
  private:
   HandLie lie_;
   std::unique_ptr<drive::DriveCall> call_;
-  std::function<bool(int64_t)> page_;  ///< tells something at a time; whether the button is held
-  bool holds_ = false;                 ///< the dead-man's button
+  /// sends a message at a time; returns whether the button is held
+  std::function<bool(int64_t)> page_;
+  bool holds_ = false;  ///< the dead-man's button
 };
 
 }  // namespace tread::faults

@@ -9,7 +9,7 @@
 
 namespace tread::faults {
 
-/// The robot's drive; with `swapped` the left motor turns the right track.
+/// The robot's drive; if `swapped`, the left motor drives the right track.
 class LyingDrive : public sim::Plant {
  public:
   explicit LyingDrive(std::unique_ptr<sim::Plant> drive) : drive_(std::move(drive)) {}

@@ -40,7 +40,7 @@ class ScriptedStick : public drive::Stick {
 
 PersonAtStick::PersonAtStick(Bus& bus, const HandStretch& stretch) : stretch_(stretch) {
   const operators::Requester requester{"mission operator", "", "mission operator"};
-  // It hears MOTOR from the start: the bus has no other way to begin later.
+  // It subscribes to MOTOR at once: the bus cannot add it later.
   call_ = std::make_unique<drive::DriveCall>(
       bus, requester, std::make_unique<ScriptedStick>(stretch, bus.now() + stretch.from));
 }

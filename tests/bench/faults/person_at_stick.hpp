@@ -9,13 +9,13 @@
 
 namespace tread::faults {
 
-/// tread-drive with a person at its stick, for one stretch of a mission: takes the robot, steers,
-/// lets the button go for a moment, and gives the robot back; or falls silent, and comes back.
+/// tread-drive with a person at its stick, for a period of a mission: takes over, steers, releases
+/// the button for a moment, and gives back, or falls silent and returns.
 class PersonAtStick {
  public:
   PersonAtStick(Bus& bus, const HandStretch& stretch);
 
-  /// Call every 20 ms or so; `since` the start of the mission [us].
+  /// Call about every 20 ms; `since`: start of the mission [us].
   void step(int64_t now, int64_t since);
 
  private:

@@ -12,7 +12,7 @@ namespace {
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr int64_t kRemembered = 2'500'000;  // [us]
 
-/// An obstacle that is none, or none where there is one.
+/// A false obstacle, or free space instead of one.
 void replaceSector(lidar::RangeScan& scan, double strength, bool phantom) {
   const double centre = 1.6 * (strength - 0.5);
   const double half = phantom ? 0.2 : 0.9;
@@ -23,7 +23,7 @@ void replaceSector(lidar::RangeScan& scan, double strength, bool phantom) {
   }
 }
 
-/// As if the device had been turned: what it does not show any more is not measured.
+/// As if the device were rotated; beams outside of its field are not measured.
 void turn(lidar::RangeScan& scan, double angle) {
   const auto shift = static_cast<int64_t>(std::lround(angle / scan.angle_step));
   const auto count = static_cast<int64_t>(scan.ranges.size());
@@ -38,7 +38,7 @@ void turn(lidar::RangeScan& scan, double angle) {
 
 }  // namespace
 
-/// Shows the newest scan that was taken until a time.
+/// Returns the newest scan taken before a time.
 void ScanFaults::repeat(lidar::RangeScan& scan, int64_t utime) {
   const auto after = std::find_if(past_.begin(), past_.end(),
                                   [&](const auto& past) { return past.utime > utime; });
@@ -56,7 +56,7 @@ void ScanFaults::disturb(lidar::RangeScan& scan) {
     case FaultKind::kVanish:
       return replaceSector(scan, strength, fault_->kind == FaultKind::kPhantom);
     case FaultKind::kScanFreeze: {
-      // The last one, or the last few in turn.
+      // The last one, or the last few in alternation.
       const size_t turns = std::min<size_t>(past_.size(), strength < 0.7 ? 1 : 3);
       scan.ranges = past_[past_.size() - 1 - static_cast<size_t>(++frame_) % turns].ranges;
       return;

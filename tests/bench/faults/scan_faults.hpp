@@ -11,7 +11,7 @@
 
 namespace tread::faults {
 
-/// What is wrong with a range finder, before its driver sees a scan.
+/// Faults of a range finder, before its driver gets a scan.
 class ScanFaults {
  public:
   void begin(const Fault& fault) { fault_ = fault; }
@@ -22,7 +22,7 @@ class ScanFaults {
   void repeat(lidar::RangeScan& scan, int64_t utime);
 
   std::optional<Fault> fault_;
-  std::deque<lidar::RangeScan> past_;  ///< as they were
+  std::deque<lidar::RangeScan> past_;  ///< unaltered
   int frame_ = 0;
 };
 

@@ -29,7 +29,7 @@ Fault faultOf(FaultKind kind, double from, double until, const std::string& chan
       strength};
 }
 
-/// What broke in mission 3 under one fault; empty if nothing did.
+/// Violation in mission 3 under one fault; empty if none.
 std::string brokenBy(const missions::RobotConfig& robot, const Fault& fault, bool keyed = true) {
   FaultSchedule schedule;
   schedule.seed = 3;
@@ -41,7 +41,7 @@ std::string brokenBy(const missions::RobotConfig& robot, const Fault& fault, boo
   return run.violation ? run.violation->what : "";
 }
 
-/// Seeds from one on, with their fences, hands, tilts and returns, in missions of 12 s.
+/// Seeds from `first` on with fences, manual driving, tilts and returns, in missions of 12 s.
 void driveSeeds(uint64_t first, int count) {
   RunOptions options;
   options.duration = 12.0;
@@ -54,7 +54,7 @@ void driveSeeds(uint64_t first, int count) {
 
 }  // namespace
 
-// Three cases: they run beside each other. One in the usual run, 67 seeds; all with tools/test --all.
+// Three cases, which run in parallel. The usual run has 67 seeds; tools/test --all has all.
 TEST_CASE("seeds from 1 on break no rule under their faults") {
   driveSeeds(1, 67);
 }
@@ -66,8 +66,8 @@ TEST_CASE("seeds from 2001 on break no rule under their faults", "[study]") {
 }
 
 TEST_CASE("seeds that once broke a rule, or touched something") {
-  // By the commits on which they did; what was mended since changed the draws of some: 23, 163,
-  // 178, 254, 302 and 1582 were of an earlier order of faults, and mean others now.
+  // Seeds that once broke a rule. Later fixes changed the draws of some: 23, 163, 178, 254, 302 and
+  // 1582 belong to an earlier order of faults and now mean others.
   RunOptions every_beam;
   every_beam.beams = 541;
   for (const uint64_t seed : {20537, 40414, 23, 163, 178, 254, 302, 1582, 50154, 101483, 101880,
@@ -76,13 +76,13 @@ TEST_CASE("seeds that once broke a rule, or touched something") {
     const FaultyRun run = runFaulty(teodor(), bareScheduleOf(seed, 16.0), every_beam);
     CHECK((run.violation ? run.violation->what : "") == "");
   }
-  // Out of a fence, or of ground that the INS said to be steep, through obstacles and the unknown;
-  // the last: a MANUAL that was changed on its way counted for the rule.
+  // These left a fence, or ground that the INS reported as steep, through obstacles and unknown
+  // cells; in the last one a MANUAL altered in transit was counted by the rule.
   for (const uint64_t seed :
        {4, 200006, 200049, 200068, 200091, 200143, 200149, 202133, 305019, 305178, 308388}) {
     CAPTURE(seed);
     FaultSchedule schedule = scheduleOf(seed, 16.0);
-    schedule.scenario.lie.reset();  // they knew none
+    schedule.scenario.lie.reset();  // those seeds had none
     const FaultyRun run = runFaulty(teodor(), schedule);
     CHECK((run.violation ? run.violation->what : "") == "");
   }
@@ -109,7 +109,7 @@ TEST_CASE("a range finder that lies while the robot drives is named and touches 
         CHECK(run.effect.reason == "disarmed by planner");
         CHECK_FALSE(run.arrived);
       }
-      // What a turned scan looks like depends on what stands around, and how fast the robot turns.
+      // The appearance of a rotated scan depends on the surroundings and on the robot's yaw rate.
       std::sort(named.begin(), named.end());
       CAPTURE(nameOf(kind), strength, named[0], named[1], named[2]);
       CHECK(named[1] < 0.6);
@@ -207,7 +207,7 @@ TEST_CASE("the rules see a pattern through an obstacle, and through what was nev
   tell(kFree, 1'000'000);
   CHECK(plan(before, 2'000'000).empty());
   tell(kObstacle, 3'000'000);
-  CHECK(plan(before, 3'100'000).empty());  // it cannot know yet
+  CHECK(plan(before, 3'100'000).empty());  // it cannot have received it yet
   CHECK(plan(before, 3'300'000).find("1 obstacle cells") != std::string::npos);
   CHECK(plan(5.0, 3'300'000).empty());
   CHECK(plan(19.5 - pattern.end().x, 3'300'000).find("unknown ones") != std::string::npos);
@@ -253,7 +253,7 @@ TEST_CASE("the rules see a bridge that does not look at the tilt that it is told
 
 namespace {
 
-/// What a person may break who drives by hand from 6 to 11 s.
+/// Violation while a person drives from 6 to 11 s.
 FaultyRun byHand(const missions::RobotConfig& robot, int64_t silent_from, double released) {
   FaultSchedule schedule;
   schedule.seed = 3;
@@ -299,12 +299,12 @@ TEST_CASE("the rules see a return that is none, and one that a stop has not ende
   const FaultyRun returns = runFaulty(loose, schedule);
   CHECK_FALSE(returns.violation);
   CHECK(returns.returned);
-  // A planner that does not notice the loss drives on to its goal.
+  // A planner that ignores the loss drives on to its goal.
   loose.planner.operators.lease_us = 60'000'000;
   const FaultyRun goes_on = runFaulty(loose, schedule);
   REQUIRE(goes_on.violation);
   CHECK(goes_on.violation->what.find("no return") != std::string::npos);
-  // An ARM without an operator, after a stop on the way back, counts for nothing.
+  // An ARM without an operator, after a stop on the way back, has no effect.
   schedule.faults.push_back(faultOf(FaultKind::kEstop, 12.5, 12.6));
   schedule.faults.push_back(faultOf(FaultKind::kForge, 13.0, 14.5, "ARM"));
   CHECK_FALSE(runFaulty(teodor(), schedule).violation);
@@ -312,8 +312,8 @@ TEST_CASE("the rules see a return that is none, and one that a stop has not ende
 
 namespace {
 
-/// A bridge that was told everything it needs to drive, again every 10 ms, but for what is left
-/// out.
+/// A bridge that has received everything needed for driving, repeated every 10 ms, except for
+/// `left_out`.
 struct ToldBridge {
   MotorRule rule{MotorLimits{}};
   int64_t now = 1'000'000;
@@ -341,7 +341,7 @@ struct ToldBridge {
     ins.orientation[1] = std::sin(roll / 2.0);
     if (left_out != "INS") tell(kIns, ins);
   }
-  /// Milliseconds of power until the rule objects; -1 if it does not within 3 s.
+  /// Milliseconds of power until the rule reports a violation; -1 if not within 3 s.
   int64_t drive(const std::string& left_out) {
     const int64_t start = now;
     for (; now < start + 3'000'000; now += 10'000) {
@@ -379,16 +379,16 @@ TEST_CASE("the motors' rule: a hand moves while it holds and sees, and no longer
     told.tell(kManual, manual);
     return told.drive("motion");
   };
-  // The program's lease of 200 ms is that of the last one that wanted motion.
+  // The program's lease of 200 ms is that of the last one with motion.
   CHECK(drive(true, false) == 470);
   CHECK(drive(false, false) == 460);
-  // A stick that was not seen at rest moves nothing, whatever it holds.
+  // A stick that was not measured at rest must not move the robot.
   CHECK(drive(true, false, 1.0F) == 460);
   CHECK(drive(true, false, std::numeric_limits<float>::quiet_NaN()) == 460);
   ToldBridge told;
   told.arm();
   REQUIRE(told.drive("") == -1);
-  // Without program and INS it may go on, and needs no ARM afterwards.
+  // Without program and INS it may continue, and needs no new ARM.
   manual_t manual{};
   manual.hold = 1;
   for (int i = 0; i < 200; ++i, told.now += 10'000) {
@@ -418,7 +418,7 @@ TEST_CASE("the motors' rule: beyond the tilt limit zero within 250 ms, and until
     const int64_t objects = told.drive("");
     told.roll = 0.0;
     told.rule.check(told.now, {0.0, 0.0});
-    if (objects >= 0) CHECK(told.drive("") >= 0);  // nobody has armed it
+    if (objects >= 0) CHECK(told.drive("") >= 0);  // not armed
     told.arm();
     CHECK(told.drive("") == -1);
     return objects;
@@ -475,7 +475,7 @@ TEST_CASE("the motors' rule objects 250 ms after each cause, and wants arming ag
     CHECK(objects <= limit + 20);
     told.rule.check(told.now, {0.0, 0.0});
     told.tellAllBut("");
-    if (left_out != "motion") CHECK(told.drive("") >= 0);  // nobody has armed it
+    if (left_out != "motion") CHECK(told.drive("") >= 0);  // not armed
     told.arm();
     CHECK(told.drive("") == -1);
   }

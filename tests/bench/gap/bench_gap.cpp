@@ -10,12 +10,12 @@
 #include "modules/identification/core/discovery.hpp"
 #include "tests/identification/synthetic_drive.hpp"
 
-// What `tread-gap find` computes between the log and the report, on ten minutes of driving: the
-// test of the whole catalogue, refits, pruning, the nested halves, adequacy and the residual maps,
-// with one thread. The drive and what hides in it are always the same, so that the work is, too;
-// reading logs and writing reports is not in it. `simulations` is that time over the time that the
-// nominal model takes to simulate and predict the same drive once, measured in the same process:
-// it holds on any machine. `cpu_s` is the processor time on this one.
+// Computing time of `tread-gap find` between log and report, for ten minutes of driving with one
+// thread: the tests of the whole catalogue, refits, pruning, nested halves, adequacy and residual
+// maps. Reading logs and writing reports are excluded. The drive and its hidden effect are
+// constant, so the work is, too. `simulations` is that time divided by the time of one simulation
+// and prediction of the same drive by the nominal model, in the same process: it is comparable
+// between machines. `cpu_s` is the processor time on this one.
 
 namespace {
 
@@ -26,9 +26,9 @@ using Hidden = std::vector<std::pair<std::string, double>>;
 
 constexpr double kSeconds = 600.0;
 constexpr uint64_t kSeed = 7;
-constexpr int kReference = 100;  // predictions whose mean is the reference
+constexpr int kReference = 100;  // predictions averaged for the reference
 
-/// Of this process: what else the machine does does not count [s].
+/// Processor time of this process, independent of others [s].
 double now() {
   timespec time{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
@@ -45,7 +45,7 @@ GapTask taskOf(const Hidden& hidden) {
   return task;
 }
 
-/// Seconds that one simulation and prediction of the drive by the nominal model takes.
+/// Seconds for one simulation and prediction of the drive by the nominal model.
 double predictionTime(const GapTask& task) {
   const Observations data(task.train, {});
   benchmark::DoNotOptimize(data.predict(task.model).data());

@@ -24,27 +24,27 @@ constexpr int64_t kOperatorLease = 1'000'000;  // [us]
 constexpr int64_t kHold = 1'000'000;           // [us] for which the motors must stay at zero
 constexpr double kBudget = 0.25;  // [s] from the end of lease or series, or from the kill
 
-/// In the place of a signal: the cable to the operator's host is pulled.
+/// Instead of a signal: disconnects the operator's host.
 constexpr int kCutOff = 0;
 
 const char* toWords(int signal) {
   return signal == SIGKILL ? "killed" : signal == SIGSTOP ? "frozen" : "cut off";
 }
 
-/// What came of one kill.
+/// Result of one kill.
 struct Kill {
   std::string process;
   int signal = SIGKILL;
   double stands = -1.0;        ///< [s] from the reference to motors at zero; -1 = never
   double from_kill = -1.0;     ///< [s] the same from the kill itself
-  double stall = 0.0;          ///< [s] that the machine itself stood still meanwhile
+  double stall = 0.0;          ///< [s] of the machine's own stalls meanwhile
   double bridge_stall = 0.0;   ///< [s] longest time between two MOTOR messages until then
-  std::string reason;          ///< why it stands, as the bridge says
+  std::string reason;          ///< reason of standing, from the bridge
   bool moved_unasked = false;  ///< before it was armed again
   bool set_lost = false;       ///< the set's version went back
 };
 
-/// A robot that drives to and fro on a field while its processes are killed.
+/// A robot that drives back and forth on a field while its processes are killed.
 class KillBench {
  public:
   explicit KillBench(uint64_t seed) : run_(kField, "[-20, 0, 0]", "", hosts_.url()), random_(seed) {
@@ -70,7 +70,7 @@ class KillBench {
     else
       run_.signal(process, signal);
     const int64_t killed = run_.now();
-    run_.wait(0.05);  // what it said before is heard now
+    run_.wait(0.05);  // receive its earlier messages now
     const int64_t reference = referenceOf(process, killed);
     std::optional<int64_t> zero;
     run_.until(10.0, [&] {
@@ -131,7 +131,7 @@ class KillBench {
     throw std::runtime_error("the robot does not drive: " + run_.plan().message().reason);
   }
 
-  /// To a program of its own, driving.
+  /// Lets it drive with its own program.
   void leave() {
     for (int i = 0; i < 20; ++i) {
       run_.leaveTo(20.0 * side_, 1.0, hosts_.atStation());
@@ -144,14 +144,14 @@ class KillBench {
     throw std::runtime_error("the robot does not drive by tread-goal");
   }
 
-  /// When the permission that the process gave ends by itself.
+  /// End of the permission that the killed process gave.
   int64_t referenceOf(const std::string& process, int64_t killed) const {
     if (process == "operator") return killed + kOperatorLease;
     if (process == "planner") return run_.program().message().utime + kLease;
     return killed;
   }
 
-  TwoHosts hosts_;  ///< first: what follows opens sockets
+  TwoHosts hosts_;  ///< first, as the following members open sockets
   RobotRun run_;
   std::mt19937_64 random_;
   double side_ = -1.0;

@@ -18,7 +18,7 @@ namespace {
 using namespace tread;
 using namespace tread::testing;
 
-/// Hears the whole bus as a logger does, and measures LCM itself with MARK messages of its own.
+/// Receives the whole bus like a logger, and measures LCM itself with its own MARK messages.
 class Listener {
  public:
   explicit Listener(const std::string& url) : hears_(url), speaks_(url) {

@@ -18,7 +18,7 @@ namespace {
 using namespace tread;
 using namespace tread::learner;
 
-/// Of this thread alone: what else the machine does does not count [ns].
+/// Processor time of this thread, independent of others [ns].
 double now() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -40,7 +40,7 @@ VehicleModel surface(size_t number) {
   return model;
 }
 
-/// A set of so many patterns, from straight to sharp turns either way.
+/// A set of so many patterns, from straight to sharp turns on both sides.
 PatternSet setOf(size_t patterns, size_t samples) {
   const VehicleModel model = surface(0);
   const TrackCommand full{1.0, 1.0};
@@ -69,7 +69,7 @@ PatternSet setOf(size_t patterns, size_t samples) {
   return *set;
 }
 
-/// One execution as the learner gets it.
+/// One execution for the learner.
 struct Driven {
   size_t pattern = 0;
   Measurement measurement;
@@ -79,8 +79,7 @@ struct Driven {
   }
 };
 
-/// Executions of all patterns, surface after surface, each for a while; half of them only begun if
-/// so wanted.
+/// Executions of all patterns on a sequence of surfaces; with `parts` half of them are incomplete.
 std::vector<Driven> drives(const PatternSet& set, bool parts = false) {
   std::mt19937_64 random(1);
   std::vector<Driven> all;
@@ -109,7 +108,8 @@ size_t numbersOf(const PatternSet& set) {
   return numbers;
 }
 
-/// Nanoseconds to copy the numbers of the set once: what any rule that touches all of them pays.
+/// Nanoseconds to copy the numbers of the set once: the least cost of any rule that touches all of
+/// them.
 double copyTime(const PatternSet& set) {
   const size_t numbers = numbersOf(set);
   std::vector<double> from(numbers, 1.0), to(numbers);
@@ -140,7 +140,7 @@ void putTimes(benchmark::State& state, std::vector<double> times) {
   state.counters["p99_us"] = times[times.size() * 99 / 100];
 }
 
-/// One execution learned, all patterns predicted anew; times of single ones [us].
+/// Learns one execution and predicts all patterns again; single times [us].
 void update(benchmark::State& state, Rule name, size_t patterns, size_t samples, bool parts) {
   const PatternSet set = setOf(patterns, samples);
   const std::vector<Driven> driven = drives(set, parts);
@@ -172,8 +172,8 @@ void update(benchmark::State& state, Rule name, size_t patterns, size_t samples,
   if (rule->remembered() >= 0) state.counters["surfaces"] = rule->remembered();
 }
 
-/// A whole correction: learning, predictions, covariances, the new checked set. Times of single
-/// ones [us].
+/// A complete correction: learning, predictions, covariances, the new checked set. Single times
+/// [us].
 void correct(benchmark::State& state, Rule name, size_t patterns, size_t samples) {
   const PatternSet set = setOf(patterns, samples);
   const std::vector<Driven> driven = drives(set);

@@ -14,15 +14,15 @@ namespace {
 
 constexpr int64_t kTick = 5'000;           // [us]
 constexpr int64_t kOperatorTick = 50'000;  // [us]
-constexpr int64_t kGivesUp = 20'000'000;   // [us] of standing without a way
+constexpr int64_t kGivesUp = 20'000'000;   // [us] of standing without a path
 constexpr double kWellWithin = 0.3;        // [m]
 constexpr double kOutsideSlack = 1e-3;     // [m]
 
-/// A fence that the robot is within, or is to come back over.
+/// A fence that the robot is inside of, or must return into.
 struct Watched {
   Fence fence;
   bool within = false;
-  double best = -1e9;  ///< [m] most room while it is over it
+  double best = -1e9;  ///< [m] largest distance while it is outside
 };
 
 missions::RobotConfig configured(missions::RobotConfig config, const LimitWorld& world,
@@ -82,7 +82,7 @@ class Run {
     was_armed_ = message.bridge_state != motor_t::STATE_DISARMED;
   }
 
-  /// A stranger's fence across the way of the driving robot.
+  /// A stranger's fence across the path of the driving robot.
   void surprise() {
     if (!world_.surprise_s || surprised_ || result_.seconds < *world_.surprise_s) return;
     const Pose2& here = system_.robot().truth().T_map_body;
@@ -106,7 +106,7 @@ class Run {
         std::max(result_.inclination, std::acos(std::min(1.0, truth.body.R_map_body(2, 2))));
     for (Watched& watched : watched_) {
       const double room = roomAt(watched.fence, truth.T_map_body, outline_);
-      // Coming in it swings: it is within once it is well within.
+      // While entering it swings: it counts as inside once it is well inside.
       const bool comes_in = world_.starts_outside && watched.fence.name == "yard";
       if (room >= (comes_in ? kWellWithin : 0.0)) watched.within = true;
       if (watched.within) {

@@ -27,7 +27,7 @@ class Draw {
   std::mt19937_64 engine_;
 };
 
-/// The frame of the way: start in its origin, goal on its x axis.
+/// Frame of the way: origin at the start, x axis towards the goal.
 Pose2 wayOf(const missions::MissionWorld& mission) {
   const Vector2d way = mission.T_map_goal.position() - mission.T_map_start.position();
   return {mission.T_map_start.x, mission.T_map_start.y, std::atan2(way.y(), way.x())};
@@ -87,7 +87,7 @@ void addHills(LimitWorld& world, Draw& draw) {
     sim::TerrainBump bump;
     bump.centre = T_map_way * Vector2d(draw.between(3.0, length - 3.0), draw.between(-4.0, 4.0));
     bump.radius = draw.between(2.0, 5.0);
-    // Steepest at its radius.
+    // The steepest place is at its radius.
     bump.height = std::tan(draw.between(8.0, 40.0) * kDegree) * bump.radius * std::exp(0.5);
     if (draw.chance(0.4)) bump.height = -bump.height;
     terrain.bumps.push_back(bump);

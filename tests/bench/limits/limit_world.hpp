@@ -11,10 +11,10 @@
 
 namespace tread::limits {
 
-/// Whose limits are tried.
+/// Kind of limits under test.
 enum class Kind { kFences, kSlopes };
 
-/// A mission and what it must not pass; the same for the same seed.
+/// A mission and its limits, a function of the seed.
 /** Obstacles and surfaces are those of a mission of 14 to 24 m. Fences: a yard with a notch around
  * the way, up to two polygons to keep out of on it, often another one that an operator's message
  * puts before the driving robot; sometimes the planner does not know them, and sometimes the robot

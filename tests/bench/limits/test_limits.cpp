@@ -45,7 +45,7 @@ TEST_CASE(
 }
 
 TEST_CASE("between hills and pits it never tilts beyond its hard limit") {
-  // The first of these once stopped on a slope, and slid on down into a pit.
+  // The first of these once stopped on a slope and slid down into a pit.
   LimitOptions half_a_minute;
   half_a_minute.seconds = 30.0;
   for (const uint64_t seed : {259, 456, 963, 1, 14, 19}) {

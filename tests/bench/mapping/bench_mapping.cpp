@@ -24,7 +24,7 @@ using octomap::Pointcloud;
 constexpr double kResolution = 0.1;  // [m]
 constexpr double kMaxRange = 10.0;   // [m]
 
-/// Of this thread alone: what else the machine does does not count.
+/// Processor time of this thread, independent of others.
 template <class Action>
 double milliseconds(const Action& action) {
   const auto now = [] {
@@ -37,7 +37,7 @@ double milliseconds(const Action& action) {
   return now() - start;
 }
 
-/// Points of a text file, three numbers each; empty if there is none.
+/// Points of a text file, three numbers per line; empty if there is none.
 Pointcloud readCloud(const std::string& path) {
   Pointcloud cloud;
   std::ifstream file(path);
@@ -48,14 +48,14 @@ Pointcloud readCloud(const std::string& path) {
   return cloud;
 }
 
-/// The cloud from a place farther along, turned a little more.
+/// The cloud from a place further on, with some rotation.
 Pointcloud moved(const Pointcloud& cloud, const octomap::pose6d& T_map_sensor) {
   Pointcloud moved(cloud);
   moved.transform(T_map_sensor);
   return moved;
 }
 
-/// Reports both ways' times and their ratio; stops the bench if the trees differ.
+/// Reports the times of both methods and their ratio; stops the benchmark if the trees differ.
 class Comparison {
  public:
   explicit Comparison(benchmark::State& state) : state_(state) {}
@@ -90,7 +90,7 @@ class Comparison {
   double theirs_ = 0.0;
 };
 
-/// A whole cloud: $TREAD_SCAN, three numbers a line.
+/// A complete cloud: $TREAD_SCAN, three numbers per line.
 Pointcloud scanOf(benchmark::State& state) {
   const char* const path = std::getenv("TREAD_SCAN");
   Pointcloud scan = readCloud(path == nullptr ? "" : path);
@@ -121,7 +121,7 @@ void cloud(benchmark::State& state) {
 }
 BENCHMARK(cloud)->UseManualTime()->Iterations(25)->Unit(benchmark::kMillisecond);
 
-/// The same by itself, as in a process of its own, without OctoMap between.
+/// The same in isolation, without OctoMap in the same process.
 void cloudAlone(benchmark::State& state) {
   const Pointcloud scan = scanOf(state);
   OcTree tree(kResolution);
@@ -137,7 +137,7 @@ void cloudAlone(benchmark::State& state) {
 }
 BENCHMARK(cloudAlone)->UseManualTime()->Iterations(100)->Unit(benchmark::kMillisecond);
 
-/// 1081 beams in a hall with pillars, into the map that the process keeps.
+/// 1081 beams in a hall with pillars, into a persistent map.
 void planeScan(benchmark::State& state) {
   VoxelMap map(VoxelConfig{}, 256);
   map.moveTo({-128, -128}, -32);

@@ -27,14 +27,14 @@ struct Arguments {
 
 /// One drive, with the same world for the same seed.
 constexpr double kDrive = 600.0;  // [s]
-constexpr double kReach = 120.0;  // [m] of the patches of ground around the start
+constexpr double kReach = 120.0;  // [m] extent of the patches of ground around the start
 constexpr int kPatches = 60;
-constexpr double kSteepest = 0.18;         // [1] of the ground in half of the worlds
+constexpr double kSteepest = 0.18;         // [1] slope of the ground in half of the worlds
 constexpr int64_t kArmAgain = 2'000'000;   // [us] of standing
-constexpr int kDisarmed = 600;             // one step of 50 ms in so many
+constexpr int kDisarmed = 600;             // one in so many steps of 50 ms
 constexpr const char* kName = "somebody";  // the operator
 
-/// Patches of all kinds of ground, in half of the worlds on waves.
+/// Patches of all kinds of ground; wavy in half of the worlds.
 sim::WorldDescription patchwork(uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto draw = [&](double from, double to) {
@@ -60,7 +60,7 @@ sim::WorldDescription patchwork(uint64_t seed) {
   return world;
 }
 
-/// In the planner's place: pattern after pattern, each drawn from those that may follow.
+/// Replaces the planner: executes patterns drawn from those that may follow.
 class Wanderer : public Node {
  public:
   Wanderer(Bus& bus, const PatternSet& set, uint64_t seed)
@@ -107,12 +107,12 @@ class Wanderer : public Node {
 };
 
 struct Counts {
-  double moving = 0.0;  ///< [s] with commands other than zero
+  double moving = 0.0;  ///< [s] with non-zero commands
   double metres = 0.0;
   std::map<std::string, int> stops;  ///< by reason
 };
 
-/// Devices, INS driver and motor bridge with the shipped configuration, driven by a wanderer.
+/// Devices, INS driver and motor bridge with the shipped configuration, driven by a Wanderer.
 void drive(const missions::RobotConfig& robot, uint64_t seed, Counts& counts) {
   VirtualBus bus(seed);
   auto [ins_line, ins_device] = makePipe();
@@ -154,7 +154,7 @@ void drive(const missions::RobotConfig& robot, uint64_t seed, Counts& counts) {
     beacon.step(bus.now());
     const bool moves = motor.command[0] != 0.0F || motor.command[1] != 0.0F;
     if (was != motor_t::STATE_DISARMED) stood_since = bus.now();
-    // In the middle of a pattern, too, and what follows begins at rest.
+    // Also in the middle of a pattern; the next one then begins at rest.
     const bool disarms = random() % kDisarmed == 0;
     if (disarms || bus.now() - stood_since > kArmAgain) {
       arm_t arm{};

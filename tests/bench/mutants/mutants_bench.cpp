@@ -25,7 +25,7 @@ constexpr size_t kLongest = 20'000;        // bytes of a mutant
 constexpr double kSlowest = 1.0;           // s of a hundred messages
 constexpr rlim_t kMemory = 1'000'000'000;  // bytes, above which the decoder throws
 
-/// Changes messages, mostly behind their fingerprint, so that the rest is looked at.
+/// Mutates messages, mostly after their fingerprint, so that decoding continues.
 class Mutator {
  public:
   explicit Mutator(uint64_t seed) : random_(seed) {}
@@ -69,7 +69,7 @@ class Mutator {
         bytes[at] = bytes[place(bytes)];
     }
   }
-  /// A length, a count or a part of a number, such as breaks careless readers.
+  /// A length, count or part of a number that breaks careless readers.
   void writeNumber(Bytes& bytes, size_t at) {
     constexpr std::array<uint32_t, 12> kNumbers{0,          1,          2,          0xFF,
                                                 0xFFFF,     0x10000,    0x7FFFFFFF, 0x80000000,
@@ -83,12 +83,12 @@ class Mutator {
 };
 
 struct Tally {
-  int64_t taken = 0;   ///< were messages all the same
+  int64_t taken = 0;   ///< accepted as messages
   double slowest = 0;  ///< s
-  std::string broken;  ///< what a decoder did that it must not; empty = nothing
+  std::string broken;  ///< forbidden behaviour of a decoder; empty = none
 };
 
-/// What is taken must be sendable again; nothing may throw, take long or much memory.
+/// An accepted message must be encodable; nothing may throw, take long or need much memory.
 template <class Message>
 void judge(const Bytes& mutant, Tally& tally) {
   Message message{};
@@ -134,7 +134,7 @@ int main(int argc, char** argv) {
   app.add_option("--seed", seed, "of the mutations");
   app.add_option("--only", only, "this channel alone");
   CLI11_PARSE(app, argc, argv);
-#ifndef __SANITIZE_ADDRESS__  // which reserves far more
+#ifndef __SANITIZE_ADDRESS__  // it reserves far more
   const rlimit memory{kMemory, kMemory};
   setrlimit(RLIMIT_DATA, &memory);
 #endif

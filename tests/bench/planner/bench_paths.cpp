@@ -22,7 +22,7 @@ const char* const kOwnPatterns = TREAD_SOURCE_DIR "/config/patterns/teodor.yaml"
 constexpr double kDeadline = 100.0;  // [ms]
 constexpr size_t kQueries = 500;
 
-/// A map and a set; paths that do not begin with / lie among the recordings.
+/// A map and a set; relative paths are in the folder of recordings.
 struct Scenario {
   const char* name;
   std::string map;
@@ -36,7 +36,7 @@ std::string found(const std::string& path) {
   return folder == nullptr ? path : std::string(folder) + "/planning/" + path;
 }
 
-/// Reads a scenario; the benchmark is skipped if a file of others is not here.
+/// Reads a scenario; skips the benchmark if a file is missing.
 std::optional<PlanTask> load(benchmark::State& state, const Scenario& scenario, bool many) {
   PlanOptions options;
   options.map = found(scenario.map);
@@ -53,7 +53,7 @@ std::optional<PlanTask> load(benchmark::State& state, const Scenario& scenario, 
   return loadTask(options);
 }
 
-/// Plan from the map's own start to its own goal, all work counted but reading the files.
+/// Plans from the map's own start to its goal; includes all work except for reading the files.
 void oneGoal(benchmark::State& state, const Scenario& scenario) {
   const std::optional<PlanTask> task = load(state, scenario, false);
   if (!task) return;
@@ -72,7 +72,7 @@ void oneGoal(benchmark::State& state, const Scenario& scenario) {
   state.counters["memory_mb"] = answer.memory_mb;
 }
 
-/// Random queries as the planner's users ask them, one after the other on one map.
+/// Random queries in sequence on one map.
 void manyGoals(benchmark::State& state, const Scenario& scenario) {
   const std::optional<PlanTask> task = load(state, scenario, true);
   if (!task) return;

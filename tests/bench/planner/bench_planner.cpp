@@ -18,7 +18,7 @@ using namespace tread;
 using namespace tread::planner;
 using namespace tread::planner::testkit;
 
-/// A mission with its map wholly known.
+/// A mission with a completely known map.
 struct Scene {
   explicit Scene(uint64_t seed)
       : mission(randomMission(seed)),
@@ -72,7 +72,7 @@ void preparePatterns(benchmark::State& state) {
 }
 BENCHMARK(preparePatterns)->Unit(benchmark::kMicrosecond);
 
-/// The paper's five patterns, and no others but those that start and stop.
+/// The paper's five patterns, plus those that start and stop.
 PatternSet fivePatterns() {
   const std::set<std::string> wanted = {"straight",   "left",  "right", "hard_left",
                                         "hard_right", "start", "stop"};
@@ -81,14 +81,14 @@ PatternSet fivePatterns() {
   for (const MotionPattern& pattern : content.patterns)
     if (wanted.count(pattern.name) > 0) kept.push_back(pattern);
   content.patterns = kept;
-  content.classes.pop_back();  // nothing drives back
+  content.classes.pop_back();  // no driving backwards
   std::string why;
   const std::optional<PatternSet> set = PatternSet::make(std::move(content), why);
   if (!set) throw std::logic_error(why);
   return *set;
 }
 
-/// Worlds with all that a search wants of them.
+/// Worlds with all inputs of a search.
 struct Worlds {
   explicit Worlds(const PatternSet& set) : table(set, usualSweep(), {}) {
     for (uint64_t seed = 1; seed <= 10; ++seed) scenes.emplace_back(seed);
@@ -129,13 +129,13 @@ void searchWorlds(benchmark::State& state, const PatternSet& set, const SearchCo
       benchmark::Counter(static_cast<double>(expansions), benchmark::Counter::kAvgIterations);
 }
 
-/// As on the robot: to the horizon.
+/// As on the robot: up to the horizon.
 void searchAhead(benchmark::State& state) {
   searchWorlds(state, samplePatterns(), {});
 }
 BENCHMARK(searchAhead)->Unit(benchmark::kMillisecond)->MinTime(2.0);
 
-/// With an unreachable horizon all expansions of the budget are spent.
+/// With an unreachable horizon the whole budget of expansions is spent.
 void searchOn(benchmark::State& state) {
   SearchConfig config;
   config.horizon = 1000.0;

@@ -38,8 +38,8 @@ PatternSet fifteenPatterns(double turn_error) {
   return *set;
 }
 
-/// A cycle: field and distance to the goal of the changed map, the table of the changed set, the
-/// search.
+/// A cycle: clearance and distance to the goal for the changed map, the table for the changed set,
+/// the search.
 void replan(benchmark::State& state) {
   PlanningMapConfig config = usualMap();
   config.window = kSide;
@@ -55,7 +55,7 @@ void replan(benchmark::State& state) {
     missions.push_back(randomMission(i + 1));
     grids.push_back(missions[i].ground.paint(0.1, {-16.0, -19.2}, {24.0, 20.8}));
     tiles.push_back(tilesOf(grids[i], ToyMapping::kTileCells, 1));
-    // The robot has been there for a while.
+    // The robot has been there for some time.
     for (const Tile& tile : tiles[i]) maps[i].put(tile, ToyMapping::kCell, ToyMapping::kTileCells);
     maps[i].updateCollisionChecker(missions[i].T_map_start, 1);
     maps[i].updateDistance(missions[i].T_map_start, missions[i].goal, 1);
@@ -66,7 +66,7 @@ void replan(benchmark::State& state) {
     const Mission& mission = missions[i];
     now += 1'000'000;
     const PatternSet set = fifteenPatterns(1.0 + 0.01 * static_cast<double>(seed % 7));
-    // An obstacle comes and goes, so that no map is like the one before.
+    // An obstacle appears and disappears, so that each map differs from the previous one.
     for (Tile& tile : tiles[i]) {
       tile.utime = now;
       Cell& cell = tile.cells[tile.cells.size() / 3];

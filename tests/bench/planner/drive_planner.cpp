@@ -18,7 +18,7 @@ using namespace tread::planner::testkit;
 
 namespace {
 
-/// Figures over all missions.
+/// Totals over all missions.
 struct Summary {
   int arrived = 0;
   int touched = 0;

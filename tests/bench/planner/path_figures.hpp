@@ -13,7 +13,7 @@
 
 namespace tread::bench {
 
-/// Wall time since it was made.
+/// Wall time since construction.
 class StopWatch {
  public:
   double ms() const {
@@ -25,7 +25,7 @@ class StopWatch {
   Clock::time_point begin_ = Clock::now();
 };
 
-/// The smallest value that at least a share of the values does not exceed; NaN of nothing.
+/// The smallest value that at least a share of the values does not exceed; NaN if empty.
 inline double quantile(std::vector<double> values, double share) {
   if (values.empty()) return std::nan("");
   std::sort(values.begin(), values.end());
@@ -33,7 +33,7 @@ inline double quantile(std::vector<double> values, double share) {
   return values[static_cast<size_t>(std::max(1.0, rank)) - 1];
 }
 
-/// Reports p50, p95, p99 and the greatest of times [ms].
+/// Reports p50, p95, p99 and the maximum of times [ms].
 inline void countQuantiles(benchmark::State& state, const std::string& name,
                            const std::vector<double>& times) {
   state.counters[name + "_p50_ms"] = quantile(times, 0.50);
@@ -42,7 +42,7 @@ inline void countQuantiles(benchmark::State& state, const std::string& name,
   state.counters[name + "_max_ms"] = quantile(times, 1.0);
 }
 
-/// Time of the plain clearance transform of a grid, what all figures are compared with [ms].
+/// Time of the plain clearance transform of a grid, the reference for all figures [ms].
 inline double transformTime(const Grid& grid) {
   const StopWatch watch;
   const ClearanceField field(grid, true);

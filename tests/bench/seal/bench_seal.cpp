@@ -13,7 +13,7 @@ namespace {
 
 using namespace tread;
 
-/// One iteration is a message sealed by its sender and opened by one receiver.
+/// One iteration: a message is sealed by its sender and opened by one receiver.
 void sealAndOpen(benchmark::State& state) {
   const SealKey key;
   Sealer sender(key, 1, 3);

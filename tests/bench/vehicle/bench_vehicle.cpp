@@ -35,7 +35,7 @@ VehicleModel everything(double step) {
   return model;
 }
 
-/// One iteration is one command of 50 ms.
+/// One iteration: one command of 50 ms.
 void drive(benchmark::State& state, const VehicleModel& model) {
   const std::vector<TrackCommand> commands{{1.0, 1.0}, {0.2, 1.0}, {-0.5, 0.5}, {0.9, 0.7}};
   VehicleKernel kernel(model, {});

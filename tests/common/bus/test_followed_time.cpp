@@ -9,9 +9,9 @@ using namespace tread;
 namespace {
 
 constexpr int64_t kMaxJump = 100'000;
-constexpr int64_t kStart = 5'000'000'000;  // [us] of the messages when the host's clock says 0
+constexpr int64_t kStart = 5'000'000'000;  // [us] time of the messages at host time 0
 
-/// A time that three messages at 50 Hz have set; the host's clock says 40 ms then.
+/// A time set by three messages at 50 Hz; the host's clock is then at 40 ms.
 FollowedTime running() {
   FollowedTime time(0, kMaxJump);
   for (const int64_t host : {0, 20'000, 40'000}) REQUIRE(time.observe(kStart + host, host));
@@ -23,9 +23,9 @@ FollowedTime running() {
 
 TEST_CASE("time starts with three messages that agree, not with the first") {
   FollowedTime time(0, kMaxJump);
-  CHECK(time.observe(kStart * 1000, 0));  // a wrong one comes first
+  CHECK(time.observe(kStart * 1000, 0));  // a wrong one first
   CHECK(time.observe(kStart, 10));
-  CHECK(time.observe(kStart, 20));  // the same once more
+  CHECK(time.observe(kStart, 20));  // a repetition
   CHECK(time.observe(kStart + 20'000, 20'000));
   CHECK(time.now(20'000) == 20'000);
   CHECK(time.observe(kStart + 40'000, 40'000));

@@ -40,7 +40,7 @@ class Pinger : public Node {
   Bus& bus_;
 };
 
-/// A bus in memory that follows the time of MOTOR messages.
+/// An in-memory bus that follows the time of MOTOR messages.
 struct Follower {
   Follower() {
     bus.subscribe<motor_t>(kMotor, [](const motor_t&) {});
@@ -83,7 +83,7 @@ TEST_CASE("over real LCM a node steps at its period, is heard, and shuts down cl
   const CycleTimes times = speaker->takeCycleTimes();
   REQUIRE(times.mean_us >= 500);
   REQUIRE(times.max_us >= times.mean_us);
-  REQUIRE(speaker->takeCycleTimes().max_us == 0);  // counted from the last call on
+  REQUIRE(speaker->takeCycleTimes().max_us == 0);  // counted since the last call
 }
 
 TEST_CASE("a process without a device follows the time of the messages") {
@@ -92,7 +92,7 @@ TEST_CASE("a process without a device follows the time of the messages") {
   follower.hear({ahead, ahead + 20'000, ahead + 40'000});
   REQUIRE(follower.bus.now() >= ahead + 40'000);
   REQUIRE(follower.bus.now() < ahead + 60'000'000);
-  follower.hear({5});  // an old message does not turn time back
+  follower.hear({5});  // an old message does not set time back
   REQUIRE(follower.bus.now() >= ahead + 40'000);
   REQUIRE(follower.bus.statistics().jumps == 0);
 }
@@ -222,7 +222,7 @@ TEST_CASE("without multicast messages go over a relay, each channel to whoever s
     mark.mark_value = std::string(900, 'x') + std::to_string(i);
     REQUIRE(speaker.publish(kMark, mark));
     if (i % 100 == 0) REQUIRE(speaker.publish(kEstop, stop));
-    // However loaded the machine: 20 000 delayed acknowledgements would take 800 s.
+    // Independent of the load: 20 000 delayed acknowledgements would take 800 s.
     while (static_cast<int>(heard.size()) <= i && hostNow() - started < 60'000'000)
       listener.handle(10);
   }
@@ -235,7 +235,7 @@ TEST_CASE("who subscribes to no regular expression loses its own connection, not
   lcm::LCM other(relay.url());
   other.subscribeFunction(
       "(?i)mark", +[](const lcm::ReceiveBuffer*, const std::string&, int) {},
-      0);  // only liblcm takes it
+      0);  // accepted only by liblcm
   LcmBus listener(relay.url(), TimeSource::kHost);
   int heard = 0;
   listener.subscribe<mark_t>(kMark, [&](const mark_t&) { ++heard; });

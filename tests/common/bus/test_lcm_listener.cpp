@@ -26,7 +26,7 @@ mark_t markOf(const char* value) {
   return mark;
 }
 
-/// Listens, and remembers which marks it was handed.
+/// Listens and stores the marks that it received.
 struct Listening {
   explicit Listening(std::optional<Sealer> sealer)
       : listener({url, std::move(sealer)},
@@ -46,7 +46,7 @@ struct Listening {
 }  // namespace
 
 TEST_CASE("a listener with a key passes on what is sealed by it, and counts the rest") {
-  // From the robot's host, and from a station that learns session and clock by listening.
+  // From the robot's host, and from a station that learns session and clock from messages.
   const bool here = GENERATE(true, false);
   Listening listening(sealerOf(1, 10, here ? std::optional<uint64_t>(kSession) : std::nullopt));
   LcmBus robot(BusAccess{listening.url, sealerOf(1, 11)}, TimeSource::kHost);

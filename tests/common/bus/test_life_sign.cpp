@@ -36,7 +36,7 @@ class Worker : public Node {
   }
 };
 
-/// A bus in memory with a worker, in a thread of its own.
+/// An in-memory bus with a worker in a separate thread.
 class Works {
  public:
   Works() : runner_([this] { bus_.run(worker, stop_); }) {}

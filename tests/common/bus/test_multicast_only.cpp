@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kGroup = "239.255.76.67";
 
-/// A mark as LCM's short message: magic, number, channel with its zero, message.
+/// A mark as LCM's short message: magic, number, zero-terminated channel, message.
 std::vector<uint8_t> datagramOf(const std::string& value) {
   mark_t mark{};
   mark.utime = hostNow();
@@ -36,7 +36,7 @@ std::vector<uint8_t> datagramOf(const std::string& value) {
   return bytes;
 }
 
-/// A socket as an attacker has it: nothing but UDP.
+/// A socket of an attacker: plain UDP.
 class Sender {
  public:
   Sender() {
@@ -77,7 +77,7 @@ std::vector<std::string> ownAddresses() {
   return found;
 }
 
-/// Own multicast URL, or nothing where there is no route.
+/// Own multicast URL; skips the test if there is no route.
 std::string multicastUrlOrSkip() {
   const std::string url = tread::testing::ownLcmUrl();
   if (url.rfind("udpm:", 0) == 0) return url;
@@ -94,7 +94,7 @@ struct Hearer {
   explicit Hearer(const std::string& url) : bus(url, TimeSource::kHost) {
     bus.subscribe<mark_t>(kMark, [this](const mark_t& mark) { heard.push_back(mark.mark_value); });
   }
-  /// Sends a last message by the group, after which nothing sent before can still come.
+  /// Sends a final message by the group, after which no earlier one can arrive.
   std::vector<std::string> heardUntil(const Sender& sender, uint16_t port,
                                       const std::string& last = "last") {
     sender.send(kGroup, port, last);
@@ -124,7 +124,7 @@ bool isLocked(int descriptor) {
   return locked != 0;
 }
 
-/// Sockets of this process that take only what comes over links that they have joined on.
+/// Sockets of this process that accept only datagrams from links that they have joined on.
 int keptToTheirLinks() {
   int kept = 0;
   for (int descriptor = 0; descriptor < 256; ++descriptor) {
@@ -144,7 +144,7 @@ TEST_CASE(
   const uint16_t port = portOf(url);
   const Sender sender;
   {
-    // LCM by itself takes it: the test means something.
+    // LCM alone accepts it, so the test is meaningful.
     lcm::LCM bare(url);
     int heard = 0;
     bare.subscribeFunction(
@@ -192,11 +192,11 @@ TEST_CASE("each bus of a process is closed, and no other socket is touched") {
 TEST_CASE("where LCM's socket cannot be closed to others, a process does not start") {
   const std::string url = multicastUrlOrSkip();
   if (url.empty()) return;
-  // LCM reads a port in octal, too: its socket is not where the URL seems to say.
+  // LCM reads a port as octal, too: its socket would be elsewhere.
   CHECK_THROWS_WITH(LcmBus("udpm://239.255.76.67:02345?ttl=0", TimeSource::kHost),
                     Catch::Contains("LCM's socket is not found") &&
                         Catch::Contains("this process does not start"));
-  // It is made already: whether this is LCM's, nobody knows.
+  // It exists already; whether this is LCM's is unknown.
   lcm::LCM running(url);
   REQUIRE(running.getFileno() >= 0);
   CHECK_THROWS_WITH(openForMulticastOnly(running, url), Catch::Contains("is not found"));

@@ -25,7 +25,7 @@ Wire unsealed(const Channel<Message>& channel, const Message& message) {
   return {channel.name, bytes};
 }
 
-/// Counts what it hears, on MARK with two handlers, and tells its health.
+/// Counts received messages, MARK by two handlers, and publishes HEALTH.
 class Hearing : public Node {
  public:
   explicit Hearing(Bus& bus) : health_(bus, "hearing", "") {
@@ -43,7 +43,7 @@ class Hearing : public Node {
   HealthReporter health_;
 };
 
-/// A bus with a key, an operator outside, and a recorder of all that goes over it.
+/// A bus with a key, an operator outside, and a recorder of all messages.
 struct SealedBus {
   explicit SealedBus(const FaultPlan& faults = {}) : bus(1, faults) {
     SealKey key;
@@ -206,7 +206,7 @@ TEST_CASE("without a key sealed messages are read as if there were no seal") {
 
 namespace {
 
-/// A program on another host, whose clock began at another time.
+/// A program on another host, whose clock started at another time.
 class DistantBus : public Bus {
  public:
   DistantBus(SealedBus& robot, int64_t ahead) : robot_(robot), ahead_(ahead) {
@@ -244,7 +244,7 @@ TEST_CASE("an operator at another host takes over session and clock, and is take
     robot.run(1'000'000);
     const Wire held_up = robot.last("HEALTH");
     robot.run(1'300'000);
-    // The first that it hears was on its way for long, and is repeated by somebody later.
+    // The first received message was delayed for long, and is later repeated by an attacker.
     station.hear(held_up);
     station.hear(robot.last("HEALTH"));
     station.hear(held_up);
@@ -273,7 +273,7 @@ TEST_CASE("a recording from before the robot's last start takes no operator in f
   robot.run(1'100'000);
   station.hear(recorded(900'000'000));
   REQUIRE(station.heard == 1);
-  // While both are heard nobody can tell which one is true.
+  // While both are received the true one is unknown.
   robot.run(700'000);
   station.hear(robot.last("HEALTH"));
   CHECK(station.heard == 1);
@@ -285,7 +285,7 @@ TEST_CASE("a recording from before the robot's last start takes no operator in f
   mark_t mark{};
   station.publish(kMark, mark);
   CHECK(robot.node().marks == 1);
-  // Played again, it takes nobody from the robot that is heard.
+  // A replay does not affect the robot that is received.
   for (int i = 0; i < 5; ++i) {
     station.hear(recorded(901'000'000 + i));
     CHECK(station.hearsTwoSessions());

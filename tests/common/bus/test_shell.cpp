@@ -19,10 +19,10 @@ using namespace tread::testing;
 namespace {
 
 constexpr const char* kMapping = "tread-mapping";
-/// A process needs to know its robot.
+/// Arguments: a process needs its robot.
 const std::string kRobot = TREAD_SOURCE_DIR "/config/robots/teodor/";
 
-/// What a short run printed and how it ended.
+/// Output and exit status of a short run.
 struct Ending {
   int code = -1;
   std::string output;
@@ -43,7 +43,7 @@ Ending run(const std::vector<std::string>& arguments, const std::string& program
   return ending;
 }
 
-/// Waits until a process on this bus tells its health; false after 10 s.
+/// Waits until a process on this bus publishes HEALTH; false after 10 s.
 bool heardOf(LcmBus& bus) {
   bool heard = false;
   bus.subscribe<health_t>(kHealth, [&heard](const health_t&) { heard = true; });
@@ -51,7 +51,7 @@ bool heardOf(LcmBus& bus) {
   return heard;
 }
 
-/// The test's end of a bus, or nothing where LCM has no network.
+/// The test's end of a bus; null if LCM has no network.
 std::unique_ptr<LcmBus> listenTo(const std::string& url) {
   try {
     return std::make_unique<LcmBus>(url, TimeSource::kHost);
@@ -61,8 +61,8 @@ std::unique_ptr<LcmBus> listenTo(const std::string& url) {
   }
 }
 
-/// A parent in between that starts the program and does nothing more; both hold the pipe's end, so
-/// that it hangs up when both are gone.
+/// An intermediate parent that starts the program and then idles; both hold the pipe's end, which
+/// closes when both have ended.
 class Family {
  public:
   Family(const std::string& url, bool with_parent) {
@@ -99,7 +99,7 @@ class Family {
     }
     parent_ = -1;
   }
-  /// Waits until parent and program are gone.
+  /// Waits until parent and program have ended.
   bool gone(int milliseconds) const {
     pollfd end{ends_[0], POLLIN, 0};
     return poll(&end, 1, milliseconds) > 0;

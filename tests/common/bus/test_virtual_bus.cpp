@@ -9,7 +9,7 @@ using namespace tread;
 
 namespace {
 
-/// Publishes a mark at each step and counts the marks that it hears.
+/// Publishes a mark at each step and counts received marks.
 class Clock : public Node {
  public:
   Clock(Bus& bus, int64_t period) : bus_(bus), period_(period) {}
@@ -234,7 +234,7 @@ TEST_CASE("a message above its channel's limit is not taken, whoever sends it, a
   const auto inject = [&](const auto& channel, const auto& message) {
     std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
     message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-    // The largest one may have a seal behind it.
+    // The largest message may have a seal in addition.
     const size_t size = static_cast<size_t>(channel.max_bytes) + kSealBytes + 1;
     bytes.resize(std::max(bytes.size(), size));
     bus.inject(channel.name, bytes.data(), bytes.size());
@@ -249,7 +249,7 @@ TEST_CASE("a message above its channel's limit is not taken, whoever sends it, a
   inject(kHealth, health);
   CHECK(heard == 0);
   CHECK(beside == 0);
-  arm.armed = false;  // stopping is open to all
+  arm.armed = false;  // anybody may disarm
   inject(kArm, arm);
   CHECK(heard == 1);
   const BusStatistics& counted = bus.outside().statistics();

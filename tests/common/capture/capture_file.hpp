@@ -9,7 +9,7 @@
 
 namespace tread::testing {
 
-/// How a capture is written.
+/// Format of a capture.
 struct CaptureForm {
   uint32_t link_type = 1;  ///< 1 Ethernet, 113 and 276 Linux cooked, 101 bare IP, 0 loopback
   int vlan_tags = 0;       ///< 2: QinQ
@@ -17,7 +17,7 @@ struct CaptureForm {
   bool swapped = false;    ///< most significant bytes first
   bool nanoseconds = false;
   bool tcp = false;
-  uint16_t port = 2368;  ///< of both ends
+  uint16_t port = 2368;  ///< both ends
 };
 
 /// A capture file as libpcap or Wireshark writes it.
@@ -25,12 +25,12 @@ class CaptureFile {
  public:
   explicit CaptureFile(const CaptureForm& form) : form_(form) { begin(); }
 
-  /// A datagram, or the next segment of the TCP stream, whose sequence numbers begin at 1000.
+  /// A datagram, or the next segment of the TCP stream with sequence numbers from 1000 on.
   void add(int64_t time, const std::string& payload) {
     addPacket(time, packetOf(payload, sequence_));
     sequence_ += static_cast<uint32_t>(payload.size());
   }
-  /// A segment of TCP that begins at this byte of the stream.
+  /// A TCP segment that begins at this byte of the stream.
   void addSegment(int64_t time, const std::string& payload, uint32_t at) {
     addPacket(time, packetOf(payload, 1000 + at));
   }
@@ -81,7 +81,7 @@ class CaptureFile {
     for (int i = 0; i < form_.vlan_tags; ++i)
       contents += big(7, 2) + big(i + 1 < form_.vlan_tags ? 0x8100 : 0x0800, 2);
     contents += packet;
-    // Two tags: the outer one is a provider's.
+    // Two tags: the outer one is the provider's.
     const std::string type = big(form_.vlan_tags == 0   ? 0x0800
                                  : form_.vlan_tags == 1 ? 0x8100
                                                         : 0x88A8,

@@ -20,7 +20,7 @@ struct Read {
   std::string problem;
 };
 
-/// In pieces, as a file comes over a link.
+/// Reads in pieces, as from a network file.
 Read readAll(const std::string& file, size_t piece = 77) {
   Read read;
   PcapStream stream;
@@ -91,7 +91,7 @@ TEST_CASE("files that are no captures, and damaged ones, say so in one line") {
     std::string damaged = file.bytes();
     damaged[header + (blocks ? 4 : 8) + 3] = '\x7F';
     CHECK(readAll(damaged).problem.find("the capture is damaged") == 0);
-    CHECK(readAll(file.bytes().substr(0, header + 30)).payloads.empty());  // cut off
+    CHECK(readAll(file.bytes().substr(0, header + 30)).payloads.empty());  // truncated
   }
 }
 

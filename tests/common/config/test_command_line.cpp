@@ -17,7 +17,7 @@
 namespace tread {
 namespace {
 
-/// What a program says of these arguments; empty if nothing is wrong.
+/// A program's error for these arguments; empty if there is none.
 std::string errorOf(const std::string& arguments) {
   CLI::App app{"A program.", "tread-sample"};
   app.require_subcommand(1);

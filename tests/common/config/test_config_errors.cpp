@@ -14,7 +14,7 @@ namespace {
 
 using Catch::Contains;
 
-/// What() of the ConfigError that reading this text throws; a sentence if it throws none.
+/// what() of the ConfigError for this text; a sentence if none is thrown.
 std::string refusal(const std::string& text, const std::function<void(ConfigReader&)>& read) {
   try {
     ConfigReader reader = ConfigReader::fromText(text, "r.yaml");

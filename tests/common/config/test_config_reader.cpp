@@ -17,7 +17,7 @@ namespace {
 
 using tread::testing::kInf;
 
-/// A configuration with one of everything.
+/// A configuration with a value of each kind.
 struct Everything {
   double lease = 0.2;
   int64_t hold = 150'000;
@@ -246,7 +246,7 @@ TEST_CASE("an override on the command line replaces, adds, and reaches into sect
   CHECK(deep == 7);
   CHECK(why == "so: and so");
   CHECK(map == "robots/b.yaml");
-  CHECK(fresh == "x/y.yaml");  // as typed: from the working directory
+  CHECK(fresh == "x/y.yaml");  // as typed: relative to the working directory
   CHECK(list == std::vector<double>{1, 2});
 }
 

@@ -9,16 +9,16 @@ using namespace tread;
 namespace {
 
 constexpr int64_t kMs = 1000, kSecond = 1'000'000;  // [us]
-constexpr int64_t kUtc = 1'764'190'000'000'000;     // [us] of the recorder when the robot's is 0
+constexpr int64_t kUtc = 1'764'190'000'000'000;  // [us] of the recorder when the robot's clock is 0
 constexpr int64_t kBegin = 50 * kSecond, kPeriod = 10'000;  // [us]
 
 struct Tick {
   int64_t recorded = 0;
   std::optional<int64_t> utime;
-  int64_t truth = 0;  ///< [us] the robot's time of its receipt
+  int64_t truth = 0;  ///< [us] the robot's time of reception
 };
 
-/// Every second event is a stamp, on its way for 2 ms or 6 ms.
+/// Every second event has a stamp and a delay of 2 ms or 6 ms.
 std::vector<Tick> drive(int events, int64_t recorder = kUtc) {
   std::vector<Tick> ticks;
   for (int i = 0; i < events; ++i) {
@@ -35,7 +35,7 @@ struct Result {
   std::vector<DriveClock::Dated> dated;
   std::vector<std::string> notes;
   size_t wrong = 0;
-  int64_t farthest = 0;  ///< [us] from the truth
+  int64_t farthest = 0;  ///< [us] largest error
 };
 
 Result dated(const std::vector<Tick>& ticks) {
@@ -69,7 +69,7 @@ void requireOneNote(const Result& result, const std::string& words) {
 
 TEST_CASE("a recorder in UTC does not matter, and nothing is told of a healthy log") {
   const Result result = dated(drive(1000));
-  CHECK(result.farthest <= 2 * kMs);  // the fastest message's way
+  CHECK(result.farthest <= 2 * kMs);  // delay of the fastest message
   CHECK(result.notes.empty());
   CHECK(result.wrong == 0);
 }
@@ -139,8 +139,7 @@ TEST_CASE("any bit flipped in the recorder's time of any event moves no other on
           static_cast<int64_t>(static_cast<uint64_t>(ticks[at].recorded) ^ uint64_t{1} << bit);
       CAPTURE(bit, at);
       const Result result = dated(ticks);
-      // Below a second the recorder may have been held up.
-      // At an end nobody confirms what may have been a pause.
+      // Below 1 s the recorder may have been delayed. At an end no neighbour confirms a pause.
       const bool may_be = bit < 21 || (bit < 24 && (at == 0 || at == 999));
       CHECK(result.farthest <= (may_be ? 10 * kSecond : 50 * kMs));
       CHECK(result.notes.empty());
@@ -157,7 +156,7 @@ TEST_CASE("any bit flipped in a message's utime, or in both times, moves nothing
         if (both) ticks[at].recorded += *ticks[at].utime - (ticks[at].truth - 2 * kMs);
         CAPTURE(bit, at, both);
         const Result result = dated(ticks);
-        // At an end nobody confirms what may have been a pause.
+        // At an end no neighbour confirms a pause.
         const bool may_be = both && bit < 24 && at != 500;
         CHECK(result.farthest <= (may_be ? 10 * kSecond : 50 * kMs));
         CHECK(result.wrong <= 1);

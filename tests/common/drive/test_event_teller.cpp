@@ -9,7 +9,7 @@ using namespace tread;
 
 namespace {
 
-/// Tells messages at times and keeps what was told.
+/// Feeds messages at given times and stores the events.
 class Story {
  public:
   template <class Message>

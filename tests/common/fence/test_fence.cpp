@@ -18,19 +18,19 @@ constexpr FootprintSize kBody{0.65, 0.65, 0.34};
 
 const Fence kYard{"yard", false, {{0, 0}, {20, 0}, {20, 10}, {0, 10}}};
 const Fence kPond{"pond", true, {{8, 4}, {12, 4}, {12, 6}, {8, 6}}};
-/// With a corner that reaches into it.
+/// It has a reflex corner.
 const Fence kHook{"hook", false, {{0, 0}, {20, 0}, {20, 10}, {10, 5}, {0, 10}}};
-/// Narrower than the robot, one with corners under it.
+/// Narrower than the robot, with corners under it.
 const Fence kDitch{"ditch", true, {{-3, 3}, {23, 6}, {23, 6.15}, {-3, 3.15}}};
 const Fence kPath{
     "path", true, {{2, -3}, {2, 5}, {9, 6}, {18, 13}, {18, 12.7}, {9, 5.7}, {2.3, 4.7}, {2.3, -3}}};
 
-/// Across the way of a robot that drives along x.
+/// Across the path of a robot that drives along x.
 Fence ditchOf(double width) {
   return {"ditch", true, {{0, -9}, {width, -9}, {width, 9}, {0, 9}}};
 }
 
-/// Whether any point of the outline, finely sampled, lies on forbidden ground.
+/// Whether any point of the finely sampled outline is on forbidden ground.
 bool crossesBySampling(const Fence& fence, const Pose2& pose) {
   constexpr int kSteps = 60;
   for (int i = 0; i <= kSteps; ++i)
@@ -57,7 +57,7 @@ TEST_CASE("an outline has the room of its nearest part") {
   CHECK(roomAt(kYard, {1.0, 5.0, kPi / 2}, kBody) == Approx(0.66));
   CHECK(roomAt(kYard, {0.5, 5.0, 0.0}, kBody) == Approx(-0.15));
   CHECK(roomAt(kPond, {7.0, 5.0, 0.0}, kBody) == Approx(0.35));
-  // The corner of the hook pokes into the body's side.
+  // The reflex corner is inside the body's side.
   CHECK(roomAt(kHook, {10.0, 4.9, 0.0}, kBody) == Approx(-0.24));
   CHECK(roomAt(kHook, {10.0, 4.5, 0.0}, kBody) == Approx(0.16));
 }
@@ -91,7 +91,7 @@ TEST_CASE("what has room crosses nothing, and what crosses has none, wherever it
       crossing += crosses ? 1 : 0;
       INFO(fence.name << " " << pose.x << " " << pose.y << " " << pose.yaw << " room " << room);
       if (crosses) REQUIRE(room < 0.0);
-      // Between the samples some of its edge may cross.
+      // A part of its edge between the samples may cross.
       if (!crosses) REQUIRE(roomAt(fence, pose, kBody.widened(-0.03)) >= 0.0);
     }
   }

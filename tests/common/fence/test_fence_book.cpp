@@ -21,7 +21,7 @@ Fence square(const std::string& name, double side) {
   return {name, false, {{0, 0}, {side, 0}, {side, side}, {0, side}}};
 }
 
-/// How many fences of this name are in force.
+/// Number of fences of this name in force.
 int64_t countOf(const FenceBook& book, const std::string& name) {
   return std::count_if(book.fences().begin(), book.fences().end(),
                        [&](const Fence& fence) { return fence.name == name; });
@@ -38,7 +38,7 @@ TEST_CASE("one more fence is taken from everybody, and the same again changes no
   CHECK(book.take({"stranger", false, square("yard", 9)}, false) == FenceReceipt::kAdded);
   CHECK(book.take({"stranger", false, square("yard", 9)}, false) == FenceReceipt::kKnown);
   CHECK(book.revision() == 1);
-  // Another one of the same name narrows further: it takes nothing away.
+  // A second one of the same name restricts further.
   CHECK(book.take({"stranger", false, square("yard", 99)}, false) == FenceReceipt::kAdded);
   CHECK(book.fences().size() == 2);
   CHECK(countOf(book, "yard") == 2);
@@ -80,7 +80,7 @@ TEST_CASE("strangers' fences make room for those of who holds the robot, the old
   CHECK(book.revision() == revision + 1);
   CHECK(book.fences().size() == FenceBook::kMost);
   CHECK(countOf(book, "s2") == 0);
-  // What the holder asks for, too, is kept as the holder's.
+  // The holder's own request is also stored as the holder's.
   CHECK(book.take({"ada", false, square("s3", 99)}, true) == FenceReceipt::kKnown);
   for (size_t i = 4; i < FenceBook::kMost; ++i)
     CHECK(book.take({"ada", false, square("a" + std::to_string(i), 9)}, true) ==
@@ -88,7 +88,7 @@ TEST_CASE("strangers' fences make room for those of who holds the robot, the old
   CHECK(book.take({"ada", false, square("last", 9)}, true) == FenceReceipt::kFull);
   for (const char* kept : {"site", "yard", "people", "s3", "a4"}) CHECK(countOf(book, kept) == 1);
   CHECK(countOf(book, "s4") == 0);
-  // One of the holder's gone, and a stranger's there instead: it goes again.
+  // A holder's fence removed and a stranger's added instead: it is removed again.
   CHECK(book.take(removal("yard"), true) == FenceReceipt::kRemoved);
   CHECK(book.take({"stranger", false, square("more", 9)}, false) == FenceReceipt::kAdded);
   CHECK(book.take({"ada", false, square("last", 9)}, true) == FenceReceipt::kAdded);

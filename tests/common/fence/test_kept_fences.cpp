@@ -16,7 +16,7 @@ Fence square(const std::string& name, double half) {
   return {name, true, {{-half, -half}, {half, -half}, {half, half}, {-half, half}}};
 }
 
-/// A store in which three fences were kept.
+/// A store with three fences.
 MemoryStore kept() {
   MemoryStore store;
   REQUIRE_FALSE(
@@ -28,7 +28,7 @@ size_t count(const KeptFences& fences) {
   return fences.holders.size() + fences.others.size();
 }
 
-/// After something has happened to one entry: what was in it is lost, and not believed.
+/// Alters one entry: its content counts as lost.
 void loses(const std::string& entry, const std::function<void(Store&, const std::string&)>& harm) {
   MemoryStore store = kept();
   harm(store, *store.read(entry));

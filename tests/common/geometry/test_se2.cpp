@@ -9,11 +9,11 @@
 namespace tread {
 namespace {
 
-/// Poses and twists of a size that a robot meets, the same in each run.
+/// Random poses and twists of realistic size, the same in each run.
 class Samples {
  public:
   Pose2 pose() { return {within(50.0), within(50.0), within(20.0)}; }
-  /// With a yaw of less than a full turn, where the logarithm is the inverse of the exponential.
+  /// Less than a full turn, so that the logarithm inverts the exponential.
   Twist2 twist() { return {within(3.0), within(3.0), within(6.0)}; }
   Eigen::Vector2d point() { return {within(50.0), within(50.0)}; }
 
@@ -30,7 +30,7 @@ void checkEqual(const Pose2& a, const Pose2& b, double margin = 1e-10) {
   CHECK(a.yaw == Approx(b.yaw).margin(margin));
 }
 
-/// The exponential by many small Euler steps, as an oracle that shares no formula with it.
+/// The exponential by many small Euler steps: an independent oracle.
 Pose2 integrateSlowly(const Twist2& twist, double dt) {
   constexpr int kSteps = 200'000;
   const double step = dt / kSteps;
@@ -105,7 +105,7 @@ TEST_CASE("exponential and logarithm lose no digits for small turns") {
   for (const double turn : {0.0, 1e-12, 1e-9, 9.9e-7, 1.01e-6, 1e-5, 1e-3}) {
     for (const double sign : {-1.0, 1.0}) {
       const Pose2 end = integrate({1.0, 0.0, sign * turn}, 1.0);
-      // Series of (1 - cos t) / t, good to the last digit at this size.
+      // Series of (1 - cos t) / t, exact to the last digit at this size.
       const double expected = sign * (turn / 2.0 - turn * turn * turn / 24.0);
       CHECK(end.x == Approx(1.0 - turn * turn / 6.0).epsilon(1e-12));
       CHECK(end.y == Approx(expected).epsilon(1e-11).margin(1e-25));

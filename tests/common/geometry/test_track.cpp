@@ -15,7 +15,7 @@ constexpr int64_t kStep = 20'000;  // [us] between poses: 50 Hz
 constexpr int64_t kAnyGap = std::numeric_limits<int64_t>::max();
 using tread::testing::kNan;
 
-/// A track of a steady motion from the origin, its yaw wrapped as an INS tells it.
+/// A track of steady motion from the origin, with yaw wrapped as by an INS.
 PoseTrack trackOf(const Twist2& twist, int64_t duration) {
   PoseTrack track(kSpan);
   for (int64_t utime = 0; utime <= duration; utime += kStep) {

@@ -11,7 +11,7 @@ using namespace tread;
 
 namespace {
 
-/// The definition: all blocked cells one by one, with a frame of unknown cells around the window.
+/// By definition: checks all blocked cells, with a frame of unknown cells around the window.
 double trueClearance(const Grid& grid, bool unknown_blocks, const Eigen::Vector2d& p_map) {
   double nearest = std::numeric_limits<double>::infinity();
   const CellIndex lower = grid.lower();
@@ -77,7 +77,7 @@ TEST_CASE("with a cap the clearance is the same to the bit up to there, however 
     for (const bool unknown_blocks : {false, true})
       for (const double cap : {0.0, 0.01, 0.33, 0.4, 0.8, 1.55, 3.2, 3.3}) {
         const Grid cells = randomGrid(random, {-7, 11}, 57, 43, density, 0.01);
-        // With some sizes of cells the cap is a number of half cells that a float rounds down.
+        // For some cell sizes the cap is a number of half cells that a float rounds down.
         Grid grid(std::vector<double>{0.1, 0.04, 0.06, 0.08}[random() % 4], {-7, 11}, 57, 43);
         grid.cells() = cells.cells();
         const ClearanceField whole(grid, unknown_blocks);

@@ -40,7 +40,7 @@ TEST_CASE("a comparison says what the bounds say, for every distance") {
                      std::mt19937_64& random) {
     const ClearanceField::Bounds bounds = field.bounds(p);
     const double around = std::isfinite(bounds.lower) ? bounds.lower : 1.0;
-    // Mostly near the bounds, where it is decided.
+    // Mostly near the bounds, where the decision is made.
     const double off = std::normal_distribution<double>(0.0, 0.08)(random);
     const auto distance = static_cast<float>(std::max(0.0, around + off));
     const Verdict verdict = field.compare(p.x(), p.y(), distance);

@@ -13,7 +13,7 @@ using namespace tread;
 
 namespace {
 
-/// By how much two convex shapes overlap along an axis [m]; negative if they are apart.
+/// Overlap of two convex shapes along an axis [m]; negative if disjoint.
 double overlapAlong(const Eigen::Vector2d& axis, const std::array<Eigen::Vector2d, 4>& a,
                     const std::array<Eigen::Vector2d, 4>& b) {
   const auto extent = [&](const std::array<Eigen::Vector2d, 4>& corners) {
@@ -30,7 +30,7 @@ double overlapAlong(const Eigen::Vector2d& axis, const std::array<Eigen::Vector2
   return std::min(a_high, b_high) - std::max(a_low, b_low);
 }
 
-/// Separating axes: the definition of overlap of two rectangles [m], positive = overlap.
+/// Separating axes: the definition of the overlap of two rectangles [m], positive = overlap.
 double overlap(const Footprint& footprint, const Pose2& pose, CellIndex cell, double size) {
   const std::array<Eigen::Vector2d, 4> rectangle{
       pose * Eigen::Vector2d(footprint.size().front, footprint.size().half_width),
@@ -50,11 +50,11 @@ double overlap(const Footprint& footprint, const Pose2& pose, CellIndex cell, do
 }
 
 struct Truth {
-  int surely = 0;   ///< cells that overlap
+  int surely = 0;   ///< overlapping cells
   int perhaps = 0;  ///< cells that touch up to rounding
 };
 
-/// The definition: every cell around, one by one.
+/// By definition: checks every surrounding cell.
 Truth blockedUnder(const Footprint& footprint, const Pose2& pose, const Grid& grid,
                    bool unknown_blocks) {
   Truth truth;

@@ -8,8 +8,7 @@
 
 namespace tread {
 
-/// A grid with each cell drawn: obstacle or unknown with these probabilities, else free with a
-/// cost.
+/// A random grid: obstacle or unknown with these probabilities, else free with a cost.
 inline Grid randomGrid(std::mt19937_64& random, CellIndex lower, int width, int height,
                        double obstacles, double unknowns) {
   Grid grid(0.1, lower, width, height);

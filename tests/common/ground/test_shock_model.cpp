@@ -14,7 +14,7 @@ using namespace tread;
 
 namespace {
 
-/// A vehicle and ground of its own: shock = 1.5 (r / 1 cm)^1.3 v^1.6, with scatter.
+/// A synthetic vehicle and ground: shock = 1.5 (r / 1 cm)^1.3 v^1.6, with scatter.
 ShockRegression taught(int pairs, double scatter, uint64_t seed = 1) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
@@ -52,7 +52,7 @@ TEST_CASE("its intervals hold what they promise") {
   for (uint64_t seed = 1; seed <= kRuns; ++seed) {
     const ShockModel model = taught(60, 0.4, seed).model();
     const Eigen::Vector3d off = model.mean - truth;
-    // 95 % of a chi-square variable of three degrees of freedom lie below 7.81.
+    // 7.81 is the 95 % quantile of chi-square with three degrees of freedom.
     if (off.dot(model.covariance.inverse() * off) < 7.81) ++inside;
   }
   CHECK(inside > 0.88 * kRuns);
@@ -65,7 +65,7 @@ TEST_CASE("what is uncertain costs more, and experience makes it cheaper") {
   CHECK(unsure.meanSquare(0.02, 1.0) > 1.5 * sure.meanSquare(0.02, 1.0));
   CHECK(unsure.meanSquare(0.02, 1.0) > unsure.meanSquare(0.01, 1.0));
   CHECK(unsure.meanSquare(0.02, 1.0) > unsure.meanSquare(0.02, 0.5));
-  // Ground that was felt itself: only the change of speed is a guess.
+  // Ground that was driven on: only the change of speed is extrapolated.
   CHECK(unsure.meanSquareLike(0.5, 1.0) == Approx(0.25 * std::exp(0.5)));
   CHECK(unsure.meanSquareLike(0.5, 0.5) < 0.25 * unsure.meanSquareLike(0.5, 1.0));
 }

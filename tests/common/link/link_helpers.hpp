@@ -15,7 +15,7 @@ inline bool send(Link& link, const std::string& text) {
   return link.write(reinterpret_cast<const uint8_t*>(text.data()), text.size());
 }
 
-/// Reads until `size` bytes came, the link closed, or a second passed.
+/// Reads until `size` bytes arrived, the link closed, or 1 s passed.
 inline std::string receive(Link& link, size_t size) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(1);
   std::string text;
@@ -29,7 +29,7 @@ inline std::string receive(Link& link, size_t size) {
   return text;
 }
 
-/// Reads until the link notices that it is down, for at most a second.
+/// Reads until the link detects that it is down, for at most 1 s.
 inline bool noticesEnd(Link& link) {
   for (int i = 0; i < 5000; ++i) {
     uint8_t buffer[256];
@@ -39,7 +39,7 @@ inline bool noticesEnd(Link& link) {
   return false;
 }
 
-/// Calls reopen() with times that leave every back-off behind, for at most a second.
+/// Calls reopen() at times beyond every back-off, for at most 1 s.
 inline bool comesBack(Link& link, int64_t& utime) {
   for (int i = 0; i < 100; ++i, utime += 10'000) {
     if (link.reopen(utime)) return true;

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A folder of its own, gone with the test.
+/// A temporary folder.
 struct Folder {
   Folder() { fs::remove_all(path); }
   ~Folder() { fs::remove_all(path); }

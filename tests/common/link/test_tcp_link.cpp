@@ -23,7 +23,7 @@ using testing::send;
 /// A server on 127.0.0.1 with one client at a time.
 class Server {
  public:
-  /// On a given port, or on one that the system chooses.
+  /// On a given port, or on one chosen by the system.
   explicit Server(uint16_t wanted = 0) {
     const int on = 1;
     ::setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
@@ -124,8 +124,8 @@ TEST_CASE("a reader that stops reading fills the line, the link never blocks nor
   while (sent < 100'000'000 && send(*link, command)) sent += command.size();
   CHECK(sent < 100'000'000);
   CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(5));
-  if (link->isOpen()) return;  // the last command was refused as a whole
-  // Otherwise it was half taken: the peer sees the line break and no half command to act upon.
+  if (link->isOpen()) return;  // the last command was refused completely
+  // Otherwise it was sent partially: the peer sees the line break instead of a partial command.
   size_t heard = 0;
   char buffer[65536];
   ssize_t count = 0;
@@ -136,7 +136,7 @@ TEST_CASE("a reader that stops reading fills the line, the link never blocks nor
 }
 
 TEST_CASE("a host that does not answer is given up after a second of robot time") {
-  // TEST-NET-1 is routed nowhere; where the network refuses at once, that is as good an answer.
+  // TEST-NET-1 has no route; an immediate refusal by the network is also acceptable.
   const auto link = makeLink("tcp:192.0.2.1:9");
   int64_t utime = 1'000'000;
   const auto start = std::chrono::steady_clock::now();

@@ -13,7 +13,7 @@ using testing::send;
 
 namespace {
 
-/// A server on a port that is free; `port` says which.
+/// A server on a free port, returned in `port`.
 std::unique_ptr<Link> serve(int& port) {
   for (port = 20000 + static_cast<int>(::getpid() % 20000);; ++port) {
     auto server = makeLink("tcp-server:127.0.0.1:" + std::to_string(port));

@@ -134,7 +134,7 @@ TEST_CASE("a device that does not read never blocks, half a command ends with a 
   while (commands < 100'000 && send(*link, command)) ++commands;
   CHECK(commands < 100'000);
   CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(1));
-  // What the terminal already holds for the device (at most 4095 bytes) is beyond recall.
+  // Bytes already in the terminal (at most 4095) cannot be recalled.
   size_t heard = 0;
   ssize_t count = 0;
   char buffer[4096];

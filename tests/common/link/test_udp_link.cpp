@@ -20,7 +20,7 @@ sockaddr_in loopback(uint16_t port) {
   return address;
 }
 
-/// A socket on a port that the system chose.
+/// A socket on a port chosen by the system.
 struct Sender {
   Sender() {
     sockaddr_in address = loopback(0);

@@ -14,7 +14,7 @@
 
 namespace tread::testing {
 
-/// A path of this test alone; the file is removed at the end.
+/// A unique path; the file is removed at the end.
 struct TemporaryFile {
   TemporaryFile() {
     static int count = 0;
@@ -38,7 +38,7 @@ inline void makeFile(const std::string& path, const std::string& content) {
   std::ofstream(path, std::ios::binary) << content;
 }
 
-/// Message i of a test log: i bytes, so that each event is told by its length.
+/// Message i of a test log: i bytes, so that its length identifies it.
 inline std::vector<uint8_t> messageOf(int i) {
   return std::vector<uint8_t>(static_cast<size_t>(i), static_cast<uint8_t>(i));
 }
@@ -51,7 +51,7 @@ inline void writeEvents(const std::string& path, int count) {
   }
 }
 
-/// The numbers of the events that a log gives, -1 for one that was never written.
+/// Numbers of the events in a log, -1 for one that was never written.
 inline std::vector<int> eventsOf(const std::string& path, std::string& problem) {
   std::vector<int> events;
   LogReader reader(path);

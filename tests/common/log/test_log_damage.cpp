@@ -14,7 +14,7 @@ using testing::TemporaryFile;
 
 constexpr size_t kEventSize = 28 + 7;  // header and name "CHANNEL", without the message
 
-/// Where event i begins in the log of writeEvents().
+/// Offset of event i in the log of writeEvents().
 size_t startOf(int i) {
   return static_cast<size_t>(i) * kEventSize + static_cast<size_t>(i * (i - 1) / 2);
 }
@@ -25,7 +25,7 @@ std::vector<int> range(int from, int to) {
   return numbers;
 }
 
-/// What a log of this content gives.
+/// Events in a log of this content.
 std::vector<int> eventsIn(const std::string& content, std::string& problem) {
   const TemporaryFile file;
   testing::makeFile(file.path, content);
@@ -66,7 +66,7 @@ TEST_CASE("bytes between events are left out and told") {
   content.insert(startOf(6), "garbage");
   std::string problem;
   const auto events = eventsIn(content, problem);
-  // Whether event 5 was damaged or what follows it cannot be told; what is doubtful is not given.
+  // Whether event 5 or its successor was damaged is unknown; doubtful events are dropped.
   CHECK(events == std::vector<int>{0, 1, 2, 3, 4, 6, 7, 8, 9});
   CHECK_THAT(problem, Catch::Contains("at 1 place") && Catch::Contains("they are damaged"));
 }
@@ -108,7 +108,7 @@ TEST_CASE("any damage is survived, and events away from it are kept") {
     std::string problem;
     const auto events = eventsIn(content, problem);
     INFO("round " << round << ": " << problem);
-    // Forty bytes touch up to three events; the one before a lost sync word goes with it.
+    // Forty bytes affect up to three events; with a lost sync word also the one before.
     CHECK(std::count_if(events.begin(), events.end(), [](int i) { return i >= 0; }) >= 6);
     CHECK(events.size() <= 10);
   }

@@ -115,7 +115,7 @@ TEST_CASE("a message whose type had fewer fields keeps them, and the new ones ar
   CHECK(plan.pose == std::vector<std::vector<double>>{{1.0, 2.0, 0.5}});
   CHECK(plan.covariance[0][3] == 0.2);
   CHECK(std::isnan(plan.covariance[0][5]));
-  CHECK(plan.reason_code == -1);  // its words are no whole sentence
+  CHECK(plan.reason_code == -1);  // its text is not a complete sentence
   CHECK(std::isnan(plan.risk));
   CHECK(std::isnan(plan.risk_per_metre));
 }

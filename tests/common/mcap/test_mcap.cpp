@@ -13,7 +13,7 @@ using namespace tread;
 
 namespace {
 
-/// A file of a test's own, removed with it.
+/// A temporary file.
 class McapFile {
  public:
   explicit McapFile(const std::string& name)
@@ -33,7 +33,7 @@ class McapFile {
   std::string path_;
 };
 
-/// Two topics, more than one chunk.
+/// Two topics, several chunks.
 void writeDrive(const std::string& path, int messages) {
   mcap::Writer writer(path);
   const uint16_t schema = writer.addSchema("tread.ins_t", "jsonschema", "{}");
@@ -70,7 +70,7 @@ TEST_CASE("an MCAP file gives back what was written, over chunks, with topics an
   REQUIRE(messages[2999].schema_name == "tread.ins_t");
   REQUIRE(messages[2999].log_time == 3999);
   REQUIRE(messages[2999].data.rfind("message 2999x", 0) == 0);
-  REQUIRE(file.bytes().size() < 300'000);  // 3 MB before packing
+  REQUIRE(file.bytes().size() < 300'000);  // 3 MB before compression
 }
 
 TEST_CASE("messages in another order than their times come by time, within and over chunks") {
@@ -79,7 +79,7 @@ TEST_CASE("messages in another order than their times come by time, within and o
     mcap::Writer writer(file.path());
     const uint16_t channel = writer.addChannel(0, "INS", "json");
     for (int i = 0; i < 3000; ++i) {
-      // Each topic's chunk is written for itself: the second half of the file is between the first.
+      // Each topic has its own chunks: the second half of the file overlaps the first in time.
       const int at = i < 1500 ? 2 * i : 2 * (i - 1500) + 1;
       writer.write(channel, static_cast<uint64_t>(at), 5,
                    std::to_string(at) + std::string(1000, 'x'));

@@ -15,7 +15,7 @@ namespace {
 using tread::testing::kInf;
 using tread::testing::kNan;
 
-/// A good message: at (3, 4, 5), turned by yaw, pitch and roll, moving.
+/// A valid message: at (3, 4, 5), rotated by yaw, pitch and roll, moving.
 ins_t messageAt(double yaw, double pitch, double roll) {
   ins_t ins{};
   ins.position[0] = 3.0;

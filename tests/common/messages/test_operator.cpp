@@ -34,7 +34,7 @@ TEST_CASE("the lease counts from what the operator has seen, not from when it wa
   CHECK(lease.receive(from(1, "ada", kStart - 800'000), kStart) == Heard::kTaken);
   CHECK(lease.valid(kStart + 200'000));
   CHECK(lease.state(kStart + 200'001) == State::kLost);
-  // The uplink works, but the operator has seen nothing new.
+  // The uplink works, but the operator has received nothing new.
   CHECK(lease.receive(from(1, "ada", kStart - 800'000), kStart + 300'000) == Heard::kStale);
   CHECK(lease.state(kStart + 300'000) == State::kLost);
 }
@@ -54,7 +54,7 @@ TEST_CASE("the first operator holds the robot, another one needs it handed over"
   lease.receive(from(1, "ada", kStart), kStart);
   CHECK(lease.receive(from(2, "bob", kStart), kStart) == Heard::kOfAnother);
   OperatorNotice giving = from(1, "ada", kStart + 1);
-  giving.hand_over_to = "carl";  // is not there
+  giving.hand_over_to = "carl";  // absent
   lease.receive(giving, kStart + 1);
   CHECK(lease.holder() == "ada");
   giving.hand_over_to = "bob";
@@ -119,7 +119,7 @@ TEST_CASE("the robot's clock is known to the shortest way of a message, and may 
     clock.observe(host + kOffset - 1'000 - (i * 7919) % 90'000, host);
   CHECK(*clock.offset() <= kOffset - 1'000);
   CHECK(*clock.offset() > kOffset - 6'000);
-  // The other machine's clock runs away by a part in a thousand for a quarter of an hour.
+  // The other machine's clock drifts by .1 % for a quarter of an hour.
   int64_t host = kStart + 60 * kSecond;
   for (int i = 0; i < 18'000; ++i, host += 50'000)
     clock.observe(host + kOffset - (host - kStart) / 1'000, host);

@@ -31,7 +31,7 @@ std::vector<pattern_set_part_t> partsOf(int64_t version) {
   return toMessages(setOf(version));
 }
 
-/// The last thing that an assembler returned for these parts.
+/// The last result of an assembler for these parts.
 std::optional<PatternSet> addAll(PatternSetAssembler& assembler,
                                  const std::vector<pattern_set_part_t>& parts) {
   std::optional<PatternSet> last;
@@ -46,8 +46,8 @@ std::vector<uint8_t> encoded(const pattern_set_part_t& part) {
   return bytes;
 }
 
-/// Whether these bytes are a message, every one of them.
-// Not inlined: g++ 12 takes a variable of the generated code for uninitialized where it is.
+/// Whether these bytes decode completely as a message.
+// Not inlined: g++ 12 reports a variable of the generated code as uninitialized otherwise.
 [[gnu::noinline]] bool decodes(const std::vector<uint8_t>& bytes, pattern_set_part_t& part) {
   const int size = static_cast<int>(bytes.size());
   try {
@@ -269,7 +269,7 @@ TEST_CASE("random bytes on the channel never crash and never make a set") {
     if (!decodes(bytes, decoded)) continue;
     if (const auto set = assembler.add(decoded)) {
       ++sets;
-      // The checksum leaves open only fields that it does not cover.
+      // The checksum allows changes only in fields that it does not cover.
       CHECK(set->checksum() == setOf(7).checksum());
     }
   }

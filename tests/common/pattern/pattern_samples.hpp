@@ -6,7 +6,7 @@
 
 namespace tread::testing {
 
-/// A small set in which all is well: start (rest to cruise), left (cruise), stop (cruise to rest).
+/// A small valid set: start (rest to cruise), left (cruise), stop (cruise to rest).
 inline PatternSetContent goodContent() {
   PatternSetContent content;
   content.name = "sample";
@@ -40,7 +40,7 @@ inline PatternSetContent goodContent() {
   return content;
 }
 
-/// The same for a vehicle with throttle, steering and a rear steering of its own.
+/// The same for a vehicle with throttle, front and rear steering.
 inline PatternSetContent threeChannels() {
   PatternSetContent content = goodContent();
   content.channels = {{"throttle", CommandKind::kPower, -0.5, 1.0},

@@ -47,7 +47,7 @@ std::string errorOf(const std::string& text) {
   return "no error";
 }
 
-/// The good file with one piece of text replaced.
+/// The valid file with one text replaced.
 std::string with(const std::string& piece, const std::string& replacement) {
   std::string text = kGood;
   const size_t at = text.find(piece);

@@ -178,7 +178,7 @@ TEST_CASE("the way from standstill to standstill through a pattern is the shorte
   CHECK(lengths[1] == Approx(0.05 + left + 0.02));
   CHECK(lengths[2] == Approx(0.05 + 0.02));
   CHECK(lengths[3] == Approx(0.9 + 0.02));
-  content.patterns.erase(content.patterns.begin() + 2);  // nothing stops any more
+  content.patterns.erase(content.patterns.begin() + 2);  // no pattern stops any more
   for (const double length : restToRestLengths(*PatternSet::make(content, why)))
     CHECK(length == kInfinity);
 }

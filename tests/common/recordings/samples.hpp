@@ -17,7 +17,7 @@
 
 namespace tread::recordings::samples {
 
-/// A folder of this test that is gone afterwards.
+/// A temporary folder.
 class Folder {
  public:
   Folder() {
@@ -39,7 +39,7 @@ class Folder {
   std::filesystem::path path_;
 };
 
-/// Poses of a constant twist, one a period.
+/// Poses of a constant twist, one per period.
 inline std::vector<Pose2> arc(const Twist2& twist, size_t samples, double period = 0.1) {
   std::vector<Pose2> poses;
   for (size_t t = 1; t <= samples; ++t)
@@ -67,13 +67,13 @@ inline PatternSet setOf(std::vector<MotionPattern> patterns) {
   return PatternSet::make(std::move(content), why).value();
 }
 
-/// straight and left, three samples each.
+/// Patterns straight and left with three samples each.
 inline PatternSet twoPatterns() {
   return setOf(
       {pattern(1, "straight", {0.5, 0.0, 0.0}, 3), pattern(2, "left", {0.5, 0.0, 0.4}, 3)});
 }
 
-/// `count` executions of each pattern whose twist scatters by 5 % and 0.02 rad/s.
+/// `count` executions of each pattern, with twists scattered by 5 % and 0.02 rad/s.
 inline SurfaceRecordings scattered(const PatternSet& set, const std::string& surface, int count,
                                    unsigned seed) {
   std::mt19937_64 random(seed);
@@ -92,7 +92,7 @@ inline SurfaceRecordings scattered(const PatternSet& set, const std::string& sur
   return recordings;
 }
 
-/// A finite pose a sample, exactly the same bits.
+/// Finite poses that are equal bitwise.
 inline bool same(const Execution& a, const Execution& b) {
   if (a.size() != b.size()) return false;
   for (size_t t = 0; t < a.size(); ++t)

@@ -11,13 +11,13 @@
 #include "common/recordings/drive_recordings.hpp"
 #include "tests/tools/robot/import/drive_samples.hpp"
 
-// Drives on grounds that are known, as windows and as folders of files.
+// Drives on known grounds, as windows and as folders of files.
 namespace tread::samples {
 
-/// What a command does on a ground.
+/// Motion for a command on a ground.
 using Ground = std::function<recordings::TwistLine(const recordings::BodyCommand&)>;
 
-/// Twists in proportion to the command; sideslip with the yaw rate.
+/// Twists proportional to the command; sideslip proportional to the yaw rate.
 inline Ground linearGround(double forward, double yaw, double slip) {
   return [=](const recordings::BodyCommand& command) {
     return recordings::TwistLine{{forward * command.v, slip * command.w, yaw * command.w},
@@ -25,7 +25,7 @@ inline Ground linearGround(double forward, double yaw, double slip) {
   };
 }
 
-/// Draws between -1 and 1, the same on every machine.
+/// Random numbers between -1 and 1, the same on every platform.
 class Draws {
  public:
   explicit Draws(uint64_t seed) : random_(seed) {}
@@ -35,8 +35,8 @@ class Draws {
   std::mt19937_64 random_;
 };
 
-/// Both steady windows of steps with drawn commands; windows of one step differ by +-`noise` of
-/// each component.
+/// Both steady windows of steps with random commands; windows of a step differ by +-`noise` in each
+/// component.
 inline std::vector<recordings::SteadyWindow> drawnWindows(const Ground& ground, int steps,
                                                           double noise, uint64_t seed) {
   Draws draws(seed);
@@ -67,7 +67,7 @@ constexpr double kRadius = 0.3;
 constexpr double kBaseline = 1.0;
 constexpr double kLag = 0.2;
 
-/// Rows of one step of 6 s: steady from the start, a pose every 0.2 s, late by the lag.
+/// Rows of one step of 6 s: steady from the start, a pose every 0.2 s, delayed by the lag.
 inline std::string drivenRows(int step, const recordings::BodyCommand& command,
                               const Ground& ground) {
   const TrackCommand tracks = recordings::trackCommand(command, kBaseline);
@@ -91,7 +91,7 @@ inline const char* kDrivenQualityHeader = "session,step,cmd_left_rad_s,cmd_right
 inline const char* kDrivenSessionsHeader =
     "session,robot,surface,wheel_radius_m,baseline_m,pose_lag_s\n";
 
-/// Writes a folder of drives as the tools read it; its path is given back.
+/// Writes a folder of drives in the tools' format; returns its path.
 inline std::string writeDrives(const Folder& folder, const std::vector<DrivenSession>& sessions) {
   std::string table = kDrivenSessionsHeader;
   std::string quality = kDrivenQualityHeader;

@@ -16,7 +16,7 @@ namespace {
 
 using tread::testing::kNan;
 
-/// A set of one pattern and executions of it that move with these twists.
+/// A set of one pattern and executions with these twists.
 struct OnePattern {
   PatternSet set;
   SurfaceRecordings recordings;
@@ -44,7 +44,7 @@ TEST_CASE("The average of a weak turn is the mean of its poses, with the spread 
   CHECK(notes[0].used == 3);
   CHECK(mean.end().x == Approx(integrate({0.5, 0.0, 0.1}, 1.0).x));
   CHECK(mean.end().yaw == Approx(0.1));
-  const Pose2 unit = integrate({0.1, 0.0, 0.1}, 1.0);  // ends are one of these apart
+  const Pose2 unit = integrate({0.1, 0.0, 0.1}, 1.0);  // ends differ by one of these
   CHECK(mean.end_covariance[0] == Approx(unit.x * unit.x));
   CHECK(mean.end_covariance[1] == Approx(unit.x * unit.y));
   CHECK(mean.end_covariance[3] == Approx(unit.y * unit.y));

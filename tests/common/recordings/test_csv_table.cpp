@@ -23,7 +23,7 @@ CsvTable table(const std::string& text, const CsvLayout& layout = {}) {
   return CsvTable(text, "a.csv", layout);
 }
 
-/// All numbers of the columns t and x.
+/// All numbers in the columns t and x.
 std::vector<double> numbers(const std::string& text, const CsvLayout& layout = {}) {
   const CsvTable read = table(text, layout);
   std::vector<double> all;
@@ -157,7 +157,7 @@ TEST_CASE("numbers are read as programs write them, whatever the locale is") {
                               "234"})
     CHECK_THROWS_WITH(x(grouped), Contains("without separators of thousands"));
   CHECK_THROWS_WITH(x("12:34:56.7"), Contains("a time of day in seconds"));
-  // Where a locale with a decimal comma is installed, it changes nothing.
+  // A locale with a decimal comma, if installed, must not change anything.
   const std::string before = std::setlocale(LC_NUMERIC, nullptr);
   std::setlocale(LC_NUMERIC, "de_DE.UTF-8");
   CHECK(x("1.5") == 1.5);

@@ -29,7 +29,7 @@ DriveRequest requestOf(const std::string& folder, const std::string& robot) {
   return request;
 }
 
-/// What making a set of recordings throws, without the folder's name.
+/// Exception when making a set of recordings, without the folder's name.
 std::string complaint(const DriveRequest& request) {
   try {
     recordingsFromDrives(request);
@@ -42,7 +42,7 @@ std::string complaint(const DriveRequest& request) {
   return "";
 }
 
-/// The same for a folder in which one file is another.
+/// The same for a folder with one file replaced.
 std::string complaintWith(const std::string& file, const std::string& content) {
   const Folder folder("drive_bad");
   const std::string path = writeDrives(folder, twoSurfaces());

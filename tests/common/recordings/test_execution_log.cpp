@@ -32,7 +32,7 @@ std::vector<LogEvent> logOf(const DriveRecordings& drives, size_t from, size_t t
                       drives.recordings.surfaces[to], request);
 }
 
-/// The log through the learner node on the virtual bus.
+/// Runs the log through the learner node on the virtual bus.
 replay::LearnerRun learned(const DriveRecordings& drives, size_t from, std::vector<LogEvent> events,
                            learner::Rule rule) {
   learner::LearnerNodeConfig config(averagedSet(drives, from));
@@ -46,7 +46,7 @@ size_t accepted(const replay::LearnerRun& run) {
                                            [](const learning_t& l) { return l.accepted; }));
 }
 
-/// Errors of the executions from one number to another.
+/// Errors of a range of executions.
 replay::ErrorSummary errors(const replay::LearnerRun& run, int64_t first, int64_t last) {
   std::vector<learning_t> part;
   for (const learning_t& learning : run.learned)
@@ -106,7 +106,7 @@ TEST_CASE("a learner that knows one surface adapts to the other through the log"
   const auto single = learned(drives, 0, events, "single");
   const auto known = errors(off, 1, 48);
   const auto unknown = errors(off, 49, 96);
-  const auto adapted = errors(single, 65, 96);  // each pattern was met twice, then four times
+  const auto adapted = errors(single, 65, 96);  // each pattern was executed twice, then four times
   CHECK(unknown.position_mean > 2.0 * known.position_mean);
   CHECK(adapted.position_mean < 0.6 * unknown.position_mean);
   CHECK(adapted.yaw_mean < 0.6 * unknown.yaw_mean);
@@ -156,7 +156,7 @@ TEST_CASE("recorded drives: the learner hears a real change of surface") {
   CHECK(off.learned.size() == 80);
   CHECK(accepted(off) >= 72);
   CHECK(accepted(collective) == accepted(off));
-  // Skid steering on real ground: predictions of the other surface are worse than those of its own.
+  // Skid steering on real ground: the other surface's predictions are worse than its own.
   CHECK(errors(off, 41, 80).position_mean > errors(off, 1, 40).position_mean);
   CHECK(std::isfinite(errors(collective, 41, 80).yaw_mean));
 }

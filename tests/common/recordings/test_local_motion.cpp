@@ -62,7 +62,7 @@ TEST_CASE("recordings vary about the mean as the windows of one step do, with bo
     square += std::pow(profile.mean.omega - motion.mean.mean.omega, 2) / 30.0;
   }
   CHECK((mean - motion.mean.vector()).cwiseAbs().maxCoeff() < 1e-12);
-  // Windows are off by a draw between -0.1 and 0.1 with opposite signs: 2 u / sqrt(2), u of 0.058.
+  // Windows differ by a uniform draw in +-0.1 with opposite signs: 2 u / sqrt(2), u of 0.058.
   CHECK(std::sqrt(square) == Approx(0.1 / std::sqrt(3.0) * std::sqrt(2.0)).epsilon(0.3));
 }
 
@@ -121,7 +121,7 @@ TEST_CASE("each pattern begins and ends in its own steady motion, the mean of th
   CHECK(steady.twist.omega == Approx(0.5 * 1.5).margin(1e-6));
   CHECK(drives.recordings.surfaces[0].executions[0][0].back().x ==
         Approx(0.8 * 2.5 * 2.0).margin(1e-5));
-  // A robot that knows one surface ships with the steady motion of that surface.
+  // For a single surface the classes have that surface's steady motion.
   const PatternSet soft = averagedSet(drives, 0);
   CHECK(soft.classNamed("left").twist.omega == Approx(0.4 * 1.5).margin(1e-6));
   CHECK(soft.findByName("left")->end().yaw == Approx(0.4 * 1.5 * 2.0).margin(1e-4));

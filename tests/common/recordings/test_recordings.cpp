@@ -22,7 +22,7 @@ std::string rows(const std::string& pattern, int execution) {
   return start + "1,0.05,0,0\n" + start + "2,0.1,0,0\n" + start + "3,0.15,0,0\n";
 }
 
-/// The error of a set of recordings whose only surface has this text.
+/// The error for recordings whose only surface has this text.
 std::string errorOf(const std::string& text) {
   const Folder folder;
   folder.write("patterns.yaml", formatPatterns(samples::twoPatterns()));

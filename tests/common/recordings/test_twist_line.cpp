@@ -11,7 +11,7 @@ namespace {
 
 const TwistLine kTurn{{2.1, -0.2, 0.9}, {0.1, 0.05, -0.15}};
 
-/// Poses every 0.2 s of a profile, seen from a map in which the window begins somewhere.
+/// Poses every 0.2 s of a profile, in a map in which the window begins anywhere.
 std::vector<WindowPose> drivenPoses(const TwistLine& profile) {
   const Pose2 T_map_start{3.0, -2.0, 2.5};
   const std::vector<Pose2> fine = integrated(profile, 400, 0.005);
@@ -62,7 +62,7 @@ TEST_CASE("a window with a gap or with too few poses is refused in words") {
   poses.erase(poses.begin() + 3, poses.begin() + 5);
   REQUIRE(windowProblem(poses, 2.0) == "no new pose for more than 0.40 s");
   REQUIRE_FALSE(windowProblem({}, 2.0).empty());
-  // The end of the window counts, too.
+  // The end of the window must be used, too.
   poses = drivenPoses(kTurn);
   poses.resize(poses.size() - 2);
   REQUIRE_FALSE(windowProblem(poses, 2.0).empty());

@@ -33,7 +33,7 @@ TEST_CASE("a picture with a map and a curve is a PNG of the asked size") {
   std::remove(path.c_str());
   REQUIRE(bytes.size() > 1000);
   REQUIRE(bytes.substr(1, 3) == "PNG");
-  // Width and height stand big-endian at bytes 16 and 20 of a PNG.
+  // A PNG has width and height as big-endian at bytes 16 and 20.
   REQUIRE(static_cast<unsigned char>(bytes[18]) * 256 + static_cast<unsigned char>(bytes[19]) ==
           640);
   REQUIRE(static_cast<unsigned char>(bytes[22]) * 256 + static_cast<unsigned char>(bytes[23]) ==

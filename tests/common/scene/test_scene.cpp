@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// What the scene makes of a message, by topic.
+/// The scene's output for a message, by topic.
 class Drawn {
  public:
   template <class Message>
@@ -67,7 +67,7 @@ TEST_CASE("the map around the robot is drawn: obstacles dark, unknown not at all
   tile.cells[0] = kObstacle;
   tile.num_cells = 32 * 32;
   drawn.add(kMap, tile);
-  REQUIRE(drawn.last.count("scene/map") == 0);  // nobody knows where the robot is
+  REQUIRE(drawn.last.count("scene/map") == 0);  // the robot's pose is unknown
   drawn.add(kIns, insAt(0.0, 0.0));
   const Json& grid = drawn.last.at("scene/map");
   REQUIRE(grid["column_count"] == 300);
@@ -94,7 +94,7 @@ TEST_CASE("a broken tile or pose draws nothing and ends nothing") {
   tile.tile_x = INT32_MAX;
   drawn.add(kMap, tile);
   tile.tile_x = 0;
-  tile.tile_cells = 9;  // not as many as it holds
+  tile.tile_cells = 9;  // differs from the data's size
   drawn.add(kMap, tile, 90'000'000);
   CHECK(drawn.last.count("scene/map") == 0);
 }

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A folder of this test alone.
+/// A temporary folder.
 struct Folder {
   Folder() { fs::create_directories(path); }
   ~Folder() { fs::remove_all(path); }
@@ -118,7 +118,7 @@ TEST_CASE(
   const std::string path = folder.file("key");
   const pid_t killed = fork();
   if (killed == 0) {
-    // The kernel kills the process when it writes its first byte.
+    // The kernel kills the process at its first written byte.
     const rlimit nothing{0, 0};
     std::signal(SIGXFSZ, SIG_DFL);
     setrlimit(RLIMIT_CORE, &nothing);

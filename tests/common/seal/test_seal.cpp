@@ -23,7 +23,7 @@ Sealer sealer(uint64_t sender, uint8_t key = 7, std::optional<uint64_t> session 
   return Sealer(keyOf(key), sender, session);
 }
 
-/// A message of this many bytes, sealed on ARM.
+/// A message of this size, sealed on ARM.
 Bytes sealedMessage(Sealer& by, int64_t utime = kNow, size_t size = 100) {
   Bytes bytes(size);
   for (size_t i = 0; i < size; ++i) bytes[i] = static_cast<uint8_t>(31 * i);
@@ -82,7 +82,7 @@ TEST_CASE("a bit changed anywhere, a message cut anywhere, and another channel a
   CHECK(verdict(two, longer) == V::kUnsealed);
   for (const char* channel : {"ARMS", "AR", "", "PROGRAM"})
     CHECK(verdict(two, bytes, kNow, channel) == V::kWrongTag);
-  CHECK(verdict(two, bytes) == V::kGood);  // none of them has used it up
+  CHECK(verdict(two, bytes) == V::kGood);  // none has consumed it
 }
 
 TEST_CASE("a byte moved between channel and message changes the tag") {
@@ -165,7 +165,7 @@ TEST_CASE("the memory of senders is bounded: new ones are refused, active ones a
   const Bytes bytes = sealedMessage(late);
   CHECK(verdict(receiver, bytes) == V::kTooManySenders);
   for (const Bytes& message : messages) REQUIRE(verdict(receiver, message) == V::kReplayed);
-  // Those that are silent make room; what they sent is too old then.
+  // Silent senders are dropped; their messages are too old by then.
   const int64_t later = kNow + Sealer::kMaxAge + 1;
   CHECK(verdict(receiver, sealedMessage(late, later), later) == V::kGood);
   CHECK(verdict(receiver, messages.front(), later) == V::kTooOld);
@@ -185,7 +185,7 @@ TEST_CASE("a sealer without a session adopts that of the first message with a ri
   const OpenedSeal opened = open(away, first, kOtherClock);
   CHECK(opened.verdict == V::kGood);
   CHECK(away.session() == 3);
-  // Its owner knows the robot's clock now.
+  // The receiver knows the robot's clock now.
   const int64_t now = opened.sent + 10;
   CHECK(verdict(away, first, now) == V::kReplayed);
   CHECK(verdict(away, sealedMessage(robot), now) == V::kGood);

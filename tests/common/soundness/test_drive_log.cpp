@@ -77,7 +77,7 @@ TEST_CASE("missing commands end a segment, and where the robot still moves after
   REQUIRE(result.segments.size() == 2);
   REQUIRE(result.segments[0].end == Approx(10.0));
   REQUIRE(result.segments[1].begin() == Approx(10.5));
-  // Nobody knows how fast it is then; after three seconds that no longer matters.
+  // The speed is unknown then; after three seconds it no longer matters.
   REQUIRE(result.segments[1].ins.front().time == Approx(13.5));
 }
 
@@ -217,7 +217,7 @@ TEST_CASE(
     "an imported recording: a segment a step, with the gyro of all rows and the poses as logged") {
   const Drive fixes = importedSteps(2, false, recordings::Gyro::kAtFixes);
   REQUIRE(fixes.segments.size() == 2);
-  // The first two of 61 fixes were measured before the first command.
+  // The first two of 61 fixes precede the first command.
   REQUIRE(posesOf(fixes.segments[0]) == 59);
   const Drive all = importedSteps(2, true, recordings::Gyro::kAll);
   REQUIRE(all.segments.size() == 2);
@@ -324,7 +324,7 @@ TEST_CASE(
   struct Expected {
     const char* session;
     size_t segments;     // steps of the recording
-    size_t most_broken;  // of them in a wrong frame
+    size_t most_broken;  // steps in a wrong frame
   };
   for (const Expected& expected : {Expected{"warthog_unlabelled_2023", 119, 0},
                                    {"warthog_gravel_20240806", 99, 5},
@@ -350,7 +350,7 @@ TEST_CASE(
     for (const Segment& segment : result.segments) {
       REQUIRE(segment.entry_speeds);
       REQUIRE(segment.end - segment.begin() > 5.0);
-      // The gyro speaks at every row; new poses are a fifth to a half of them as a rule.
+      // A gyro value in every row; usually a fifth to a half of them have a new pose.
       REQUIRE(segment.ins.size() > 100);
       REQUIRE(posesOf(segment) * 20 > segment.ins.size());
     }

@@ -21,7 +21,7 @@ double integralAt(double time) {
   return std::sin(0.9 * time) / 0.9 + 0.5 * std::sin(2.3 * time + 1.0) / 2.3;
 }
 
-/// One segment whose heading follows the gyro late, as slope * rate + offset.
+/// One segment with a heading delayed against the gyro, as slope * rate + offset.
 Drive followingDrive(double lag, double slope, double offset, double seconds = 100.0) {
   Drive drive;
   Segment segment;
@@ -181,7 +181,7 @@ TEST_CASE("the best match has the lag, slope and offset with which one rate foll
     const auto match = table.best(0, table.increments());
     REQUIRE(match);
     INFO("lag " << lag);
-    CHECK(match->lag == Approx(lag).margin(0.01));  // between the grid's lags, too
+    CHECK(match->lag == Approx(lag).margin(0.01));  // also between the grid's lags
     CHECK(match->correlation > 0.995);
     CHECK(match->slope == Approx(0.8).epsilon(0.01));
     CHECK(match->offset == Approx(0.05).margin(0.01));
@@ -193,7 +193,8 @@ TEST_CASE("a match is the correlation and the regression of the rows at its lag"
   const LagTable table = tableOf(drive, {0.0, 0.2, 0.5});
   const auto increments = poseIncrements(drive);
   const RunningSums gyro = gyroSums(drive);
-  std::vector<std::pair<double, double>> pairs;  // at lag 0.2, of increments that speak at all lags
+  // at lag 0.2, from increments that are valid at all lags
+  std::vector<std::pair<double, double>> pairs;
   for (const PoseIncrement& increment : increments)
     if (gyro[0].mean(increment.begin - 0.5, increment.end - 0.5) &&
         gyro[0].mean(increment.begin, increment.end))

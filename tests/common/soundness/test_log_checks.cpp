@@ -20,14 +20,14 @@ SmallLog goodLog(double length = 30.0) {
   return log;
 }
 
-/// The first fatal line; empty if nothing is fatal.
+/// The first fatal line; empty if there is none.
 std::string fatal(const std::vector<LogEvent>& events) {
   for (const LogNote& note : toDrive(toDriveLog("a.lcmlog", events)).notes)
     if (note.fatal) return note.what;
   return "";
 }
 
-/// Shifts the messages of a channel from a time on [s], and when they were logged.
+/// Shifts a channel's messages from a time on [s], including their logging times.
 template <class Message>
 void shift(std::vector<LogEvent>& events, const Channel<Message>& channel, double from, double by,
            double logged_by) {
@@ -143,7 +143,7 @@ TEST_CASE("a silence in which time went on is no clock jump") {
 }
 
 TEST_CASE("an import that has neither commands nor poses for a while has a break, no clock jump") {
-  // The robot turns once in the pause, and faces the same way behind it.
+  // The robot turns by 360 deg during the pause.
   const Twist2 turning{0.02, 0.0, 1.0};
   const double break_end = 15.0 + 2.0 * kPi;
   SmallLog log;
@@ -168,7 +168,7 @@ TEST_CASE("an import that has neither commands nor poses for a while has a break
   };
   CHECK(measured(0) == 7);
   CHECK(measured(1) >= 5);  // without encoders the first 3 s are not used
-  // Poses that come back a second after the commands; the robot has driven a circle.
+  // Poses that return to an earlier time 1 s after the commands; the robot drives a circle.
   SmallLog late;
   Pose2 at_break = drive(late, 0.0, 15.0, {0.5, 0.0, 1.0}, {});
   for (double time = break_end - 1.0; time < break_end; time += 0.05) late.motor(time, {0.0, 1.0});
@@ -176,7 +176,7 @@ TEST_CASE("an import that has neither commands nor poses for a while has a break
   CHECK(fatal(late.sorted()).find("clock jump: INS goes on by 6.") == 0);
   late.add(kConfig, config);
   CHECK(fatal(late.sorted()) == "");
-  // One stream that jumps ahead beside the other one is the clock's fault in an import, too.
+  // A stream that jumps ahead of the other one is a clock fault, also in an import.
   auto events = goodLog().sorted();
   events.push_back(eventOf(kConfig, config));
   shift(events, kIns, 15.0, 4.0, 4.0);

@@ -15,26 +15,27 @@ namespace {
 
 struct Made {
   double length = 200.0;    ///< [s]
-  double gyro_scale = 1.0;  ///< what the gyro says over what is true
+  double gyro_scale = 1.0;  ///< gyro value relative to the true one
   double gyro_bias = 0.0;   ///< [rad/s]
   double pose_lag = 0.0;    ///< [s]
   double gyro_lag = 0.0;    ///< [s]
-  double turn_sign = 1.0;   ///< of the motion against the command
+  double turn_sign = 1.0;   ///< of the motion relative to the command
   double forward_sign = 1.0;
-  double turning = 1.0;                    ///< [rad/s] at most
-  double mirror = 1.0;                     ///< of the map's y
-  double jump_time = 1e9;                  ///< [s] from when INS times are late
-  double jump = 0.0;                       ///< [s] by that much
-  double noise = 0.01;                     ///< [m] and half of it [rad]
-  double from = 1e9, to = 1e9;             ///< [s] between them something is wrong with the INS:
-  bool frozen = false, flipped = false;    ///< it repeats itself, its gyro has the other sign,
-  double turned = 0.0;                     ///< its heading has turned [rad],
-  bool swapped = false, reversed = false;  ///< or left and right, forwards and backwards
-  bool stands_first = true;                ///< for 5 s
-  bool alternates = false;                 ///< the same turn and speed to and fro
+  double turning = 1.0;                  ///< [rad/s] at most
+  double mirror = 1.0;                   ///< of the map's y
+  double jump_time = 1e9;                ///< [s] from which INS times are late
+  double jump = 0.0;                     ///< [s] delay
+  double noise = 0.01;                   ///< [m] and half of it [rad]
+  double from = 1e9, to = 1e9;           ///< [s] interval with a fault of the INS:
+  bool frozen = false, flipped = false;  ///< it repeats itself, its gyro has the other sign,
+  double turned = 0.0;                   ///< its heading is rotated [rad],
+  /// or left and right, or forwards and backwards are exchanged
+  bool swapped = false, reversed = false;
+  bool stands_first = true;  ///< for 5 s
+  bool alternates = false;   ///< the same turn and speed alternately
 };
 
-/// A command that changes every second and a half; a first-order vehicle that follows it.
+/// A command that changes every 1.5 s, and a first-order vehicle that follows it.
 Drive makeDrive(const Made& made) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -435,7 +436,7 @@ TEST_CASE("noise while it stands, and turns on the spot with a lever arm, are no
   std::normal_distribution<double> normal;
   Drive drive = makeDrive({});
   Segment& segment = drive.segments[0];
-  // Half an hour of standing, the heading's noise independent of the gyro's.
+  // Half an hour at standstill; the heading's noise is independent of the gyro's.
   segment.commands.push_back({200.0, {}});
   const Pose2 stand = segment.ins.back().T_map_body;
   for (double time = 200.0; time < 2000.0; time += 0.5) {
@@ -446,7 +447,7 @@ TEST_CASE("noise while it stands, and turns on the spot with a lever arm, are no
                          stand.yaw + 0.005 * normal(random)};
     segment.ins.push_back(sample);
   }
-  // A minute of turning on the spot, the measured point half a metre ahead.
+  // A minute of turning on the spot, with the measured point half a metre ahead.
   segment.commands.push_back({2000.0, {-0.25, 0.25}});
   for (double time = 2000.0; time < 2060.0; time += 0.5) {
     InsSample sample = segment.ins.back();

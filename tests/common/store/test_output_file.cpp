@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using Catch::Contains;
 
-/// A folder of this test alone, with a file that must not be lost.
+/// A temporary folder with a file that must not be lost.
 class Place {
  public:
   Place() {
@@ -95,10 +95,10 @@ TEST_CASE("pipes and the standard streams are written to as they stand") {
   const Place place;
   writeText("/dev/null", "x");
   REQUIRE(::mkfifo((place / "pipe").c_str(), 0600) == 0);
-  std::fflush(nullptr);  // what is printed here already must not be printed there once more
+  std::fflush(nullptr);  // the child must not print the buffered output again
   const pid_t writer = ::fork();
   if (writer == 0) {
-    // Into the file that the stream leads to, behind what is in it.
+    // Into the file behind the stream, after its content.
     ::close(STDOUT_FILENO);
     if (::open(place.old().c_str(), O_WRONLY | O_APPEND) != STDOUT_FILENO) ::_exit(1);
     writeText("/dev/stdout", ", and more");
@@ -147,7 +147,7 @@ TEST_CASE("once a write has failed nothing takes the place of what was there") {
     } catch (const WriteError& error) {
       first = error.what();
     }
-    ::setrlimit(RLIMIT_FSIZE, &before);  // there is room again, but a hole in the file
+    ::setrlimit(RLIMIT_FSIZE, &before);  // there is space again, but the file has a gap
     try {
       file.commit();
     } catch (const WriteError& error) {

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Catch::Contains;
 
-/// A folder of this test alone, removed at its end.
+/// A temporary folder.
 class Folder {
  public:
   Folder() {
@@ -110,7 +110,7 @@ TEST_CASE("a full disk is one clear line and the old content stays") {
   const Folder folder;
   FileStore store(folder.path);
   REQUIRE_FALSE(store.write("set", "old"));
-  // A limit on file sizes fails in the middle of writing, as a full disk does.
+  // A file size limit fails in the middle of writing, like a full disk.
   rlimit before{};
   ::getrlimit(RLIMIT_FSIZE, &before);
   const rlimit tight{1000, before.rlim_max};

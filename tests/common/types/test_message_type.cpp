@@ -12,7 +12,7 @@ using namespace tread;
 
 namespace {
 
-/// Counts what it hears.
+/// Counts visited fields.
 class Heard : public MessageVisitor {
  public:
   void beginField(const MessageField&, size_t) override { ++fields; }

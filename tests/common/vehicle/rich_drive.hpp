@@ -19,13 +19,13 @@ inline VehicleModel plainVehicle() {
   return model;
 }
 
-/// Straight, arcs, turns on the spot, reverse, stop and go: each held for 1.5 s.
+/// Straight, arcs, turns on the spot, reverse, stop and start: each held for 1.5 s.
 inline std::vector<TrackCommand> richCommands() {
   return {{1.0, 1.0},   {0.6, 1.0},   {1.6, 2.0}, {-0.8, 0.8}, {0.05, 0.5}, {0.0, 0.0},
           {-1.0, -1.0}, {-0.7, -1.0}, {2.0, 1.2}, {1.0, -1.0}, {0.3, 0.3},  {0.9, 1.0}};
 }
 
-/// A slope to all sides, a battery that falls.
+/// Slopes in all directions, a falling battery.
 inline DriveContext contextAt(double time) {
   return {time, 0.1 * time / 20.0, 0.1 * std::sin(time), 0.08 * std::cos(0.7 * time)};
 }

@@ -60,7 +60,7 @@ ModelDocument tracked() {
   return model;
 }
 
-/// A drive with turns both ways, forwards, backwards and on the spot.
+/// A drive with turns in both directions, forwards, backwards and on the spot.
 std::vector<TrackCommand> drive() {
   std::vector<TrackCommand> commands;
   for (const TrackCommand& command :
@@ -69,7 +69,7 @@ std::vector<TrackCommand> drive() {
   return commands;
 }
 
-/// How far two models get apart in that drive [m and rad].
+/// Largest difference between two models in that drive [m and rad].
 double apart(const ModelDocument& one, const ModelDocument& other) {
   const auto a = simulate(one.vehicle, drive(), 0.05, steadyEntry(one.vehicle, {0.3, 0.6}));
   const auto b = simulate(other.vehicle, drive(), 0.05, steadyEntry(other.vehicle, {0.3, 0.6}));
@@ -126,7 +126,7 @@ TEST_CASE("a model with an effect of a file is read where that file is not") {
   CHECK(text.find("catalogue:") != std::string::npos);
   CHECK(formatModelDocument(parseModelDocument(text, "model.yaml")) == text);
   CHECK(formatModelDocument(tracked()).find("catalogue:") == std::string::npos);
-  // The same model, of a vehicle whose effect this program has never heard of.
+  // The same model for a vehicle with an effect unknown to this program.
   std::string elsewhere = text;
   for (size_t at = 0; (at = elsewhere.find("of_a_file", at)) != std::string::npos;)
     elsewhere.replace(at, 9, "unheard_of");
@@ -134,7 +134,7 @@ TEST_CASE("a model with an effect of a file is read where that file is not") {
   const ModelDocument read = parseModelDocument(elsewhere, "model.yaml");
   CHECK(*findParameter(read, "unheard_of.p") == 0.25);
   CHECK(apart(read, model) < 1e-12);
-  // Another law under a name that is known would change what the model does.
+  // Another law under a known name would change the model's motion.
   std::string other = text;
   other.replace(other.find("p * abs(yaw_rate)"), 17, "p * abs(v)");
   CHECK_THROWS_WITH(parseModelDocument(other, "model.yaml"),
@@ -155,7 +155,7 @@ TEST_CASE("the text of an effect reads back as the same effect") {
   CHECK(read == 3);
   addEffectsOf(folder.string());
   const size_t all = effectCatalogue().size();
-  addEffectsOf(folder.string());  // the same twice is there once
+  addEffectsOf(folder.string());  // adding it twice has no further effect
   CHECK(effectCatalogue().size() == all);
   CHECK(confoundedEffects("centre_to_side", {}) == std::vector<std::string>{"lever_arm_y"});
   CHECK(confoundedEffects("lever_arm_y", {}) == std::vector<std::string>{"centre_to_side"});
@@ -274,7 +274,8 @@ TEST_CASE("an unnamed term is kept as an effect that does the same") {
   CHECK(apart(model, kept) < 1e-12);
   CHECK(apart(tracked(), kept) > 0.02);
   CHECK(kept.covariance.parameters == std::vector<std::string>{"lag", "steering_hysteresis.share"});
-  // Values ten deviations from 0 both: their share is known to one in the root of 200.
+  // Both values ten standard deviations from 0: the error of their common part is one over the root
+  // of 200.
   CHECK(kept.covariance.matrix[1][1] == Approx(1.0 / 200.0));
   CHECK(formatModelDocument(parseModelDocument(formatModelDocument(kept), "m")) ==
         formatModelDocument(kept));

@@ -39,7 +39,7 @@ TEST_CASE("The paper's five patterns of one second end where the calibration's e
     CHECK(model.full_speed == 1.1);
     CHECK(model.gauge == 0.6);
     CHECK(model.lag == 0.15);
-    // Share of a second that a lag of 0.15 s leaves of a step in the command.
+    // Share of a second that a lag of 0.15 s leaves of a command step.
     const double share = 1.0 - 0.15 * (1.0 - std::exp(-1.0 / 0.15));
     for (const auto& [name, command] : kPaperPatterns) {
       INFO(surface << " " << name);

@@ -13,7 +13,7 @@ using namespace tread;
 
 namespace {
 
-/// The rich drive, level, as a time series with its beginning at rest at time 0.
+/// The rich drive on level ground as a time series, starting from rest at time 0.
 std::vector<MotionSample> drive(const VehicleModel& model) {
   VehicleKernel kernel(model, {});
   std::vector<MotionSample> motion{{0.0, {}, 0.0}};
@@ -34,7 +34,7 @@ std::vector<MotionSample> circle(const Twist2& v_body, int samples = 60) {
   return motion;
 }
 
-/// Body twist that the INS saw between samples `i` and `i + 1`.
+/// Body twist measured by the INS between samples `i` and `i + 1`.
 Twist2 seen(const std::vector<MotionSample>& said, size_t i) {
   return twistTo(between(said[i].T_map_body, said[i + 1].T_map_body),
                  said[i + 1].time - said[i].time);
@@ -146,7 +146,7 @@ TEST_CASE("A centre of rotation and a lever arm along the vehicle give the same 
   VehicleModel moved = plainVehicle();
   VehicleModel plain = plainVehicle();
   for (VehicleModel* model : {&moved, &plain}) {
-    model->effects.yaw_inertia = 0.3;  // also while the body lags behind
+    model->effects.yaw_inertia = 0.3;  // also while the body lags
     model->effects.crab = 0.03;
   }
   moved.effects.icr_offset = 0.15;

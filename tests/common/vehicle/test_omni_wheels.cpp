@@ -52,7 +52,7 @@ VehicleModel omniModel() {
   return readModelFile(kFolder + "model.yaml");
 }
 
-/// Held for so long [s] from a steady command, in pieces of 50 ms.
+/// Held for a time [s] from a steady command on, in steps of 50 ms.
 Pose2 endOfHeld(const VehicleModel& model, const Command& entry, const Command& held,
                 double seconds) {
   const std::vector<Command> commands(static_cast<size_t>(std::lround(seconds / 0.05)), held);
@@ -76,7 +76,7 @@ TEST_CASE("three omni wheels turn as their equation says, and twists come back f
   CHECK(back.v_y == Approx(twist.v_y));
   CHECK(back.omega == Approx(twist.omega));
   CHECK(wheels.radius() == Approx(0.125));
-  // Two wheels that push at 30 degrees to the way make 1/cos(30) of their rims' speed at least.
+  // Two wheels that push at 30 degrees to the path need at least 1/cos(30) times its speed.
   CHECK(wheels.reach() > 1.15);
   CHECK(wheels.reach() < 2.0);
 }
@@ -91,11 +91,11 @@ TEST_CASE("mecanum wheels are told by the angle of their rollers") {
   CHECK(left[2] == Approx(0.5));
   CHECK(left[3] == Approx(-0.5));
   const Command turn = wheels.speeds({0.0, 0.0, 1.0});
-  CHECK(turn[0] == Approx(-0.5));  // half the length and half the width
+  CHECK(turn[0] == Approx(-0.5));  // half of length plus width
   CHECK(turn[1] == Approx(0.5));
   CHECK(turn[2] == Approx(-0.5));
   CHECK(turn[3] == Approx(0.5));
-  // Wheels that contradict each other: the least-squares motion.
+  // Contradicting wheels: the least-squares motion.
   CHECK(wheels.twist(Command(1.0, 0.0)).v_x == Approx(0.25));
 }
 
@@ -155,7 +155,7 @@ TEST_CASE("a holonomic base drives forwards, sideways and turns on the spot as i
   const Pose2 spot = endOfHeld(model, turn, turn, 1.0);
   CHECK(std::hypot(spot.x, spot.y) < 1e-9);
   CHECK(spot.yaw == Approx(0.95 * 0.9));
-  // From standstill, delay and lag take their part of it.
+  // From standstill delay and lag reduce it.
   const Pose2 started = endOfHeld(model, {}, ahead, 2.0);
   CHECK(started.x == Approx(0.95 * 0.8 * (2.0 - model.delay - model.lag)).epsilon(1e-3));
   const MotionClass going = classOf(model, "left", left);

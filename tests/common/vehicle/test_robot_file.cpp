@@ -32,7 +32,7 @@ std::string refusalOf(const std::string& process_text, const std::string& proces
   return "accepted";
 }
 
-/// The small robot's description as one map, with one line of it replaced.
+/// The small robot's description as one map, with one line replaced.
 std::string smallWith(const std::string& line, const std::string& other) {
   std::ostringstream text;
   text << "robot:\n";

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kGauge = 0.6;
 
-/// Track speeds that ask for a forward speed and a yaw rate.
+/// Track speeds for a forward speed and a yaw rate.
 TrackCommand asking(double v, double omega) {
   return {v - omega * kGauge / 2.0, v + omega * kGauge / 2.0};
 }
@@ -26,7 +26,7 @@ VehicleModel with(double EffectValues::*place, double value) {
   return model;
 }
 
-/// Steady residual (with the effect less without) of a motion that is asked for.
+/// Steady residual (with minus without the effect) of a commanded motion.
 Twist2 residual(const VehicleModel& model, double v, double omega,
                 const DriveContext& context = {}) {
   const Twist2 twist = steadyTwist(model, asking(v, omega), context);
@@ -115,7 +115,8 @@ TEST_CASE("motor_deadband takes a constant speed and stops the slow inner track"
   const VehicleModel model = with(&EffectValues::motor_deadband, 0.1);
   expect(residual(model, 1.0, 0.0), -0.1, 0.0, 0.0);
   expect(residual(model, -1.0, 0.5), 0.1, 0.0, 0.0);
-  const Twist2 inner = steadyTwist(model, {0.05, 0.65});  // stands still, 0.55 on the outer one
+  // inner track stands, 0.55 on the outer one
+  const Twist2 inner = steadyTwist(model, {0.05, 0.65});
   expect(inner, 0.275, 0.0, 0.55 / kGauge);
 }
 
@@ -132,7 +133,7 @@ TEST_CASE("actuator_lag decays from the start of a step, in proportion to it") {
   const auto twists = afterStep(model, {0.0, 0.0}, {1.0, 1.0}, 40);
   for (size_t i = 0; i < twists.size(); ++i)
     CHECK(twists[i].v_x == Approx(1.0 - std::exp(-0.05 * static_cast<double>(i + 1) / 0.35)));
-  model.effects.actuator_lag = -0.15;  // takes the model's own lag off
+  model.effects.actuator_lag = -0.15;  // removes the model's own lag
   CHECK(afterStep(model, {0.0, 0.0}, {1.0, 1.0}, 1)[0].v_x == Approx(1.0));
 }
 
@@ -161,7 +162,7 @@ TEST_CASE("slew_limit before a lag is a ramp that the lag follows, however time 
   VehicleModel model = with(&EffectValues::slew_limit, 0.5);  // 2 m/s2
   model.delay = 0.0;
   model.lag = 0.2;
-  // Behind a ramp of slope s a lag is s (t - lag (1 - e^(-t / lag))).
+  // On a ramp of slope s the lagged value is behind by s (t - lag (1 - e^(-t / lag))).
   const double on_ramp = 2.0 * (0.3 - 0.2 * (1.0 - std::exp(-0.3 / 0.2)));
   const double at_its_end = 2.0 * (0.5 - 0.2 * (1.0 - std::exp(-0.5 / 0.2)));
   const double after = 1.0 - (1.0 - at_its_end) * std::exp(-0.25 / 0.2);
@@ -174,7 +175,7 @@ TEST_CASE("slew_limit before a lag is a ramp that the lag follows, however time 
       if (std::abs(time - 0.3) < 1e-9) CHECK(kernel.twist().v_x == Approx(on_ramp));
     }
     CHECK(kernel.twist().v_x == Approx(after));
-    // Another kernel goes on from where this one is.
+    // Another kernel continues from its state.
     VehicleKernel other(model, kernel.state());
     kernel.step({0.0, 0.0}, 0.2);
     other.step({0.0, 0.0}, 0.2);
@@ -373,7 +374,7 @@ TEST_CASE("track_backlash costs a fixed distance after each reversal, not a time
     kernel.step({-speed, -speed}, 1.0);
     CHECK(kernel.pose().x == Approx(1.0 - (speed - 0.04)));
     kernel.step({0.0, 0.0}, 1.0);
-    kernel.step({-speed, -speed}, 1.0);  // taken up already
+    kernel.step({-speed, -speed}, 1.0);  // already taken up
     CHECK(kernel.pose().x == Approx(1.0 - (2.0 * speed - 0.04)));
     kernel.step({speed, speed}, 1.0);
     CHECK(kernel.pose().x == Approx(1.0 - speed).margin(1e-9));

@@ -45,7 +45,7 @@ TEST_CASE("stopping takes what the file says until five stops have shown that it
   driver.stop(0.2);
   CHECK(driver.stopping.count() == 5);
   CHECK(driver.stopping.seconds() == Approx(1.3 * 0.3).margin(0.04));
-  // Half of the file's at least.
+  // At least half of the file's value.
   for (int i = 0; i < 5; ++i) driver.stop(0.02);
   CHECK(driver.stopping.seconds() == 0.25);
 }

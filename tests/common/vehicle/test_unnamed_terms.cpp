@@ -34,7 +34,7 @@ UnnamedTerm yawTerm(const std::string& condition, const std::string& times = "")
   return term;
 }
 
-/// Yaw rate after a command has been held for long.
+/// Steady yaw rate for a command.
 double yawRate(const ModelDocument& model, const TrackCommand& command) {
   return steadyTwist(model.vehicle, command).omega;
 }
@@ -95,7 +95,7 @@ TEST_CASE("a term of a change acts while the motion changes, and not in steady m
   };
   ModelDocument plain = tracked();
   plain.vehicle.lag = 0.2;
-  // It speeds the winding up, and brakes a spin.
+  // It speeds up winding, and brakes a spin.
   CHECK(turned(with, {}, spin) > turned(plain, {}, spin) + 0.02);
   CHECK(turned(with, spin, {}) < turned(plain, spin, {}) - 0.01);
 }
