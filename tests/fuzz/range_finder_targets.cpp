@@ -20,7 +20,7 @@
 namespace tread::fuzz {
 namespace {
 
-/// What a session made of bytes: scans that ended before they came.
+/// Checks the output of a session: scans must end before they arrive.
 void requireScans(lidar::ScanDevice& device, int64_t now) {
   for (const lidar::RangeScan& scan : device.take(now)) {
     const bool slice = scan.ranges.empty() && !scan.points.empty();
@@ -30,7 +30,7 @@ void requireScans(lidar::ScanDevice& device, int64_t now) {
   }
 }
 
-/// Bytes in pieces, with time between them, to a device that is open.
+/// Feeds bytes in pieces, with time between them, to an open device.
 template <class Use>
 void inPieces(const uint8_t* bytes, size_t size, int64_t now, Use use) {
   for (size_t at = 0; at < size; at += 61) {
@@ -39,7 +39,7 @@ void inPieces(const uint8_t* bytes, size_t size, int64_t now, Use use) {
   }
 }
 
-/// The first byte chooses the dialect; answers to the start-up come first, so that scans are read.
+/// The first byte selects the dialect; valid start-up replies come first, so that scans are parsed.
 void cola(const uint8_t* bytes, size_t size) {
   if (size == 0) return;
   lidar::ColaConfig config;
@@ -52,7 +52,7 @@ void cola(const uint8_t* bytes, size_t size) {
     session.poll(now);
     session.receive(lidar::colaFrame(config.dialect, answer), now);
   }
-  // As one telegram with its checksum, so that its fields are looked at, then as a stream.
+  // First as one telegram with a valid checksum, so that its fields are parsed, then as a stream.
   const std::string telegram = "sSN LMDscandata " + textOf(bytes + 1, size - 1);
   session.receive(lidar::colaFrame(config.dialect, telegram), now);
   requireScans(session, now);
@@ -72,7 +72,7 @@ void colaCommand(const uint8_t* bytes, size_t size) {
   emulator.transmit(1'100'000);
 }
 
-/// The first byte chooses the place in an answer to PP, or in the stream, where the rest goes in.
+/// The first byte selects the insertion point: a place in the reply to PP, or in the stream.
 void hokuyo(const uint8_t* bytes, size_t size) {
   if (size == 0) return;
   lidar::ScipSession session({bytes[0] % 2 == 0, 0.0});
@@ -94,7 +94,7 @@ void hokuyo(const uint8_t* bytes, size_t size) {
   });
 }
 
-/// A scanner that is started up by its emulator; then both get the bytes.
+/// A scanner started by its emulator; then both get the bytes.
 template <class Session, class Emulator>
 void scanner(const uint8_t* bytes, size_t size) {
   Session session({});
@@ -113,7 +113,7 @@ void scanner(const uint8_t* bytes, size_t size) {
   });
 }
 
-/// Packets as a network line brings them, or a capture file.
+/// Packets from a network line, or a capture file.
 void velodyne(const uint8_t* bytes, size_t size) {
   lidar::VelodyneSession session({1, 1, 0.0});
   int64_t now = 10'000'000;
@@ -126,7 +126,7 @@ void velodyne(const uint8_t* bytes, size_t size) {
   requireScans(session, now + 1'000'000'000);
 }
 
-/// Payloads of a capture: parts of its bytes, and nothing after it was found damaged.
+/// Payloads of a capture are parts of its bytes, and none follows after damage was found.
 void capture(const uint8_t* bytes, size_t size) {
   PcapStream stream;
   size_t carried = 0;

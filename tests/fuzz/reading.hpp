@@ -21,7 +21,7 @@ inline std::string textOf(const uint8_t* bytes, size_t size) {
   return {reinterpret_cast<const char*>(bytes), size};
 }
 
-/// With the fingerprint at its end, so that the rest is looked at.
+/// Appends the fingerprint, so that the content is decoded.
 inline std::string sealed(const uint8_t* bytes, size_t size) {
   uint64_t hash = 14695981039346656037ULL;
   for (size_t i = 0; i < size; ++i) hash = (hash ^ bytes[i]) * 1099511628211ULL;
@@ -30,12 +30,12 @@ inline std::string sealed(const uint8_t* bytes, size_t size) {
   return textOf(bytes, size) + end.str();
 }
 
-/// What a broken promise of a reader is told by.
+/// Reports a violated promise of a reader.
 inline void require(bool kept) {
   if (!kept) std::abort();
 }
 
-/// A file of these bytes that is nowhere on a disk.
+/// A file of these bytes in memory.
 class MemoryFile {
  public:
   MemoryFile(const uint8_t* bytes, size_t size) : descriptor_(memfd_create("fuzz", 0)) {
@@ -50,7 +50,7 @@ class MemoryFile {
   int descriptor_;
 };
 
-/// A name of one's own for a MemoryFile, for readers that go by the name.
+/// A named link to a MemoryFile, for readers that depend on the file name.
 class NamedFile {
  public:
   NamedFile(const uint8_t* bytes, size_t size, const std::string& name)
@@ -69,7 +69,7 @@ class NamedFile {
   std::string path_;
 };
 
-/// What a reader refuses it refuses in one line.
+/// A reader must refuse input with one line.
 template <class Read>
 void refusing(Read read) {
   try {
@@ -88,7 +88,7 @@ void configuration(const uint8_t* bytes, size_t size, Read read) {
   });
 }
 
-/// The pattern set that other files are read with.
+/// The pattern set for reading the other files.
 inline const PatternSet& shippedSet() {
   static const PatternSet shipped =
       readPatternFile(std::string(TREAD_SOURCE_DIR) + "/config/patterns/teodor.yaml");

@@ -52,7 +52,7 @@
 namespace tread::fuzz {
 namespace {
 
-/// What is taken as a message is the same once more when it is sent.
+/// An accepted message must survive encoding and decoding.
 template <class Message>
 void decodeAs(const uint8_t* bytes, size_t size) {
   std::vector<uint8_t> whole;
@@ -68,8 +68,8 @@ void decodeAs(const uint8_t* bytes, size_t size) {
   require(written == static_cast<int>(again.size()));
 }
 
-/// The first byte chooses the type; its fingerprint stands in front, so that the rest is looked at.
-/// A new type comes last: the inputs in the corpus name theirs by its place here.
+/// The first byte selects the type; its fingerprint is prepended, so that the content is decoded.
+/// Add new types at the end: corpus inputs refer to a type by its index here.
 void message(const uint8_t* bytes, size_t size) {
   constexpr Target kTypes[] = {decodeAs<ins_t>,           decodeAs<scan_t>,
                                decodeAs<map_tile_t>,      decodeAs<goal_t>,
@@ -83,7 +83,7 @@ void message(const uint8_t* bytes, size_t size) {
                                decodeAs<manual_t>,        decodeAs<fence_t>,
                                decodeAs<stopping_t>,      decodeAs<shock_t>,
                                decodeAs<grip_t>,          decodeAs<fences_t>};
-  // INS and SCAN_MATCHING carry the same one.
+  // INS and SCAN_MATCHING have the same type.
   static_assert(std::size(kTypes) + 1 == kChannels.size());
   if (size > 0) kTypes[bytes[0] % std::size(kTypes)](bytes + 1, size - 1);
 }
@@ -101,7 +101,7 @@ void log(const uint8_t* bytes, size_t size) {
   while (reader.next(event)) require(event.bytes.size() <= size);
 }
 
-/// Parts of a set, each behind its length in two bytes.
+/// Parts of a set, each preceded by its length in two bytes.
 void patternSetParts(const uint8_t* bytes, size_t size) {
   PatternSetAssembler sets;
   size_t at = 0;
@@ -128,7 +128,7 @@ void modelFile(const uint8_t* bytes, size_t size) {
   });
 }
 
-/// Each process's own, with the robot in the same text.
+/// The configuration of each process, including the robot, in one text.
 void configurations(const uint8_t* bytes, size_t size) {
   configuration(bytes, size, readRobot);
   configuration(bytes, size, planner::readPlannerConfig);
@@ -142,7 +142,7 @@ void configurations(const uint8_t* bytes, size_t size) {
   refusing([&] { ins::originFrom(textOf(bytes, size)); });
 }
 
-/// Lines, each an address of a device or of a bus.
+/// Lines, each with an address of a device or bus.
 void addresses(const uint8_t* bytes, size_t size) {
   std::istringstream lines(textOf(bytes, size));
   for (std::string line; std::getline(lines, line);) {
@@ -155,7 +155,7 @@ void addresses(const uint8_t* bytes, size_t size) {
   }
 }
 
-/// A client of the relay on this host, which must serve the next one after it.
+/// A client of the relay on this host, which must then serve the next one.
 void relay(const uint8_t* bytes, size_t size) {
   static const TcpRelay server(0);
   static const auto port =
@@ -164,7 +164,7 @@ void relay(const uint8_t* bytes, size_t size) {
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   const int client = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  // From an address of its own: after some ten thousand clients one would have no port left.
+  // From varying addresses: a single one would run out of ports after some ten thousand clients.
   static uint32_t clients = 0;
   sockaddr_in own = address;
   own.sin_addr.s_addr = htonl(INADDR_LOOPBACK + ++clients / 1000);
@@ -179,7 +179,7 @@ void relay(const uint8_t* bytes, size_t size) {
   close(client);
 }
 
-/// A key is the owner's alone, which a file in memory is not until it is told.
+/// A key file must be private; a memory file becomes so only by fchmod.
 void keyFile(const uint8_t* bytes, size_t size) {
   const MemoryFile file(bytes, size);
   chmod(file.path().c_str(), 0600);
@@ -191,8 +191,8 @@ void learnerState(const uint8_t* bytes, size_t size) {
   require(learner::parseState(sealed(bytes, size), shippedSet(), why) || !why.empty());
 }
 
-/// Words of numbers as the rule's memory: what is taken is what is written again, and predicts
-/// numbers; what is refused changes nothing.
+/// Numbers as a rule's memory: accepted content is written back unchanged and gives finite
+/// predictions; refused content changes nothing.
 void ruleMemory(const uint8_t* bytes, size_t size) {
   static const learner::MultiModel kFresh(learner::RuleConfig{}, shippedSet());
   static const learner::TrajectoryTable kPredictions(shippedSet().patterns());
@@ -213,7 +213,7 @@ void ruleMemory(const uint8_t* bytes, size_t size) {
   }
 }
 
-/// As the number that versions count from, and as states that are not sealed.
+/// As the version counter, and as unsealed states.
 void learnerFiles(const uint8_t* bytes, size_t size) {
   MemoryStore store;
   for (const char* name : {"learner_versions", "learner_state_1"})
@@ -222,7 +222,7 @@ void learnerFiles(const uint8_t* bytes, size_t size) {
   require(memory.recall(shippedSet(), 1'700'000'000'000'000).first_version > 0);
 }
 
-/// Times between pieces are in the bytes, too.
+/// Times between the pieces come from the bytes, too.
 template <class Source>
 void insBytes(const uint8_t* bytes, size_t size) {
   Source source{ins::InsConfig{}};
@@ -235,7 +235,7 @@ void insBytes(const uint8_t* bytes, size_t size) {
   source.refusals();
 }
 
-/// What a motor controller says, in pieces; times between them are in the bytes, too.
+/// Output of a motor controller in pieces; times between them come from the bytes, too.
 void hearController(motor::MotorController& connection, const uint8_t* bytes, size_t size) {
   connection.open();
   int64_t now = 1'000'000;
@@ -270,7 +270,7 @@ void vescFrames(const uint8_t* bytes, size_t size) {
   hearController(connection, bytes, size);
 }
 
-/// The controller that nobody has, as its description has it.
+/// A fictitious controller that is defined by its description only.
 void lineReply(const uint8_t* bytes, size_t size) {
   static const motor::LineDescription kDescription = [] {
     ConfigReader reader =
@@ -281,7 +281,7 @@ void lineReply(const uint8_t* bytes, size_t size) {
   hearController(connection, bytes, size);
 }
 
-/// A description in the text, then what its own lines read.
+/// A description, followed by input for its lines.
 void lineDescription(const uint8_t* bytes, size_t size) {
   configuration(bytes, size, [](ConfigReader& reader) {
     const motor::LineDescription line = motor::readLineDescription(reader, DriveDescription{});
@@ -315,7 +315,7 @@ void world(const uint8_t* bytes, size_t size) {
   refusing([&] { sim::readWorld(file.path()); });
 }
 
-/// What the simulator has written of a drive.
+/// The simulator's record of a drive.
 void truthRecord(const uint8_t* bytes, size_t size) {
   const MemoryFile file(bytes, size);
   refusing([&] { sim::readTruthRecord(file.path()); });

@@ -9,13 +9,13 @@
 
 namespace tread::fuzz {
 
-/// Reads bytes as one reader would; throws or crashes only where that reader must not.
+/// Feeds bytes to one reader; throws or crashes only on a violated promise.
 using Target = void (*)(const uint8_t* bytes, size_t size);
 
 /// Every decoder and reader by its name.
 const std::map<std::string, Target>& targets();
 
-/// Those of the tools, which are there where tools are built.
+/// The tools' targets, in builds with tools.
 void addToolTargets(std::map<std::string, Target>& all);
 
 /// Those of the range finders' protocols.

@@ -19,8 +19,8 @@ namespace {
 
 const std::string kCorpus = std::string(TREAD_SOURCE_DIR) + "/tests/data/fuzz/";
 
-/// Executions of one pattern after another, each turned by so much of its way; every fourth only
-/// begun.
+/// Executions of one pattern after another, each turned in proportion to its path; every fourth is
+/// incomplete.
 void drive(learner::Learner& learner, int executions, double bend) {
   const auto& patterns = fuzz::shippedSet().patterns();
   for (int i = 0; i < executions; ++i) {
@@ -53,7 +53,7 @@ TEST_CASE("every input that a fuzzer has found is read or refused, and ends noth
     for (const auto& file : std::filesystem::directory_iterator(kCorpus + name)) {
       const std::string bytes = tread::testing::contentOf(file.path());
       target(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size());
-      // Also what ends early.
+      // Also truncated input.
       for (const size_t part : {bytes.size() / 2, bytes.size() / 3, size_t{0}})
         target(reinterpret_cast<const uint8_t*>(bytes.data()), part);
       ++played;
@@ -84,7 +84,7 @@ TEST_CASE("what the learner has written into the corpus it takes back today") {
   CHECK(learner.memory() == state->memory);
 }
 
-// test_fuzz_corpus "[.write]", once the rule remembers otherwise.
+// Run test_fuzz_corpus "[.write]" after a change of the rule's memory format.
 TEST_CASE("the learner writes its part of the corpus anew", "[.write]") {
   const PatternSet& shipped = fuzz::shippedSet();
   const learner::RuleConfig config;

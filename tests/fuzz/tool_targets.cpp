@@ -34,7 +34,7 @@
 namespace tread::fuzz {
 namespace {
 
-/// With a header that is found, one that is the first line, and none.
+/// With a header found by names, one in the first line, and none.
 void csv(const uint8_t* bytes, size_t size) {
   recordings::CsvLayout asked;
   asked.columns = {"t", "x"};
@@ -56,7 +56,7 @@ void surfaceFile(const uint8_t* bytes, size_t size) {
       [&] { recordings::parseSurface(textOf(bytes, size), "surface", "grass", shippedSet()); });
 }
 
-/// A recorded drive in each of the formats that tread-import takes, through to the log.
+/// A recorded drive in each format of tread-import, converted to a log.
 void recordedDrive(const uint8_t* bytes, size_t size) {
   const MemoryFile file(bytes, size);
   recordings::Session session;
@@ -77,7 +77,7 @@ void recordedDrive(const uint8_t* bytes, size_t size) {
     });
 }
 
-/// A mapping file, a line of three dashes, and the table that it describes.
+/// A mapping file, a line of three dashes, and the described table.
 void mappedCsv(const uint8_t* bytes, size_t size) {
   const std::string text = textOf(bytes, size);
   const size_t end = text.find("\n---\n");
@@ -96,7 +96,7 @@ void mappedCsv(const uint8_t* bytes, size_t size) {
   });
 }
 
-/// An MCAP file, whatever its bytes.
+/// An MCAP file of arbitrary bytes.
 void mcapFile(const uint8_t* bytes, size_t size) {
   const MemoryFile file(bytes, size);
   refusing([&] {
@@ -110,8 +110,8 @@ void mcapFile(const uint8_t* bytes, size_t size) {
   });
 }
 
-/// Messages in any order, in chunks or beside them: a byte's lowest bit ends a chunk, the rest and
-/// the next byte are a time.
+/// Messages in any order, in chunks or outside: the lowest bit of a byte ends a chunk, the other
+/// bits and the next byte are a time.
 void mcapOrder(const uint8_t* bytes, size_t size) {
   using mcap::FieldWriter;
   using mcap::Op;
@@ -147,7 +147,7 @@ void mcapOrder(const uint8_t* bytes, size_t size) {
   require(count == size / 2 && reader.problem().empty());
 }
 
-/// What gzip may have packed.
+/// Gzipped content.
 void packedFile(const uint8_t* bytes, size_t size) {
   const MemoryFile file(bytes, size);
   refusing([&] {
@@ -156,7 +156,7 @@ void packedFile(const uint8_t* bytes, size_t size) {
   });
 }
 
-/// The table of sessions that stands beside recorded drives.
+/// The table of sessions for recorded drives.
 void sessionTable(const uint8_t* bytes, size_t size) {
   const MemoryFile file(bytes, size);
   refusing([&] { recordings::readSession(file.path(), "drive"); });
@@ -183,7 +183,7 @@ void mapPicture(const uint8_t* bytes, size_t size) {
   });
 }
 
-/// What stands beside such a picture.
+/// The map file for such a picture.
 void ros2Map(const uint8_t* bytes, size_t size) {
   constexpr char kPicture[] = "P2\n3 2\n255\n0 100 205 254 255 30\n";
   static const NamedFile picture(reinterpret_cast<const uint8_t*>(kPicture), sizeof kPicture - 1,
@@ -226,7 +226,7 @@ void queries(const uint8_t* bytes, size_t size) {
   });
 }
 
-/// Through to the words that start its processes.
+/// Including the command lines of its processes.
 void launchFile(const uint8_t* bytes, size_t size) {
   const launch::LaunchSettings settings{"/robot/launch.yaml", "/run/robot", "/bin", "", {}};
   const MemoryFile file(bytes, size);
@@ -238,7 +238,7 @@ void launchFile(const uint8_t* bytes, size_t size) {
   });
 }
 
-/// The path of a run folder: refused, or the same path in every process.
+/// A run folder's path: refused, or identical in every process.
 void runPath(const uint8_t* bytes, size_t size) {
   launch::FolderFacts folder;
   folder.path = "/" + textOf(bytes, size);
@@ -253,7 +253,7 @@ void runPath(const uint8_t* bytes, size_t size) {
   require(parseLinkAddress(address).path == device);
 }
 
-/// Signs of life of a process that runs, and what `ip route` answers.
+/// Signs of life of a running process, and the output of `ip route`.
 void lifeSigns(const uint8_t* bytes, size_t size) {
   launch::routeDevice(textOf(bytes, size));
   launch::LaunchProcess planner;
@@ -283,7 +283,7 @@ void gamepad(const uint8_t* bytes, size_t size) {
   });
 }
 
-/// Times between pieces are in the bytes, too.
+/// Times between the pieces come from the bytes, too.
 void keyboard(const uint8_t* bytes, size_t size) {
   drive::KeyState keys;
   int64_t now = 1'000'000;
@@ -295,7 +295,7 @@ void keyboard(const uint8_t* bytes, size_t size) {
   }
 }
 
-/// Recordings that tread-replay maps.
+/// Recordings for tread-replay mapping.
 void carmenLog(const uint8_t* bytes, size_t size) {
   const NamedFile file(bytes, size, ".clf");
   refusing([&] { readMappingRecording(file.path()); });
@@ -310,7 +310,7 @@ const char* const kLogged[] = {"INS",         "MOTOR",     "EXECUTION",     "MAR
                                "PATTERN_SET", "HEALTH",    "LEARNER_STATE", "LEARNING", "PLAN",
                                "GOAL",        "PLAN_TREE", "SCAN",          "MAP"};
 
-/// Messages in the order of a log: channel, time since the one before [ms], length, bytes.
+/// Messages in the order of a log: channel, time since the previous one [ms], length, bytes.
 std::vector<LogEvent> eventsIn(const uint8_t* bytes, size_t size) {
   std::vector<LogEvent> events;
   int64_t now = 1'000'000;
@@ -325,7 +325,7 @@ std::vector<LogEvent> eventsIn(const uint8_t* bytes, size_t size) {
   return events;
 }
 
-/// All that the tools make of a drive's log.
+/// All uses of a drive's log by the tools.
 void driveLog(const uint8_t* bytes, size_t size) {
   const std::vector<LogEvent> events = eventsIn(bytes, size);
   const DriveTimeline drive = timelineOf(DriveReader(events));

@@ -22,7 +22,7 @@ namespace {
 
 struct Include {
   std::string file;    // path from the root
-  std::string target;  // what stands between the quotes or brackets
+  std::string target;  // the text between quotes or brackets
 };
 
 using tread::testing::contentOf;
@@ -44,8 +44,8 @@ std::vector<Include> includesUnder(const std::string& folder) {
   return includes;
 }
 
-/// Every folder called core wherever it lies, and the devices behind the doors of motor_bridge,
-/// ins_driver and lidar_driver: bytes and time are their arguments.
+/// Every folder named core, and the device folders of motor_bridge, ins_driver and lidar_driver:
+/// bytes and time are their arguments.
 std::vector<std::string> pureFolders() {
   std::vector<std::string> folders;
   for (const char* top : {"common", "modules", "tools"})
@@ -85,7 +85,7 @@ TEST_CASE("dependencies point one way: lcmtypes, common, modules, tools, tests")
   }
 }
 
-// Who audits what moves the robot need not read the laboratory. The simulator belongs to both.
+// An audit of the robot must not require reading the laboratory. The simulator belongs to both.
 TEST_CASE("the robot includes nothing of the laboratory") {
   for (const char* folder : {"common", "modules", "tools/robot"})
     for (const Include& include : includesUnder(folder)) {
@@ -141,7 +141,7 @@ TEST_CASE(
       CHECK(content.find("::Random(") == std::string::npos);
     }
   }
-  CHECK(cores > 50);  // the check itself looks at something
+  CHECK(cores > 50);  // the check must not be empty
 }
 
 TEST_CASE("concepts link no bus and include no message type") {
@@ -156,9 +156,8 @@ TEST_CASE("concepts link no bus and include no message type") {
     }
 }
 
-// The simulator's process may run a model file in the ground truth's place, so that a named effect
-// is seen at work; the ground truth itself must know nothing of the kernel, else a blind test would
-// find its own equations again.
+// The simulator's process may run a model file instead of the ground truth, to show a named effect.
+// The ground truth itself must not use the kernel, or a blind test would find its own equations.
 TEST_CASE("the two vehicle models share no equations") {
   for (const char* truth : {"modules/simulator/core", "modules/simulator/emulators"})
     for (const Include& include : includesUnder(truth)) {
@@ -188,7 +187,7 @@ TEST_CASE("what hides effects shares no source with what finds them") {
     }
 }
 
-// A new effect is one entry of the catalogue and one line of the kernel; nothing else knows it by
+// A new effect is one entry in the catalogue and one line in the kernel; no other code uses its
 // name. The values in common/vehicle are C++ members, not names.
 TEST_CASE("only the catalogue names effects") {
   const fs::path catalogue = fs::path(TREAD_SOURCE_DIR) / "common/vehicle";
@@ -203,7 +202,7 @@ TEST_CASE("only the catalogue names effects") {
     }
   }
   CHECK(count >= 40);
-  // The same word for another quantity: spread between executions, learned gains, moment of
+  // The same word for other quantities: spread between executions, learned gains, moment of
   // inertia.
   const std::set<std::pair<std::string, std::string>> others{
       {"common/vehicle/model_file.cpp", "crab"},
@@ -234,11 +233,11 @@ TEST_CASE("nobody needs mrpt-hwdrivers, and only the reader of rawlogs mrpt-obs"
     }
 }
 
-// Whatever else opened a file for writing would empty it before it knew whether it had anything to
-// write. What is left holds a lock, or a secret from its first byte on.
+// Other ways to open a file for writing would truncate it before there is anything to write. The
+// exceptions are locks and files that are secret from the first byte on.
 TEST_CASE("only OutputFile opens files for writing") {
   const std::set<std::string> others{
-      "common/seal/private_file.cpp",            // a new file, readable by nobody else at any time
+      "common/seal/private_file.cpp",            // a new file that nobody else can read at any time
       "tools/robot/launch/host.cpp",             // a lock
       "tools/robot/launch/process_keeper.cpp",   // logs that processes write to
       "tools/robot/launch/running_robots.cpp"};  // a lock with an address in it
@@ -331,7 +330,7 @@ TEST_CASE("packages.txt says for what each package is, in words that tools/setup
     ++packages[purpose];
   }
   for (const auto& [purpose, count] : packages) CHECK(count > 0);
-  // A demo builds and drives; browser, JDK and checks are for others.
+  // A demo builds and drives; it needs no browser, JDK or checkers.
   CHECK(contentOf(root / "tools/demo").find("\ntools/setup build run ") != std::string::npos);
 }
 

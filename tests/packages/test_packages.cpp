@@ -22,7 +22,7 @@ namespace {
 
 using Names = std::set<std::string>;
 
-/// The parts of the build, installed as cpack does before it packs them.
+/// The parts of the build, installed as cpack does before packing.
 class Staged {
  public:
   Staged(const std::string& components, const std::string& prefix) {

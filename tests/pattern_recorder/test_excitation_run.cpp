@@ -20,7 +20,7 @@ PatternSet shipped() {
   return readPatternFile(std::string(TREAD_SOURCE_DIR) + "/config/patterns/teodor.yaml");
 }
 
-/// What a drive that goes exactly as predicted came to.
+/// Result of a drive that follows the predictions exactly.
 struct Driven {
   std::vector<std::string> names;
   std::map<std::string, int> counts;
@@ -28,7 +28,7 @@ struct Driven {
   std::string ends_in;
 };
 
-/// Drives until nothing is left to do, or 2000 patterns are driven.
+/// Drives until done, at most 2000 patterns.
 Driven drivenBy(const PatternSet& set, double room, int executions, const Pose2& start = {}) {
   const ExcitationPlanner excitation(set, room);
   std::vector<int> needed(set.patterns().size(), executions);
@@ -62,7 +62,7 @@ TEST_CASE(
   }
   CHECK(driven.farthest < 4.0);
   CHECK(driven.ends_in == "rest");
-  // Little is driven in vain.
+  // Few patterns are driven without being recorded.
   CHECK(driven.names.size() < 250);
 }
 
@@ -83,7 +83,7 @@ TEST_CASE("An excitation run that began too far away leads back") {
 }
 
 TEST_CASE("An excitation run that stands just outside turns back, though turning leads farther") {
-  // Ahead leads away, and turning in place moves it by two centimetres.
+  // "Ahead" leads away, and each turn in place moves the vehicle by 2 cm.
   const auto ahead =
       tread::patterns::kit::pattern(1, "ahead", {0.5, 0.5}, {1.0, 0.0, 0.0}, "rest", "rest");
   const auto turn =

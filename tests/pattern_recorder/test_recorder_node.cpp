@@ -43,7 +43,7 @@ PatternSet fewPatterns() {
       {"straight", "hard_left", "hard_right", "start", "stop", "turn_left_90", "turn_right_90"});
 }
 
-/// The simulated robot on flat grass with the recorder in the planner's place.
+/// The simulated robot on flat grass; the recorder replaces the planner.
 class RecordedDrive {
  public:
   RecordedDrive(const PatternSet& set, const RecordingConfig& how, const FaultPlan& faults = {})
@@ -76,7 +76,7 @@ class RecordedDrive {
   const motor_t& motor() const { return motor_.message(); }
   const program_t& program() const { return program_.message(); }
 
-  /// Runs until the recorder ends or so many seconds are over; arms once a second if wanted.
+  /// Runs until the recorder ends or the time is over; arms once per second if requested.
   void run(double seconds, bool arming = true) {
     const int64_t end = bus().now() + static_cast<int64_t>(seconds * 1e6);
     while (bus().now() < end && recorder().state() == RecorderNode::State::kRunning) {
@@ -142,7 +142,7 @@ TEST_CASE("Each pattern is driven often enough within the room, and measured as 
   std::vector<recordings::AverageNote> notes;
   const PatternSet averaged =
       recordings::averageSet(set, {"grass", drive.recorder().recorded()}, {}, notes);
-  // Grass turns further than the tarmac that the set was made for, and no recording is far off.
+  // The robot turns more on grass than on the set's tarmac, but no recording differs much.
   for (const MotionPattern& pattern : averaged.patterns()) {
     INFO(pattern.name);
     const Pose2& end = pattern.end();
@@ -204,7 +204,7 @@ TEST_CASE("Where the set cannot turn back, it stands before the room ends and as
 TEST_CASE("Beyond the room it stops at once, and arming there does not help") {
   RecordingConfig how;
   how.room = 1.5;
-  // A set that promises a third of the way: what it does cannot be foreseen.
+  // A set that predicts a third of the motion, so that the end pose is unpredictable.
   PatternSetContent content = shipped({"start", "straight", "stop"}).content();
   for (MotionPattern& pattern : content.patterns)
     for (Pose2& pose : pattern.trajectory) pose.x *= 0.3;
@@ -272,7 +272,7 @@ TEST_CASE("Its end empties the program, and the robot stands within half a secon
 
 TEST_CASE("Beside another planner it says nothing and gives up") {
   RecordedDrive drive(fewPatterns(), {});
-  drive.bus().runUntil(drive.bus().now() + 10'000);  // runs are told apart by their start
+  drive.bus().runUntil(drive.bus().now() + 10'000);  // runs are identified by their start
   drive.bus().restart("planner");
   drive.run(10.0);
   CHECK(drive.recorder().state() == RecorderNode::State::kFailed);
@@ -283,7 +283,7 @@ TEST_CASE("Beside another planner it says nothing and gives up") {
 TEST_CASE("A pattern that is refused again and again ends it with the reason") {
   RecordingConfig how;
   how.give_up_after = 3;
-  how.limits.max_speed = 0.2;  // everything that drives is faster than this vehicle can be
+  how.limits.max_speed = 0.2;  // below the speed of all driving executions
   RecordedDrive drive(fewPatterns(), how);
   drive.run(120.0);
   INFO(joined(drive.said));

@@ -17,12 +17,12 @@
 
 namespace tread::scan_matching {
 
-/// What scan matching made of a simulated drive, and the truth.
+/// Output of scan matching for a simulated drive, and the truth.
 struct SimulatedDrive {
   std::vector<MatchedPose> poses;
   PoseTrack truth{INT64_MAX};
-  double cpu_ms = 0.0;   ///< of the matcher, all scans together
-  double most_ms = 0.0;  ///< of one scan
+  double cpu_ms = 0.0;   ///< total of the matcher
+  double most_ms = 0.0;  ///< maximum for one scan
 
   std::optional<Pose2> trueAt(int64_t utime) const { return truth.at(utime, 20'000); }
   int count(MatchOutcome outcome) const {
@@ -32,7 +32,7 @@ struct SimulatedDrive {
   }
 };
 
-/// A sweep of the simulated laser, without what it did not hit.
+/// A sweep of the simulated laser, without beams that hit nothing.
 inline Sweep sweepOf(const sim::LaserScan& scan, const sim::LaserParameters& laser) {
   Sweep sweep;
   sweep.first = scan.utime;
@@ -49,7 +49,8 @@ inline Sweep sweepOf(const sim::LaserScan& scan, const sim::LaserParameters& las
   return sweep;
 }
 
-/// Drives the shipped robot (robot, laser and its noise) through a world with a power per time [s].
+/// Drives the shipped robot (with laser and noise) through a world with a power as function of time
+/// [s].
 inline SimulatedDrive drive(sim::WorldDescription description, const Pose2& start, double seconds,
                             const std::function<sim::MotorPower(double)>& power,
                             ScanMatcherConfig config = {}) {
@@ -75,7 +76,7 @@ inline SimulatedDrive drive(sim::WorldDescription description, const Pose2& star
   return drive;
 }
 
-/// Forward, a turn on the spot, a bend, back: all that a robot does, in 25 s.
+/// Forward, a turn on the spot, an arc, backwards: all kinds of motion in 25 s.
 inline sim::MotorPower everything(double t) {
   if (t < 1.0) return {0.0, 0.0};
   if (t < 6.0) return {0.9, 0.9};
@@ -98,7 +99,7 @@ inline sim::WorldDescription yard() {
   return world;
 }
 
-/// Two straight walls 3 m apart that end out of sight.
+/// Two parallel walls 3 m apart, longer than the range.
 inline sim::WorldDescription corridor() {
   sim::WorldDescription world;
   world.obstacles = {sim::boxObstacle({0.0, 1.7, 0.0}, 200.0, 0.4, 2.0),

@@ -33,7 +33,7 @@ scan_t messageFrom(const sim::LaserScan& scan, const sim::LaserParameters& laser
   return message;
 }
 
-/// The real node beside the simulated robot, which hears what it publishes.
+/// The real node with the simulated robot, and its published messages.
 struct NodeRun {
   explicit NodeRun(sim::WorldDescription world, ScanMatchingConfig config = {}) {
     settings.start_utime = bus.now();
@@ -94,7 +94,7 @@ TEST_CASE("SCAN becomes INS as a robot's processes take it") {
   }
   const auto pose = planarPose(run.heard.back());
   const Pose2 truth = run.robot->truth().T_map_body;
-  CHECK(distanceBetween(*pose, truth) < 0.15);  // a tenth of a second later, at 1 m/s
+  CHECK(distanceBetween(*pose, truth) < 0.15);  // .1 s later, at 1 m/s
   CHECK(run.heard.back().velocity[0] == Approx(run.robot->truth().v_body.v_x).margin(0.1));
   CHECK(run.health.health_state == health_t::HEALTH_OK);
   CHECK(run.counters.at("scans matched") >= 37);

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-/// Where a ray from the body meets the first of some walls (segments, p_map), seen from the body.
+/// First intersection of a ray from the body with some walls (segments, p_map), seen from the body.
 struct Walls {
   std::vector<std::pair<Vector2d, Vector2d>> segments;
 
@@ -145,7 +145,7 @@ TEST_CASE("the filter's covariance is that of drives with drawn twists") {
   const Pose2 start{1.0, 2.0, 0.7};
   MotionFilter filter(config, start);
   filter.predict(0.01);
-  // A known motion: pose far from the prediction, so that the twist is learnt from it.
+  // A known motion: a pose far from the prediction, so that the twist is learned from it.
   const Pose2 moved = filter.pose() * Pose2{0.004, 0.0, 0.002};
   filter.update(moved, 1e-10 * Eigen::Matrix3d::Identity());
   CHECK(filter.twist().v_x == Approx(0.4).epsilon(0.02));
@@ -154,7 +154,7 @@ TEST_CASE("the filter's covariance is that of drives with drawn twists") {
   const Pose2 before = filter.pose();
   const Eigen::Matrix3d of_twist = filter.twistCovariance();
   filter.predict(0.5);
-  // Numerically: what each part of the twist moves.
+  // Numerical derivative with respect to each part of the twist.
   Eigen::Matrix3d J;
   const double small = 1e-4;
   for (int i = 0; i < 3; ++i) {

@@ -13,7 +13,7 @@
 
 namespace {
 
-/// [s]; the file is mapped, so that a process sees each change without reading.
+/// [s]; the file is mapped, so a process sees each change at once.
 time_t offset() {
   static const volatile int* const seconds = [] {
     static const int none = 0;

@@ -6,11 +6,11 @@
 
 namespace tread::testing {
 
-/// A bus of this test alone, to which options may be added (&...): multicast, where only the port
-/// separates buses with LCM 1.3.1; where there is no multicast, TCP through a server in this test.
+/// A bus for this test only, to which options may be added (&...): multicast, where only the port
+/// separates buses with LCM 1.3.1; without multicast TCP, with a server in this test.
 std::string ownLcmUrl();
 
-/// The same for a tread-launch, which brings the server with it.
+/// The same for a tread-launch, which starts the server itself.
 std::string launchedLcmUrl();
 
 }  // namespace tread::testing

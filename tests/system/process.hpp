@@ -16,11 +16,11 @@
 
 namespace tread::testing {
 
-/// A program of the house run as a user runs it; killed at the end of the test if it still lives.
+/// A program of Tread, run as a user runs it; killed at the end of the test if it still runs.
 class Process {
  public:
-  /// Starts build/<preset>/bin/<program>, or a program by its full path; its output goes to
-  /// `output_file` (appended).
+  /// Starts build/<preset>/bin/<program>, or a program by its full path; appends its output to
+  /// `output_file`.
   Process(const std::string& program, std::vector<std::string> arguments,
           const std::string& output_file = "/dev/null") {
     std::string path =
@@ -30,7 +30,7 @@ class Process {
     words.push_back(nullptr);
     pid_ = fork();
     if (pid_ != 0) return;
-    // A test that is killed for its time must leave nothing behind.
+    // A test that is killed by a timeout must leave no processes.
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     const int output = open(output_file.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
     dup2(output, 1);
@@ -49,7 +49,7 @@ class Process {
 
   void signal(int number) const { kill(pid_, number); }
   bool running() { return !waitFor(0); }
-  /// Waits at most so many seconds for the end; true if it has ended.
+  /// Waits at most `seconds` for the end; true if it has ended.
   bool waitFor(double seconds) {
     for (int i = 0; !ended_; ++i) {
       int status = 0;

@@ -155,7 +155,7 @@ bool RobotRun::arm(double seconds) {
   });
   if (result != operators::CallResult::kDone) return false;
   calls_.back()->letGo(now());
-  // A goal that was given before counts for nothing.
+  // An earlier goal is void.
   if (goal_.goal_id != 0) renewGoal();
   return true;
 }

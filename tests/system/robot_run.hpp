@@ -16,29 +16,29 @@
 
 namespace tread::testing {
 
-/// The whole robot as real processes on a bus of its own, in a folder of its own, with the
-/// simulator at the other end of its lines; and a test that listens and operates.
+/// The complete robot as real processes on a separate bus, in a separate folder, with the simulator
+/// at its device lines; the test listens and operates.
 class RobotRun {
  public:
-  /// `world` is a world file's text, `key` a key file or empty, `url` that of a bus that is there
-  /// already, or empty. Nothing is started yet.
+  /// `world` is a world file's text, `key` a key file or empty, `url` that of an existing bus, or
+  /// empty. It starts nothing.
   RobotRun(const std::string& world, const std::string& start_pose, const std::string& key = "",
            const std::string& url = "");
   ~RobotRun();
   RobotRun(const RobotRun&) = delete;
   RobotRun& operator=(const RobotRun&) = delete;
 
-  /// Names of the processes, as they are started by startAll().
+  /// Names of the processes, in the order of startAll().
   static const std::vector<std::string>& names();
   void start(const std::string& name) { startBehind({}, name); }
-  /// Another value in a process's configuration, for the next time that it is started.
+  /// Sets a value in a process's configuration, for its next start.
   void set(const std::string& name, const std::string& key, const std::string& value) {
     settings_[name].push_back(key + "=" + value);
   }
-  /// The same as the last word of another command, which must become it (exec).
+  /// The same, started by another command that ends in exec.
   void startBehind(const std::vector<std::string>& wrapper, const std::string& name);
   void startAll();
-  /// Sends a signal; SIGKILL waits for the end.
+  /// Sends a signal; for SIGKILL it waits for the end.
   void signal(const std::string& name, int number);
   bool running(const std::string& name);
   pid_t pid(const std::string& name) const { return processes_.at(name)->pid(); }
@@ -47,19 +47,19 @@ class RobotRun {
   int end(const std::string& name, int number = SIGINT);
   void endAll();
 
-  /// Handles messages until a condition holds; false after so many seconds.
+  /// Handles messages until a condition holds; false on timeout.
   bool until(double seconds, const std::function<bool()>& condition);
   void wait(double seconds) {
     until(seconds, [] { return false; });
   }
-  /// Arms as tread-arm does; false if the robot does not show it in time.
+  /// Arms like tread-arm; false on timeout.
   bool arm(double seconds = 10.0);
-  /// Sends the goal each second from now on, whatever else is waited for; at once the first time.
+  /// From now on sends the goal each second, first at once.
   void setGoal(double x, double y);
-  /// From now on tread-goal operates, a process of the name "operator", and the test no more.
-  /// `behind`: words of another command, which must become it (exec).
+  /// From now on tread-goal operates, as process "operator", instead of the test. `behind`: words
+  /// of another command that ends in exec.
   void leaveTo(double x, double y, const std::vector<std::string>& behind = {});
-  /// The test operates again; the next goal is its own.
+  /// The test operates again, with its own next goal.
   void takeBack();
   int64_t now() const { return bus_.now(); }
   LcmBus& bus() { return bus_; }
@@ -70,22 +70,22 @@ class RobotRun {
   const Latest<program_t>& program() const { return program_; }
   const Latest<ins_t>& ins() const { return ins_; }
   bool driving() const;
-  /// Version of the set that was published last; 0 after forgetSet() until the next one comes.
+  /// Version of the last published set; after forgetSet() 0 until the next one.
   int64_t lastSet() const { return last_set_; }
   void forgetSet() { last_set_ = 0; }
-  /// Whether the permission to drive is there.
+  /// Whether the robot is permitted to drive.
   bool armed() const;
-  /// Until a condition holds, arming again whenever a busy machine's stall has disarmed the robot;
-  /// each time is counted.
+  /// Waits for a condition, and arms again when a stall of a busy machine has disarmed the robot,
+  /// which is counted.
   bool untilDriving(double seconds, const std::function<bool()>& condition);
   int armedAgain() const { return armed_again_; }
-  /// Health by process name, newest.
+  /// Newest HEALTH by process name.
   const std::map<std::string, health_t>& health() const { return health_; }
   std::vector<sim::TruthRow> truth() const { return sim::readTruthRecord(folder_ + "/truth.csv"); }
   const std::string& folder() const { return folder_; }
   const std::string& url() const { return url_; }
   std::string laserAddress() const { return "tcp-server:127.0.0.1:" + std::to_string(laser_port_); }
-  /// Where a process keeps its state.
+  /// Folder of a process's state.
   std::string state(const std::string& process) const { return folder_ + "/state/" + process; }
   std::string output(const std::string& name) const;
 
@@ -109,7 +109,7 @@ class RobotRun {
   int64_t last_set_ = 0;
   int armed_again_ = 0;
   std::map<std::string, std::unique_ptr<Process>> processes_;
-  std::vector<std::unique_ptr<operators::Call>> calls_;  ///< the bus knows them to its end
+  std::vector<std::unique_ptr<operators::Call>> calls_;  ///< the bus refers to them until its end
   OperatorBeacon beacon_;
   bool operates_ = true;
   goal_t goal_{};

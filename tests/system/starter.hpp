@@ -15,8 +15,8 @@
 
 namespace tread::testing {
 
-/// Hears what processes say to who started them, as systemd does: it is $NOTIFY_SOCKET for all that
-/// the test starts while it lives.
+/// Receives the messages of processes to their starter, like systemd: it is $NOTIFY_SOCKET for
+/// everything that the test starts meanwhile.
 class Starter {
  public:
   Starter() : listener_("/tmp/tread_starter_" + std::to_string(getpid())) {
@@ -26,14 +26,14 @@ class Starter {
   Starter(const Starter&) = delete;
   Starter& operator=(const Starter&) = delete;
 
-  /// How often this process has said a line that begins so.
+  /// Number of lines from this process with this beginning.
   int count(int pid, const std::string& start) {
     hear();
     return static_cast<int>(std::count_if(lines_.begin(), lines_.end(), [&](const Line& line) {
       return line.pid == pid && line.text.rfind(start, 0) == 0;
     }));
   }
-  /// The longest time between two that were heard one after another [s].
+  /// The longest time between two consecutive messages [s].
   double longestSilence(int pid) const {
     double longest = 0.0;
     int64_t last = 0;

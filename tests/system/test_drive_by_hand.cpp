@@ -11,7 +11,7 @@
 namespace tread::testing {
 namespace {
 
-/// What the kernel tells at first, then the stick's first report: at rest.
+/// The kernel's initial values, then the stick's first report: at rest.
 const std::string kPad =
     "A: 00 0 255 0 0 0\nA: 01 0 255 0 0 0\nE: 0.000000 0003 0000 0\nE: 0.000000 0003 0001 0\n"
     "E: 0.100000 0003 0000 128\nE: 0.100000 0003 0001 128\nE: 0.100000 0000 0000 0\n";
@@ -40,7 +40,7 @@ bool byHand(const RobotRun& run) {
 
 TEST_CASE("with real processes a recorded stick takes over, gives back, and the robot arrives") {
   RobotRun run(kYard, "[-6, 0, 0]");
-  int64_t moved = 0;  // [us] the first message of a moved stick, and the first MOTOR by hand
+  int64_t moved = 0;  // [us] first message of a moved stick, and first MOTOR under manual control
   int64_t taken = 0;
   run.bus().subscribe<manual_t>(kManual, [&](const manual_t& m) {
     if (m.hold && m.hand_left != 0.0F && moved == 0) moved = run.now();
@@ -51,7 +51,7 @@ TEST_CASE("with real processes a recorded stick takes over, gives back, and the 
   run.startAll();
   run.setGoal(6.0, 2.0);
   REQUIRE(run.arm(20.0));
-  // A busy machine's stall may disarm the robot, or keep the hand from being heard at rest first.
+  // A stall of a busy machine may disarm the robot, or hide the stick's rest.
   std::unique_ptr<Process> hand;
   for (int tries = 0; tries < 3 && (taken == 0 || moved == 0); ++tries) {
     REQUIRE(run.untilDriving(20.0, [&] { return run.driving(); }));
@@ -63,14 +63,14 @@ TEST_CASE("with real processes a recorded stick takes over, gives back, and the 
   REQUIRE((taken > 0 && moved > 0));
   CHECK(taken - moved <= 100'000);
   INFO("taken over after " << (taken - moved) / 1000 << " ms");
-  // What follows holds unless a stall of a busy machine disarms the robot meanwhile.
+  // The following holds unless a stall of a busy machine disarms the robot.
   const auto unless_stalled = [&](double seconds, const std::function<bool()>& condition) {
     return run.until(seconds, [&] { return condition() || !run.armed(); });
   };
   CHECK(unless_stalled(3.0, [&] { return run.motor().message().command[0] > 0.45F; }));
   if (run.armed()) {
     CHECK(byHand(run));
-    // Meanwhile the planner shows what it would do, and orders nothing.
+    // Meanwhile the planner shows its plan, but commands nothing.
     CHECK(unless_stalled(1.0, [&] { return run.plan().message().num_patterns > 0; }));
     CHECK(run.program().message().running.execution_id == 0);
   }

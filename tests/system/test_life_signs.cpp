@@ -16,7 +16,7 @@
 namespace tread::testing {
 namespace {
 
-/// A program of its own life, on a bus of its own.
+/// The life of one program; `pass50ms` lets 50 ms pass.
 struct Life {
   std::string name;
   Process& process;

@@ -14,12 +14,12 @@
 namespace tread::testing {
 namespace {
 
-constexpr int64_t kHold = 1'000'000;  // [us] for which the motors must stay at zero
-constexpr double kWorstStall = 0.05;  // [s] of the machine in a measurement that counts
+constexpr int64_t kHold = 1'000'000;  // [us] the motors must stay at zero
+constexpr double kWorstStall = 0.05;  // [s] of the machine in a valid measurement
 constexpr int kTrials = 4;
 
-/// Starts the robot, where the test has not, and brings it to a steady drive over the field, at
-/// whose end it turns around: one robot lives through several faults.
+/// Starts the robot if necessary, and brings it to steady driving over the field, at whose end it
+/// turns around: one robot is used for several faults.
 void driveOff(RobotRun& run) {
   if (!run.running("planner")) run.startAll();
   const bool back = run.ins().any() && run.ins().message().position[0] > 5.0;
@@ -31,7 +31,7 @@ void driveOff(RobotRun& run) {
   REQUIRE(run.untilDriving(20.0, drives));
 }
 
-/// Waits until the motors stand and says how long after `from` they did [s]; -1 = never.
+/// Waits until the motors stand; returns the time since `from` [s], -1 = never.
 double standsAfter(RobotRun& run, int64_t from, double seconds) {
   std::optional<int64_t> zero;
   run.until(seconds, [&] {
@@ -53,7 +53,7 @@ void mustObeyEstop(RobotRun& run) {
   CHECK(stands <= 0.25);
 }
 
-/// Nothing moves for some seconds although the goal still comes; after arming it drives again.
+/// Nothing moves for some seconds although the goal is repeated; after arming it drives again.
 void needsArming(RobotRun& run) {
   const int64_t from = run.now();
   run.wait(3.0);
@@ -64,11 +64,11 @@ void needsArming(RobotRun& run) {
   CHECK(run.untilDriving(20.0, [&] { return run.driving(); }));
 }
 
-/// When what the process promised ends by itself, by what the test heard [us].
+/// The end of the process's last permission, from messages that the test received [us].
 using Reference = std::function<int64_t(RobotRun& run, int64_t killed)>;
 
 /// Kills or freezes a process of the driving robot: the motors must stand within a limit [s] after
-/// the reference, and stay until it is armed again. What was learned is not lost. It drives on.
+/// the reference, until it is armed again. Learned data are kept. It then drives on.
 void mustStop(RobotRun& run, const std::string& process, int how, double limit,
               const Reference& reference) {
   for (int trial = 1; trial <= kTrials; ++trial) {
@@ -80,11 +80,11 @@ void mustStop(RobotRun& run, const std::string& process, int how, double limit,
       const launch::StallWatch watch;
       run.signal(process, how);
       const int64_t killed = run.now();
-      run.wait(0.05);  // what it said before is heard now
+      run.wait(0.05);  // receive its earlier messages now
       stands = standsAfter(run, reference(run, killed), 5.0);
       stall = watch.longest();
     }
-    // Where the machine itself stood still, the time says nothing about the robot.
+    // If the machine itself stalled, the time is not the robot's.
     const bool counts = stall <= kWorstStall || trial == kTrials;
     INFO(process << " by signal " << how << ": " << stands << " s, machine's stall " << stall);
     CHECK(stands >= 0.0);
@@ -101,7 +101,7 @@ void mustStop(RobotRun& run, const std::string& process, int how, double limit,
   }
 }
 
-/// The simulator is killed, and with it all lines to the devices are closed; then it is back.
+/// Kills the simulator, which closes all device lines; then starts it again.
 void mustOutliveItsLines(RobotRun& run) {
   driveOff(run);
   run.signal("simulator", SIGKILL);
@@ -120,7 +120,7 @@ void mustOutliveItsLines(RobotRun& run) {
   }
 }
 
-/// tread-goal operates, and is killed or frozen; what thaws does not go on by itself.
+/// tread-goal operates, and is killed or frozen; after thawing it must not continue by itself.
 void mustStopWithoutOperator(RobotRun& run, int how) {
   for (int trial = 1; trial <= kTrials; ++trial) {
     driveOff(run);
@@ -165,7 +165,7 @@ TEST_CASE(
     "in time, needs arming, and drives on") {
   RobotRun run(kField, "[-20, 0, 0]");
   for (const int how : {SIGKILL, SIGSTOP}) {
-    // Within the planner's lease and 250 ms.
+    // Within the planner's lease plus 250 ms.
     mustStop(run, "planner", how, 0.45,
              [](RobotRun& robot, int64_t) { return robot.program().message().utime; });
     // By the controller's own watchdog.
@@ -183,7 +183,7 @@ TEST_CASE("a killed or frozen learner: the robot drives on for seconds, then sto
     driveOff(run);
     const int64_t set = run.lastSet();
     std::string reason;
-    // A stall of the machine may stop the robot for another reason: then it is armed again.
+    // A stall of the machine may stop the robot for another reason; it is then armed again.
     const auto lost = [&] {
       if (run.plan().message().reason.find("the learner is lost") != std::string::npos)
         reason = run.plan().message().reason;
@@ -203,7 +203,7 @@ TEST_CASE("a killed or frozen learner: the robot drives on for seconds, then sto
     CHECK(run.until(20.0, [&] { return run.lastSet() != 0; }));
     CHECK(run.lastSet() >= set);
     const int64_t back = run.lastSet();
-    // With a living learner it drives on and learns.
+    // With a running learner it drives on and learns.
     CHECK(run.untilDriving(20.0, [&] { return run.driving() && run.lastSet() > back; }));
     for (const auto& [name, health] : run.health()) {
       INFO(name << ": " << health.health_reason);
@@ -219,7 +219,7 @@ TEST_CASE(
   const std::string file = run.folder() + "/clock";
   std::ofstream(file) << std::string(sizeof(int), '\0');
   const auto jumpTo = [&file](int seconds) {
-    // In place: the processes have the file mapped.
+    // In place: the processes have mapped the file.
     std::fstream clock(file, std::ios::binary | std::ios::in | std::ios::out);
     clock.write(reinterpret_cast<const char*>(&seconds), sizeof seconds);
     REQUIRE(clock.flush());
@@ -255,7 +255,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a full disk stops neither the robot nor its learning, and is told, room again is used") {
-  // A disk of its own for the learner's state, in a mount namespace.
+  // A separate disk for the learner's state, in a mount namespace.
   const std::vector<std::string> isolate =
       ::getuid() == 0
           ? std::vector<std::string>{"/usr/bin/unshare", "--mount"}

@@ -12,7 +12,7 @@ namespace {
 
 const std::string kRobot = TREAD_SOURCE_DIR "/config/robots/teodor/";
 
-/// It stops the robot, HEALTH names both, and without it the robot drives again.
+/// It stops the robot, HEALTH names both, and after its end the robot drives again.
 void mustNotBearSecondPlanner(RobotRun& run) {
   const auto drives = [&] { return run.driving(); };
   REQUIRE(run.untilDriving(20.0, drives));
@@ -133,7 +133,7 @@ TEST_CASE(
   run.forgetSet();
   const int64_t again = run.now();
   run.startAll();
-  // The goal still comes each second; without arming nothing may move.
+  // The goal is still repeated each second; without arming nothing may move.
   REQUIRE(run.until(20.0, [&] {
     return run.motor().message().utime > again && run.plan().message().utime > again;
   }));

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of this test, gone afterwards.
+/// A temporary folder.
 struct OwnPlace {
   OwnPlace() : path(fs::temp_directory_path() / ("tread_second_" + std::to_string(::getpid()))) {
     fs::create_directories(path);
@@ -35,8 +35,8 @@ struct OwnPlace {
 
 const std::string kRobot = std::string(TREAD_SOURCE_DIR) + "/config/robots/teodor/";
 
-/// Starts a program, waits until `begun`, and starts it again with the same arguments: that one
-/// must end with code 1 and one line with these words, and the first must run on.
+/// Starts a program, waits for `begun`, and starts it again with the same arguments: the second one
+/// must end with code 1 and a line with these words, the first must run on.
 template <class Begun>
 void checkSecond(const OwnPlace& place, const std::string& program,
                  const std::vector<std::string>& arguments, const Begun& begun,

@@ -37,7 +37,7 @@ uint16_t portOf(const std::string& url) {
   return static_cast<uint16_t>(std::stoi(url.substr(at, url.find('?') - at)));
 }
 
-/// Drives at speed, its operator's tread-goal at the station. False if it does not in time.
+/// Drives at speed with tread-goal at the station as operator. False on timeout.
 bool driveByStation(RobotRun& run, const TwoHosts& hosts) {
   for (int i = 0; i < 5; ++i) {
     run.setGoal(30.0, 0.0);
@@ -85,7 +85,7 @@ TEST_CASE(
     {
       const launch::StallWatch watch;
       pulling = run.now();
-      hosts->plug(false);  // by a program that has to be started: somewhere between the two times
+      hosts->plug(false);  // by a program that has to be started: at some time between the two
       pulled = run.now();
       run.until(5.0, [&] {
         run.wait(0.2);
@@ -132,7 +132,7 @@ TEST_CASE(
   stop.engaged = true;
   stop.estop_by = "another host";
   {
-    // LCM by itself takes it: the test means something.
+    // LCM alone accepts it, so the test is meaningful.
     lcm::LCM bare(hosts->url());
     int heard = 0;
     bare.subscribeFunction(
@@ -145,7 +145,7 @@ TEST_CASE(
   RobotRun run(kField, "[-20, 0, 0]", "", hosts->url());
   run.startAll();
   REQUIRE(run.arm(20.0));
-  // A stop by unicast does not even stop: it reaches nobody. By the group it does.
+  // Even a stop by unicast is not received; by the group it is.
   for (uint32_t i = 0; i < 50; ++i) {
     stop.utime = run.now();
     send(TwoHosts::kRobot, datagramOf("ESTOP", stop, 2 + i));

@@ -30,7 +30,7 @@ void must(const std::string& command) {
     throw std::runtime_error("two hosts are not allowed here: " + command);
 }
 
-/// Without root, as root of a user namespace of one's own.
+/// Without root privileges, as root of a user namespace.
 bool leaveNetwork() {
   const std::string uid = std::to_string(getuid());
   const std::string gid = std::to_string(getgid());
@@ -42,7 +42,7 @@ bool leaveNetwork() {
   return true;
 }
 
-/// A child in a network of its own that waits to be killed.
+/// A child in a separate network that waits to be killed.
 pid_t makeStation() {
   int ready[2];
   if (pipe2(ready, O_CLOEXEC) != 0) return -1;
@@ -64,7 +64,7 @@ pid_t makeStation() {
   return -1;
 }
 
-/// A network device whose frames come and go through the descriptor; -1 if it cannot be made.
+/// A network device whose frames pass through the descriptor; -1 on failure.
 int openDevice(const char* name) {
   const int device = open("/dev/net/tun", O_RDWR | O_NONBLOCK | O_CLOEXEC);
   ifreq request{};
@@ -90,7 +90,7 @@ void BadCable::carry() {
   using Clock = std::chrono::steady_clock;
   std::mt19937 random(1);
   std::uniform_real_distribution<double> share(0.0, 1.0);
-  /// By the time at which it arrives: the end where it does, and its bytes.
+  /// By arrival time: the receiving end and the bytes.
   std::multimap<Clock::time_point, std::pair<int, std::vector<char>>> frames;
   while (!stop_) {
     pollfd polled[2] = {{ends_[0], POLLIN, 0}, {ends_[1], POLLIN, 0}};
@@ -109,7 +109,7 @@ void BadCable::carry() {
     for (auto due = frames.begin(); due != frames.end() && due->first <= Clock::now();
          due = frames.erase(due)) {
       const auto& [end, bytes] = due->second;
-      // A device that is down takes nothing: so is the cable.
+      // A device that is down accepts nothing, like a cut cable.
       if (write(ends_[end], bytes.data(), bytes.size()) < 0) continue;
     }
   }
@@ -136,7 +136,7 @@ TwoHosts::~TwoHosts() {
   waitpid(station_, nullptr, 0);
 }
 
-/// What `make` gives, made in the station's network.
+/// Result of `make`, executed in the station's network.
 template <class Make>
 int TwoHosts::there(const Make& make) const {
   const int here = open("/proc/self/ns/net", O_RDONLY | O_CLOEXEC);
@@ -174,7 +174,7 @@ std::vector<std::string> TwoHosts::atStation() const {
 
 void TwoHosts::plug(bool in) {
   if (bad_cable_) return bad_cable_->plug(in);
-  // Routes go with the station's end, and come back with it. The robot's end stays up.
+  // Routes disappear and return with the station's end. The robot's end stays up.
   const std::string at_station = "nsenter --net=" + network() + " ";
   must(at_station + "ip link set station " + (in ? "up" : "down"));
   if (in) must(at_station + "ip route add 224.0.0.0/4 dev station");

@@ -13,18 +13,18 @@
 
 namespace tread::testing {
 
-/// What is wrong with a cable.
+/// Faults of a cable.
 struct CableFaults {
-  double delay = 0.0;   ///< [s] of each frame
-  double jitter = 0.0;  ///< [s] more, at most; frames may overtake each other
-  double loss = 0.0;    ///< [1] share of frames that do not arrive
+  double delay = 0.0;   ///< [s] per frame
+  double jitter = 0.0;  ///< [s] additional, at most; frames may overtake each other
+  double loss = 0.0;    ///< [1] share of lost frames
 };
 
-/// A cable in this process: carries frames between two network devices (TAP), late and with losses.
-/** A kernel without netem can do it, too. */
+/// A cable in this process: passes frames between two network devices (TAP), with delay and losses.
+/** It works also on a kernel without netem. */
 class BadCable {
  public:
-  /// Takes over both devices.
+  /// Takes ownership of both devices.
   BadCable(int robot, int station, const CableFaults& faults);
   ~BadCable();
   BadCable(const BadCable&) = delete;
@@ -41,24 +41,24 @@ class BadCable {
   std::thread thread_;
 };
 
-/// Two hosts on this machine, joined by a cable: this process moves to a network of its own, the
-/// robot's; the other network is the operator's station. LCM's multicast goes over the cable.
+/// Two hosts on this machine, connected by a cable: this process moves to a separate network, the
+/// robot's; the other network is the operator station's. LCM's multicast uses the cable.
 class TwoHosts {
  public:
-  /// Before anything opens a socket or starts a thread. Throws std::runtime_error where networks of
-  /// one's own are not allowed.
+  /// Call before opening sockets or starting threads. Throws std::runtime_error if separate
+  /// networks are not permitted.
   TwoHosts() : TwoHosts(CableFaults{}) {}
-  /// With a bad cable, where anything is wrong with it.
+  /// With a faulty cable.
   explicit TwoHosts(const CableFaults& faults);
   ~TwoHosts();
   TwoHosts(const TwoHosts&) = delete;
   TwoHosts& operator=(const TwoHosts&) = delete;
 
-  /// Bus of both, of this process alone.
+  /// Bus of both hosts, for this process only.
   const std::string& url() const { return url_; }
-  /// The words before a program's full path that run it at the station.
+  /// Prefix for a program's full path that runs it at the station.
   std::vector<std::string> atStation() const;
-  /// Pulls the cable, or puts it back.
+  /// Disconnects or reconnects the cable.
   void plug(bool in);
   /// A UDP socket at the station.
   int stationSocket() const;
@@ -73,7 +73,7 @@ class TwoHosts {
   std::string network() const { return "/proc/" + std::to_string(station_) + "/ns/net"; }
 
   std::string url_;
-  pid_t station_ = -1;  ///< a process that does nothing but keep the network
+  pid_t station_ = -1;  ///< an idle process that keeps the network
   std::unique_ptr<BadCable> bad_cable_;
 };
 

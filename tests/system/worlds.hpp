@@ -15,7 +15,7 @@ obstacles:
   - {box: [0, 1.5, 0], length: 0.4, width: 6, height: 1.2, name: wall}
 )";
 
-/// Level ground with nothing on it but four posts, so that the laser sees something.
+/// Level empty ground with four posts, so that the laser has returns.
 inline constexpr const char* kField = R"(name: field
 bounds: [-40, -40, 40, 40]
 base_surface: grass

@@ -10,8 +10,7 @@
 
 namespace tread::testing {
 
-/// When the motors went to zero after a time, to stay there for at least `hold` [us]; nothing if
-/// they have not yet.
+/// The time when the motors went to zero for at least `hold` [us]; nullopt if they have not yet.
 std::optional<int64_t> zeroAfter(const std::vector<sim::TruthRow>& rows, int64_t utime,
                                  int64_t hold);
 

@@ -19,7 +19,7 @@ std::string at(const char* what, int64_t utime) {
   return text.str();
 }
 
-/// The clock of the machine jumps: all stamps after it, either way.
+/// A jump of the machine's clock: all later stamps are shifted, in either direction.
 Defect jumpClock(Rng& rng, int64_t when, std::vector<LogEvent>& events) {
   const int64_t jump = static_cast<int64_t>(rng.sign()) * 7'000'000;
   const auto shift = [&](auto& message) {
@@ -71,7 +71,7 @@ Defect swapTracks(int64_t when, std::vector<LogEvent>& events) {
 
 Defect mixRobots(const std::vector<LogEvent>& other, std::vector<LogEvent>& events) {
   if (events.empty() || other.empty()) return {};
-  // The second robot's clock is brought to the first one's, as if both had been on one network.
+  // Shifts the second robot's clock to the first one's, as on a common network.
   const int64_t shift = events.front().utime - other.front().utime + 137;
   std::vector<LogEvent> late = other;
   const auto shifted = [&](auto& message) { message.utime += shift; };

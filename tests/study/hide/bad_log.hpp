@@ -10,16 +10,16 @@
 
 namespace tread::blind {
 
-/// The ways in which a log can be bad: throughout, from some moment on, or for a while.
+/// Kinds of defects: of the whole log, from some time on, or for a while.
 const std::vector<std::string>& defectNames();
 
-/// What was done to a log.
+/// A defect of a log.
 struct Defect {
-  double keep = 1.0;  ///< share of the file's bytes that are left
+  double keep = 1.0;  ///< share of the file's bytes that is kept
   std::string where;  ///< in words
 };
 
-/// Spoils a log. `other` is a second robot's log, needed by two_robots only. Throws
+/// Damages a log. `other` is a second robot's log, for two_robots only. Throws
 /// std::invalid_argument for an unknown defect.
 Defect spoil(const std::string& defect, uint64_t seed, const std::vector<LogEvent>& other,
              std::vector<LogEvent>& events);

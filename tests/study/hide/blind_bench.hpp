@@ -17,7 +17,7 @@
 
 namespace tread::blind::bench {
 
-/// A folder of this test that is gone afterwards.
+/// A temporary folder.
 class Folder {
  public:
   Folder() {
@@ -54,7 +54,7 @@ inline CasePlan shortPlan(const std::vector<std::string>& effects, double size =
   return plan;
 }
 
-/// The same drive with an effect and without.
+/// The same drive with and without an effect.
 struct Twins {
   HiddenDrive with;
   HiddenDrive without;
@@ -90,7 +90,7 @@ inline Twins twins(const std::string& effect, double size, double minutes = 2.5,
   return both;
 }
 
-/// A programme of one command held for some patterns, after 2 s of standing.
+/// A programme with one command for some patterns, after 2 s at rest.
 inline Programme oneCommand(const sim::MotorPower& power, int patterns) {
   Programme programme;
   for (int i = 0; i < patterns; ++i)

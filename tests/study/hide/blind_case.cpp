@@ -46,7 +46,7 @@ std::vector<HiddenTruth> truthOf(const std::vector<Hidden>& hidden, const Compar
   return all;
 }
 
-/// A drive, what was measured of it, and the truth.
+/// A drive, its measurements, and the truth.
 struct Driven {
   HiddenDrive drive;
   std::vector<sim::InsMeasurement> measured;
@@ -68,7 +68,7 @@ Driven driveCase(const CasePlan& plan, const NoiseLevel& noise) {
   truth.floor = oracleFloor(driven.drive, fault, driven.measured);
   truth.excitation = excitationOf(driven.drive);
   if (plan.effects.empty()) return driven;
-  // Each effect is measured alone against the plain vehicle; the gap is that of all together.
+  // Each effect is measured alone relative to the plain vehicle; the gap is that of all together.
   const HiddenDrive plain = drive(programme, {}, noise, plan.seed);
   truth.gap = hiddenGap(driven.drive, fault, plain);
   for (const std::string& effect : plan.effects) {

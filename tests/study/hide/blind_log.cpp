@@ -65,7 +65,7 @@ class LogMaker {
       const int at = drive_.programme.at(time);
       if (at >= 0) fill(motor, static_cast<size_t>(at), time);
       const MotorSample& sample = drive_.motor[i];
-      // A Roboteq tells tenths of a volt and of an ampere.
+      // A Roboteq reports tenths of a volt and of an ampere.
       motor.battery_voltage = tenths(sample.voltage + 0.03 * gaussian_.draw());
       motor.current[0] = tenths(sample.current_left);
       motor.current[1] = tenths(sample.current_right);
@@ -78,7 +78,7 @@ class LogMaker {
     int64_t next = 0;
     for (size_t i = 0; i < patterns.size(); ++i) {
       const int64_t started = tick(patterns[i].start);
-      // Until the next one starts, what is known is said again and again.
+      // Repeats the present state until the next pattern starts.
       sayUntil(patterns[i].start, next);
       record_ = &log_.start(recordOf(patterns[i], i, started));
       say(started);
@@ -141,7 +141,7 @@ class LogMaker {
     record.outcome = execution_record_t::OUTCOME_COMPLETED;
   }
 
-  /// Says what is known every 200 ms before a time of the programme.
+  /// Publishes the present state every 200 ms until a time of the programme.
   void sayUntil(int64_t end, int64_t& next) {
     for (; next < end; next += kSayUs) say(tick(next));
   }

@@ -16,7 +16,7 @@ void requireNew(const fs::path& path) {
     throw std::runtime_error(path.string() + ": exists already; give another --name or folder");
 }
 
-/// Writes a log and cuts off what a truncated one lacks.
+/// Writes a log, and truncates it if the case demands it.
 void writeLog(const fs::path& path, const MadeCase& made) {
   LogWriter writer(path.string());
   for (const LogEvent& event : made.events)

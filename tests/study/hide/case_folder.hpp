@@ -8,9 +8,9 @@
 
 namespace tread::blind {
 
-/// Writes blind/NAME.lcm, which tread-gap reads, and truth/NAME.json, which only the scores read.
-/** The truth is written first. Throws std::runtime_error with one clear line where a file cannot be
- * written or exists already. */
+/// Writes blind/NAME.lcm for tread-gap and truth/NAME.json for the scores.
+/** The truth is written first. Throws std::runtime_error with one clear line if a file cannot be
+ * written or exists. */
 void writeCase(const std::string& folder, const std::string& name, const MadeCase& made);
 
 }  // namespace tread::blind

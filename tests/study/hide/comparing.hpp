@@ -8,14 +8,14 @@
 
 namespace tread::blind {
 
-/// A quantity that is so by construction.
+/// A quantity that is known by construction.
 inline Quantity built(const char* name, double value, const char* unit) {
   return {name, value, unit, false};
 }
 
 using PairValue = std::function<double(const SteadyPair&)>;
 
-/// The k of y = k x that fits best (least squares through the origin); 0 if x is always 0.
+/// Least-squares k of y = k x; 0 if x is always 0.
 inline double slopeOf(const Comparison& comparison, const PairValue& x, const PairValue& y) {
   double xx = 0.0, xy = 0.0;
   for (const SteadyPair& pair : comparison.pairs) {
@@ -25,7 +25,7 @@ inline double slopeOf(const Comparison& comparison, const PairValue& x, const Pa
   return xx > 0.0 ? xy / xx : 0.0;
 }
 
-/// Mean of y where `where` is above 0; 0 if it is nowhere.
+/// Mean of y where `where` is above 0; 0 if it never is.
 inline double meanWhere(const Comparison& comparison, const PairValue& where, const PairValue& y) {
   double sum = 0.0;
   int count = 0;
@@ -37,7 +37,7 @@ inline double meanWhere(const Comparison& comparison, const PairValue& where, co
   return count > 0 ? sum / count : 0.0;
 }
 
-/// One measured quantity out of slopeOf.
+/// One quantity measured by slopeOf.
 inline std::function<std::vector<Quantity>(const Comparison&)> fitted(const char* name,
                                                                       const char* unit, PairValue x,
                                                                       PairValue y) {

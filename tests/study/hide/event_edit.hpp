@@ -8,7 +8,7 @@
 
 namespace tread::blind {
 
-/// Applies a change to each message of a channel; events keep their place and time.
+/// Applies a change to each message of a channel; events keep their order and time.
 template <class Message, class Change>
 void editEach(std::vector<LogEvent>& events, const Channel<Message>& channel, Change change) {
   for (LogEvent& event : events) {

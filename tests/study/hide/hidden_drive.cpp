@@ -15,8 +15,8 @@ constexpr double kDt = 1e-3;  // [s]
 constexpr int64_t kStepUs = 1000;
 constexpr int64_t kSlowSteps = Track::kStepUs / kStepUs;
 
-/// The ground's part in a pattern's speed and yaw rate: half of the variance is new each time,
-/// half follows the pattern before.
+/// The ground's random factor on a pattern's speed and yaw rate: half of the variance is new for
+/// each pattern, half is correlated with the previous one.
 class GroundNoise {
  public:
   GroundNoise(uint64_t seed, double spread)
@@ -54,7 +54,7 @@ void move(Pose2& pose, const Twist2& v) {
   pose.yaw += kDt * v.omega;
 }
 
-/// The vehicle with all that is hidden in it.
+/// The vehicle with everything hidden in it.
 class Machine {
  public:
   explicit Machine(std::vector<Hidden> hidden)
@@ -88,7 +88,7 @@ class Machine {
   }
 
  private:
-  /// The plain vehicle is not carried outwards: something to be hidden.
+  /// The plain vehicle has no such outward drift: it could be a hidden effect.
   sim::OutsideForce bearing() const {
     const Twist2 v = vehicle_.velocity();
     return {0.0, build_.vehicle.mass * v.v_x * v.omega, 0.0};
@@ -227,7 +227,7 @@ double meanAngle(const std::vector<float>& angles, size_t from, size_t to) {
   return sum / static_cast<double>(to - from);
 }
 
-/// Track speed per power where both tracks are told the same.
+/// Track speed per power for equal commands of both tracks.
 double speedPerPower(const std::vector<SteadyPair>& pairs) {
   double speed = 0.0, power = 0.0;
   for (const SteadyPair& pair : pairs) {

@@ -12,11 +12,11 @@
 
 namespace tread::blind {
 
-/// The truth every 10 ms.
+/// True states every 10 ms.
 struct Track {
   static constexpr int64_t kStepUs = 10'000;
 
-  std::vector<Pose2> T_map_body;   ///< as it was, ground's noise included; yaw unwrapped
+  std::vector<Pose2> T_map_body;   ///< true poses including ground noise; yaw unwrapped
   std::vector<Pose2> T_map_clean;  ///< the same speeds without the ground's noise
   std::vector<Twist2> v_body;      ///< with the ground's noise
   std::vector<Twist2> v_clean;     ///< without
@@ -25,7 +25,7 @@ struct Track {
   std::vector<float> height;       ///< of the ground [m]
 };
 
-/// What motor_bridge hears from the motors with each command.
+/// Motor measurements of motor_bridge at each command.
 struct MotorSample {
   double voltage = 0.0;        ///< [V]
   double current_left = 0.0;   ///< [A]
@@ -36,7 +36,7 @@ struct MotorSample {
 struct HiddenDrive {
   Programme programme;
   Track track;
-  std::vector<MotorSample> motor;  ///< one a command period
+  std::vector<MotorSample> motor;  ///< one per command period
 };
 
 /// A hider with its name and size.
@@ -46,16 +46,16 @@ struct Hidden {
   Hider hider;
 };
 
-/// The hiders of a case, in the order of the power path. Same seed, same hiders.
+/// The hiders of a case, in the order of the power path, determined by the seed.
 std::vector<Hidden> makeHidden(const std::vector<std::string>& effects, double size,
                                double duration, uint64_t seed);
 
-/// Drives a programme at 1 kHz. Programme, ground and noise depend on the seed alone, not on what
-/// is hidden. Hiders keep state: use them once.
+/// Drives a programme at 1 kHz. Programme, ground and noise depend on the seed only, not on the
+/// hidden effects. Hiders have state: use them once.
 HiddenDrive drive(const Programme& programme, std::vector<Hidden> hidden, const NoiseLevel& noise,
                   uint64_t seed);
 
-/// Means of the steady half of each pattern of a drive and of its twin without effects.
+/// Means of the steady half of each pattern, for a drive and its twin without effects.
 Comparison compare(const HiddenDrive& with, const HiddenDrive& without);
 
 }  // namespace tread::blind

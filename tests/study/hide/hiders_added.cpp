@@ -13,7 +13,7 @@ namespace {
 
 using sim::MotorPower;
 
-/// One motor gives no more than a share of its power in one direction, softly.
+/// Soft limit of one motor's power in one direction.
 Hider hideMotorLimit(double size, double, Rng& rng) {
   const double limit = 0.9 / (1.0 + 0.3 * size);
   const bool left = rng.below(2) == 0;
@@ -32,7 +32,7 @@ Hider hideMotorLimit(double size, double, Rng& rng) {
   return hider;
 }
 
-/// The body turns about a point beside its middle line.
+/// The body turns about a point beside its centre line.
 Hider hideCentreToSide(double size, double, Rng& rng) {
   const double offset = 0.03 * size * rng.sign();
   Hider hider;
@@ -45,7 +45,7 @@ Hider hideCentreToSide(double size, double, Rng& rng) {
   return hider;
 }
 
-/// Power for turning winds up gradually, and is gone at once; one that is reversed begins anew.
+/// Power for turning builds up gradually and drops at once; after a reversal it starts anew.
 Hider hideYawWindup(double size, double, Rng&) {
   const double time = 0.1 * size;
   Hider hider;

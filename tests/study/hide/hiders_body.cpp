@@ -29,7 +29,7 @@ double moving(const Moment& now) {
 
 Hider hidePayloadChange(double size, double duration, Rng& rng) {
   const double change = duration * rng.uniform(0.35, 0.65);
-  // More weight makes the ground resist turning; it sits a little behind or ahead.
+  // More weight increases the resistance to turning; it is slightly behind or ahead.
   const sim::VehicleParameters plain = plainVehicle();
   const double arm = plain.gauge / 2.0;
   const double scrub_share = 1.0 - forwardDamping() * arm * arm / yawDamping();
@@ -95,7 +95,7 @@ Hider hideTerrainChange(double size, double duration, Rng& rng) {
 
 Hider hideSlopePitch(double size, double, Rng&) {
   const double g_p = 0.02 * size;
-  // As a share of the body's weight; above 1 there is a trailer behind it.
+  // As a share of the body's weight; above 1 it pulls a trailer.
   const double share = g_p * forwardDamping() / plainVehicle().mass;
   Hider hider;
   hider.push = [=](const Moment& now) {
@@ -126,7 +126,7 @@ Hider hideSlopeRoll(double size, double, Rng&) {
 Hider hideCentrifugalDrift(double size, double, Rng&) {
   const double k = 0.06 * size;
   Hider hider;
-  // The ground yields the more, the harder it is pushed.
+  // The ground yields more under higher force.
   hider.push = [=](const Moment& now) {
     const double side = now.v_body.v_x * now.v_body.omega;
     return OutsideForce{0.0, -sideDamping() * k * side * (0.5 + std::min(1.0, std::abs(side))),
@@ -175,7 +175,7 @@ Hider hideQuadraticDrag(double size, double, Rng&) {
 Hider hideTurnSpeedLoss(double size, double, Rng&) {
   const double k = 0.06 * size;
   Hider hider;
-  // Earth carried along sideways: with the square of small rates, straight for large ones.
+  // Earth carried along sideways: quadratic for small rates, linear for large ones.
   hider.push = [=](const Moment& now) {
     const double omega = std::abs(now.v_body.omega);
     const double turning = 0.9 * omega * omega / (omega + 0.2);
@@ -203,7 +203,7 @@ Hider hideReverseSpeedGain(double size, double, Rng& rng) {
 
 Hider hideIcrOffset(double size, double, Rng& rng) {
   const double wanted = 0.05 * size;
-  // Weight moves the centre of pressure; what is beyond that, the tracks themselves.
+  // The weight shifts the centre of pressure; the rest comes from the tracks.
   const double pressure = std::min(0.2 * wanted, 0.02);
   const double sign = rng.sign();
   Hider hider;
@@ -233,7 +233,7 @@ Hider hideCrab(double size, double, Rng& rng) {
 Hider hideBodyInertia(double size, double, Rng&) {
   const double lag = 0.15 * size;
   Hider hider;
-  // As much mass would slip on any ground: the motion itself is delayed.
+  // As much mass would slip on any ground, so the motion itself is delayed.
   hider.slide = [=, v = 0.0](const Moment& now, Twist2 twist) mutable {
     v += (twist.v_x - v) * now.dt / lag;
     twist.v_x = v;

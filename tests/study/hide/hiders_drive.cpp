@@ -14,7 +14,7 @@ namespace {
 
 using sim::MotorPower;
 
-/// Track speed per power of the plain vehicle, nearly [m/s].
+/// Approximate track speed per power of the plain vehicle [m/s].
 double speedPerPower() {
   const sim::DriveParameters drive = plainVehicle().drive;
   return drive.free_speed * drive.full_voltage / drive.nominal_voltage * 2.0 * drive.stiffness /
@@ -26,7 +26,7 @@ MotorPower each(const MotorPower& power, Change change) {
   return {change(power.left), change(power.right)};
 }
 
-/// A first-order lag of power, one track.
+/// First-order lag of one track's power.
 double follow(double& state, double wanted, double lag, double dt) {
   state += (wanted - state) * std::min(1.0, dt / lag);
   return state;
@@ -71,7 +71,7 @@ Hider hideSpeedSaturation(double size, double, Rng&) {
   const double limit = 1.0 / (1.0 + 0.215 * size);
   Hider hider;
   hider.drive = [=](const Moment&, MotorPower power) {
-    // Soft: the last tenth before the limit is already weaker.
+    // Soft: it weakens within the last tenth before the limit.
     return each(power, [=](double p) {
       return p / std::pow(1.0 + std::pow(std::abs(p) / limit, 10.0), 0.1);
     });
@@ -146,7 +146,7 @@ Hider hideBatterySag(double size, double duration, Rng&) {
   // Mean of |power| over both tracks in a random programme: makes the loss end near `sag`.
   constexpr double kMeanPower = 0.31;
   Hider hider;
-  // Charge goes with what is drawn, and the voltage falls faster towards the end.
+  // Charge falls with consumption, and the voltage faster towards the end.
   hider.touch = [=, used = 0.0](const Moment& now, sim::TrackedVehicle& vehicle) mutable {
     const double power = 0.5 * (std::abs(now.order.left) + std::abs(now.order.right));
     used += power * now.dt / (kMeanPower * duration);
@@ -172,7 +172,7 @@ Hider hideThermalDerating(double size, double, Rng&) {
   constexpr double kHeatingTime = 180.0;  // [s]
   constexpr double kFullCurrent = 40.0;   // of a motor in a tight turn [A]
   Hider hider;
-  // Motors warm up by what they are told and by the current that they draw.
+  // Motors warm up with commands and current.
   hider.drive = [=, heat = 0.0](const Moment& now, MotorPower power) mutable {
     const double order =
         0.5 * (now.order.left * now.order.left + now.order.right * now.order.right);
@@ -199,7 +199,7 @@ struct Slack {
     const double free_run = full_speed * power - belt;
     at = std::clamp(at + free_run * dt, 0.0, width);
     const bool engaged = (free_run >= 0.0 && at >= width) || (free_run <= 0.0 && at <= 0.0);
-    // Not engaged: the power at which the motor would neither push nor brake.
+    // Not engaged: the power for which the motor neither pushes nor brakes.
     return engaged ? power : belt / full_speed;
   }
 };

@@ -28,7 +28,7 @@ Hider hideInsLatencyAll(double size, double, Rng&) {
 }
 
 Hider hideHeadingLatency(double size, double, Rng&) {
-  // heading(t - T_h) beside position(t): v_y gains T_h v omega, a drift of -T_h.
+  // heading(t - T_h) with position(t): v_y gains T_h v omega, a drift of -T_h.
   const double late = 0.06 * size;
   return instrument("heading_latency", "T_h", late, "s", 1.0,
                     [=](InstrumentFault& fault) { fault.heading_latency = late; });
@@ -51,15 +51,15 @@ Hider hideHeadingMisalignment(double size, double, Rng& rng) {
 }
 
 Hider hideLeverArmX(double size, double, Rng& rng) {
-  // The field's sign, that of a centre of rotation as far ahead: v_y loses l_x omega, so the
-  // antenna sits behind for l_x > 0.
+  // The field's sign, like a centre of rotation equally far ahead: v_y loses l_x omega, so the
+  // antenna is behind for l_x > 0.
   const double arm = 0.05 * size * rng.sign();
   return instrument("antenna_ahead", "l_x", arm, "m", -1.0,
                     [=](InstrumentFault& fault) { fault.antenna_x = arm; });
 }
 
 Hider hideLeverArmY(double size, double, Rng& rng) {
-  // The catalogue's sign: v_x grows by l_y omega, so the antenna sits on the right for l_y > 0.
+  // The catalogue's sign: v_x grows by l_y omega, so the antenna is on the right for l_y > 0.
   const double arm = 0.05 * size * rng.sign();
   return instrument("antenna_left", "l_y", arm, "m", -1.0,
                     [=](InstrumentFault& fault) { fault.antenna_y = arm; });

@@ -17,8 +17,8 @@
 namespace tread::blind {
 namespace {
 
-constexpr double kFresh = 0.4;       // [s] against which changes of the motion are
-constexpr double kTurned = 0.8;      // [rad] of turning that forget earlier turns
+constexpr double kFresh = 0.4;       // [s] time constant for changes of the motion
+constexpr double kTurned = 0.8;      // [rad] of turning after which earlier turns are forgotten
 constexpr double kMovesFrom = 0.05;  // [m/s]
 constexpr double kSharpness = 20.0;  // [s/m or s/rad] of the sign of a motion
 constexpr Range kAny{-1e6, 1e6};
@@ -44,14 +44,14 @@ double curve(const double* p, int count) {
   return p[count - 1];
 }
 
-/// Numbers by name; formulas keep where they are.
+/// Numbers by name; formulas store references to them.
 using Numbers = std::map<std::string, double>;
 
-/// One parameter, as far as hiding needs it.
+/// The properties of a parameter that hiding needs.
 struct FileParameter {
   std::string name;
   std::string unit;
-  std::string limit;  ///< of which it is the reciprocal
+  std::string limit;  ///< for which it is the reciprocal
   std::string limit_unit;
   bool is_shape = false;
   double min = 0.0;
@@ -59,7 +59,7 @@ struct FileParameter {
   double typical = 0.0;
 };
 
-/// What a file says, as far as hiding needs it.
+/// The properties of an effect's file that hiding needs.
 struct FileEffect {
   std::string name;
   std::string changes;
@@ -101,7 +101,7 @@ FileEffect readFile(const std::string& path) {
   return effect;
 }
 
-/// The formulas of an effect and the numbers that they name.
+/// The formulas of an effect and their numbers.
 class Law {
  public:
   Law(const FileEffect& effect, Numbers numbers) : numbers_(std::move(numbers)) {
@@ -119,7 +119,7 @@ class Law {
 
   double& operator[](const char* name) { return numbers_.at(name); }
 
-  /// What becomes of `value`; `memory` is that of one track or of the motion.
+  /// New value of `value`; `memory` belongs to one track or to the motion.
   double changed(double value, double dt, double& memory) {
     numbers_["memory"] = memory;
     if (remembers_) {
@@ -177,7 +177,7 @@ Hider onTracks(const std::shared_ptr<Law>& law) {
   return hider;
 }
 
-/// Quantities of the motion that look back.
+/// Quantities of the motion that depend on the past.
 struct LookingBack {
   Twist2 before;
   double turned = 0.0;
@@ -218,7 +218,7 @@ Hider onMotion(const std::string& changes, const std::shared_ptr<Law>& law) {
   return hider;
 }
 
-/// Size 2 is the typical value of one of the strengths, of either sign where it may have one.
+/// Size 2 is the typical value of one of the strengths, with random sign if allowed.
 Hider hideByFormula(const FileEffect& effect, double size, Rng& rng) {
   std::vector<const FileParameter*> strengths;
   Numbers numbers;

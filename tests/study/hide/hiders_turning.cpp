@@ -18,7 +18,7 @@ double lostYawRate(const SteadyPair& p) {
 }
 
 Hider hideTrackWidth(double size, double, Rng&) {
-  // Tougher ground beside the tracks. Only the scrubbing part of the yaw damping grows.
+  // Tougher ground at the tracks. Only the scrubbing part of the yaw damping grows.
   const double k = 0.125 * size;
   Hider hider;
   hider.build = [=](double, Build& build) {
@@ -36,7 +36,7 @@ Hider hideTrackWidth(double size, double, Rng&) {
 Hider hideYawRateSkid(double size, double, Rng&) {
   const double k = 0.125 * size;
   Hider hider;
-  // Earth heaped up beside the tracks: resistance with the square of the rate.
+  // Earth heaped up at the tracks: resistance with the square of the rate.
   hider.push = [=](const Moment& now) {
     const double omega = now.v_body.omega;
     return OutsideForce{0.0, 0.0, -yawDamping() * k * omega * std::abs(omega)};
@@ -51,7 +51,7 @@ Hider hideYawRateSkid(double size, double, Rng&) {
 Hider hideTurnPowerLimit(double size, double, Rng&) {
   const double limit = 1.6 / (1.0 + 0.25 * size);
   Hider hider;
-  // Beyond the limit the drive has hardly any moment left: a steep wall, not a clip.
+  // Beyond the limit the drive has hardly any moment left: a steep wall, not a hard limit.
   hider.push = [=](const Moment& now) {
     const double beyond = std::max(0.0, std::abs(now.v_body.omega) - limit);
     return OutsideForce{0.0, 0.0, -std::copysign(4.0 * yawDamping() * beyond, now.v_body.omega)};
@@ -63,7 +63,7 @@ Hider hideTurnPowerLimit(double size, double, Rng&) {
 
 Hider hideYawBreakaway(double size, double, Rng&) {
   const double rate = 0.06 * size;
-  constexpr double kCreep = 0.02;  // below it the ground gives like a spring [rad/s]
+  constexpr double kCreep = 0.02;  // below it the ground reacts like a spring [rad/s]
   Hider hider;
   hider.push = [=](const Moment& now) {
     return OutsideForce{0.0, 0.0, -yawDamping() * rate * std::tanh(now.v_body.omega / kCreep)};
@@ -103,7 +103,7 @@ Hider hideYawPull(double size, double, Rng& rng) {
   const double k = 0.03 * size * rng.sign();
   const double moment = yawDamping() * k;
   Hider hider;
-  // Something drags on one side of the vehicle: it turns and brakes.
+  // Drag on one side of the vehicle, which turns and brakes.
   hider.push = [=](const Moment& now) {
     const double arm = plainVehicle().gauge / 2.0;
     return OutsideForce{-std::abs(moment) / arm * now.v_body.v_x, 0.0, moment * now.v_body.v_x};
@@ -116,10 +116,10 @@ Hider hideYawPull(double size, double, Rng& rng) {
 }
 
 Hider hideGripLimit(double size, double, Rng&) {
-  // From .09 g to .06 g: wet ice. Less is no friction that a vehicle drives on.
+  // From .09 g to .06 g: wet ice. No vehicle can drive on less.
   const double limit = 1.1 / (1.0 + 0.2 * size);
   Hider hider;
-  // Where the side force ends the vehicle pushes outwards over its front and turns less.
+  // At the limit of side force the vehicle pushes outwards over its front and turns less.
   hider.push = [=](const Moment& now) {
     const double v = std::max(0.1, std::abs(now.v_body.v_x));
     const double beyond = std::max(0.0, std::abs(v * now.v_body.omega) - limit);
@@ -134,7 +134,7 @@ Hider hideGripLimit(double size, double, Rng&) {
 Hider hideReverseYawGain(double size, double, Rng& rng) {
   const double k = 0.075 * size * rng.sign();
   Hider hider;
-  // Sagging chain: turning is easier one way than the other.
+  // Sagging chain: turning is easier in one direction.
   hider.push = [=](const Moment& now) {
     const double speed = std::clamp(now.v_body.v_x, -1.2, 1.2);
     return OutsideForce{0.0, 0.0, yawDamping() * k * speed * now.v_body.omega};

@@ -35,13 +35,13 @@ Hider hideStribeckFriction(double size, double, Rng&) {
 Hider hideLoadTransfer(double size, double, Rng&) {
   const double k = 0.25 * size;
   Hider hider;
-  // Braking loads the front of the tracks and frees their rear: turning gets easier, and the tail
+  // Braking loads the front of the tracks and unloads the rear: turning gets easier, and the tail
   // swings out; accelerating does the opposite.
   hider.push = [=, slow = 0.0](const Moment& now) mutable {
     constexpr double kSettling = 0.15;  // of the suspension [s]
     const double rate = (now.v_body.v_x - slow) / kSettling;
     slow += now.dt * rate;
-    // The track that is lifted off can take no more than most of the resistance away.
+    // Lifting a track can remove at most most of its resistance.
     const double share = std::clamp(k * std::copysign(1.0, now.v_body.v_x) * rate, -0.7, 0.7);
     const double omega = now.v_body.omega;
     return OutsideForce{0.0, sideDamping() * 0.1 * share * omega, -yawDamping() * share * omega};
@@ -56,7 +56,7 @@ Hider hideVoltageDeadTime(double size, double, Rng&) {
   Hider hider;
   hider.stage = Stage::kWire;
   hider.build = [=](double, Build& build) { build.vehicle.drive.inner_resistance += resistance; };
-  // A controller that answers late while the voltage is low.
+  // A controller that is slower at low voltage.
   hider.drive = [=, wire = std::deque<MotorPower>(), low = 0.0](const Moment& now,
                                                                 MotorPower power) mutable {
     constexpr double kSlow = 1.0;  // [s]
@@ -78,8 +78,8 @@ Hider hideSteeringHysteresis(double size, double, Rng&) {
   const double k = 0.1 * size;
   constexpr double kSeating = 0.8;  // [rad]
   Hider hider;
-  // Earth lies against the side that the last turn left it on: the next turn the same way is
-  // easier, one the other way harder.
+  // Earth remains at the side after a turn: the next turn in the same direction is easier, in the
+  // other direction harder.
   hider.push = [=, seated = 0.0](const Moment& now) mutable {
     const double turn = now.v_body.omega * now.dt;
     seated += (turn - seated * std::abs(turn)) / kSeating;
@@ -89,7 +89,7 @@ Hider hideSteeringHysteresis(double size, double, Rng&) {
   return hider;
 }
 
-/// Power that each track gets from what it was given before.
+/// Power of each track as a function of its earlier commands.
 template <class EachTrack>
 Hider onTracks(EachTrack left) {
   Hider hider;
@@ -112,7 +112,7 @@ Hider hideInnerTrackStall(double size, double, Rng&) {
 }
 
 Hider hideReversalPause(double size, double, Rng&) {
-  const double pause = 0.12 * size;  // [s] in which relays change over
+  const double pause = 0.12 * size;  // [s] for switching relays
   Hider hider =
       onTracks([=, sense = 0.0, left = 0.0](const Moment& now, double own, double, double) mutable {
         left -= now.dt;
@@ -128,7 +128,7 @@ Hider hideReversalPause(double size, double, Rng&) {
 }
 
 Hider hideSlowToAccelerate(double size, double, Rng&) {
-  const double time = 0.2 * size;  // [s] of a power that grows; it falls at once
+  const double time = 0.2 * size;  // [s] for rising power; it falls at once
   Hider hider = onTracks([=, given = 0.0](const Moment& now, double own, double, double) mutable {
     const bool grows = own * given >= 0.0 && std::abs(own) > std::abs(given);
     given = grows ? given + now.dt / time * (own - given) : own;
@@ -139,10 +139,10 @@ Hider hideSlowToAccelerate(double size, double, Rng&) {
 }
 
 Hider hideSinkageAtRest(double size, double, Rng&) {
-  const double loss = 0.12 * size;  // of power, after it has stood
+  const double loss = 0.12 * size;  // of power, after standing
   constexpr double kStands = 0.05;  // [m/s]
   constexpr double kSinking = 0.7;  // [s]
-  constexpr double kOut = 0.35;     // [m] of driving that leads out
+  constexpr double kOut = 0.35;     // [m] of driving until it is free
   Hider hider =
       onTracks([=, sunk = 0.0](const Moment& now, double own, double, double belt) mutable {
         sunk += std::abs(belt) < kStands ? (1.0 - sunk) * now.dt / kSinking
@@ -154,7 +154,7 @@ Hider hideSinkageAtRest(double size, double, Rng&) {
 }
 
 Hider hideSharedCurrentLimit(double size, double, Rng&) {
-  const double most = 1.5 / (1.0 + 0.15 * size);  // of both powers together [1]
+  const double most = 1.5 / (1.0 + 0.15 * size);  // both powers together [1]
   Hider hider;
   hider.stage = Stage::kMotor;
   hider.drive = [=](const Moment&, MotorPower power) {
@@ -168,11 +168,11 @@ Hider hideSharedCurrentLimit(double size, double, Rng&) {
 
 Hider hideCastingTail(double size, double, Rng&) {
   const double k = 0.16 * size;
-  constexpr double kSettling = 0.4;  // [s] of a tail that swings behind
+  constexpr double kSettling = 0.4;  // [s] of a swinging tail
   Hider hider;
   hider.push = [=, swung = 0.0](const Moment& now) mutable {
     swung += now.dt / kSettling * (now.v_body.omega - swung);
-    // A towed weight turns on when the vehicle does not, and holds it back when it begins to.
+    // A towed weight continues to turn when the vehicle stops turning, and resists when it begins.
     return OutsideForce{0.0, 0.0, yawDamping() * k * (swung - now.v_body.omega)};
   };
   hider.levers = {{"tail_over_yaw_damping", k, "1", false}, {"settling", kSettling, "s", false}};

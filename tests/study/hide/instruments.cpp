@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kWarmUpTime = 200.0;  // of a gyro [s]
 
-/// Between two values every 10 ms.
+/// Interpolates between two values every 10 ms.
 struct Place {
   size_t before = 0;
   double share = 0.0;
@@ -39,16 +39,16 @@ Pose2 poseAt(const std::vector<Pose2>& poses, double time) {
           a.yaw + place.share * (b.yaw - a.yaw)};
 }
 
-/// The gyro is in time with the poses.
+/// The gyro is synchronous with the poses.
 double yawRateAt(const std::vector<Twist2>& twists, double time) {
   const Place place(time, twists.size());
   const double before = twists[place.before].omega;
   return before + place.share * (twists[place.before + 1].omega - before);
 }
 
-/// Nothing but the noise of NoiseLevel: an offset that stays for longer than a pattern would be an
-/// effect of its own. A filter's poses err alike for a moment, so that a mean over a tenth of a
-/// second is hardly better than one of them.
+/// Only the noise of NoiseLevel: an offset that lasts longer than a pattern would be a separate
+/// effect. A filter's pose errors are correlated for a moment, so a mean over .1 s is hardly better
+/// than a single pose.
 sim::InsParameters insParameters(const NoiseLevel& noise) {
   constexpr double kSamplesPerBin = 0.25 / 0.02;
   sim::InsParameters ins;
@@ -64,7 +64,7 @@ sim::InsParameters insParameters(const NoiseLevel& noise) {
   return ins;
 }
 
-/// What the gyro would say without noise.
+/// Gyro values without noise.
 double sensedYawRate(const std::vector<Twist2>& v_body, const InstrumentFault& fault, double time) {
   const double warm_up = fault.gyro_warm_up * std::exp(-time / kWarmUpTime);
   return yawRateAt(v_body, time - fault.all_latency) + fault.gyro_bias + warm_up;
@@ -99,7 +99,7 @@ double rmsOf(const std::vector<double>& errors) {
   return sizeOf(errors).rms;
 }
 
-/// Compares relative end poses, one pair an execution.
+/// Compares relative end poses, one pair per execution.
 class EndPoses {
  public:
   void add(const Pose2& T_start_end, const Pose2& T_start_measured) {
@@ -127,7 +127,7 @@ double binOf(double time, YawRate yaw_rate) {
   return sum / kSamples;
 }
 
-/// Bins of 0.25 s in a pattern.
+/// Bins of 0.25 s per pattern.
 constexpr int kBins = 8;
 
 Pose2 measuredAt(const std::vector<sim::InsMeasurement>& samples, int64_t time) {

@@ -10,17 +10,17 @@
 
 namespace tread::blind {
 
-/// The faults of all hiders of a case together.
+/// The combined faults of all hiders of a case.
 InstrumentFault faultOf(const std::vector<Hidden>& hidden);
 
-/// The pose that the INS would tell at a time [us], noise apart, out of a track of poses.
+/// The INS's pose at a time [us] without noise, from a track of poses.
 Pose2 sensedPose(const std::vector<Pose2>& T_map_body, const InstrumentFault& fault, double time);
 
 /// All measurements of a drive: 50 Hz, times since its beginning, the first at `phase` [us].
 std::vector<sim::InsMeasurement> measure(const Track& track, const InstrumentFault& fault,
                                          const NoiseLevel& noise, uint64_t seed, int64_t phase);
 
-/// Two numbers that say how large errors are.
+/// Median and rms of errors.
 struct ErrorSize {
   double median = 0.0;
   double rms = 0.0;
@@ -34,11 +34,11 @@ struct EndPoseError {
   int executions = 0;
 };
 
-/// What the truth without any noise still misses of the measured executions: nobody can do better.
+/// Error of the noise-free truth on the measured executions: a lower bound.
 EndPoseError oracleFloor(const HiddenDrive& drive, const InstrumentFault& fault,
                          const std::vector<sim::InsMeasurement>& measured);
 
-/// What the plain vehicle misses of the vehicle with the effect, noise apart: the gap itself.
+/// Error of the plain vehicle on the vehicle with the effect, without noise: the gap itself.
 EndPoseError hiddenGap(const HiddenDrive& with, const InstrumentFault& fault,
                        const HiddenDrive& without);
 

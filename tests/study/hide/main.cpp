@@ -31,7 +31,7 @@ struct Arguments {
   CasePlan plan;
 };
 
-/// Which of how many.
+/// Index and number of shards.
 struct Shard {
   size_t index = 1;
   size_t count = 1;
@@ -46,7 +46,7 @@ Shard shardOf(const std::string& text) {
   return shard;
 }
 
-/// What kind of case the options ask for.
+/// Kind of case for the options.
 CaseKind kindOf(const Arguments& arguments) {
   const CasePlan& plan = arguments.plan;
   if (!plan.defect.empty()) return CaseKind::kBad;
@@ -138,7 +138,7 @@ void addSemiOptions(CLI::App& semi, SemiArguments& arguments) {
   semi.add_option("--out", arguments.out, "folder that gets blind/ and truth/")->required();
 }
 
-/// What may be known of a suite's cases before they are opened: NAME NOISE, a line each.
+/// Lists what may be known of a suite's cases in advance: NAME NOISE, one per line.
 void listConditions(const std::string& suite, uint64_t seed) {
   for (const CasePlan& plan : suiteOf(suite, 1.0, seed))
     std::printf("%s %s\n", plan.name.c_str(), plan.noise.c_str());

@@ -19,10 +19,10 @@ constexpr int64_t kMinuteUs = 60'000'000;
 constexpr int64_t kStandUs = 25'000'000;
 constexpr int64_t kRestUs = 16'000'000;
 constexpr int64_t kBetweenRestsUs = 10 * kMinuteUs;
-/// Half difference of power that the drive is asked for at most.
+/// Largest half difference of power.
 constexpr double kTurn = 0.55;
 
-/// Rounded as a person would write it into a pattern file.
+/// Rounded as in a hand-written pattern file.
 MotorPower command(double mean, double half_difference) {
   const auto rounded = [](double power) {
     return std::round(std::clamp(power, -1.0, 1.0) * 1000.0) / 1000.0;
@@ -34,7 +34,7 @@ double eitherWay(Rng& rng) {
   return rng.uniform(0.0, 1.0) < 0.6 ? 1.0 : -1.0;
 }
 
-/// Any command: straight, in place, arcs, small differentials at speed, weak ones, stops.
+/// Any command: straight, on the spot, arcs, small differences at speed, weak ones, stops.
 MotorPower anyCommand(Rng& rng, double vigour) {
   const double kind = rng.uniform(0.0, 1.0);
   if (kind < 0.22) return command(eitherWay(rng) * vigour * rng.uniform(0.15, 1.0), 0.0);
@@ -68,7 +68,7 @@ MotorPower straightCommand(Rng& rng) {
 MotorPower forwardOnly(const MotorPower& power) {
   const double mean = 0.5 * (power.left + power.right);
   const double half = 0.5 * (power.right - power.left);
-  // What turned in place becomes a forward arc.
+  // Turns on the spot become forward arcs.
   const double forward = std::max(std::abs(mean), std::min(std::abs(half) + 0.05, 0.45));
   return command(forward, half);
 }

@@ -7,7 +7,7 @@
 
 namespace tread::blind {
 
-/// Uniform numbers that are the same with every standard library.
+/// Uniform random numbers, the same with every standard library.
 class Rng {
  public:
   explicit Rng(uint64_t seed) : generator_(seed) {}
@@ -25,7 +25,7 @@ class Rng {
   std::mt19937_64 generator_;
 };
 
-/// Independent random streams of one case: the effect changes neither programme nor noise.
+/// Independent random streams of a case: the effect influences neither programme nor noise.
 enum Stream : uint64_t {
   kProgrammeStream = 100,
   kTerrainStream,

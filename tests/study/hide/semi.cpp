@@ -30,7 +30,7 @@ Eigen::Quaterniond attitudeOf(const ins_t& ins) {
   return {ins.orientation[0], ins.orientation[1], ins.orientation[2], ins.orientation[3]};
 }
 
-/// All events in order of time again, INS messages numbered anew.
+/// Sorts all events by time again, and renumbers INS messages.
 void putInOrder(Events& events) {
   std::stable_sort(events.begin(), events.end(),
                    [](const LogEvent& a, const LogEvent& b) { return a.utime < b.utime; });
@@ -46,7 +46,7 @@ void delayAll(double seconds, Events& events) {
   putInOrder(events);
 }
 
-/// What is left of a message when its pose is late: the gyro.
+/// A message with only the gyro, because its pose is late.
 ins_t withoutPose(ins_t ins) {
   std::fill_n(ins.position, 3, kUnknown);
   std::fill_n(ins.orientation, 4, kUnknown);
@@ -60,8 +60,8 @@ bool hasPose(const ins_t& ins) {
   return (ins.ins_status & (ins_t::STATUS_NO_POSITION | ins_t::STATUS_NO_HEADING)) == 0;
 }
 
-/// Poses get later stamps; the gyro keeps its own. A pose takes the gyro of its new time along if
-/// there is one at that very time.
+/// Poses get later stamps, the gyro does not. A pose gets the gyro value of its new time if there
+/// is one at exactly that time.
 void delayPoses(double seconds, Events& events) {
   const auto late = static_cast<int64_t>(std::llround(seconds * 1e6));
   std::map<int64_t, ins_t> messages;
@@ -107,7 +107,7 @@ void moveAntenna(const Eigen::Vector3d& arm, Events& events) {
   });
 }
 
-/// Changes commands; `share` is how much of the drive's time is over, 0..1.
+/// Changes commands; `share` is the elapsed share of the drive, 0..1.
 void editCommands(Events& events,
                   const std::function<void(double share, double& left, double& right)>& change) {
   const auto motors = messagesOf(events, kMotor);
@@ -123,7 +123,7 @@ void editCommands(Events& events,
   });
 }
 
-/// More yaw or less from a moment on: the differential that would have been needed.
+/// More or less yaw from a time on: stores the difference of commands that would have been needed.
 void changeYawGain(double gain, double when, Events& events) {
   editCommands(events, [=](double share, double& left, double& right) {
     if (share < when) return;

@@ -9,9 +9,9 @@
 #include "common/log/event_log.hpp"
 #include "tests/study/hide/hider.hpp"
 
-// Effects hidden in a recorded log by an exact transformation: of the poses for what the
-// instruments do, of the commands for what the drive does. A command transformation writes down the
-// command that the vehicle with the effect would have needed for the motion that was recorded.
+// Effects hidden in a recorded log by an exact transformation: of the poses for instrument effects,
+// of the commands for drive effects. A command transformation replaces the command by the one that
+// the vehicle with the effect would have needed for the recorded motion.
 namespace tread::blind {
 
 /// One effect that can be hidden in a recording.
@@ -26,24 +26,24 @@ struct SemiEffect {
 
 const std::vector<SemiEffect>& semiEffects();
 
-/// What was hidden in a recording.
+/// Effects hidden in a recording.
 struct SemiTruth {
   std::string effect;
   std::vector<Quantity> parameters;
   double duration = 0.0;  ///< from the first command to the last [s]
 };
 
-/// Hides an effect in the events of a log, size 1 or 2; the sign and the time of a change come
-/// from the seed. Throws std::invalid_argument for an effect or size that it does not know.
+/// Hides an effect in the events of a log, size 1 or 2; the seed determines the sign and the time
+/// of a change. Throws std::invalid_argument for an unknown effect or size.
 SemiTruth hideInLog(const std::string& effect, int size, uint64_t seed,
                     std::vector<LogEvent>& events);
 
-/// The events of a log; throws std::runtime_error if there are none or it is damaged.
+/// The events of a log; throws std::runtime_error if it is empty or damaged.
 std::vector<LogEvent> readLog(const std::string& path);
 
 /// The truth as JSON with the keys of truth_text.hpp, and source_sha256, the hash of the
-/// recording's log. Noise and programme are called "recording"; what only a generator knows is
-/// null.
+/// recording's log. Noise and programme are called "recording"; values that only a generator has
+/// are null.
 std::string semiTruthText(const std::string& name, const SemiTruth& truth, int size, uint64_t seed,
                           const std::string& source_hash);
 

@@ -15,7 +15,7 @@ namespace tread::blind {
 namespace {
 
 const char* const kNoises[] = {"low", "mid", "high"};
-/// Of a suite's minutes.
+/// Share of a suite's minutes.
 constexpr double kLong = 1.0;
 constexpr double kShort = 1.0 / 3.0;
 
@@ -34,8 +34,8 @@ std::vector<std::string> unknownNames() {
   return names;
 }
 
-/// Two that can be told apart: not of one exact group, not two changes at one unknown time; and
-/// two that can be built together: not two that both rebuild the motor.
+/// Two that can be distinguished (not of one exact group, not two changes at an unknown time) and
+/// combined (not two that both rebuild the motor).
 bool fitTogether(const std::string& a, const std::string& b) {
   if (a == b) return false;
   const auto has = [&](const std::vector<std::string>& names) {
@@ -115,7 +115,7 @@ class SuiteMaker {
         add(CaseKind::kBad, {}, 0.0, "mid").defect = defect;
   }
 
-  /// Names in an order that tells nothing.
+  /// Shuffled, so that the order reveals nothing.
   std::vector<CasePlan> shuffled() {
     std::vector<size_t> numbers;
     for (size_t i = 0; i < plans_.size(); ++i) numbers.push_back(i + 1);
@@ -183,7 +183,7 @@ void addSmall(SuiteMaker& maker) {
   maker.addBad(1);
 }
 
-/// The mix of the full suite in a fifth of the cases.
+/// The mix of the full suite with a fifth of the cases.
 void addMedium(SuiteMaker& maker) {
   const std::vector<std::string> names = catalogueNames();
   for (size_t i = 0; i < names.size(); ++i) {

@@ -29,7 +29,7 @@ sim::VehicleParameters plainVehicle() {
   vehicle.contact_length = 0.4;
   vehicle.mass_height = 0.35;
   vehicle.outline = {0.65, 0.65, 0.34};
-  // Turning follows the tracks as promptly as driving does.
+  // Turning responds as fast as driving.
   vehicle.yaw_inertia = 28.3;
   vehicle.drive.free_speed = 1.2;
   vehicle.drive.stiffness = 8000.0;
@@ -46,10 +46,10 @@ sim::VehicleParameters plainVehicle() {
 sim::SurfaceParameters plainSurface() {
   sim::SurfaceParameters surface;
   surface.name = "test field";
-  // Cleats in tough soil: the tracks hardly ever slip through, at any speed.
+  // Cleats in tough soil: the tracks hardly slip at any speed.
   surface.friction = 2.0;
   surface.shear_displacement = 0.003;
-  // Turning is resisted by ground that is pushed aside, in proportion to the speed.
+  // Turning is resisted by displaced ground, in proportion to the speed.
   surface.lateral_displacement = 100.0;
   surface.scrub_resistance = 8.0;
   surface.resistance_constant = 0.0004;
@@ -59,11 +59,11 @@ sim::SurfaceParameters plainSurface() {
 
 sim::Terrain rollingTerrain(uint64_t seed) {
   constexpr int kWaves = 6;
-  constexpr double kSlope = 0.087;  // rms along any direction [1]
+  constexpr double kSlope = 0.087;  // rms in any direction [1]
   Rng rng(seed);
   sim::Terrain terrain;
   for (int i = 0; i < kWaves; ++i) {
-    // Directions are spread evenly, so that no heading is without slope.
+    // Directions are evenly spread, so that every heading has slopes.
     const double direction = kPi * (i + rng.uniform(0.0, 1.0)) / kWaves;
     const double wave_number = 2.0 * kPi / rng.uniform(3.0, 12.0);
     const double steepness = kSlope * 2.0 / std::sqrt(static_cast<double>(kWaves));

@@ -79,7 +79,7 @@ TEST_CASE("each effect changes the motion more the larger it is") {
 
 TEST_CASE("an effect of hardly any size changes hardly anything") {
   for (const EffectSpec& effect : effectList()) {
-    // Limits have no small end: they only move out of reach.
+    // Limits have no small end: they only become unreachable.
     if (std::string(effect.name).find("limit") != std::string::npos ||
         std::string(effect.name) == "speed_saturation")
       continue;

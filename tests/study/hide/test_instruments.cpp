@@ -12,7 +12,7 @@ using namespace tread::blind;
 
 namespace {
 
-/// A vehicle that stands for some minutes.
+/// A vehicle at rest for some minutes.
 Track standing(double minutes) {
   const auto count = static_cast<size_t>(minutes * 60e6 / Track::kStepUs) + 1;
   Track track;
@@ -53,7 +53,7 @@ Said saidStanding(const NoiseLevel& noise) {
 constexpr double kV = 0.8;      // [m/s]
 constexpr double kOmega = 0.6;  // [rad/s]
 
-/// Velocity in the body frame as the INS tells it of a steady circle, over a short time.
+/// Body velocity according to the INS on a steady circle, over a short time.
 Twist2 toldOnCircle(const InstrumentFault& fault) {
   std::vector<Pose2> circle;
   for (int i = 0; i < 1000; ++i) {
@@ -66,7 +66,7 @@ Twist2 toldOnCircle(const InstrumentFault& fault) {
   return {moved.x / kShort, moved.y / kShort, moved.yaw / kShort};
 }
 
-/// The same with an effect hidden, against the truth; and how large the truth says it is.
+/// The same with a hidden effect, relative to the truth, and the size in the truth file.
 struct Told {
   Twist2 more;
   double size = 0.0;
@@ -89,7 +89,7 @@ TEST_CASE("noise is that of its level, as one pose has it and as a fit of increm
     CHECK(deviationOfMeans(said.rate, 13) == Approx(noise.gyro_bin).epsilon(0.05));
     CHECK(deviationOfMeans(said.x, 1) == Approx(noise.fix).epsilon(0.05));
     CHECK(deviationOfMeans(said.yaw, 1) == Approx(noise.heading).epsilon(0.05));
-    // Between means over 0.1 s that lie 0.4 s apart.
+    // Differences of means over 0.1 s that are 0.4 s apart.
     std::vector<double> increments;
     for (size_t i = 0; i + 26 <= said.x.size(); i += 20) {
       double from = 0.0, to = 0.0;

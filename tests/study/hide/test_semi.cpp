@@ -16,7 +16,7 @@ using namespace tread::blind;
 
 namespace {
 
-/// A log in the place of a recording, before and after.
+/// A synthetic log instead of a recording, before and after.
 struct Pair {
   std::vector<LogEvent> before = makeCase(bench::shortPlan({})).events;
   std::vector<LogEvent> after = before;

@@ -16,7 +16,7 @@ using tread::blind::bench::shortPlan;
 
 namespace {
 
-/// Cases of a suite by kind, and of the nulls and singles by length and noise.
+/// Cases of a suite by kind; nulls and singles by length and noise.
 struct Counts {
   explicit Counts(const std::vector<CasePlan>& plans) {
     for (const CasePlan& plan : plans) {

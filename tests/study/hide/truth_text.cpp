@@ -51,7 +51,7 @@ Json errorOf(const EndPoseError& error) {
   return json;
 }
 
-/// Headlines that are right answers.
+/// Verdicts that are correct answers.
 std::vector<std::string> rightVerdicts(const CasePlan& plan, const CaseTruth& truth) {
   switch (plan.kind) {
     case CaseKind::kNull:

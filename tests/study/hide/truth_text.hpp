@@ -11,30 +11,30 @@
 
 namespace tread::blind {
 
-/// What was hidden, as found after the drive.
+/// A hidden effect, as measured after the drive.
 struct HiddenTruth {
   const EffectSpec* spec = nullptr;
   std::vector<Quantity> levers;
   std::vector<Quantity> equivalent;
-  std::vector<std::string> group;  ///< each the same as this one, in this drive
+  std::vector<std::string> group;  ///< each equivalent to this one in this drive
 };
 
-/// How far a log goes: what is never asked cannot be found.
+/// Extent of a log's driving: effects outside of it cannot be found.
 struct Excitation {
   double speed = 0.0;              ///< largest [m/s]
   double yaw_rate = 0.0;           ///< largest [rad/s]
   double side_acceleration = 0.0;  ///< largest |v omega| [m/s^2]
-  int reversals = 0;               ///< of either track, from pattern to pattern
+  int reversals = 0;               ///< of either track, between patterns
 };
 
-/// All that is written down about a case.
+/// The truth about a case.
 struct CaseTruth {
   std::vector<HiddenTruth> effects;
   double duration = 0.0;  ///< [s]
-  EndPoseError floor;     ///< of the truth itself
-  EndPoseError gap;       ///< of the plain vehicle, noise apart
+  EndPoseError floor;     ///< error of the truth itself
+  EndPoseError gap;       ///< of the plain vehicle, without noise
   Excitation excitation;
-  std::string defect_at;  ///< where a bad log is bad, in words
+  std::string defect_at;  ///< place of a bad log's defect, in words
 };
 
 /// The truth as JSON, two spaces, keys in a fixed order, newline at the end:

@@ -12,9 +12,9 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kFirstLag = 0.2;    // [s] at which fits begin
+constexpr double kFirstLag = 0.2;    // [s] initial value of fits
 constexpr double kFirstDelay = 0.1;  // [s]
-constexpr double kBites = 1.0;       // [nats] that a limit of speed must gain to be one
+constexpr double kBites = 1.0;       // [nats] least gain of a speed limit
 constexpr double kSlipPrior = 1.0;   // [m/s or rad/s], wide
 constexpr double kRidges[] = {3.0, 1.0, 0.3, 0.1, 0.03, 0.01, 0.003};  // [m/s or rad/s]
 
@@ -25,14 +25,14 @@ std::vector<FreeParameter> freeParameters(const ModelDocument& model,
   return free;
 }
 
-/// Fit and noise in turn: the noise of a worse fit is too large.
+/// Alternates fit and noise: the noise of a worse fit is too large.
 void settle(const Fitter& fitter, FitState& state) {
   fitter.fitRoughly(state);
   fitter.renewNoise(state);
   fitter.fit(state);
 }
 
-/// The fits of one set of rows, each beginning where the one before ended.
+/// The fits for one set of rows, each starting from the previous one.
 class Climb {
  public:
   explicit Climb(const Fitter& fitter) : fitter_(fitter) {}
@@ -52,7 +52,7 @@ class Climb {
     return state;
   }
 
-  /// A limit has no slope where it does not bite: several are tried.
+  /// An inactive limit has no gradient, so several start values are tried.
   FitState limit(const FitState& state) const {
     const double most = excitationOf(fitter_.data(), state.model).track_speed;
     FitState best = state;
@@ -95,7 +95,7 @@ RungModel corrected(const FitState& state, TwistRegression correction) {
   return rung;
 }
 
-/// Coefficients of a regression in SI units, beside what was fitted before.
+/// Coefficients of a regression in SI units, in addition to earlier fits.
 void addCoefficients(RungModel& rung) {
   const char* const kParts[] = {"forward", "sideways", "turning"};
   for (size_t i = 0; i < rung.correction.terms.size(); ++i) {
@@ -111,7 +111,7 @@ RungModel rivalRung(const rivals::Answer& answer) {
   rung.model = answer.model;
   for (const std::string& path : answer.estimated) {
     rung.numbers.emplace_back(path, *findParameter(answer.model, path));
-    // Of a limit that is off the data say nothing of how hard it is.
+    // The data do not determine the hardness of an inactive limit.
     const EffectParameter* known = findEffectParameter(path);
     const bool is_size = known == nullptr || known->role == ParameterRole::kStrength;
     if (is_size && runsToBound(answer.model, freeParameter(answer.model, path)))
@@ -194,7 +194,7 @@ FoundTerms discover(const Fitter& fitter, const ModelDocument& begin, uint64_t s
   SearchSettings settings;
   settings.seed = seed;
   settings.calibrate = true;
-  SearchMemory memory;  // of its own: nothing of other driving
+  SearchMemory memory;  // separate: without knowledge of other driving
   return search(fitter, begin, settings, memory, say);
 }
 

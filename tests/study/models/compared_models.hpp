@@ -14,7 +14,7 @@
 
 namespace tread::gap {
 
-/// Models that people use, each richer than the one before.
+/// Models in use, each with more freedom than the previous one.
 /** kIdeal          the given model, nothing fitted.
  *  kGains          slip_ratio, track_width: command gain and track fitted; and ins_latency, of the
  *                  pose alone, as in all rungs below.
@@ -47,34 +47,33 @@ enum class Rung {
 inline constexpr size_t kRungs = 8;
 inline constexpr auto kFound = static_cast<size_t>(Rung::kDiscovered);
 
-/// "ideal", "gain + track", ... as in tables.
+/// "ideal", "gain + track", ... for tables.
 const char* rungName(Rung rung);
-/// "ideal", "gain_track", ... as in files.
+/// "ideal", "gain_track", ... for files.
 const char* rungKey(Rung rung);
 
 /// A model of one rung.
 struct RungModel {
   ModelDocument model;
-  TwistRegression correction;        ///< without terms where the rung has none
-  std::vector<std::string> effects;  ///< that were named; of the last three rungs
+  TwistRegression correction;        ///< empty if the rung has none
+  std::vector<std::string> effects;  ///< named effects, for the last three rungs
   std::vector<std::string> at_end;   ///< paths of sizes at the ends of their plausible ranges
-  /// What was fitted: paths and values.
+  /// Fitted paths and values.
   std::vector<std::pair<std::string, double>> numbers;
 };
 
-/// Models by rung; nothing where a rung cannot be had.
+/// Models by rung; nullopt if a rung is unavailable.
 using RungModels = std::array<std::optional<RungModel>, kRungs>;
 
-/// All rungs but what is discovered, from the fitter's rows.
-/** Without kIdeal where the ideal model is not known and only a guess to begin at. */
+/// All rungs but the discovered one, from the fitter's rows.
+/** Without kIdeal if the ideal model is unknown and only a start value. */
 RungModels fitRungs(const Fitter& fitter, const ModelDocument& ideal, bool ideal_known,
                     const Progress& say);
 
-/// Lag, delay and gains where a fit to the fitter's rows puts them, as numbers of the nominal
-/// model.
+/// Lag, delay and gains fitted to the fitter's rows, as numbers of the nominal model.
 ModelDocument calibratedNumbers(const Fitter& fitter, const ModelDocument& ideal);
 
-/// What find --calibrate finds on the fitter's rows, beginning at a model.
+/// Result of find --calibrate on the fitter's rows, starting from a model.
 FoundTerms discover(const Fitter& fitter, const ModelDocument& begin, uint64_t seed,
                     const Progress& say);
 /// As a rung, with the state of the search or one refitted elsewhere.

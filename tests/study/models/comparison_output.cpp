@@ -17,10 +17,10 @@ namespace {
 
 constexpr Rung kRivals[] = {Rung::kSlipRegression, Rung::kBlackBox, Rung::kAllParameters,
                             Rung::kSparse};
-/// Those that say what they found.
+/// Rungs that name effects.
 constexpr Rung kNaming[] = {Rung::kAllParameters, Rung::kSparse, Rung::kDiscovered};
 
-/// What a table tells of end errors and their differences.
+/// A quantity in a table of end errors and their differences.
 struct Quantity {
   const char* title;
   double unit;  ///< in SI
@@ -64,7 +64,7 @@ Table errorTable(const std::vector<ComparisonRow>& rows, const Quantity& quantit
   for (size_t r = 0; r < kRungs; ++r) table.header.push_back(rungName(static_cast<Rung>(r)));
   table.header.emplace_back("encoders + gyro");
   for (const ComparisonRow& row : rows) {
-    if (executionsOf(row) == 0) continue;  // a remark says why
+    if (executionsOf(row) == 0) continue;  // a remark gives the reason
     std::vector<std::string> cells{nameOf(row), std::to_string(executionsOf(row))};
     for (const auto& errors : row.errors) cells.push_back(cell(errors, quantity));
     cells.push_back(cell(row.floor, quantity));
@@ -73,7 +73,7 @@ Table errorTable(const std::vector<ComparisonRow>& rows, const Quantity& quantit
   return table;
 }
 
-/// By how much discovered errs more than each rival.
+/// Difference of errors between "discovered" and each rival.
 Table differenceTable(const std::vector<ComparisonRow>& rows, const Quantity& quantity) {
   Table table{{"log"}, {}};
   for (Rung rung : kRivals) table.header.push_back(std::string("less ") + rungName(rung));
@@ -104,7 +104,7 @@ Table nameTable(const std::vector<ComparisonRow>& rows) {
   return table;
 }
 
-/// Sizes that ran to the ends of what is plausible.
+/// Sizes at the ends of their plausible ranges.
 Table runawayTable(const std::vector<ComparisonRow>& rows) {
   Table table{{"log", "learned from", "model", "ran to the ends of their plausible ranges"}, {}, 4};
   for (const ComparisonRow& row : rows)
@@ -118,7 +118,7 @@ Table runawayTable(const std::vector<ComparisonRow>& rows) {
   return table;
 }
 
-/// Effects that all folds name, and those that only some do.
+/// Effects named in all folds, and those named in some.
 std::string agreement(const std::vector<ComparisonRow>& rows) {
   std::map<std::string, size_t> counts;
   size_t folds = 0;
@@ -235,7 +235,7 @@ Json rowJson(const ComparisonRow& row, const std::string& sha256) {
           {"discovered_less", less}, {"folds", folds}};
 }
 
-/// Columns of spaces; the last one is not filled up.
+/// Columns padded with spaces, except for the last.
 std::string plain(const Table& table) {
   std::vector<std::vector<std::string>> lines{table.header};
   lines.insert(lines.end(), table.rows.begin(), table.rows.end());

@@ -14,20 +14,20 @@ namespace tread::gap {
 
 using report::Page;
 
-/// A comparison and the files that it was made from.
+/// A comparison and its input files.
 struct ComparisonReport {
   ModelComparison comparison;
-  std::string model;                ///< file name of the ideal model; empty = of each recording
+  std::string model;                ///< file name of the ideal model; empty = one per recording
   std::vector<std::string> sha256;  ///< of the logs
 };
 
-/// Tables of errors and of the effects that were named.
+/// Tables of errors and of the named effects.
 Page comparisonPage(const ComparisonReport& report);
 
-/// The same tables with columns of spaces, for a terminal.
+/// The same tables padded with spaces, for a terminal.
 std::string comparisonText(const ComparisonReport& report);
 
-/// What comparison.json holds; numbers that are not finite are null.
+/// Content of comparison.json; numbers that are not finite become null.
 /** Keys: tool, seed, model, nested and pooled [{log, sha256, blocks, driven_s, remark,
  * structure_nested, rungs {name: {executions, yaw_rad, position_m: {median, rms}}}, floor,
  * discovered_less {rung: {yaw_rad, position_m: {mean, error}}}, folds [{trained_on,

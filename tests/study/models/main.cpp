@@ -39,7 +39,7 @@ constexpr const char* kFooter =
     "comparison.md. Exit status 0, or 2 for bad input. The same files and the same seed give\n"
     "the same bytes, with any number of threads.";
 
-/// What is on in a model could not be told from what is found.
+/// Active terms of a model could not be distinguished from discovered ones.
 ModelDocument readIdeal(const std::string& path) {
   ModelDocument model = readModelDocument(path);
   for (const Effect& effect : effectCatalogue())
@@ -49,7 +49,7 @@ ModelDocument readIdeal(const std::string& path) {
   return model;
 }
 
-/// A differential drive that does what its track speeds say.
+/// A differential drive that follows its track speeds exactly.
 ComparisonLog recordedIdeal(const std::string& path) {
   ComparisonLog log;
   log.drive = readDrive(path);
@@ -85,7 +85,7 @@ std::vector<ComparisonLog> readLogs(const Options& options) {
   return logs;
 }
 
-/// A table without a row would look like a result. Pooled, short logs may be enough together.
+/// An empty table would look like a result. Pooled, several short logs may be enough.
 void requireRows(const ComparisonTask& task) {
   for (const ComparisonLog& log : task.logs)
     if (task.pool || unusable(log.drive).empty()) return;
@@ -100,7 +100,7 @@ void requireRows(const ModelComparison& comparison) {
   throw std::runtime_error(comparison.nested.front().log + ": " + comparison.nested.front().remark);
 }
 
-/// Lines about how much of a log was lost.
+/// Reports the lost share of logs.
 void tellLosses(const ComparisonTask& task) {
   for (const ComparisonLog& log : task.logs)
     if (!log.drive.lost.empty()) std::cout << log.drive.lost << std::endl;

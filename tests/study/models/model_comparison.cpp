@@ -29,7 +29,7 @@ MeanDifference meanOf(const std::vector<double>& values, const std::vector<Execu
   return difference;
 }
 
-constexpr int kLeastForNestedEffects = 2 * kLeastBlocks;  // as find
+constexpr int kLeastForNestedEffects = 2 * kLeastBlocks;  // as in find
 
 using RungErrors = std::array<std::optional<std::vector<ExecutionError>>, kRungs>;
 
@@ -62,7 +62,7 @@ void summarise(const RungErrors& errors, ComparisonRow& row) {
   }
 }
 
-/// Why nothing can be concluded from a log; empty if it is sound.
+/// Why a log allows no conclusion; empty if it is sound.
 std::string fatalNote(const Drive& drive) {
   for (const LogNote& note : drive.notes)
     if (note.fatal) return note.what;
@@ -79,7 +79,7 @@ ComparisonRow rowOf(const Drive& drive, const Observations& data) {
   return row;
 }
 
-/// What the search of a log is to the rung of one of its halves.
+/// The search on a whole log, for the rung of one of its halves.
 class Discoverer {
  public:
   Discoverer(const Fitter& fitter, const ModelDocument& ideal, uint64_t seed, bool nested,

@@ -16,7 +16,7 @@ using Hidden = std::vector<std::pair<std::string, double>>;
 
 const Progress kSilent = [](const std::string&) {};
 
-/// The synthetic vehicle as one that only reads its data sheet takes it.
+/// The synthetic vehicle according to its data sheet.
 ModelDocument idealVehicle() {
   ModelDocument model = syntheticVehicle();
   model.vehicle.lag = 0.0;
@@ -48,7 +48,7 @@ const EndErrors& errorsOf(const ComparisonRow& row, Rung rung) {
   return *errors;
 }
 
-/// What the true model errs: noise alone.
+/// Error of the true model: only noise.
 EndErrors leastOf(const ModelDocument& truth, double seconds, uint64_t seed) {
   const std::vector<Drive> drives{syntheticDrive(truth, seconds, seed)};
   const Observations data(drives, {});
@@ -123,7 +123,7 @@ TEST_CASE("gain and track are all that a vehicle without lag needs") {
     CHECK(errorsOf(row, rung).yaw.rms < 1.15 * least.yaw.rms);
     CHECK(errorsOf(row, rung).position.rms < 1.15 * least.position.rms);
   }
-  // A hundred terms for two minutes of driving cost something, and no more.
+  // A hundred terms for two minutes of driving cost accuracy, but not much.
   CHECK(errorsOf(row, Rung::kBlackBox).yaw.rms < 1.3 * least.yaw.rms);
   CHECK(errorsOf(row, Rung::kBlackBox).position.rms < 1.3 * least.position.rms);
 }
@@ -153,7 +153,7 @@ TEST_CASE("a drift is reached by slip regression and discovery, which is never b
         errorsOf(row, Rung::kPowertrain).position.rms);
   CHECK(errorsOf(row, Rung::kDiscovered).position.rms < 1.1 * least.position.rms);
   CHECK(errorsOf(row, Rung::kDiscovered).yaw.rms < 1.1 * least.yaw.rms);
-  // Few terms cost nothing; forty, most of which are not there, cost a little on other driving.
+  // Few terms cost nothing; forty, most of them superfluous, cost a little on other driving.
   CHECK(errorsOf(row, Rung::kSparse).position.rms < 1.1 * least.position.rms);
   CHECK(errorsOf(row, Rung::kSparse).yaw.rms < 1.1 * least.yaw.rms);
   CHECK(errorsOf(row, Rung::kAllParameters).position.rms < 1.5 * least.position.rms);

@@ -107,7 +107,7 @@ TEST_CASE(
   const auto& nameless = json["nested"][1]["rungs"];
   CHECK(named.contains("ideal"));
   CHECK_FALSE(nameless.contains("ideal"));
-  // The effective track is fitted, so that it does not matter where it began.
+  // The effective track is fitted, so its initial value does not matter.
   CHECK(nameless["gain_track"]["yaw_rad"]["rms"].get<double>() ==
         Approx(named["gain_track"]["yaw_rad"]["rms"].get<double>()).epsilon(0.05));
 }

@@ -10,12 +10,12 @@ namespace {
 
 using P = DrivenPiece;
 
-/// What exceeds a threshold, with its sign.
+/// Signed excess over a threshold.
 double beyond(double value, double threshold) {
   return std::copysign(std::max(0.0, std::abs(value) - threshold), value);
 }
 
-/// 1 at a change of the command, fading.
+/// 1 at a change of the command, decaying.
 double fresh(const P& piece, double time) {
   return std::exp(-std::max(0.0, piece.since) / time);
 }

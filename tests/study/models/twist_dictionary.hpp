@@ -8,14 +8,14 @@
 
 namespace tread::gap {
 
-/// The slip of a skid-steered vehicle as the literature regresses it (Baril et al., DRIVE,
-/// arXiv 2309.10718, "slip-BLR"): forward ~ v, sideways ~ v omega, turning ~ v omega, v, omega.
+/// Slip of a skid-steered vehicle as in the literature (Baril et al., DRIVE, arXiv 2309.10718,
+/// "slip-BLR"): forward ~ v, sideways ~ v omega, turning ~ v omega, v, omega.
 std::vector<TwistTerm> slipTerms();
 
-/// What anybody would throw in who does not ask for causes: each part of the twist on the same
-/// polynomials, thresholds and transients of the filtered twist, the command and the one before.
-/** Made for pieces in twice their root mean square, where thresholds at 0.5 and 1 lie within the
- * driving. */
+/// A black box without causes: each part of the twist on the same polynomials, thresholds and
+/// transients of the filtered twist, the command and the previous command.
+/** For pieces in units of twice their root mean square, so that thresholds at 0.5 and 1 are within
+ * the driving. */
 std::vector<TwistTerm> blackBoxTerms();
 
 }  // namespace tread::gap

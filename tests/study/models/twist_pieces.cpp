@@ -7,9 +7,9 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kLongAgo = 30.0;  // [s] since a change that was before the segment
+constexpr double kLongAgo = 30.0;  // [s] since a change before the segment
 
-/// Which command acts as time goes on, and which one did before.
+/// The acting command over time, and the previous one.
 class ActingCommand {
  public:
   ActingCommand(const Segment& segment, const VehicleModel& vehicle)

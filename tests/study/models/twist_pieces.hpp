@@ -17,7 +17,7 @@ struct SimulatedPiece {
 };
 
 /// The pieces of all segments of a model's simulation, in SI units.
-/** Integrating their twists again gives the simulation back, up to rounding. */
+/** Integrating their twists reproduces the simulation up to rounding. */
 class TwistPieces {
  public:
   TwistPieces(const Observations& data, const VehicleModel& vehicle);
@@ -25,7 +25,7 @@ class TwistPieces {
   const std::vector<SimulatedPiece>& pieces() const { return pieces_; }
   /// Poses with corrections of the twist (pieces x 3: forward, sideways, turning).
   Motions motions(const Eigen::MatrixX3d& correction) const;
-  /// Twice the root mean squares over pieces whose block counts; 1 where nothing moves.
+  /// Twice the root mean squares over pieces of counted blocks; 1 without motion.
   PieceScale scaleOf(const std::vector<char>& block_counts) const;
   /// Values of terms (pieces x terms).
   Eigen::MatrixXd valuesOf(const std::vector<TwistTerm>& terms, const PieceScale& scale) const;

@@ -14,10 +14,10 @@ namespace tread::gap {
 namespace {
 
 constexpr int kFolds = 5;
-constexpr int kReweighted = 6;    // iterated least squares steps within a round
+constexpr int kReweighted = 6;    // iterated least-squares steps per round
 constexpr int kMostRounds = 4;    // with new Jacobians
-constexpr int kMostHalvings = 5;  // of a step that makes it worse
-constexpr double kEnough = 0.5;   // [nats] a round that gains less is the last
+constexpr int kMostHalvings = 5;  // of a step that increases the loss
+constexpr double kEnough = 0.5;   // [nats] a round with less gain is the last
 constexpr double kStep = 0.05;    // [m/s or rad/s] of differences, root mean square
 
 /// Corrections of all pieces (pieces x 3).
@@ -53,7 +53,7 @@ class RegressionFit {
     renewNoise();
     for (int round = 0; round < kMostRounds; ++round) {
       renewJacobian();
-      // The strength of the prior is chosen once, or rounds would compare different aims.
+      // The prior's strength is chosen once, so that rounds have the same objective.
       if (round == 0) result_.deviation = bestOf(deviations);
       const double before = lossOf(predicted_, coefficients_);
       if (before - step() < kEnough) break;
@@ -64,7 +64,7 @@ class RegressionFit {
   }
 
  private:
-  /// Columns to a root mean square of 1 over training pieces; what never varies from 0 stays.
+  /// Scales columns to a root mean square of 1 over training pieces; columns of zeros stay.
   void normalise() {
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(values_.cols());
     double count = 0.0;
@@ -113,7 +113,7 @@ class RegressionFit {
     return weights;
   }
 
-  /// Residuals of a linear model without any correction: what the coefficients must explain.
+  /// Residuals of a linear model without correction, to be explained by the coefficients.
   Eigen::VectorXd aim() const { return data_.residuals(predicted_) + jacobian_ * coefficients_; }
 
   Eigen::VectorXd solveLinearly(double deviation) const {
@@ -129,7 +129,7 @@ class RegressionFit {
     return solved;
   }
 
-  /// Moves the coefficients and returns the loss there.
+  /// Moves the coefficients; returns the new loss.
   double step() {
     const Eigen::VectorXd old = coefficients_;
     const double before = lossOf(predicted_, old);
@@ -145,7 +145,7 @@ class RegressionFit {
     return before;
   }
 
-  /// Fold of each row, whole blocks among those that count; -1 elsewhere.
+  /// Fold of each row, by whole counted blocks; -1 for others.
   std::vector<int> folds() const {
     std::vector<int> of_block(counts_.size(), -1);
     int next = 0;
@@ -158,11 +158,11 @@ class RegressionFit {
     return folds;
   }
 
-  /// The deviation with the least loss on blocks left out, to first order.
+  /// The deviation with the least loss on left-out blocks, to first order.
   double bestOf(const std::vector<double>& deviations) const {
     if (deviations.size() == 1) return deviations.front();
     const Eigen::VectorXd target = aim();
-    // Weights of a middling fit, the same for all: jumps of the INS shall not choose.
+    // Common weights from a medium fit, so that jumps of the INS do not decide.
     const double middle = deviations[deviations.size() / 2];
     const Eigen::VectorXd weights = weightsAt(target - jacobian_ * solveLinearly(middle));
     const std::vector<int> fold_of_row = folds();
@@ -198,8 +198,8 @@ class RegressionFit {
   const TwistPieces pieces_;
   TwistRegression result_;
   Eigen::MatrixXd values_;        ///< pieces x terms, columns normalised
-  Eigen::VectorXd unit_;          ///< terms x 1: what they were divided by
-  Eigen::VectorXd coefficients_;  ///< terms x 1, of normalised columns
+  Eigen::VectorXd unit_;          ///< terms x 1: scale of each column
+  Eigen::VectorXd coefficients_;  ///< terms x 1, for normalised columns
   Eigen::VectorXd predicted_;     ///< rows x 1
   Eigen::VectorXd scales_;        ///< rows x 1
   Eigen::MatrixXd jacobian_;      ///< rows x terms

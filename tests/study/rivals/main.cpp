@@ -26,7 +26,7 @@ Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-/// As the verdict of tread-gap, so that the same judge reads it.
+/// In tread-gap's format, so that the same program scores it.
 Json verdictOf(const rivals::Answer& answer) {
   Json effects = Json::array();
   std::map<std::string, size_t> places;

@@ -16,9 +16,9 @@ namespace {
 using namespace gap;
 
 constexpr int kFolds = 5;
-constexpr double kRidge = 0.01;  // of a column's own size: the library is collinear
+constexpr double kRidge = 0.01;  // relative to a column's size: the library is collinear
 
-/// Whether an effect is the twin of one before it in a group that no drive tells apart.
+/// Whether an effect is indistinguishable from an earlier one in its group.
 bool isTwin(const std::string& effect) {
   const std::vector<const ConfoundedGroup*> groups = confoundedGroupsOf(effect);
   return std::any_of(groups.begin(), groups.end(), [&](const ConfoundedGroup* group) {
@@ -31,8 +31,8 @@ bool isTwin(const std::string& effect) {
   });
 }
 
-/// Of each effect the candidate that promises most; moments of change are not for these methods, of
-/// twins each takes the first, and a scale of positions is slip and track width together.
+/// The most promising candidate of each effect. These methods have no change points, use the first
+/// of indistinguishable effects, and express a scale of positions as slip and track width.
 std::vector<Candidate> oneOfEach(const Fitter& fitter, const FitState& state) {
   std::vector<Candidate> all = candidatesFor(state, excitationOf(fitter.data(), state.model));
   all.erase(std::remove_if(all.begin(), all.end(),
@@ -61,20 +61,20 @@ FitState begin(const Fitter& fitter, const ModelDocument& model, bool calibrate)
   return state;
 }
 
-/// Blocks of measured driving that count.
+/// Counted blocks of measured driving.
 int measuredBlocks(const Fitter& fitter) {
   const std::vector<char> counts = fitter.blocksThatCount();
   return static_cast<int>(std::count(counts.begin(), counts.end(), char{1}));
 }
 
-/// Fits all that is free, with the noise of a good fit in the end.
+/// Fits everything that is free, finally with the noise of a good fit.
 void settle(const Fitter& fitter, FitState& state) {
   fitter.fit(state);
   fitter.renewNoise(state);
   fitter.fit(state);
 }
 
-/// What a state has estimated; it names nothing yet.
+/// Estimates of a state, without names.
 Answer answerOf(const FitState& state) {
   Answer answer{state.model, {}, {}};
   for (const FreeParameter& parameter : state.free) answer.estimated.push_back(parameter.path);
@@ -92,7 +92,7 @@ class Regression {
       : columns_(columns.array().colwise() / state.scales.array()),
         rest_(fitter.data().residuals(state.predicted).cwiseQuotient(state.scales)) {
     for (const Observation& row : fitter.data().all()) blocks_.push_back(row.block);
-    // A jump of the INS must not decide, and rows that do not count have no say.
+    // A jump of the INS must not decide, and rows that do not count are excluded.
     for (Eigen::Index i = 0; i < rest_.size(); ++i) {
       const bool counts = fitter.mask()[static_cast<size_t>(i)] != 0;
       const double weight = counts ? std::sqrt(weightOf(rest_[i], 1.0)) : 0.0;
@@ -101,7 +101,7 @@ class Regression {
     }
   }
 
-  /// Coefficients of the chosen columns, 0 of the others; the fold is left out (-1 = none is).
+  /// Coefficients of the chosen columns, 0 for the others; a fold is left out (-1 = none).
   Eigen::VectorXd solve(const std::vector<char>& chosen, int fold) const {
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(columns_.cols(), columns_.cols());
     Eigen::VectorXd pull = Eigen::VectorXd::Zero(columns_.cols());
@@ -123,13 +123,13 @@ class Regression {
     return matrix.ldlt().solve(pull);
   }
 
-  /// What each term is of the residual: share of its size.
+  /// Share of the residual that each term explains.
   Eigen::VectorXd shares(const Eigen::VectorXd& coefficients) const {
     return columns_.colwise().norm().transpose().cwiseProduct(coefficients).cwiseAbs() /
            std::max(rest_.norm(), 1e-12);
   }
 
-  /// Drops what explains less than the threshold, and solves again, until nothing goes.
+  /// Repeatedly drops terms below the threshold and solves again.
   std::vector<char> thresholded(double threshold, int fold, size_t kept) const {
     std::vector<char> chosen(static_cast<size_t>(columns_.cols()), 1);
     while (true) {
@@ -163,7 +163,7 @@ class Regression {
   std::vector<int> blocks_;
 };
 
-/// The threshold with the least error on blocks left out.
+/// The threshold with the least error on left-out blocks.
 double bestThreshold(const Regression& regression, size_t kept) {
   double best = 0.0;
   double least = std::numeric_limits<double>::infinity();
@@ -209,7 +209,7 @@ Answer allParameters(const Fitter& fitter, const ModelDocument& model, bool cali
 Answer sparseRegression(const Fitter& fitter, const ModelDocument& model, bool calibrate) {
   const FitState state = begin(fitter, model, calibrate);
   const std::vector<Candidate> candidates = oneOfEach(fitter, state);
-  // What the model has stays free, and is never dropped.
+  // Terms of the model stay free and are never dropped.
   Eigen::MatrixXd columns(state.predicted.size(),
                           state.jacobian.cols() + static_cast<Eigen::Index>(candidates.size()));
   columns << state.jacobian, directionsOf(fitter, state, candidates);
@@ -218,7 +218,8 @@ Answer sparseRegression(const Fitter& fitter, const ModelDocument& model, bool c
   const std::vector<char> chosen =
       regression.thresholded(bestThreshold(regression, kept), -1, kept);
   const Eigen::VectorXd coefficients = regression.solve(chosen, -1);
-  // A direction holds near where it was taken: what is left gets its sizes in simulation.
+  // A direction holds near its linearization point: sizes of the remaining terms are fitted in
+  // simulation.
   FitState fitted = state;
   for (size_t i = 0; i < candidates.size(); ++i)
     if (chosen[kept + i] != 0)

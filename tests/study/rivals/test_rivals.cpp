@@ -11,7 +11,7 @@ using samples::Rig;
 
 namespace {
 
-/// What a method says of one parameter; NaN where it does not name it.
+/// A method's estimate of one parameter; NaN if it does not name it.
 double valueIn(const rivals::Answer& answer, const std::string& path) {
   for (const ParameterEstimate& one : answer.parameters)
     if (one.parameter == path) return one.value;

@@ -22,8 +22,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kFindLimit = 900;  // [s] a hundred times what a log takes
-constexpr int kBadInput = 2;     // what tread-gap ends with after its one line
+constexpr int kFindLimit = 900;  // [s] a hundred times the usual
+constexpr int kBadInput = 2;     // exit status of tread-gap after its one line
 
 std::string foundFile(const HiddenCase& one, const std::string& name) {
   return "found/" + one.name + "/" + name;
@@ -35,8 +35,8 @@ Json sigmaOf(const ParameterCovariance& covariance, const std::string& path) {
   return nullptr;
 }
 
-/// The nominal model's own value of each parameter that a verdict speaks of, with its standard
-/// deviation where the model file knows it (else null): {path: {value, sigma}}.
+/// The nominal value of each parameter in a verdict, with its standard deviation if the model file
+/// has one (else null): {path: {value, sigma}}.
 Json nominalNumbers(const std::string& model, const Json& verdict) {
   Json numbers = Json::object();
   if (verdict.is_null()) return numbers;
@@ -69,7 +69,7 @@ class Runner {
  private:
   std::string program(const char* name) const { return study_.programs + "/" + name; }
 
-  /// What an interrupted run has left.
+  /// Files of an interrupted run.
   void clear() const {
     fs::remove_all(folder_);
     fs::create_directories(folder_ / "found");
@@ -166,7 +166,7 @@ class Runner {
     fs::rename(part, folder_ / kBatchRecords);
   }
 
-  /// Logs are made again by the same command; verdicts and models stay.
+  /// The command can generate the logs again; verdicts and models are kept.
   void tidy() const {
     for (const HiddenCase& one : batch_.cases) {
       fs::remove(folder_ / "blind" / (one.name + ".lcm"));

@@ -13,12 +13,12 @@ namespace tread::blindtest {
 /// Cases that are hidden, run and opened together.
 struct Batch {
   std::string folder;
-  size_t first = 0;   ///< of the suite's cases
-  size_t stride = 1;  ///< every so many of them
+  size_t first = 0;   ///< index in the suite
+  size_t stride = 1;  ///< every n-th case
   std::vector<HiddenCase> cases;
 };
 
-/// Records of a batch; it is there when the batch is done.
+/// Records of a batch; it exists when the batch is done.
 inline constexpr const char* kBatchRecords = "cases.jsonl";
 
 /// Hides the batch, runs tread-gap on each log, writes the records and times.csv.

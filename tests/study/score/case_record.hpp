@@ -14,7 +14,7 @@ namespace tread::blindtest {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Errors of 2 s end poses; NaN where nobody measured.
+/// Errors of 2 s end poses; NaN if not measured.
 struct EndError {
   double position = kUnknown;  ///< [m]
   double yaw = kUnknown;       ///< [rad]
@@ -32,20 +32,20 @@ struct HiddenNumber {
   double value = 0.0;
 };
 
-/// One effect that was hidden.
+/// A hidden effect.
 struct HiddenEffect {
   std::string name;
   std::string kind;                ///< vehicle, measurement, out_of_catalogue
   std::string form;                ///< physical, kinematic
-  std::string shape;               ///< same, other: as the catalogue's equation or only like it
+  std::string shape;               ///< same, other: the catalogue's equation, or similar to it
   std::string place;               ///< drive, ground; empty = neither
-  std::vector<std::string> group;  ///< each of these alone is the same
-  std::vector<std::vector<std::string>> together;  ///< these are, where they are all there
+  std::vector<std::string> group;  ///< each equivalent alone
+  std::vector<std::vector<std::string>> together;  ///< equivalent combinations
   std::vector<std::string> depends_on;
   std::vector<HiddenNumber> numbers;
 };
 
-/// What tread-hide wrote.
+/// The file written by tread-hide.
 struct Truth {
   std::string name;  ///< of the case
   std::string kind;  ///< null, single, pair, out_of_catalogue, degenerate, bad, semi
@@ -58,8 +58,8 @@ struct Truth {
   std::vector<HiddenEffect> effects;
   std::vector<std::string> right_verdicts;
   std::vector<std::string> right_names;
-  EndErrors floor;  ///< of the truth without noise against the log
-  EndErrors gap;    ///< of the plain vehicle against the truth
+  EndErrors floor;  ///< of the noise-free truth relative to the log
+  EndErrors gap;    ///< of the plain vehicle relative to the truth
 };
 
 /// An estimated parameter.
@@ -70,24 +70,24 @@ struct Estimated {
   double high = kUnknown;
   double before = kUnknown;        ///< in the nominal model
   double before_sigma = kUnknown;  ///< its standard deviation there
-  /// Whether the workflow says that it is another one now; nothing where it did not say.
+  /// Whether the workflow reports it as changed; nullopt if it does not say.
   std::optional<bool> moved = {};
 };
 
-/// An effect that the workflow named.
+/// A named effect in an answer.
 struct NamedEffect {
   std::string name;
   std::vector<std::string> group;
   std::vector<std::string> runner_ups;
   std::vector<Estimated> parameters;
-  /// Whether the motor currents call it a load; nothing where they do not tell.
+  /// Whether the motor currents indicate a load; nullopt if undecided.
   std::optional<bool> load = {};
 };
 
-/// What tread-gap answered.
+/// Answer of tread-gap.
 struct Answer {
-  std::string verdict;  ///< "error" where it ended without
-  std::string reason;   ///< empty where it broke down
+  std::string verdict;  ///< "error" if it ended without one
+  std::string reason;   ///< empty if it crashed
   std::vector<NamedEffect> effects;
   std::vector<Estimated> calibrated;
   EndErrors before;
@@ -95,16 +95,16 @@ struct Answer {
   std::vector<std::pair<std::string, std::string>> unexplained;  ///< channel, variable
 };
 
-/// Truth and answer side by side.
+/// Truth and answer of a case.
 struct CaseRecord {
   Truth truth;
   Answer answer;
 };
 
-/// A record as it is written, one line of cases.jsonl:
+/// One line of cases.jsonl:
 ///   case, truth {as written}, answer {exit, message, verdict {as verdict.json}},
 ///   nominal {path: {value, sigma}}
-/** Throws std::runtime_error naming the case where something is missing. */
+/** Throws std::runtime_error naming the case if something is missing. */
 CaseRecord recordOf(const nlohmann::ordered_json& line);
 
 }  // namespace tread::blindtest

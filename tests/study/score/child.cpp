@@ -18,8 +18,8 @@ namespace {
 
 constexpr int kCannotStart = 127;
 
-/// In the child; does not come back. Only system calls: between fork and exec of a program with
-/// threads nothing else is safe.
+/// Runs in the child and does not return. It uses only system calls, the only safe ones between
+/// fork and exec in a program with threads.
 [[noreturn]] void become(const Child& child, char* const* arguments) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (chdir(child.folder.c_str()) != 0) _exit(kCannotStart);

@@ -7,27 +7,27 @@
 
 namespace tread::blindtest {
 
-/// A command and where it runs.
+/// A command and its working folder.
 struct Child {
   std::vector<std::string> command;
-  std::string folder;  ///< it begins here
-  std::string log;     ///< what it prints, below `folder`
-  int cpu_limit = 0;   ///< [s] of a run that does not end; 0 = none
+  std::string folder;  ///< working folder
+  std::string log;     ///< its output, below `folder`
+  int cpu_limit = 0;   ///< [s] for a run that does not end; 0 = none
 };
 
-/// How it ended.
+/// Result of a command.
 struct Ended {
-  int status = -1;           ///< exit status; 128 + signal where it was killed
+  int status = -1;           ///< exit status; 128 + signal if it was killed
   double cpu_seconds = 0.0;  ///< user and system
 };
 
 /// Runs a command to its end.
 Ended run(const Child& child);
 
-/// The same, with the end of what it printed in a std::runtime_error unless it ends with 0.
+/// The same; throws std::runtime_error with the end of its output unless it ends with 0.
 void runOrThrow(const Child& child);
 
-/// The last line of a file that is not empty; "" if there is none.
+/// The last non-empty line of a file; "" if there is none.
 std::string lastLine(const std::string& path);
 
 }  // namespace tread::blindtest

@@ -21,7 +21,7 @@ std::string hiddenOf(const JudgedCase& one) {
   return one.record.truth.effects.empty() ? kNothing : one.record.truth.effects.front().name;
 }
 
-/// What was said; a group with the truth in it is the truth.
+/// The given names; a group that contains the truth counts as the truth.
 std::set<std::string> saidOf(const JudgedCase& one) {
   const std::string hidden = hiddenOf(one);
   std::set<std::string> said;

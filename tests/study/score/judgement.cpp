@@ -55,16 +55,16 @@ const Row kRows[] = {
     {"position_scale", "k", {"scale"}},
 };
 
-/// An effect that changes the motion by less than this share of the noise is not excited.
+/// Effects that change the motion by less than this share of the noise do not count as excited.
 constexpr double kLeastVisible = 0.05;
-/// Gaps closer to the floor than this are none that could be closed.
+/// Smaller gaps relative to the floor cannot be closed.
 constexpr double kLeastGap = 0.05;
 
 bool contains(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Position and yaw in units of what even the truth misses.
+/// Position and yaw in units of the truth's own error.
 double inFloors(const EndError& error, const EndError& floor) {
   return std::hypot(error.position / floor.position, error.yaw / floor.yaw);
 }
@@ -78,7 +78,7 @@ double closedShare(const EndError& error_before, const EndError& error_after,
   return (before - after) / (before - best);
 }
 
-/// Variables of the workflow that stand for a word of the truth.
+/// Variables of the workflow that correspond to a word of the truth.
 bool standsFor(const std::string& variable, const std::string& word) {
   const auto has = [&](const char* part) { return variable.find(part) != std::string::npos; };
   const bool turning = has("yaw rate");
@@ -103,7 +103,7 @@ bool rightVariable(const CaseRecord& record) {
   return false;
 }
 
-/// Whether the headline is that of something named, be it that a term of the model is another one.
+/// Whether the verdict names something, including a changed term of the model.
 bool namesSomething(const Answer& answer) {
   return contains({"FOUND", "AMBIGUOUS", "PARTIAL", "MEASUREMENT"}, answer.verdict);
 }
@@ -113,7 +113,7 @@ bool isNamed(const std::string& name, const Answer& answer) {
                      [&](const NamedEffect& one) { return one.name == name; });
 }
 
-/// Whether an effect stands beside a name as another possible one.
+/// Whether an effect is listed as an alternative to a name.
 bool isBeside(const NamedEffect& named, const HiddenEffect& hidden) {
   return contains(named.runner_ups, hidden.name) || contains(named.group, hidden.name);
 }
@@ -151,7 +151,7 @@ void judgeNames(const CaseRecord& record, Judgement& judgement) {
   judgement.exact = !truth.empty() && judgement.found == truth.size() && all_right;
 }
 
-/// A degenerate case is answered where its alternatives are named as such.
+/// A degenerate case is answered if its alternatives are named as such.
 bool saysGroup(const CaseRecord& record) {
   const std::vector<std::string>& right = record.truth.right_names;
   for (const NamedEffect& named : record.answer.effects) {
@@ -185,7 +185,7 @@ void judgeParameters(const CaseRecord& record, Judgement& judgement) {
   }
 }
 
-/// A hidden effect is named together with those that no drive tells from it.
+/// A hidden effect is named together with those that are indistinguishable from it.
 bool isNamedInGroup(const CaseRecord& record) {
   const HiddenEffect& hidden = record.truth.effects.front();
   return std::any_of(
@@ -201,8 +201,8 @@ bool showsEnough(const Truth& truth) {
          truth.gap.yaw_rate > kLeastVisible * truth.floor.yaw_rate;
 }
 
-/// Of a number of the nominal model the effect that is the same by another name. Here once more:
-/// who judges the workflow asks nothing of it.
+/// The effect that is equivalent to a number of the nominal model. Defined here again, because the
+/// scoring must not use the workflow's code.
 std::string effectOf(const std::string& path) {
   if (path == "delay") return "command_delay";
   if (path == "lag") return "actuator_lag";
@@ -211,7 +211,7 @@ std::string effectOf(const std::string& path) {
   return path.substr(0, path.find('.'));
 }
 
-/// Whether one number is another one now: as the workflow says, else by three sigma.
+/// Whether a number has changed: according to the workflow, else by three sigma.
 bool hasMoved(const Estimated& one) {
   if (one.moved) return *one.moved;
   constexpr double kSigmas = 3.0;

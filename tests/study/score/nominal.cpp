@@ -27,7 +27,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kRounds = 4;
-constexpr int kLimit = 3600;  // [s] of a calibration that does not end
+constexpr int kLimit = 3600;  // [s] for a calibration that does not end
 constexpr int kFound = 10;
 constexpr int kCannotTell = 15;
 constexpr const char* kStory = "story.json";
@@ -48,7 +48,7 @@ class Lock {
   int descriptor_;
 };
 
-/// No case of a suite has these seeds: theirs are drawn from the suite's.
+/// These seeds occur in no suite: they are drawn from the suite's seed.
 uint64_t hourSeed(const Study& study, const std::string& noise, int round) {
   return 100 * study.seed + 10 * static_cast<uint64_t>(round) +
          (noise == "low"   ? 1
@@ -61,13 +61,13 @@ Json readJson(const fs::path& path) {
   return Json::parse(file);
 }
 
-/// A log that tells of the plain vehicle, and where its calibration begins.
+/// A log of the plain vehicle, and the start model of its calibration.
 struct Plain {
   std::string log;
   std::string model;
 };
 
-/// One round of calibration; its verdict.
+/// One round of calibration; returns its verdict.
 Json calibrate(const Study& study, const fs::path& folder, const Plain& plain,
                const std::string& model, int round) {
   const std::string out = "round" + std::to_string(round);
@@ -83,7 +83,7 @@ Json calibrate(const Study& study, const fs::path& folder, const Plain& plain,
   return readJson(folder / out / "verdict.json");
 }
 
-/// An hour of the plain vehicle with the noise of a level; another one in each round.
+/// An hour of the plain vehicle with the noise of a level; a different one in each round.
 Plain hideHour(const Study& study, const fs::path& folder, const std::string& noise, int round) {
   fs::remove_all(folder / "hour");
   std::ofstream(folder / "base.yaml") << kBaseModel;
@@ -107,7 +107,7 @@ void make(const Study& study, const fs::path& folder, const std::string& name) {
         recording ? Plain{recording->log, recording->model} : hideHour(study, folder, name, round);
     verdict = calibrate(study, folder, plain, model.empty() ? plain.model : model, round);
     model = "round" + std::to_string(round) + "/model.yaml";
-    // The same log says the same of a model that stays as it is; another hour may not.
+    // The same log gives the same result for an unchanged model; another hour may not.
     may_change = !recording || !verdict.at("effects").empty();
   } while (!verdict.at("unexplained").empty() && may_change && round < kRounds);
   Json story = {{"rounds", round}, {"verdict", verdict.at("verdict")}, {"named", Json::array()}};
@@ -124,9 +124,9 @@ void make(const Study& study, const fs::path& folder, const std::string& name) {
   fs::rename(folder / "model.part", folder / "model.yaml");
 }
 
-/// The model with other numbers, as an engineer has them who took them from a data sheet.
-/** All terms that are on, gains and lags are wrong by up to a third and more; limits are on where
- * the drive does not feel them; how sure the numbers are is not said. */
+/// The model with wrong numbers, as if taken from a data sheet.
+/** All active terms, gains and lags are wrong by a third or more; limits are set where the drive
+ * does not reach them; no uncertainties are given. */
 ModelDocument withWrongNumbers(ModelDocument model, uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto between = [&random](double low, double high) {

@@ -9,7 +9,7 @@
 
 namespace tread::blindtest::samples {
 
-/// A case in which these effects are hidden; the truth itself misses 0.1 m and 0.1 rad.
+/// A case with these hidden effects; the error of the truth is 0.1 m and 0.1 rad.
 inline CaseRecord hidden(const std::vector<std::string>& names, const std::string& kind) {
   CaseRecord record;
   record.truth.name = "0001";

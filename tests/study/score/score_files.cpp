@@ -33,7 +33,7 @@ Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-/// Files of records in a folder: its own, or else those of the shards in it.
+/// Record files in a folder: its own, else those of its shards.
 std::vector<fs::path> recordFiles(const std::string& folder) {
   if (fs::exists(fs::path(folder) / "cases.jsonl")) return {fs::path(folder) / "cases.jsonl"};
   std::vector<fs::path> files;

@@ -12,7 +12,7 @@
 
 namespace tread::blindtest {
 
-/// Lines of cases.jsonl, header first, as cases and figures.
+/// Header and cases of cases.jsonl, with their scores.
 struct ScoredStudy {
   nlohmann::ordered_json header;
   std::vector<std::string> lines;  ///< records, sorted by case
@@ -24,14 +24,14 @@ struct ScoredStudy {
 /// CPU seconds of answers by case.
 using CaseSeconds = std::map<std::string, double>;
 
-/// Judges and counts. Throws std::runtime_error for a line that is no record.
+/// Scores and counts. Throws std::runtime_error for an invalid line.
 ScoredStudy scored(const std::vector<std::string>& lines, const CaseSeconds& seconds = {});
 
-/// The times.csv of batches below folders, as far as they are still there.
+/// The times.csv of batches below folders, as far as they exist.
 CaseSeconds secondsBelow(const std::vector<std::string>& folders);
 
-/// Joins the cases.jsonl of shards below the folders (or in them). Throws std::runtime_error where
-/// they are not of one study or a case is there twice with different answers.
+/// Joins the cases.jsonl of shards below the folders (or in them). Throws std::runtime_error if
+/// they are from different studies or a case has different answers.
 std::vector<std::string> merged(const std::vector<std::string>& folders);
 
 /// Writes cases.jsonl, cases.csv, scores.json, table.txt, confusion.png and scores.html.
@@ -45,9 +45,9 @@ void drawConfusion(const Confusion& confusion, const std::string& path);
 
 /// The figure with its interval and number of cases: "93.3 % (70 to 99), 14 of 15".
 std::string figureWords(const ScoreLine& line);
-/// ">= 95 %", or "" without a must.
+/// ">= 95 %", or "" without a target.
 std::string mustWords(const ScoreLine& line);
-/// "met", "not met", "cannot be decided with 38 (value met)", "no case"; "" without a must.
+/// "met", "not met", "cannot be decided with 38 (value met)", "no case"; "" without a target.
 std::string metWords(const ScoreLine& line);
 
 }  // namespace tread::blindtest

@@ -17,7 +17,7 @@ using report::Picture;
 constexpr double kCell = 22.0;    // [pixels]
 constexpr double kLeft = 230.0;   // names of rows
 constexpr double kTop = 70.0;     // numbers of columns
-constexpr double kLeast = 860.0;  // width that title and legend need
+constexpr double kLeast = 860.0;  // needed by title and legend
 
 const char* const kHead = R"(<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>Blind test</title><style>
@@ -29,7 +29,7 @@ td { padding: .12em .8em .12em 0; border-bottom: 1px solid #ddd; } img { max-wid
 </style></head><body>
 )";
 
-/// White for never, dark for always; what is wrong is red.
+/// White for never, dark for always; wrong names are red.
 Colour shade(double share, bool right) {
   const Colour full = right ? report::kBlue : report::kRed;
   const auto mix = [&](double part) { return 1.0 + share * (part - 1.0); };
@@ -80,7 +80,7 @@ void drawConfusion(const Confusion& confusion, const std::string& path) {
   Picture picture(static_cast<int>(std::max(kLeast, kLeft + kCell * columns + 20.0)),
                   static_cast<int>(kTop + kCell * rows + 60.0),
                   "What was hidden (rows, cases) and what was named (columns) [% of the cases]");
-  // The last three columns are no effects.
+  // The last three columns are not effects.
   for (size_t i = 0; i < confusion.named.size(); ++i)
     picture.text(kLeft + kCell * static_cast<double>(i) + 3.0, kTop - 6.0, std::to_string(i + 1),
                  11.0);

@@ -14,21 +14,21 @@ std::string percent(double share, int digits) {
   return fixed(100.0 * share, digits);
 }
 
-/// A figure of a line without its unit; an interval that is open at an end has no number there.
+/// A figure without its unit; no number for an interval's open end.
 std::string number(const ScoreLine& line, double value, int digits) {
   if (!std::isfinite(value)) return "?";
   if (line.unit == std::string("%")) return percent(value, digits);
   return fixed(value, digits);
 }
 
-/// Words with a bar between them stay one field of a CSV file.
+/// Joined by a bar, words stay one CSV field.
 std::string joined(const std::vector<std::string>& words) {
   std::string all;
   for (const std::string& word : words) all += (all.empty() ? "" : "|") + word;
   return all;
 }
 
-/// Quoted where a CSV field must be.
+/// Quoted if a CSV field needs it.
 std::string field(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -59,7 +59,7 @@ void addAnswer(const Answer& answer, std::ostringstream& row) {
       << joined(runner_ups) << "," << field(joined(rest)) << ",";
 }
 
-/// Numbers for all to see; what cannot be said stays empty.
+/// Unknown numbers stay empty.
 void addNumber(double value, std::ostringstream& row) {
   if (std::isfinite(value)) row << value;
   row << ",";

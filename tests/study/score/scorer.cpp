@@ -9,7 +9,7 @@
 namespace tread::blindtest {
 namespace {
 
-/// Chance of at most `count` hits in n trials of probability p.
+/// Probability of at most `count` hits in n trials of probability p.
 double binomialUpTo(size_t count, size_t n, double p) {
   double sum = 0.0;
   for (size_t k = 0; k <= count; ++k)
@@ -20,7 +20,7 @@ double binomialUpTo(size_t count, size_t n, double p) {
   return sum;
 }
 
-/// Whether something holds of the first hidden effect.
+/// Tests the first hidden effect.
 Test ofFirst(std::function<bool(const HiddenEffect&)> test) {
   return [test = std::move(test)](const JudgedCase& one) {
     const auto& effects = one.record.truth.effects;
@@ -38,7 +38,7 @@ bool ScoreLine::valueIsGood() const {
 
 std::optional<Met> ScoreLine::met() const {
   if (!must || cases == 0) return std::nullopt;
-  // No number of cases shows that something never happens.
+  // No number of cases proves that something never happens.
   const bool absolute = must->least ? must->at >= 1.0 && is_share : must->at <= 0.0;
   if (absolute || !(low <= high)) return valueIsGood() ? Met::kYes : Met::kNo;
   if (must->upper_end) {
@@ -83,8 +83,8 @@ void setQuantile(ScoreLine& line, std::vector<double> values, double q) {
   if (values.empty()) return;
   constexpr double kTail = 0.025;
   std::sort(values.begin(), values.end());
-  // The quantile lies below the k-th smallest value with the chance of fewer than k values below
-  // it.
+  // The probability that the quantile is below the k-th smallest value is that of fewer than k
+  // values below it.
   const size_t n = values.size();
   size_t low = 0;
   while (low < n && binomialUpTo(low, n, q) <= kTail) ++low;

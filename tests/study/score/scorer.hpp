@@ -11,9 +11,9 @@
 
 namespace tread::blindtest {
 
-/// Which cases are meant, or what is counted of them.
+/// A selection of cases, or a property that is counted.
 using Test = std::function<bool(const JudgedCase&)>;
-/// What a case adds to a quantile's values.
+/// The values of a case for a quantile.
 using Numbers = std::function<std::vector<double>(const JudgedCase&)>;
 
 Test isKind(const std::string& kind);
@@ -21,13 +21,13 @@ Test both(Test a, Test b);
 Test noiseIs(const std::string& noise);
 Test sizeIs(double size);
 Test verdictIs(const std::string& verdict);
-/// A log of ten minutes, or the short one of 200 s.
+/// A log of ten minutes, or a short one of 200 s.
 Test isLong(bool long_log);
-/// Of the first hidden effect: vehicle, measurement.
+/// Kind of the first hidden effect: vehicle, measurement.
 Test effectKindIs(const std::string& kind);
-/// The same: as the catalogue's equation ("same") or only like it ("other").
+/// Its shape: "same" as the catalogue's equation, or "other".
 Test shapeIs(const std::string& shape);
-/// The same: changed in the 1 kHz dynamics ("physical") or in the motion that comes out of them.
+/// Its form: changed in the 1 kHz dynamics ("physical") or in the resulting motion.
 Test formIs(const std::string& form);
 
 bool anyCase(const JudgedCase& one);
@@ -40,24 +40,24 @@ Test flag(Value Judgement::*member) {
   return [member](const JudgedCase& one) { return static_cast<bool>(one.judgement.*member); };
 }
 
-std::vector<double> closedOf(const JudgedCase& one);         ///< if all was found
+std::vector<double> closedOf(const JudgedCase& one);         ///< if everything was found
 std::vector<double> closedMediansOf(const JudgedCase& one);  ///< the same by medians
 std::vector<double> parameterErrorsOf(const JudgedCase& one);
 
-/// Makes lines out of the cases. A line without a must is left out where it has no case.
+/// Makes lines from the cases. A line without a target and without cases is omitted.
 class Scorer {
  public:
   explicit Scorer(const std::vector<JudgedCase>& cases) : cases_(cases) {}
 
   /// Begins a section.
   Scorer& in(const std::string& section) { return section_ = section, *this; }
-  /// The share of the cases among some of which something holds.
+  /// Share of the cases among some for which a test holds.
   void share(const std::string& what, const Test& among, const Test& hit,
              std::optional<Must> must = {});
-  /// A quantile of numbers of cases.
+  /// A quantile of the cases' values.
   void figure(const std::string& what, const Test& among, const Numbers& numbers, double q,
               std::optional<Must> must = {}, const char* unit = "%");
-  /// The share of the intervals of parameters that hold the truth.
+  /// Share of the parameters' intervals that contain the truth.
   void coverage(const std::string& what, const Test& among, std::optional<Must> must = {});
   void add(const ScoreLine& line);
 
@@ -70,9 +70,9 @@ class Scorer {
   std::vector<ScoreLine> lines_;
 };
 
-/// The figures that have a target.
+/// The figures with a target.
 void addMusts(Scorer& scorer);
-/// All figures of single effects, for both kinds and by how the forms fit the catalogue's.
+/// All figures of single effects, for both kinds and by agreement with the catalogue's form.
 void addSingles(Scorer& scorer);
 
 }  // namespace tread::blindtest

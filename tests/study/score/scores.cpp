@@ -64,7 +64,7 @@ std::vector<double> secondsOf(const JudgedCase& one) {
   return {one.seconds};
 }
 
-/// Some of the single cases, with words for them.
+/// Some of the single cases, with a description.
 struct Slice {
   std::string what;
   Test among;
@@ -151,15 +151,14 @@ void addPairsAndUnknown(Scorer& scorer) {
   scorer.share("NO_DISCREPANCY", unknown, verdictIs("NO_DISCREPANCY"));
 }
 
-/// Whether the motor currents call something that was named a load, or no load.
+/// Whether the motor currents classify a named effect as load, or not.
 bool isCalled(const JudgedCase& one, bool load) {
   const std::vector<NamedEffect>& named = one.record.answer.effects;
   return std::any_of(named.begin(), named.end(),
                      [load](const NamedEffect& effect) { return effect.load == load; });
 }
 
-/// Single effects of the vehicle in the drive or on the ground where something is named: what the
-/// motor currents say of it.
+/// Results of the motor currents for single effects of the drive or the ground with a named effect.
 void addCurrents(Scorer& scorer) {
   scorer.in("motor currents");
   for (const bool load : {false, true}) {

@@ -28,7 +28,7 @@ constexpr size_t kBatch = 40;
 
 using tread::testing::contentOf;
 
-/// What the study is; shards with another line here are not of one study.
+/// Description of the study; shards with a different line belong to another one.
 Json headerOf(const Study& study, const std::vector<HiddenCase>& cases) {
   return {{"format", "tread-blind cases 1"},
           {"suite", study.suite},
@@ -39,7 +39,7 @@ Json headerOf(const Study& study, const std::vector<HiddenCase>& cases) {
           {"nominal", nominalStory(study, cases)}};
 }
 
-/// The cases of a suite are told by tread-hide, which alone knows them.
+/// Only tread-hide knows the cases of a suite, and lists them.
 std::vector<HiddenCase> hiddenSuite(const Study& study) {
   const fs::path folder(shardFolder(study));
   runOrThrow({{study.programs + "/tread-hide", "conditions", "--suite", study.suite, "--seed",
@@ -52,7 +52,7 @@ std::vector<HiddenCase> hiddenSuite(const Study& study) {
   return cases;
 }
 
-/// Same options and same programs, or the folder is another study's.
+/// Requires the same options and programs as an existing study in the folder.
 void claim(const Study& study, const Json& header) {
   const fs::path note = fs::path(shardFolder(study)) / "study.json";
   Json all = header;
@@ -77,7 +77,7 @@ std::vector<HiddenCase> casesOf(const Study& study) {
   if (study.suite == "quick") return quickSuite(study.minutes, study.seed);
   if (study.suite == "wrong_start") return wrongStartSuite(study.minutes, study.seed);
   std::vector<HiddenCase> cases = hiddenSuite(study);
-  // Behind the suite's own, which tread-hide numbers from the first on.
+  // After the suite's own cases, which tread-hide numbers from the first on.
   for (const HiddenCase& one : recordingSuite(study)) cases.push_back(one);
   return cases;
 }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kPrefix = "recording-";
 
-/// What can be hidden by an exact transformation of poses or commands.
+/// Effects that can be hidden by an exact transformation of poses or commands.
 const char* const kEffects[] = {"heading_misalignment", "ins_latency",   "position_scale",
                                 "command_delay",        "battery_sag",   "track_asymmetry",
                                 "motor_deadband",       "gyro_bias",     "lever_arm_x",
@@ -33,7 +33,7 @@ HiddenCase hiddenIn(const Recording& recording, const std::string& effect, int s
            "--seed", std::to_string(seed * 1000 + number), "--name", name}};
 }
 
-/// Whether its nominal model can be had; says why not.
+/// Whether its nominal model can be made; prints why not.
 bool isUsable(const Study& study, const Recording& recording) {
   try {
     nominalModel(study, recording.nominal);
@@ -46,7 +46,7 @@ bool isUsable(const Study& study, const Recording& recording) {
 
 constexpr size_t kWrongStarts = 400;
 
-/// Names a case by its place, and adds what every case of its own tells tread-hide.
+/// Names a case by its position, and adds the common arguments of separate cases.
 void addCase(HiddenCase one, double minutes, uint64_t seed, std::vector<HiddenCase>& cases) {
   const size_t number = cases.size() + 1;
   char name[24];

@@ -35,7 +35,7 @@ nlohmann::json jsonOf(const std::string& path) {
   return nlohmann::json::parse(file);
 }
 
-/// What find says of a log with an effect hidden, and the truth.
+/// Answer of find for a log with a hidden effect, and the truth.
 struct AddedCase {
   nlohmann::json verdict;
   nlohmann::json truth;
@@ -75,7 +75,7 @@ TEST_CASE("effects of files that are hidden in the ground truth are found and na
             Approx(truth["value"].get<double>()).epsilon(0.2));
     }
     CHECK(named);
-    // The model drives where nobody has the file of the effect.
+    // The model also works without the effect's file.
     CHECK(called("tread-gap what-if --add slip_ratio --model " + one.model) == 0);
   }
 }

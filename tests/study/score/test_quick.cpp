@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A folder that is gone afterwards.
+/// A temporary folder.
 class Folder {
  public:
   ~Folder() { fs::remove_all(path); }
@@ -58,7 +58,7 @@ TEST_CASE("a blind test of twelve logs: what is easy is named, what is bad refus
   }
   for (const char* file : {"scores.json", "table.txt", "cases.csv", "confusion.png", "scores.html"})
     CHECK(fs::file_size(fs::path(folder.path) / file) > 0);
-  // A shard of it gives the same bytes elsewhere, whatever the number of jobs.
+  // A shard gives the same bytes elsewhere, with any number of jobs.
   const std::string elsewhere = folder.path + "/elsewhere";
   REQUIRE(runQuick(elsewhere, "--shard 5/6 --jobs 2") == 0);
   const std::vector<std::string> whole = merged({folder.path});

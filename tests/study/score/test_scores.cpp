@@ -29,7 +29,7 @@ const char* const kFalsePositives = "false positives: an effect named in a null 
 const char* const kHeader =
     R"({"format":"tread-blind cases 1","suite":"small","seed":1,"minutes":10.0,"cases":2,"nominal":{}})";
 
-/// A null log that was called clean, as a line of cases.jsonl.
+/// A null log with a clean verdict, as a line of cases.jsonl.
 std::string recordLine(const std::string& name, const std::string& verdict) {
   const Json nothing = {{"position_m", {{"rms", 0.1}}}, {"yaw_rad", {{"rms", 0.1}}}};
   const Json truth = {{"case", name},
@@ -58,7 +58,7 @@ std::string recordLine(const std::string& name, const std::string& verdict) {
       .dump();
 }
 
-/// Folders of shards that are gone afterwards.
+/// Temporary folders of shards.
 class Shards {
  public:
   Shards() { std::filesystem::create_directories(path_); }

@@ -24,7 +24,7 @@ Names setOf(const std::vector<std::string>& names) {
   return {names.begin(), names.end()};
 }
 
-/// Effects of the catalogue, those that stand for themselves.
+/// Effects of the catalogue that are not combinations.
 std::vector<const EffectSpec*> listed() {
   std::vector<const EffectSpec*> specs;
   for (const EffectSpec& spec : blind::effectList())
@@ -34,7 +34,7 @@ std::vector<const EffectSpec*> listed() {
   return specs;
 }
 
-/// A drive on arcs that change, every 10 ms.
+/// A drive on varying arcs, every 10 ms.
 std::vector<Pose2> winding() {
   std::vector<Pose2> poses;
   Pose2 pose;
@@ -105,11 +105,12 @@ TEST_CASE("what no drive can tell apart is alike for the generator and for the w
     Names alike;
     std::vector<Names> together;
     for (const ConfoundedGroup* group : confoundedGroupsOf(spec->name)) {
-      // Two against two: alone, as the study hides them, each is told from the others by a stop.
+      // Two against two: hidden alone, as in the study, each is distinguished from the others by a
+      // stop.
       if (group->together) continue;
       Names others = setOf(group->members);
       others.erase(spec->name);
-      // A delay is a latency of all channels; one of the poses alone is no delay.
+      // A delay is a latency of all channels; one of the poses alone is not.
       const bool late = group->name == "late" && spec->name == std::string("command_delay");
       if (group->name == "scale")
         together.push_back(others);
