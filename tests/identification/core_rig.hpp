@@ -17,7 +17,7 @@ inline const Progress kSilent = [](const std::string&) {};
 
 using Values = std::vector<std::pair<std::string, double>>;
 
-/// The synthetic vehicle with numbers changed.
+/// The synthetic vehicle with modified numbers.
 inline ModelDocument vehicleWith(const Values& changed) {
   ModelDocument model = syntheticVehicle();
   for (const auto& [path, value] : changed)
@@ -25,14 +25,14 @@ inline ModelDocument vehicleWith(const Values& changed) {
   return model;
 }
 
-/// What encoders say twenty times a second of a drive whose tracks do what a model does.
+/// Encoder values at 20 Hz for a drive whose tracks follow a model.
 inline std::vector<EncoderSample> encodersOf(const ModelDocument& tracks, const Drive& drive,
                                              double late = 0.0) {
   std::vector<EncoderSample> encoders;
   VehicleKernel kernel(tracks.vehicle, EntryState{});
   const std::vector<CommandSample>& commands = drive.segments.front().commands;
   for (size_t i = 0; i < commands.size(); ++i) {
-    // Wheels turn faster than the ground passes, by the slip that the factor stands for.
+    // Wheels turn faster than the vehicle moves, by the slip that corresponds to the factor.
     const TrackCommand speed = kernel.trackSpeeds();
     encoders.push_back({commands[i].time + late, {1.1 * speed.left, 1.1 * speed.right}});
     kernel.step(commands[i].command.tracks(), 0.05);
@@ -40,18 +40,18 @@ inline std::vector<EncoderSample> encodersOf(const ModelDocument& tracks, const 
   return encoders;
 }
 
-/// Rows of one synthetic drive, to which a stage of the workflow is put alone.
+/// Rows of one synthetic drive, for testing a single stage of the workflow.
 struct Rig {
   Rig(const Values& hidden, double seconds, uint64_t seed, const SyntheticNoise& noise = {})
       : drives{syntheticDrive(vehicleWith(hidden), seconds, seed, noise)},
         data(drives, {}),
         fitter(data) {}
 
-  /// A state of the nominal vehicle whose residuals are these; no parameter is free.
+  /// A state of the nominal vehicle with these residuals; no parameter is free.
   FitState stateOf(const Eigen::VectorXd& residuals, double scale) const {
     FitState state;
     state.model = syntheticVehicle();
-    state.predicted = data.residuals(residuals);  // measured less residuals
+    state.predicted = data.residuals(residuals);  // measured minus residuals
     state.scales = Eigen::VectorXd::Constant(residuals.size(), scale);
     state.jacobian.resize(residuals.size(), 0);
     return state;
@@ -77,7 +77,7 @@ struct Rig {
   Fitter fitter;
 };
 
-/// Noise of size 1 of whose variance a share is common to all rows of a channel and block.
+/// Noise of size 1; a share of its variance is common to all rows of a channel and block.
 inline Eigen::VectorXd blockNoise(const Observations& data, uint64_t seed, double share = 0.5) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> gauss(0.0, 1.0);
@@ -92,7 +92,7 @@ inline Eigen::VectorXd blockNoise(const Observations& data, uint64_t seed, doubl
   return noise;
 }
 
-/// Directions, each a wave of its own period in the rows of one channel.
+/// Directions that are waves of different periods in the rows of one channel.
 inline Eigen::MatrixXd waves(const Observations& data, int count) {
   Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(data.all().size()),
                                                      static_cast<Eigen::Index>(count));

@@ -7,18 +7,18 @@
 
 #include "core_rig.hpp"
 
-// Drives of vehicles that also do what no effect of the catalogue says.
+// Drives of vehicles with motion that no effect of the catalogue explains.
 namespace tread::gap::samples {
 
-/// What a yaw rate [rad/s] is more, and a motion to the left [m/s]; asked in the order of time,
-/// with the time since the last one [s].
+/// Additional yaw rate [rad/s] and motion to the left [m/s]; called in the order of time, with the
+/// time since the last call [s].
 struct More {
   double omega = 0.0;
   double sideways = 0.0;
 };
 using Nameless = std::function<More(double omega, double dt)>;
 
-/// A synthetic drive whose vehicle also moves by so much.
+/// A synthetic drive whose vehicle has the additional motion.
 inline Drive namelessDrive(const Values& hidden, uint64_t seed, const Nameless& more_of) {
   Drive drive = syntheticDrive(vehicleWith(hidden), 400.0, seed);
   for (Segment& segment : drive.segments) {
@@ -41,8 +41,8 @@ inline Drive namelessDrive(const Values& hidden, uint64_t seed, const Nameless& 
   return drive;
 }
 
-/// A drive whose vehicle also turns to the left by so much of the square of its yaw rate [s], and
-/// slides to the left by so much of it [m s].
+/// A drive whose vehicle additionally turns to the left by a share of its squared yaw rate [s], and
+/// slides to the left by another [m s].
 inline Drive turningDrive(const Values& hidden, double share, uint64_t seed, double slide = 0.0) {
   return namelessDrive(hidden, seed, [=](double omega, double) {
     const double square = std::pow(omega, 2);
@@ -50,7 +50,7 @@ inline Drive turningDrive(const Values& hidden, double share, uint64_t seed, dou
   });
 }
 
-/// A drive whose body follows its tracks late while a turn winds up and hardly while it is braked:
+/// A drive whose body follows its tracks late while a turn builds up, and faster while it decays:
 /// times [s].
 inline Drive frictionDrive(double winds_up, double is_braked, uint64_t seed) {
   double body = 0.0;

@@ -12,16 +12,17 @@
 
 namespace tread::gap {
 
-/// How noisy a synthetic drive is.
+/// Noise of a synthetic drive.
 struct SyntheticNoise {
   double gyro = 0.015;     ///< [rad/s] per quarter of a second
   double fix = 0.01;       ///< [m]
   double heading = 0.003;  ///< [rad]
-  double ground = 0.03;    ///< [1] of speed and yaw rate, per pattern; half of it correlated
+  double ground = 0.03;    ///< [1] of speed and yaw rate, per pattern; half of it is correlated
 };
 
-/// A command drawn from all that a vehicle can be told, speeds up to 1.
-template <class Random>
+/// A drive of two-second patterns simulated by a model: commands, INS at 50 Hz, executions.
+/** The kernel simulates it, so forms match exactly: it tests the mathematics, not the value of the
+ * workflow (see tests/study). */template <class Random>
 Command drawnCommand(const VehicleModel& vehicle, Random& random) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   if (vehicle.isOmni()) {
@@ -144,7 +145,7 @@ inline ModelDocument syntheticOmni() {
   return model;
 }
 
-/// A vehicle of 1 m/s, .8 m between its tracks.
+/// A vehicle of 1 m/s with .8 m between its tracks.
 inline ModelDocument syntheticVehicle() {
   ModelDocument model;
   model.vehicle.name = "synthetic";

@@ -56,7 +56,8 @@ TEST_CASE("the effects of config/effects are found by name, and not where they a
                                           {"centre_to_side.offset", 0.08}}) {
     INFO(path);
     const GapFinding finding = found({{path, value}}, 33);
-    // What no drive tells from a lever arm of the INS may be named as that, with it beside.
+    // An effect that no drive distinguishes from a lever arm of the INS may be named as such,
+    // listed with it.
     const std::string name = effectOfPath(path);
     int named = 0;
     for (const FoundEffect& effect : finding.identified.effects) {
@@ -66,7 +67,7 @@ TEST_CASE("the effects of config/effects are found by name, and not where they a
         ++named;
         CHECK(std::abs(size) == Approx(value).epsilon(0.1));
       } else {
-        // A memory follows step by step: with the fit's longer steps it is some ms early.
+        // A memory is updated step by step: with the fit's longer steps it is some ms early.
         CHECK(effectNamed(effect.name).search.late_by == LateBy::kCommand);
         CHECK(std::abs(size) < 0.005);
       }

@@ -16,7 +16,7 @@ using Names = std::vector<std::string>;
 
 using samples::kSilent;
 
-/// A search that ended with these parameters fitted.
+/// A finished search with these parameters fitted.
 FoundTerms resultOf(const Rig& rig, const Values& begin) {
   FoundTerms result;
   result.calibrated = rig.fitter.start(syntheticVehicle(), {});
@@ -69,7 +69,7 @@ TEST_CASE("an effect that only bends the model away from the drive goes, and is 
   const Rig rig({}, 200.0, 2);
   FoundTerms result = resultOf(rig, {});
   result.state = rig.fitted({{"yaw_pull.pull", 0.01}});
-  // Held far off, where no fit of half of the driving would take it back.
+  // Held far off, so that no fit of half of the driving returns to it.
   result.state.free[0].expected = 0.1;
   result.state.free[0].deviation = 1e-4;
   *findParameter(result.state.model, "yaw_pull.pull") = 0.1;

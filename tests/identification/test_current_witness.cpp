@@ -15,14 +15,15 @@ using samples::Values;
 
 namespace {
 
-/// What the currents of a vehicle are made of.
+/// Components of a vehicle's motor currents.
 struct Draw {
-  double load = 0.0;      ///< [A s/m] for each speed that the hidden effect takes; 0 = in the drive
-  double friction = 0.0;  ///< [A] of dry gears
+  /// [A s/m] for speed lost by the hidden effect; 0 = the effect is in the drive
+  double load = 0.0;
+  double friction = 0.0;  ///< [A] of dry friction in the gears
 };
 
-/// Currents twenty times a second, positive forwards, of a vehicle with these effects.
-/** `unloaded`: those of them that are no load. */
+/// Currents at 20 Hz, positive forwards, of a vehicle with these effects.
+/** `unloaded`: those of them that cause no load. */
 std::vector<CurrentSample> currentsOf(const Values& hidden, const Drive& drive, const Draw& draw,
                                       const Values& unloaded = {}) {
   constexpr double kRolling = 10.0;  // [A s/m]
@@ -62,7 +63,7 @@ std::vector<CurrentSample> currentsOf(const Values& hidden, const Drive& drive, 
 
 using Change = void (*)(CurrentSample&, const TrackCommand&);
 
-/// What is said of the first of the hidden effects, of currents that were changed.
+/// Evidence on the first hidden effect from modified currents.
 std::optional<CurrentWitness> currentWitnessOf(const Values& hidden, const Draw& draw,
                                                Change change = nullptr) {
   Rig rig(hidden, 400.0, 3);

@@ -13,8 +13,9 @@ using namespace tread::gap;
 
 namespace {
 
-/// Two minutes of changing speeds: it drifts out of turns by 0.2 s v omega, ground speed 0.9 of the
-/// encoders, a gyro that says 1.05 of the truth less 0.02 rad/s, poses 0.3 s late with `noise` [m].
+/// Two minutes of changing speeds: it drifts outwards in turns by 0.2 s v omega; ground speed is
+/// 0.9 of the encoders', the gyro reads 1.05 times the truth minus 0.02 rad/s, poses are 0.3 s late
+/// with `noise` [m].
 Drive makeDrive(double noise) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

@@ -27,7 +27,7 @@ Candidate limitOf(double inverse) {
 TEST_CASE("of a limit the gentlest one that shows is what would have been seen") {
   const Rig rig({}, 200.0, 3);
   const Eigen::VectorXd wave = samples::waves(rig.data, 1).col(0);
-  // The tighter the limit, the more of a drive it changes.
+  // The lower the limit, the larger the affected part of a drive.
   Eigen::MatrixXd directions(rig.size(), 3);
   directions << 0.01 * wave, 2.0 * wave, 3.0 * wave;
   const std::vector<Candidate> limits{limitOf(0.5), limitOf(1.0), limitOf(2.0)};

@@ -18,8 +18,8 @@ ExecutionError errorWith(double position, double yaw) {
   return error;
 }
 
-/// A vehicle told to stand that the INS sees going 0.1 m/s ahead and turning, with ten fixes each
-/// second.
+/// A vehicle with zero commands that the INS measures as moving at 0.1 m/s and turning, with ten
+/// fixes per second.
 Drive driftingDrive(double seconds, double yaw_rate) {
   Drive drive;
   Segment segment;

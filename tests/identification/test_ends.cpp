@@ -19,7 +19,7 @@ using samples::Rig;
 
 namespace {
 
-/// Random models and logs, the same for a seed.
+/// Random models and logs, determined by the seed.
 class RandomCase {
  public:
   explicit RandomCase(uint64_t seed) : random_(seed) {}
@@ -47,7 +47,7 @@ class RandomCase {
     }
   }
 
-  /// The synthetic vehicle with some terms, most of which it says how sure they are.
+  /// The synthetic vehicle with some terms, most of them with uncertainties.
   ModelDocument model() {
     ModelDocument model = syntheticVehicle();
     turnOn(model, 4);
@@ -66,7 +66,7 @@ class RandomCase {
   std::mt19937_64 random_;
 };
 
-/// How often one effect was added at most.
+/// Largest number of times that one effect was added.
 size_t mostAdded(const FoundTerms& found) {
   std::map<std::string, size_t> added;
   size_t most = 0;
@@ -87,7 +87,7 @@ bool hasTwice(const FitState& state) {
 
 TEST_CASE("searches over models and logs drawn at random end, and have no term twice") {
   constexpr uint64_t kCases = 250;
-  // By reason: freed with or without nuisance terms, beside lags, at two moments, as given terms.
+  // Reasons: free with or without nuisance terms, with lags, at two change points, as given terms.
   constexpr size_t kMostAdded = 6;
   constexpr int kMostAsked = 1000;
   for (uint64_t seed = 1; seed <= kCases; ++seed) {

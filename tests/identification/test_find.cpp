@@ -15,7 +15,7 @@ using samples::kSilent;
 
 using Values = std::vector<std::pair<std::string, double>>;
 
-/// What is found with a model on a drive of the synthetic vehicle in which numbers were changed.
+/// Result of find with a model on a drive of the synthetic vehicle with modified numbers.
 GapFinding findOn(const Values& hidden, const ModelDocument& model, double seconds, uint64_t seed,
                   const ParallelFor& parallel = serialFor) {
   ModelDocument truth = syntheticVehicle();
@@ -33,7 +33,7 @@ GapFinding findAfter(const Values& hidden, double seconds, uint64_t seed,
   return findOn(hidden, syntheticVehicle(), seconds, seed, parallel);
 }
 
-/// The synthetic vehicle with terms of which its file says how sure they are.
+/// The synthetic vehicle with terms of stated uncertainty.
 ModelDocument sureOf(const Values& known, double deviation) {
   ModelDocument model = syntheticVehicle();
   for (const auto& [path, value] : known) {
@@ -121,7 +121,7 @@ TEST_CASE("a term that the model was sure of and that is another now has moved")
 }
 
 TEST_CASE("terms that the model is sure of do not give way to what is new") {
-  // Free, the two inertias together would be the lag.
+  // If both inertias were free, together they would equal the lag.
   const Values known{{"yaw_inertia.lag", 0.05}, {"body_inertia.lag", 0.05}};
   Values hidden = known;
   hidden.emplace_back("actuator_lag.lag", 0.15);

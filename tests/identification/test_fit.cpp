@@ -16,14 +16,14 @@ namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::infinity();
 
-/// An INS that says the truth.
+/// An INS without errors.
 SyntheticNoise noNoise() {
   SyntheticNoise noise;
   noise.gyro = noise.fix = noise.heading = noise.ground = 0.0;
   return noise;
 }
 
-/// Each body in a thread of its own, all at the same time.
+/// Runs each body in its own thread, all at the same time.
 void threadedFor(size_t count, const std::function<void(size_t)>& body) {
   std::vector<std::thread> threads;
   for (size_t i = 0; i < count; ++i) threads.emplace_back([&body, i] { body(i); });
@@ -91,7 +91,7 @@ TEST_CASE("two numbers that a model knows together are held together, each alone
   CHECK(lossOf(0.05, 0.05) > 5.0 * lossOf(0.05, -0.05));
   CHECK(lossOf(0.05, -0.05) < lossOf(0.05, 0.0));
 
-  // No matrix that a person wrote makes a precision of less than nothing.
+  // A hand-written matrix must not make a negative precision.
   state.model.covariance.matrix = {{0.01, 0.5}, {0.5, 0.01}};
   const Eigen::MatrixXd held = priorPrecision(state);
   CHECK(held(0, 0) * held(1, 1) > held(0, 1) * held(0, 1));
@@ -170,7 +170,7 @@ TEST_CASE("a parameter comes with its column and goes with it") {
   CHECK(state.free[1].path == "icr_offset.offset");
   CHECK(state.jacobian.col(0) == whole.col(0));
   CHECK(state.jacobian.col(1) == whole.col(2));
-  CHECK(*findParameter(state.model, "yaw_pull.pull") == 0.01);  // held where it was
+  CHECK(*findParameter(state.model, "yaw_pull.pull") == 0.01);  // held at its value
 }
 
 TEST_CASE("without noise a fit finds the numbers that the drive was made with") {

@@ -17,7 +17,7 @@ using namespace tread::gap;
 
 constexpr double kStretch = 5.0;
 
-/// What a watch knows of a drive when a reading ends: ten seconds before it, and a little behind.
+/// Data of a watch at the end of a reading: ten seconds before it, and a little after.
 Drive recentPart(const Drive& drive, double from) {
   const Segment& all = drive.segments.front();
   const double begin = from - 10.0, end = from + kStretch + 1.5;
@@ -45,13 +45,13 @@ std::vector<NoticedGap> watched(const Drive& drive, const ModelDocument& model) 
   return all;
 }
 
-/// What is commanded from a time on is more than what the simulated vehicle got.
+/// From a time on, the log's commands exceed those that the simulated vehicle got.
 void weaken(Drive& drive, size_t side, double from, double gain) {
   for (CommandSample& sample : drive.segments.front().commands)
     if (sample.time >= from) sample.command[side] /= gain;
 }
 
-/// Readings of one part that scatter about a mean, all others about 0.
+/// Readings of one part that scatter around a mean, all others around 0.
 WatchReading scattered(double begin, size_t part, double mean, std::mt19937_64& random) {
   std::normal_distribution<double> gauss(0.0, 0.03);
   WatchReading reading{begin, begin + kStretch, {}, {}};
@@ -144,7 +144,8 @@ TEST_CASE("a clock that begins anew forgets what was read, not what was said") {
 }
 
 TEST_CASE("false words are rarer than one in the hours that are asked for", "[statistics]") {
-  // A change that is just no news, for which a game is fair, and readings of heavy tails.
+  // A change just below the threshold, for which the test is a fair game, and heavy-tailed
+  // readings.
   std::mt19937_64 random(10);
   std::student_t_distribution<double> heavy(3.0);
   WatchLimits limits;

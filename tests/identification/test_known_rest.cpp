@@ -9,7 +9,7 @@
 #include "modules/identification/core/rest.hpp"
 #include "nameless_drive.hpp"
 
-// Old and new: a model carries what it did not explain when it was made.
+// Old and new residuals: a model stores what it did not explain when it was made.
 
 using namespace tread;
 using namespace tread::gap;
@@ -26,7 +26,7 @@ GapFinding findOn(const ModelDocument& model, const Drive& drive, bool calibrate
   task.model = model;
   task.train = {drive};
   task.calibrate = calibrate;
-  task.named_only = true;  // what has a shape would be a term, and no rest
+  task.named_only = true;  // otherwise a term would be added instead of a rest
   return findGap(task, kSilent);
 }
 
@@ -34,10 +34,9 @@ GapFinding findOn(const ModelDocument& model, const Drive& drive, bool calibrate
 
 namespace {
 
-constexpr double kTurns =
-    0.03;  // [s] more or less what the ground's noise is, and well beyond chance
+constexpr double kTurns = 0.03;  // [s] about the ground's noise, and clearly significant
 
-/// A model that was calibrated on a drive of that vehicle.
+/// A model calibrated on a drive of that vehicle.
 const GapFinding& calibrated() {
   static const GapFinding finding = findOn(syntheticVehicle(), turningDrive({}, kTurns, 1), true);
   return finding;
@@ -121,20 +120,20 @@ TEST_CASE("scores and sizes scatter by what a known rest varies, in its channel 
   }
   const Eigen::MatrixXd varied = parameterCovariance(rig.fitter, state);
   CHECK(varied(0, 0) > covariance(0, 0));
-  CHECK(varied(0, 1) == covariance(0, 1));  // what two share is as well known as before
+  CHECK(varied(0, 1) == covariance(0, 1));  // the common part is as well known as before
   CHECK(std::abs(ScoreTest(rig.fitter, state, direction).score(0)) < std::abs(score));
 }
 
 TEST_CASE("what is new and has no name is not taken for the known rest, and is in the next one") {
   const ModelDocument& model = calibrated().identified.model;
-  // By measurement: half of it is found in this noise, too.
+  // Measured: half of it is found in this noise, too.
   const GapFinding slides = findOn(model, turningDrive({}, kTurns, 3, 0.02));
   CHECK(slides.verdict == GapVerdict::kNotInCatalogue);
   REQUIRE_FALSE(slides.adequacy.unexplained.empty());
   for (const Unexplained& one : slides.adequacy.unexplained) CHECK(one.channel == "lateral");
   CHECK(findOn(slides.identified.model, turningDrive({}, kTurns, 4, 0.02)).verdict ==
         GapVerdict::kNothingNew);
-  // Five times what was known is no variation of it.
+  // Five times the known size is no variation of it.
   CHECK(exitStatus(findOn(model, turningDrive({}, 5.0 * kTurns, 7)).verdict) != 0);
 }
 

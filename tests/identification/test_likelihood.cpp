@@ -12,8 +12,8 @@ using namespace tread::gap;
 
 namespace {
 
-/// Chance that a number of Student's distribution exceeds t either way, in closed form for whole
-/// degrees of freedom (Abramowitz and Stegun 26.7.3 and 26.7.4).
+/// Two-sided tail probability of Student's distribution at t, in closed form for integer degrees of
+/// freedom (Abramowitz and Stegun 26.7.3 and 26.7.4).
 double studentBeyond(double t, int freedom) {
   const double theta = std::atan(t / std::sqrt(freedom));
   const double c2 = std::cos(theta) * std::cos(theta);
@@ -28,14 +28,14 @@ double studentBeyond(double t, int freedom) {
   return 1.0 - within;
 }
 
-/// Rows of one channel after the other; along and across in turns, as Observations makes them.
+/// Rows of one channel after the other; along and across alternate, as in Observations.
 std::vector<Observation> rowsOf(size_t count) {
   std::vector<Observation> rows(count);
   for (size_t i = 0; i < count; ++i) rows[i].channel = static_cast<ObservedRate>(i % kChannels);
   return rows;
 }
 
-/// Residuals of known noise, with the activity in which they were drawn.
+/// Residuals of known noise, with the activity at which they were drawn.
 struct Drawn {
   explicit Drawn(const Noise& noise, size_t count = 8000) : rows(rowsOf(count)) {
     std::mt19937_64 random(11);
@@ -118,14 +118,15 @@ TEST_CASE("Student's 97.5 percent quantile is that of the tables") {
 }
 
 TEST_CASE("Student's quantile is exceeded with the chance of the normal one") {
-  CHECK(studentBeyond(2.776445, 4) == Approx(0.05).epsilon(1e-5));  // the oracle against tables
+  // the oracle compared with tables
+  CHECK(studentBeyond(2.776445, 4) == Approx(0.05).epsilon(1e-5));
   CHECK(studentBeyond(2.570582, 5) == Approx(0.05).epsilon(1e-5));
   for (int freedom = 3; freedom <= 60; ++freedom) {
     INFO(freedom << " degrees of freedom");
     CHECK(studentBeyond(studentQuantile(freedom), freedom) == Approx(0.05).epsilon(0.03));
   }
   const double rare = studentBeyond(studentQuantile(8, normalQuantileOf(1e-4)), 8);
-  CHECK(rare == Approx(1.1e-4).epsilon(0.03));  // too large by a tenth
+  CHECK(rare == Approx(1.1e-4).epsilon(0.03));  // too large by 10 %
   for (int freedom = 12; freedom <= 60; ++freedom)
     CHECK(studentBeyond(studentQuantile(freedom, 3.3), freedom) ==
           Approx(chanceBeyond(3.3)).epsilon(0.05));
@@ -179,7 +180,7 @@ TEST_CASE("the noise that residuals were drawn from is estimated, each channel b
   const Noise found = estimateNoise(drawn.rows, drawn.residuals, drawn.activity, drawn.mask);
   for (size_t c = 0; c < kChannels; ++c) {
     INFO(channelName(static_cast<ObservedRate>(c)));
-    // At the activity of the middle both parts are told together, and better than either.
+    // At medium activity both parts are estimated together, better than each alone.
     CHECK(std::hypot(found[c].still, found[c].share) ==
           Approx(std::hypot(kKnown[c].still, kKnown[c].share)).epsilon(0.06));
     CHECK(found[c].still == Approx(kKnown[c].still).epsilon(0.3));
@@ -229,7 +230,7 @@ TEST_CASE("rows whose mask is 0 change neither the noise nor the loss, whatever 
 }
 
 TEST_CASE("residuals that are all 0 have a scale, and a channel without rows keeps its own") {
-  const std::vector<Observation> rows(40);  // of the yaw rate
+  const std::vector<Observation> rows(40);  // for the yaw rate
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(40);
   const Noise noise = estimateNoise(rows, zero, zero, std::vector<char>(40, 1));
   CHECK(noise[0].still > 0.0);

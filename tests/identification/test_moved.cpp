@@ -5,7 +5,7 @@
 #include "core_rig.hpp"
 #include "modules/identification/core/moved_terms.hpp"
 
-// Given terms that are others now, and effects that stand for several changes.
+// Given terms that have changed, and effects that replace several changes.
 
 using namespace tread;
 using namespace tread::gap;
@@ -18,7 +18,7 @@ namespace {
 
 using EffectNames = std::vector<std::string>;
 
-/// A model that is sure of these numbers, by the same share of each.
+/// A model with these numbers and a relative uncertainty common to all.
 ModelDocument sureOf(const Values& given, double share) {
   ModelDocument model = vehicleWith(given);
   const size_t size = given.size();
@@ -30,7 +30,7 @@ ModelDocument sureOf(const Values& given, double share) {
   return model;
 }
 
-/// A search that has ended with these effects, all named by tests.
+/// A finished search with these effects, all named by tests.
 FoundTerms endedWith(const Rig& rig, const Values& begin, const EffectNames& effects) {
   FoundTerms result;
   result.state = rig.fitted(begin);

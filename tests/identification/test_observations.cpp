@@ -17,7 +17,7 @@ TEST_CASE("what data should be does not depend on the pieces of the simulation")
   const Eigen::VectorXd exact = Observations(drives, fine).predict(model);
   const Eigen::VectorXd usual = Observations(drives, {}).predict(model);
   REQUIRE(usual.size() == exact.size());
-  // Rates of up to 1 m/s and 1.7 rad/s; interpolated in the pieces they would be off by .01.
+  // Rates of up to 1 m/s and 1.7 rad/s; interpolation within the pieces would be off by .01.
   CHECK((usual - exact).cwiseAbs().maxCoeff() < 2e-3);
 }
 
@@ -36,7 +36,7 @@ TEST_CASE("a delay is exact, however coarse the pieces of the simulation are") {
 
 namespace {
 
-/// A vehicle that stands for the commands and of which the INS says what it is told here.
+/// A vehicle with zero commands and given INS values.
 Drive saidDrive(double seconds, double period, const std::function<InsSample(double)>& said) {
   Drive drive;
   Segment segment;
@@ -100,7 +100,7 @@ TEST_CASE("rows of the gyro are means over quarters of a second") {
   for (const Observation& row : data.all()) {
     CHECK(row.channel == ObservedRate::kYawRate);
     CHECK(row.end - row.begin == Approx(0.25));
-    CHECK(row.measured == Approx(0.05 * (row.begin + row.end)));  // of the middle
+    CHECK(row.measured == Approx(0.05 * (row.begin + row.end)));  // at the middle
   }
 }
 
@@ -126,7 +126,7 @@ TEST_CASE("rows of poses take turns, last within their limits and together lead 
   CHECK(last > 59.0);
   const auto& ins = rig.drives[0].segments[0].ins;
   const double yaw = ins.back().T_map_body.yaw - ins.front().T_map_body.yaw;
-  CHECK(turned == Approx(yaw).margin(1.5));  // but for the last rest of a second
+  CHECK(turned == Approx(yaw).margin(1.5));  // except for the last part of a second
 }
 
 TEST_CASE("every row lies in a block of its own drive, and blocks go on in time") {

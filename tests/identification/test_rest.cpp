@@ -7,7 +7,7 @@
 #include "modules/identification/core/fit.hpp"
 #include "modules/identification/core/screening.hpp"
 
-// The rest of the stages: moments of change, and whether anything is left.
+// Further stages: change points, and the test of the residuals.
 
 using namespace tread;
 using namespace tread::gap;
@@ -39,7 +39,7 @@ TEST_CASE("a change lies between the last execution without it and the first one
   Drive drive = syntheticDrive(
       samples::vehicleWith({{"terrain_change.width_1", 0.3}, {"terrain_change.time_1", 133.0}}),
       240.0, 1);
-  // Nothing was measured from 120 s to 140 s.
+  // No measurements from 120 s to 140 s.
   auto& ins = drive.segments.front().ins;
   ins.erase(std::remove_if(
                 ins.begin(), ins.end(),
@@ -67,7 +67,7 @@ TEST_CASE("a model without a change has no moments, and one with two has both") 
   ModelDocument model = syntheticVehicle();
   CHECK(changePointsOn(model).empty());
   *findParameter(model, "payload_change.time") = 50.0;
-  CHECK(changePointsOn(model).empty());  // a moment of nothing
+  CHECK(changePointsOn(model).empty());  // change point of an inactive effect
   *findParameter(model, "payload_change.speed") = 0.1;
   *findParameter(model, "terrain_change.slip_2") = 0.1;
   CHECK(changePointsOn(model) ==
@@ -85,7 +85,7 @@ TEST_CASE("noise that blocks have in common leaves nothing unexplained more ofte
     CHECK((adequacy.p_value <= kAlpha) == !adequacy.unexplained.empty());
     false_alarms += adequacy.p_value <= kAlpha;
   }
-  CHECK(false_alarms <= 11);  // 4.5 at most are expected; 1 of 500 honest tests has more than 11
+  CHECK(false_alarms <= 11);  // 4.5 are expected; 1 of 500 correct tests has more than 11
 }
 
 TEST_CASE("what is left is likened to the effect that looks like it in its channel") {
@@ -94,7 +94,7 @@ TEST_CASE("what is left is likened to the effect that looks like it in its chann
   REQUIRE_FALSE(adequacy.unexplained.empty());
   CHECK(adequacy.unexplained[0].channel == "lateral");
   const std::string& like = adequacy.unexplained[0].like;
-  CHECK((like == "centrifugal_drift" || like == "heading_latency"));  // of one form
+  CHECK((like == "centrifugal_drift" || like == "heading_latency"));  // the same form
 }
 
 TEST_CASE("what no effect explains is named by its channel and by what it depends on") {

@@ -28,7 +28,7 @@ double largestScore(const ScoreTest& test) {
   return largest;
 }
 
-/// A direction that acts in five blocks of twenty.
+/// A direction that acts in five of twenty blocks.
 Eigen::VectorXd rareDirection(const Observations& data) {
   Eigen::VectorXd direction = waves(data, 1).col(0);
   for (Eigen::Index i = 0; i < direction.size(); ++i)
@@ -36,7 +36,7 @@ Eigen::VectorXd rareDirection(const Observations& data) {
   return direction;
 }
 
-/// The rare direction's evidence among the waves, when it is there with a size.
+/// The rare direction's evidence among the waves, for a given size.
 double rareEvidence(const Rig& rig, double size, uint64_t seed, bool first = false) {
   Eigen::MatrixXd directions(rig.size(), kCandidates + 1);
   directions << waves(rig.data, kCandidates), rareDirection(rig.data);
@@ -61,7 +61,7 @@ TEST_CASE(
     if (familyWise(test.largestByChance(kDraws, seed), largestScore(test)) <= kLevel)
       ++false_alarms;
   }
-  // 10 are expected; a thousandth of all honest tests lies outside of these.
+  // 10 are expected; .1 % of all correct tests are outside of these limits.
   CHECK(false_alarms >= 2);
   CHECK(false_alarms <= 21);
 }
@@ -81,7 +81,7 @@ TEST_CASE("a direction that is in the residuals is found among the others, with 
     CHECK(test.promise(kHidden) > 0.0);
   }
   CHECK(found >= 18);
-  CHECK(mean == Approx(kSize).epsilon(0.25));  // first order, and heavy tails are assumed
+  CHECK(mean == Approx(kSize).epsilon(0.25));  // first order, assuming heavy tails
 }
 
 TEST_CASE("what the free parameters explain is no candidate's merit") {
@@ -96,7 +96,7 @@ TEST_CASE("what the free parameters explain is no candidate's merit") {
   const ScoreTest after(rig.fitter, state, directions);
   CHECK(after.score(0) == 0.0);
   CHECK(after.uniqueness(0) == 0.0);
-  CHECK(after.uniqueness(1) == Approx(1.0));  // of another channel
+  CHECK(after.uniqueness(1) == Approx(1.0));  // a different channel
 }
 
 TEST_CASE("an effect that few blocks excite counts by a clear size") {
@@ -108,7 +108,7 @@ TEST_CASE("an effect that few blocks excite counts by a clear size") {
     found_first += rareEvidence(rig, 2.0, seed, true) >= 1.0;
   }
   CHECK(found >= 18);
-  CHECK(found_first >= 16);  // when nothing else is known it takes more
+  CHECK(found_first >= 16);  // as the only knowledge it has more effect
 }
 
 TEST_CASE("chance in few blocks is no evidence") {
@@ -233,7 +233,7 @@ TEST_CASE("a direction that changes nothing is no candidate's, and has no size")
 
 TEST_CASE("uniqueness is the sine of the angle to what the free parameters can do") {
   const Rig rig({}, 200.0, 1);
-  Eigen::MatrixXd axes = waves(rig.data, 2);  // of two channels: at a right angle
+  Eigen::MatrixXd axes = waves(rig.data, 2);  // two channels: at a right angle
   axes.colwise().normalize();
   FitState state = rig.stateOf(blockNoise(rig.data, 1), 0.5);
   state.free.push_back(freeParameter(state.model, "yaw_pull.pull"));
@@ -247,7 +247,7 @@ TEST_CASE("uniqueness is the sine of the angle to what the free parameters can d
     CHECK(test.uniqueness(c) == Approx(std::sin(angles[c])).epsilon(1e-4));
     CHECK(test.own(c).dot(axes.col(0)) == Approx(0.0).margin(1e-6));
   }
-  CHECK(test.score(1) == Approx(test.score(3)));  // what is left of them is the same
+  CHECK(test.score(1) == Approx(test.score(3)));  // their remainders are equal
 }
 
 TEST_CASE("chance gives every pattern of signs of the blocks equally often") {
@@ -355,7 +355,7 @@ TEST_CASE("the chance of a size is a normal tail times the number of candidates"
 
 namespace {
 
-/// A state with one held number that explains the first wave: it lies `off` from what is known.
+/// A state with one held number that explains the first wave: it is `off` from its known value.
 FitState heldState(const Rig& rig, const Eigen::VectorXd& residuals, double off, double deviation) {
   FitState state = rig.stateOf(residuals, 1.0);
   state.free.push_back(freeParameter(state.model, "yaw_pull.pull"));
@@ -372,7 +372,7 @@ TEST_CASE("a direction that a held number imitates shows in how far that number 
   const Rig rig({}, 200.0, 1);
   const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(rig.size());
   const Eigen::MatrixXd same = waves(rig.data, 1);
-  // No residual is left: the score is of what was known alone.
+  // Without residuals the score comes from the prior alone.
   CHECK(ScoreTest(rig.fitter, heldState(rig, nothing, 0.0, 0.1), same).score(0) == 0.0);
   const ScoreTest gone(rig.fitter, heldState(rig, nothing, 0.5, 0.1), same);
   CHECK(gone.score(0) == Approx(2.5));

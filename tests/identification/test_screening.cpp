@@ -17,7 +17,7 @@ using samples::vehicleWith;
 
 namespace {
 
-/// The candidates of the nominal vehicle that always act.
+/// The candidates of the nominal vehicle that are always active.
 std::vector<Candidate> steadyCandidates(const Rig& rig, const FitState& state) {
   std::vector<Candidate> steady;
   for (const Candidate& candidate : candidatesFor(state, excitationOf(rig.data, state.model)))
@@ -30,7 +30,7 @@ const Candidate& ofEffect(const std::vector<Candidate>& candidates, const std::s
                        [&effect](const Candidate& c) { return c.effect == effect; });
 }
 
-/// A screening of made-up candidates: effect, evidence, promise.
+/// A screening with given candidates: effect, evidence, promise.
 Screening madeUp(const std::vector<std::tuple<std::string, double, double>>& rows) {
   Screening screening;
   for (const auto& [effect, evidence, promise] : rows) {

@@ -15,7 +15,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-/// What a whole search finds in a drive whose ground is that rough.
+/// Result of a complete search on a drive with this ground roughness.
 FoundTerms found(const Values& hidden, double seconds, uint64_t seed, double ground) {
   SyntheticNoise noise;
   noise.ground = ground;
@@ -24,7 +24,7 @@ FoundTerms found(const Values& hidden, double seconds, uint64_t seed, double gro
   return search(rig.fitter, syntheticVehicle(), {}, memory, samples::kSilent);
 }
 
-/// The size of the delay that was found, of the command or of the poses; 0 = none.
+/// The estimated delay, of the command or of the poses; 0 = none.
 double delayOf(const FoundTerms& result) {
   for (const std::string& name : result.effects) {
     const Effect& effect = effectNamed(name);
@@ -36,8 +36,8 @@ double delayOf(const FoundTerms& result) {
 
 }  // namespace
 
-// On this ground a step at the best of all moments fits a little better than the slope that is
-// there, by less than a standard error.
+// On this ground a step at the best time fits slightly better than the true slope, by less than a
+// standard error.
 TEST_CASE("a slow change that a step at some moment fits as well is told as what always acts") {
   const FoundTerms result = found({{"battery_sag.per_hour", 0.35}}, 400.0, 6, 0.05);
   CHECK(result.effects == Names{"battery_sag"});
@@ -58,7 +58,7 @@ TEST_CASE("a step that is there stays one, though what always acts explains a pa
   CHECK(*findParameter(result.state.model, "payload_change.time") == Approx(130.0).margin(10.0));
 }
 
-// Beside a lag of the drive, which is found first and too long, there is no room for the delay.
+// With a lag of the drive, which is found first and too long, the delay is not significant.
 TEST_CASE("a delay is found beside the lags of yaw rate and speed, and these get their sizes") {
   const FoundTerms result =
       found({{"yaw_inertia.lag", 1.0}, {"body_inertia.lag", 0.6}, {"command_delay.delay", 0.03}},

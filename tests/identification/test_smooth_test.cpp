@@ -7,7 +7,7 @@
 #include "core_rig.hpp"
 #include "modules/identification/core/smooth_test.hpp"
 
-// Functions of all conditions together that no list of variables has.
+// Functions of all conditions together that are in no list of variables.
 
 using namespace tread;
 using namespace tread::gap;
@@ -21,7 +21,7 @@ const Variable& inputNamed(const std::vector<Variable>& inputs, const std::strin
                        [&name](const Variable& input) { return input.name == name; });
 }
 
-/// Noise and, along, a wave over the pitch.
+/// Noise plus, along, a wave over the pitch.
 Eigen::VectorXd wavedNoise(const Rig& rig, uint64_t seed, double size) {
   const std::vector<Variable> inputs = inputsOf(rig.data, syntheticVehicle());
   const Eigen::VectorXd& pitch = inputNamed(inputs, "pitch").values;
@@ -47,7 +47,7 @@ TEST_CASE("a wave over a condition, which no variable follows, is found and name
     CHECK((rest.p_value <= 0.005) == along);
     REQUIRE(rest.variable == (along ? "pitch" : ""));
   }
-  // The fitted function follows the wave where it is, and is nothing elsewhere.
+  // The fitted function follows the wave where it is, and is zero elsewhere.
   const Eigen::VectorXd& fitted = rests[1].function;
   const Eigen::VectorXd wave = wavedNoise(rig, 3, 1.0) - wavedNoise(rig, 3, 0.0);
   CHECK(fitted.dot(wave) > 0.7 * fitted.norm() * wave.norm());
@@ -60,7 +60,7 @@ TEST_CASE("a condition that is constant or was not measured is never named") {
   const Rig rig({}, 400.0, 3);
   Eigen::VectorXd residuals = blockNoise(rig.data, 3, 0.1);
   std::vector<Variable> inputs = inputsOf(rig.data, syntheticVehicle());
-  // What is left is proportional to the speed: functions of a constant are that, too.
+  // The residual is proportional to the speed: functions with a constant represent it, too.
   for (size_t i = 0; i < rig.data.all().size(); ++i)
     if (rig.data.all()[i].channel == ObservedRate::kAlong)
       residuals[static_cast<Eigen::Index>(i)] += inputs[0].values[static_cast<Eigen::Index>(i)];

@@ -17,7 +17,7 @@ using Names = std::vector<std::string>;
 using samples::kSilent;
 const Needed kNeeded{3.0, 1.0};
 
-/// A search that has ended with the parameters that begin so.
+/// A finished search with these initial parameters.
 FoundTerms searchedWith(const Rig& rig, const Values& begin) {
   FoundTerms result;
   result.state = rig.fitted(begin);
@@ -115,7 +115,7 @@ TEST_CASE("without an effect the others are fitted anew, and the loss tells what
   REQUIRE(reduced.free.size() == 1);
   CHECK(reduced.free[0].path == "slip_ratio.slip");
   CHECK(reduced.loss > with.loss + 10.0);
-  // Slip is what comes nearest to a dead band.
+  // Slip is most similar to a deadband.
   CHECK(*findParameter(reduced.model, "slip_ratio.slip") >
         *findParameter(with.model, "slip_ratio.slip") + 0.02);
 }

@@ -10,7 +10,7 @@
 #include "modules/identification/core/unnamed.hpp"
 #include "nameless_drive.hpp"
 
-// What has no name and a shape becomes a term of the model.
+// Unexplained residuals with a shape become an unnamed term of the model.
 
 using namespace tread;
 using namespace tread::gap;
@@ -21,7 +21,7 @@ using samples::turningDrive;
 
 namespace {
 
-/// What find says of a drive, with the errors on another one.
+/// Result of find for a drive, with the errors on another one.
 GapFinding findWithTest(const ModelDocument& model, const Drive& train, const Drive& test,
                         bool named_only = false) {
   GapTask task;
@@ -47,13 +47,13 @@ TEST_CASE("an effect without a name becomes a term that closes most of the gap o
   const Drive test = turningDrive({}, kTurns, 22);
   const GapFinding found = findWithTest(syntheticVehicle(), turningDrive({}, kTurns, 21), test);
   REQUIRE_FALSE(found.identified.unnamed.empty());
-  // What has no name is told as such, whatever plain cause was found beside it.
+  // The unnamed part is reported as such, even if a plain cause was also found.
   CHECK((found.verdict == GapVerdict::kNotInCatalogue || found.verdict == GapVerdict::kPartial));
   const std::vector<UnnamedTerm>& terms = found.identified.model.vehicle.unnamed;
   REQUIRE(terms.size() == found.identified.unnamed.size());
   CHECK(terms[0].name == "unnamed_1");
   CHECK(terms[0].channel == TermChannel::kYawRate);
-  // The form itself: the square of the yaw rate, of either sign.
+  // The form itself: the square of the yaw rate, with either sign.
   for (const double side : {-0.6, 0.6}) {
     const TrackCommand spin{-side, side};
     const double plain = steadyTwist(syntheticVehicle().vehicle, spin).omega;
@@ -64,7 +64,7 @@ TEST_CASE("an effect without a name becomes a term that closes most of the gap o
   const double before = found.gap->before.yaw.rms;
   CHECK(before > 1.3 * floor);
   CHECK(found.gap->after.yaw.rms < floor + 0.3 * (before - floor));
-  // What is told has its numbers, and the covariance to hold them by.
+  // The term has its numbers, and the covariance for holding them.
   CHECK(found.identified.unnamed[0].gain > kTermSure * found.identified.unnamed[0].gain_error);
   CHECK(found.identified.unnamed[0].deviations.size() == terms[0].values.size());
   CHECK_FALSE(found.identified.unnamed[0].data.empty());
@@ -113,7 +113,7 @@ TEST_CASE("what a term of the model says is nothing new on the next drive") {
       findWithTest(model, turningDrive({}, 4.0 * kTurns, 23), turningDrive({}, 4.0 * kTurns, 24));
   CHECK(exitStatus(moved.verdict) != 0);
   CHECK(moved.identified.moved_terms == std::vector<std::string>{"unnamed_1"});
-  // What the term stood for is gone.
+  // The cause of the term has disappeared.
   const GapFinding gone = findWithTest(model, turningDrive({}, 0.0, 23), turningDrive({}, 0.0, 24));
   CHECK(exitStatus(gone.verdict) != 0);
   CHECK(gone.identified.moved_terms == std::vector<std::string>{"unnamed_1"});
@@ -141,7 +141,7 @@ TEST_CASE("values of given terms are held by their covariance and by what they v
   model.vehicle.unnamed = {term};
   model.covariance = {{"own_name.1", "own_name.2"}, {{0.0004, 0.0}, {0.0, 0.0009}}};
   const std::vector<FreeParameter> held = termParameters(model, false);
-  REQUIRE(held.size() == 2);  // the value at 0 is pinned
+  REQUIRE(held.size() == 2);  // the value at 0 is fixed
   CHECK(held[0].path == "own_name.1");
   CHECK(held[0].expected == 0.05);
   CHECK(held[0].deviation == Approx(std::hypot(0.02, kTermVaries * 0.1)));

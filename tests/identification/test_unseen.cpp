@@ -12,7 +12,7 @@ using samples::Rig;
 
 namespace {
 
-/// How far measured and predicted are apart at a point of an overlay [m].
+/// Distance of measured and predicted pose at a point of an overlay [m].
 double apart(const Overlay& overlay, size_t point) {
   return (overlay.measured[point].position() - overlay.after[point].position()).norm();
 }

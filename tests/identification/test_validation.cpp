@@ -16,7 +16,7 @@ using samples::waves;
 
 namespace {
 
-/// Gain of three parameters whose directions are waves, on blocks left out.
+/// Gain of three parameters with waves as directions, on left-out blocks.
 Gain gainOfThree(const Rig& rig, const Eigen::VectorXd& residuals) {
   const FitState none = rig.stateOf(residuals, 1.0);
   FitState three = none;
@@ -27,7 +27,7 @@ Gain gainOfThree(const Rig& rig, const Eigen::VectorXd& residuals) {
                      rig.fitter.blocksThatCount());
 }
 
-/// A vehicle that stands: its gyro says a bias with noise that each block has in common.
+/// A vehicle at rest: its gyro has a bias with noise that is common within each block.
 Drive standingDrive(double bias, double seconds, uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> gauss(0.0, 1.0);
@@ -99,13 +99,13 @@ TEST_CASE("the 95 percent interval from the blocks' scatter covers the truth 95 
     const ModelDocument model = syntheticVehicle();
     FitState state = fitter.start(model, {freeParameter(model, "gyro_bias.rate")});
     fitter.fitRoughly(state);
-    fitter.renewNoise(state);  // of a worse fit it is too large
+    fitter.renewNoise(state);  // for a worse fit it is too large
     fitter.fit(state);
     const double half =
         studentQuantile(data.blocks() - 1) * std::sqrt(parameterCovariance(fitter, state)(0, 0));
     covered += std::abs(*findParameter(state.model, "gyro_bias.rate") - kBias) < half;
   }
-  // 190 are expected; a thousandth of all honest intervals lies outside of these.
+  // 190 are expected; .1 % of all correct intervals are outside of these limits.
   CHECK(covered >= 179);
   CHECK(covered <= 198);
 }
@@ -138,7 +138,7 @@ TEST_CASE("what a block says is in no parameter that its own loss is told with")
   CHECK(other[kChanged] > loss[kChanged] + 100.0);
   int unmoved = 0;
   for (Eigen::Index b = 0; b < loss.size(); ++b) unmoved += other[b] == loss[b];
-  // Those held out together with it: their parameters never saw it.
+  // Blocks left out together with it: their parameters did not use it.
   CHECK(unmoved == (rig.data.blocks() - 1) / 5);
 }
 
@@ -228,7 +228,7 @@ TEST_CASE("parameters that follow the residuals in first order leave the model a
   const Eigen::VectorXd before = state.predicted;
   followLinearly(rig.fitter, state);
   CHECK(*findParameter(state.model, "yaw_pull.pull") == 0.0);
-  // Along the direction and nowhere else, until nothing of it is left in the residuals.
+  // Along the direction only, until the residuals contain nothing of it.
   const Eigen::VectorXd moved = state.predicted - before;
   const double size = moved.dot(directions.col(0)) / directions.col(0).squaredNorm();
   CHECK(size == Approx(0.7).margin(0.2));
@@ -253,7 +253,7 @@ TEST_CASE("the covariance is the scatter of the blocks' pulls over the informati
   REQUIRE(covariance.size() == 1);
   CHECK(covariance(0, 0) ==
         Approx(pulls.squaredNorm() * blocks / (blocks - 1.0) / (information * information)));
-  state.free[0].deviation = 1e-4;  // far better known than the drive says
+  state.free[0].deviation = 1e-4;  // far better known than from the drive
   CHECK(parameterCovariance(rig.fitter, state)(0, 0) == Approx(1e-8).epsilon(0.01));
   state.free.clear();
   CHECK(parameterCovariance(rig.fitter, state).size() == 0);

@@ -16,7 +16,7 @@ namespace {
 constexpr double kAlpha = 0.01;
 constexpr double kLeastGain = 0.01;
 
-/// A finding without effects, whose model errs as much as before times a factor.
+/// A finding without effects, whose model has the old errors times a factor.
 GapFinding findingWith(const std::vector<ParameterEstimate>& calibrated, double error_after) {
   GapFinding finding;
   finding.before = syntheticVehicle();

@@ -16,7 +16,7 @@ namespace {
 constexpr double kVoltageDrive = 400.0;  // [s]
 const Values kSag{{"battery_sag.per_hour", 1.8}};
 
-/// What is said of the hidden effect beside a voltage of 25 V that falls evenly by a share.
+/// Evidence on the hidden effect from a voltage of 25 V that falls linearly by a share.
 std::optional<VoltageWitness> voltageWitnessOf(const Values& hidden, double falls) {
   Rig rig(hidden, kVoltageDrive, 3);
   for (double time = 0.0; time < kVoltageDrive; time += 0.05)
@@ -28,7 +28,7 @@ std::optional<VoltageWitness> voltageWitnessOf(const Values& hidden, double fall
 }  // namespace
 
 TEST_CASE("a voltage that falls as much as the motion says that it is the battery") {
-  const auto voltage = voltageWitnessOf(kSag, 0.2);  // 1.8 an hour are 20 % in 400 s
+  const auto voltage = voltageWitnessOf(kSag, 0.2);  // 1.8 per hour are 20 % in 400 s
   REQUIRE(voltage);
   CHECK(voltage->share == Approx(1.0).margin(0.25));
   CHECK(voltage->low < voltage->share);

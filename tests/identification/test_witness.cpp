@@ -14,7 +14,8 @@ using samples::Values;
 
 namespace {
 
-/// What wheels whose tracks are those of `tracks` say of the effects hidden in a drive, in order.
+/// Evidence of wheels that follow the tracks of `tracks`, for the effects hidden in a drive, in
+/// order.
 std::vector<std::optional<WheelWitness>> witnessesOf(const Values& hidden, const Values& tracks,
                                                      double late = 0.0) {
   Rig rig(hidden, 400.0, 3);
@@ -71,7 +72,7 @@ TEST_CASE("a lag in the drive beside one under the wheels: together they are in 
   const Values drive{{"actuator_lag.lag", 0.4}};
   const auto both = witnessesOf({{"actuator_lag.lag", 0.4}, {"yaw_inertia.lag", 0.6}}, drive);
   for (const auto& wheels : both) {
-    if (!wheels) continue;  // too vague to be told
+    if (!wheels) continue;  // too vague to decide
     CHECK(wheels->of_lags);
     CHECK(wheels->share > 0.1);
     CHECK(wheels->share < 0.9);
@@ -131,10 +132,10 @@ TEST_CASE("encoders that are late themselves do not make a short latency of the 
 }
 
 TEST_CASE("of two effects that resemble each other wheels say one thing, or nothing") {
-  // A drive turns to one side by an asymmetry, of which the wheels show all, and is pulled besides.
+  // A drive turns to one side by an asymmetry that the wheels show completely, and by a pull.
   const Values both{{"track_asymmetry.share", 0.05}, {"yaw_pull.pull", 0.05}};
   for (const auto& said : witnessesOf(both, {{"track_asymmetry.share", 0.05}})) CHECK_FALSE(said);
-  // Where all is in the wheels there is no contradiction.
+  // If the wheels show everything there is no contradiction.
   const auto alone =
       witnessOf({{"track_asymmetry.share", 0.05}}, {{"track_asymmetry.share", 0.05}});
   REQUIRE(alone);

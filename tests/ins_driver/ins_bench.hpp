@@ -17,12 +17,12 @@ using tread::testing::kDeg;
 using tread::testing::kSecond;
 inline constexpr double kNoon = 43200.0;
 
-/// A device on a line, the core behind it, and what came out.
+/// A device on a line, the core behind it, and its output.
 class Bench {
  public:
   explicit Bench(const InsConfig& config = {}) : ins(config) {}
 
-  /// Bytes that are read at this time; then the line is quiet.
+  /// Bytes received at this time; then the line is quiet.
   void at(int64_t utime, const std::string& bytes) {
     collect(utime);
     ins.push(bytes, utime);

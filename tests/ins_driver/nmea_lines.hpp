@@ -14,7 +14,7 @@
 
 namespace tread::ins {
 
-/// A sentence as a device sends it, from what stands between '$' and '*'.
+/// A complete sentence from the text between '$' and '*'.
 inline std::string line(const std::string& body) {
   char checksum[8];
   std::snprintf(checksum, sizeof checksum, "*%02X\r\n", nmeaChecksum(body));
@@ -31,11 +31,11 @@ inline std::string hhmmss(double time_of_day) {
   return text;
 }
 
-/// Where the tests' vehicle starts: 42.0955622 N, 88.0340185 W.
+/// Start of the tests' vehicle: 42.0955622 N, 88.0340185 W.
 inline constexpr double kStartLatitude = 42.0955622;
 inline constexpr double kStartLongitude = -88.0340185;
 
-/// A GGA with RTK fix this far east and north of the start, small distances only [m].
+/// A GGA with RTK fix at a small distance east and north of the start [m].
 inline std::string gga(double time_of_day, double east = 0.0, double north = 0.0, int quality = 4,
                        double altitude = 221.0) {
   const double latitude = kStartLatitude + north / 111070.0;
@@ -66,7 +66,7 @@ inline std::string vtg(double course, double speed_kmh) {
   return line(body);
 }
 
-/// A recording, or nothing where it is absent.
+/// A recording; nullopt if it is absent.
 inline std::optional<std::string> recording(const std::string& path) {
   const char* folder = std::getenv("TREAD_RECORDINGS");
   std::ifstream file(std::string(folder ? folder : TREAD_SOURCE_DIR "/../shared/data") + "/" + path,

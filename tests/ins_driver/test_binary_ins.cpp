@@ -36,7 +36,7 @@ Truth truthAt(int64_t utime) {
   return {{40.0 + 3.0 * std::sin(yaw), -25.0 - 3.0 * std::cos(yaw), 0.5}, yaw};
 }
 
-/// What a device measures that stands at kArm, turned by kMountedYaw.
+/// Measurement of a device at kArm, rotated by kMountedYaw.
 sim::InsMeasurement sampleAt(int64_t utime) {
   const Truth truth = truthAt(utime);
   const Eigen::AngleAxisd R_map_body(truth.yaw, Eigen::Vector3d::UnitZ());
@@ -93,7 +93,7 @@ void compare(const InsEstimate& ins, Worst& worst) {
   const double yaw = yawPitchRoll(ins.R_map_body).yaw;
   worst.yaw = std::max(worst.yaw, std::abs(wrapAngle(yaw - truth.yaw)));
   const Eigen::Vector2d v(3.0 * kTurn, 0.0);
-  // The first heading tells no rate yet by which the arm's swing could be taken off.
+  // The first heading has no rate yet for correcting the arm's motion.
   if (!(ins.status & kNoVelocity) && worst.poses > 1)
     worst.velocity = std::max(worst.velocity, (ins.v_body.head<2>() - v).norm());
   if (!std::isfinite(ins.rate_body.z())) return;
@@ -114,7 +114,7 @@ Worst drive(Device& device, double from, double to) {
   return worst;
 }
 
-/// The grain of a device's position [m].
+/// Position resolution of a device [m].
 double grainOf(const std::string& name) {
   return name == "ublox" ? 0.015 : 2e-3;
 }
@@ -132,7 +132,7 @@ TEST_CASE("what a device of binary messages measures comes out as the body's mot
     CHECK(worst.position < grainOf(name));
     CHECK(worst.yaw < 1e-5);
     CHECK(worst.velocity < 2e-3);
-    CHECK(worst.rates > 2900);  // NovAtel's are known once the samples a second are learnt
+    CHECK(worst.rates > 2900);  // NovAtel's are available once its samples per second are known
     CHECK(worst.rate < 1e-4);
     CHECK(device.driver->framer().refusals().empty());
     CHECK(device.driver->framer().strayBytes() == 0);
@@ -149,7 +149,7 @@ TEST_CASE("dropped bytes, wrong checksums, half messages and garbage never make 
     const Worst worst = drive(device, 1.0, 61.0);
     CAPTURE(name, worst.position, worst.yaw, worst.velocity, device.driver->refusals());
     CHECK(worst.poses > 2300);
-    CHECK(worst.position < grainOf(name) + 2e-3);  // carried for 150 ms at most, in a curve
+    CHECK(worst.position < grainOf(name) + 2e-3);  // extrapolated for 150 ms at most, in a curve
     CHECK(worst.yaw < 1e-4);
     CHECK(device.driver->reasons().at("wrong checksum") > 50);
     CHECK(device.driver->framer().waiting() < kMaxFrame);
@@ -199,7 +199,7 @@ TEST_CASE("random and mutated bytes neither crash, nor grow, nor make a pose wit
     int64_t fed = 0;
     while (fed < 1'000'000) {
       std::string chunk = good.substr(random() % good.size(), 1 + random() % 900);
-      // Each byte is another one in one of 30 places: a message of 60 bytes rarely survives.
+      // Each byte is altered with probability 1/30: a message of 60 bytes rarely survives.
       for (size_t at = random() % 30; at < chunk.size(); at += 1 + random() % 60)
         chunk[at] = static_cast<char>(random() & 0xFF);
       if (random() % 4 == 0) {
@@ -215,7 +215,7 @@ TEST_CASE("random and mutated bytes neither crash, nor grow, nor make a pose wit
     }
     CAPTURE(name, device.driver->refusals());
     CHECK(device.driver->reasons().at("wrong checksum") > 100);
-    // It still hears: a whole second is understood behind the garbage and what waited there.
+    // It still receives: a whole second is decoded after the garbage.
     device.driver->interrupt();
     const int64_t before = device.driver->frames();
     device.driver->push(good, now + 1'000'000);

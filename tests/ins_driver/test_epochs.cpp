@@ -25,7 +25,7 @@ Zda zdaAt(int64_t time_of_day, CivilDate date) {
   return Zda{time_of_day, date};
 }
 
-/// Feeds a sentence and says when its bytes came.
+/// Feeds a sentence and its time of reception.
 bool feed(EpochCollector& collector, const NmeaSentence& sentence, int64_t arrival) {
   collector.noteBytes(arrival);
   if (const auto* zda = std::get_if<Zda>(&sentence)) {
@@ -97,7 +97,7 @@ TEST_CASE("sentences without a time before the timed one belong to its epoch") {
     feed(collector, ggaAt(arrival + kSecond), arrival);
     feed(collector, Vtg{0.2 * i, {}}, arrival);
   }
-  // Not told by silence but by the second HDT: as when a whole log is read at once.
+  // Detected by the second HDT instead of silence, as when a whole log is read at once.
   for (int i = 0; i < 2; ++i) {
     const auto epoch = collector.next(1'000'000);
     REQUIRE(epoch);
@@ -149,7 +149,7 @@ TEST_CASE("device time runs on through midnight, the date only with a date sente
   CHECK(*second->device_time - *first->device_time == 100'000);
   CHECK(*third->device_time - *second->device_time == 100'000);
   CHECK(first->device_utc == 1709164799900000);   // 2024-02-28 23:59:59.9
-  CHECK(second->device_utc == 1709164800000000);  // 2024-02-29 00:00:00.0, before any new date
+  CHECK(second->device_utc == 1709164800000000);  // before any new date
 }
 
 TEST_CASE("there is no UTC before the device told a date") {
@@ -194,13 +194,13 @@ TEST_CASE("the arrival filter takes jitter out and never puts a measurement afte
   }
   CAPTURE(worst, worst_arrival);
   CHECK(worst < 300.0);            // [us]: 20 ppm over the window are 200
-  CHECK(worst_arrival > 20000.0);  // what it would be without the filter
+  CHECK(worst_arrival > 20000.0);  // without the filter
 }
 
 TEST_CASE("a stalled reader does not move the measurement times") {
   ArrivalFilter filter(10'000'000);
   for (int i = 0; i < 100; ++i) filter.add(i * 20'000, 7'000'000 + i * 20'000);
-  // The process stood still for 2 s: all bytes are read at one instant.
+  // The process was halted for 2 s: all bytes are read at the same time.
   for (int i = 100; i < 200; ++i) {
     filter.add(i * 20'000, 7'000'000 + 200 * 20'000);
     CHECK(filter.hostTime(i * 20'000) == 7'000'000 + i * 20'000);
@@ -231,7 +231,7 @@ TEST_CASE("a week counted modulo 1024 goes on through its roll-over, a set clock
   CHECK(weeks.timeOf(2100, 0) == 2100 * kWeekUs);
   CHECK(weeks.timeOf(2100, kSecond) == 2100 * kWeekUs + kSecond);
   CHECK(weeks.rollovers() == 1);
-  // Once the receiver knows its era, it is the same time.
+  // Once the receiver has its era, the time is the same.
   GpsWeeks learns;
   CHECK(learns.timeOf(300, 0) == 2348 * kWeekUs);
   CHECK(learns.timeOf(2348, kSecond) == 2348 * kWeekUs + kSecond);

@@ -15,10 +15,10 @@ namespace {
 using tread::testing::kSecond;
 
 constexpr int64_t kScans = 100'000;      // [us] between poses of scan matching
-constexpr int64_t kDevice = 20'000;      // [us] between those of the device
-const Pose2 kScanFrame{3.0, -2.0, 0.7};  // of the map: the two begin anywhere
+constexpr int64_t kDevice = 20'000;      // [us] between poses of the device
+const Pose2 kScanFrame{3.0, -2.0, 0.7};  // in the map: the two frames have independent origins
 
-/// A body on an arc of 10 m at 1 m/s, which a device and scan matching watch.
+/// A body on an arc of 10 m at 1 m/s, measured by a device and by scan matching.
 class Watched {
  public:
   static Pose2 truth(int64_t utime) {
@@ -35,7 +35,7 @@ class Watched {
     estimate.attitude_std = {0.005, 0.005, 0.01};
     return estimate;
   }
-  /// As scan matching sees it, drifting sideways by 2 cm a metre.
+  /// Pose of scan matching, drifting sideways by 2 cm per metre.
   static ScanPose scanned(int64_t utime) {
     ScanPose pose;
     const double way = 1e-6 * static_cast<double>(utime);
@@ -46,7 +46,7 @@ class Watched {
     return pose;
   }
 
-  /// Lets time pass; `device` gives an estimate or leaves it out.
+  /// Advances the time; `device` returns an estimate or none.
   template <class Device>
   void run(double seconds, const Device& device) {
     for (const int64_t end = now_ + std::llround(seconds * 1e6); now_ < end;) {
@@ -87,20 +87,20 @@ TEST_CASE("a silent device is filled in for by scan matching, from its last pose
   CHECK(body.fill_in.filled() == 0);
   const size_t before = body.track.size();
   body.silent(4.0);
-  // The first after 150 ms, then each scan.
+  // The first after 150 ms, then one per scan.
   CHECK(body.track.size() >= before + 37);
   for (size_t i = before; i < body.track.size(); ++i) {
     CHECK(body.track[i].status == (kFilledIn | kNoAttitude));
     CHECK(body.track[i].utime > body.track[i - 1].utime);
   }
   CHECK(body.fill_in.since() == body.track[before].utime);
-  // Scan matching drifted by 8 cm since; that it does not know where north lies adds nothing.
+  // Scan matching has drifted by 8 cm; its unknown north adds no error.
   CHECK(body.error() == Approx(0.08).margin(0.02));
   CHECK(body.yawError() < 1e-6);
   CHECK(body.track.back().p_map_body.z() == Approx(231.0));
   CHECK(body.track.back().v_body.x() == Approx(1.0));
   CHECK(std::isnan(body.track.back().v_body.z()));
-  // Of the device .02 m and .01 rad, over 4 m of way; the drift as told: the root of .18² - .1².
+  // The device has .02 m and .01 rad, over 4 m of path; published drift: the root of .18² - .1².
   const double drift = std::sqrt(0.18 * 0.18 - 0.1 * 0.1);
   CHECK(body.track.back().position_std.x() ==
         Approx(std::sqrt(0.02 * 0.02 + drift * drift + 0.04 * 0.04)).epsilon(0.05));
@@ -134,13 +134,13 @@ TEST_CASE("a device that knows no position, or no heading, keeps what it knows")
     estimate.status |= kNoPosition;
     return std::optional<InsEstimate>(estimate);
   });
-  // At the device's rate: between two scans the pose goes on with the twist.
+  // At the device's rate: between two scans the pose is extrapolated with the twist.
   CHECK(body.track.size() == 250);
   CHECK(body.track.back().status == kFilledIn);
   CHECK(body.error() < 0.06);
   CHECK(body.track.back().attitude_std.z() == 0.01);
 
-  // The antenna stands 1 m ahead: without a heading nobody knew which way.
+  // The antenna is 1 m ahead: without a heading its direction is unknown.
   body.run(2.0, [](int64_t utime) {
     InsEstimate estimate = Watched::measured(utime);
     const Eigen::Vector3d arm(1.0, 0.0, 2.0);
@@ -171,7 +171,7 @@ TEST_CASE("nothing is filled in without a common start, beyond the drift, or ove
   CHECK(far.fill_in.since());
   far.silent(50.0);
   CHECK_FALSE(far.fill_in.since());
-  // .5 m at the told 2 cm a metre.
+  // .5 m at the published 2 cm per metre.
   const double end = 1e-6 * static_cast<double>(far.track.back().utime);
   CHECK(std::sqrt(0.02 * end * 0.02 * end - 0.06 * 0.06) == Approx(0.5).margin(0.01));
 

@@ -13,7 +13,7 @@ InsConfig withCourse() {
   return config;
 }
 
-/// A tenth of a second of positions and course; the rate of turn is measured where it is given.
+/// .1 s of positions and course; with a measured yaw rate if given.
 void step(Bench& bench, int& tenth, double course, double kmh, const std::string& more = "") {
   const double t = tenth * 0.1;
   bench.at(tenth * 100'000, gga(kNoon + t, 0.01 * tenth) + vtg(course, kmh) + more);
@@ -41,11 +41,11 @@ TEST_CASE("driving backwards the nose stays where it was, also after a turn on t
   int tenth = 0;
   step(bench, tenth, 90.0, 7.2, hdt(90.0) + kNoTurn);
   for (int i = 0; i < 15; ++i) step(bench, tenth, 90.0, 7.2, kNoTurn);
-  for (int i = 0; i < 20; ++i) step(bench, tenth, 123.0, 0.05, kNoTurn);  // it stands
+  for (int i = 0; i < 20; ++i) step(bench, tenth, 123.0, 0.05, kNoTurn);  // at rest
   for (int i = 0; i < 20; ++i) step(bench, tenth, 270.0, 7.2, kNoTurn);   // and reverses
   CHECK(bench.angles().yaw == Approx(0.0).margin(1e-6));
   CHECK(bench.last().v_body.x() == Approx(-2.0).margin(1e-6));
-  // Half a turn to the right on the spot, measured: 1800 degrees a minute for 6 s.
+  // Half a turn to the right on the spot, measured: 1800 degrees per minute for 6 s.
   for (int i = 0; i < 60; ++i) step(bench, tenth, 0.0, 0.05, line("GPROT,1800.0,A"));
   for (int i = 0; i < 20; ++i) step(bench, tenth, 270.0, 7.2, kNoTurn);
   CHECK(std::abs(bench.angles().yaw) == Approx(kPi).margin(1e-6));

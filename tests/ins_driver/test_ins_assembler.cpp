@@ -83,7 +83,7 @@ TEST_CASE("the lever arm moves the antenna's position to the body's origin") {
   CHECK(bench.last().p_map_body.x() == Approx(10.5).margin(0.01));
   CHECK(bench.last().p_map_body.y() == Approx(19.0).margin(0.01));
   CHECK(bench.last().p_map_body.z() == Approx(0.0).margin(0.001));
-  // Rolled 90 degrees to the right the mast points to the right: east.
+  // Rolled 90 degrees to the right the mast points right, which is east.
   bench.at(2 * kSecond, gga(kNoon + 1.0, 10.0, 20.0, 4, 223.0) + pashr(kNoon + 1.0, 0.0, 90.0));
   CHECK(bench.last().p_map_body.x() == Approx(8.0).margin(0.01));
   CHECK(bench.last().p_map_body.y() == Approx(19.0).margin(0.01));
@@ -108,7 +108,7 @@ TEST_CASE("turning on the spot the antenna moves, the body does not") {
       if (with_rot) burst += line("GPROT,-1718.873,A");
       bench.at(kSecond + i * 20'000, burst);
       CHECK(bench.last().p_map_body.head<2>().norm() < 0.01);
-      if (i == 0 && !with_rot) continue;  // a single heading tells no rate
+      if (i == 0 && !with_rot) continue;  // a single heading has no rate
       CHECK(bench.last().v_body.head<2>().norm() < 0.01);
       CHECK_FALSE(bench.last().status & (kJump | kGap));
     }
@@ -121,7 +121,7 @@ TEST_CASE("a device that is mounted turned reports the body's attitude") {
   config.body_device = {90.0 * kDeg, 0.0, 0.0};  // the device's nose points to the left
   Bench bench(config);
   bench.at(kSecond, gga(kNoon) + pashr(kNoon, 0.0, 5.0, 0.0));
-  // The device looks north, so the body looks east; the device's roll is the body's pitch.
+  // The device faces north, so the body faces east; the device's roll is the body's pitch.
   CHECK(bench.angles().yaw == Approx(0.0).margin(1e-9));
   CHECK(bench.angles().pitch == Approx(5.0 * kDeg).margin(1e-9));
   CHECK(bench.angles().roll == Approx(0.0).margin(1e-9));
@@ -151,7 +151,7 @@ TEST_CASE(
   CHECK(ins.status == (kNoHeading | kNoAttitude | kNoVelocity));
   CHECK(std::isnan(ins.R_map_body.w()));
   CHECK(std::isnan(ins.v_body.x()));
-  // The arm is left out, and the accuracy says so.
+  // The arm is left out, which the accuracy reflects.
   CHECK(ins.p_map_body.x() == Approx(0.0).margin(0.01));
   CHECK(ins.position_std.x() > 1.5);
 }

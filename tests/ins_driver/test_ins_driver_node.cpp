@@ -44,7 +44,7 @@ class Rig {
   void say(const std::string& bytes) {
     device->write(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size());
   }
-  /// 50 Hz of positions and attitudes for this long, driving east at 1 m/s.
+  /// 50 Hz of positions and attitudes for a time, driving east at 1 m/s.
   void drive(double seconds) {
     const int epochs = static_cast<int>(std::lround(seconds * 50.0));
     for (int i = 0; i < epochs; ++i) {
@@ -77,7 +77,7 @@ class Rig {
   InsDriverConfig config_;
 };
 
-/// The bus of a process whose clock goes on inside a step.
+/// Bus of a process whose clock advances within a step.
 class HostBus : public Bus {
  public:
   int64_t now() const override { return time; }
@@ -102,7 +102,7 @@ class HostBus : public Bus {
   void listen(const char* /*channel*/) override {}
 };
 
-/// A line on whose first read the process is held up.
+/// A line whose first read delays the process.
 class HeldUpLink : public Link {
  public:
   HeldUpLink(Link& link, std::function<void()> hold_up)
@@ -156,7 +156,7 @@ TEST_CASE("a process that is held up before it reads does not take bytes as olde
   line.armed = true;
   drive(100);
   REQUIRE(bus.track.size() > 150);
-  // A metre a second to the east: the place tells the true time of a measurement.
+  // 1 m/s to the east: the position shows the true time of a measurement.
   const ins_t& first = bus.track.front();
   for (const ins_t& m : bus.track) {
     const double elapsed = static_cast<double>(m.utime - first.utime) * 1e-6;
@@ -219,7 +219,7 @@ TEST_CASE("a restart keeps the map frame") {
   rig.drive(1.0);
   CHECK(rig.track.back().position[0] == Approx(before + 1.0).margin(0.01));
   REQUIRE(rig.store.read(kOriginEntry));
-  // Without the store it would start anew.
+  // Without the store it would begin with a new origin.
   rig.store.remove(kOriginEntry);
   rig.bus.restart("ins_driver");
   rig.drive(1.0);
@@ -465,7 +465,7 @@ TEST_CASE("the map's origin survives being written and read to a tenth of a mill
 TEST_CASE("while the device is silent INS goes on from scan matching, and HEALTH says so") {
   Rig rig(configured("fill_in: {}"));
   int64_t seq = 0;
-  // A frame of its own, in which the robot drives along x.
+  // A separate frame, in which the robot drives along x.
   const auto scanned = [&](double seconds, bool device) {
     for (const int64_t end = rig.bus.now() + std::llround(seconds * 1e6); rig.bus.now() < end;) {
       auto message = blank<ins_t>();
@@ -587,7 +587,7 @@ TEST_CASE("a date that is 1024 weeks off this host's is told, another old one is
     auto [device, robot] = makePipe();
     MemoryStore store;
     InsDriverNode node(configured(), bus, *robot, store);
-    // The device says 2026-11-26.
+    // The device has the date 2026-11-26.
     bus.date = int64_t{1'795'694'400} * kSecond + weeks * kWeek;
     for (int i = 0; i < 120; ++i, bus.time += 20'000) {
       const double seconds = static_cast<double>(bus.time) * 1e-6;

@@ -80,7 +80,7 @@ Worst drive(double seconds, const sim::NmeaInsFaults& faults, NmeaIns& ins) {
     const int64_t arrival = utime + kLatencyUs;
     ins.push(device.transmit(arrival), arrival);
     while (const auto estimate = ins.next(arrival)) compare(*estimate, worst);
-    // The line is quiet until the next measurement: what lost its last sentence ends here.
+    // The line is quiet until the next measurement, which ends an epoch without its last sentence.
     while (const auto estimate = ins.next(arrival + 15'000)) compare(*estimate, worst);
   }
   return worst;
@@ -94,7 +94,7 @@ TEST_CASE("what the emulated INS measures comes out of the driver as it went in"
   CAPTURE(worst.position, worst.yaw, worst.tilt, worst.velocity);
   CHECK(worst.messages == 2999);
   CHECK(worst.position < 1e-3);
-  CHECK(worst.yaw < 1e-5);  // the device prints thousandths of a degree
+  CHECK(worst.yaw < 1e-5);  // the device prints .001 deg
   CHECK(worst.tilt < 1e-5);
   CHECK(worst.velocity < 2e-4);
   CHECK(ins.counts().refused.total() == 0);
@@ -110,8 +110,8 @@ TEST_CASE("a bad line costs sentences but never makes a wrong pose") {
   const Worst worst = drive(120.0, faults, ins);
   CAPTURE(worst.position, worst.yaw, worst.tilt, worst.velocity);
   CHECK(worst.messages > 5500);
-  CHECK(worst.position < 2e-3);  // carried straight on for 60 ms while it turns
-  CHECK(worst.yaw < 2e-5);       // one carried on by its rate is a little coarser
+  CHECK(worst.position < 2e-3);  // extrapolated straight for 60 ms while it turns
+  CHECK(worst.yaw < 2e-5);       // with extrapolation by its rate slightly less accurate
   CHECK(worst.tilt < 7e-3);      // pitch and roll are held for 60 ms at most, here at 0.1 rad/s
   CHECK(worst.velocity < 1e-3);
   CHECK(ins.counts().refused.total() > 1000);

@@ -15,7 +15,7 @@ TEST_CASE("a position between two attitudes takes the last one, carried on by it
   CHECK(bench.angles().roll == Approx(1.0 * kDeg).margin(1e-6));
   CHECK(bench.last().attitude_std.z() == Approx(std::hypot(0.3, 0.5) * kDeg));
   CHECK(bench.ins.assembler().counts().carried == 1);
-  // Too old an attitude is not carried.
+  // An old attitude is not extrapolated.
   bench.at(300'000, gga(kNoon + 0.3));
   CHECK(bench.last().status & kNoHeading);
 }
@@ -32,7 +32,7 @@ TEST_CASE("25 Hz of attitudes with 10 Hz of positions are 25 poses a second, car
       if (i % 2 == 0) burst += pashr(kNoon + t, 90.0);
       if (!burst.empty()) bench.at(i * 20'000, burst);
     }
-    // Of 60 instants 20 have a position; the attitudes between them have it carried.
+    // Of 60 times 20 have a position; the attitudes in between extrapolate it.
     CHECK(bench.out.size() == (wanted ? 60 : 20));
     for (const InsEstimate& ins : bench.out) {
       CHECK(ins.p_map_body.x() == Approx(2.0 * static_cast<double>(ins.utime) * 1e-6).margin(0.01));
@@ -51,7 +51,7 @@ TEST_CASE(
     const double t = i * 0.04;
     bench.at(i * 40'000, (i % 5 == 0 ? gga(kNoon + t, t) : "") + pashr(kNoon + t, 90.0));
   }
-  // The first attitudes have but one position before them; the others have it for 150 ms.
+  // The first attitudes have only one earlier position; the others have it for 150 ms.
   CHECK(bench.out.size() == 4 + 3 * 3);
   CHECK(bench.last().status == kNoVelocity);
   CHECK(bench.last().p_map_body.x() == Approx(0.72).margin(0.01));

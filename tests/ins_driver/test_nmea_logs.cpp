@@ -14,7 +14,7 @@ namespace {
 
 using tread::testing::kDeg;
 
-/// What a recorded log holds.
+/// Content of a recorded log.
 struct NmeaLogSummary {
   NmeaCounts counts;
   AssemblerCounts epochs;
@@ -24,7 +24,7 @@ struct NmeaLogSummary {
   std::optional<InsEstimate> last_pose;   ///< last likewise
 };
 
-/// Runs a whole log through the core, in its own time.
+/// Runs a complete log through the core, in its own time.
 NmeaLogSummary summarise(std::string_view log, const InsConfig& config) {
   NmeaIns ins(config);
   NmeaLogSummary summary;
@@ -34,7 +34,7 @@ NmeaLogSummary summarise(std::string_view log, const InsConfig& config) {
   };
   int64_t now = 0;
   for (const NmeaBurst& burst : scheduleNmeaLog(log)) {
-    // What the line's silence before this burst ended.
+    // The silence before this burst ends the previous epoch.
     collect(burst.utime);
     now = burst.utime;
     ins.push(burst.bytes, now);
@@ -156,7 +156,7 @@ TEST_CASE("rst39.log: the velocity that it tells is the one that its positions s
     const Eigen::Vector3d v_map = (after.p_map_body - before.p_map_body) /
                                   (static_cast<double>(after.utime - before.utime) * 1e-6);
     const Eigen::Vector3d v_body = ins.R_map_body.conjugate() * v_map;
-    // A velocity a second, carried for 150 ms in a curve.
+    // One velocity per second, extrapolated for 150 ms in a curve.
     CHECK(ins.v_body.x() == Approx(v_body.x()).margin(0.15));
     CHECK(ins.v_body.y() == Approx(v_body.y()).margin(0.15));
     ++compared;
@@ -180,7 +180,7 @@ TEST_CASE("hemi.log: 215 epochs, of which 21 hold a fix and 4 a heading") {
   int headings = 0;
   for (const InsEstimate& ins : summary.estimates) {
     if (!(ins.status & kNoHeading)) ++headings;
-    // It stood: its course went round the compass, its velocity must not.
+    // At rest: its course varies over all directions, its velocity must not.
     if (!(ins.status & kNoVelocity)) CHECK(ins.v_body.head<2>().norm() == 0.0);
   }
   CHECK(headings == 4);
@@ -198,7 +198,7 @@ TEST_CASE("bt451.log: indoors, then outdoors, no heading, so never a pose") {
   CHECK(summary.counts.refused[SentenceRefusal::kUnknownSentence] == 76);
   CHECK(summary.counts.refused.total() == 76);
   CHECK_FALSE(summary.first_pose);
-  // Two recordings in one file: the second was made earlier that day.
+  // Two recordings in one file: the second is earlier that day.
   CHECK(summary.epochs.clock_steps == 1);
 }
 

@@ -22,7 +22,7 @@ Sentence good(const std::string& body) {
   return std::get<Sentence>(std::get<NmeaSentence>(result));
 }
 
-/// Reason as text, so that a failure is readable; "" if the sentence is accepted.
+/// Reason as text, for readable failures; "" if the sentence is accepted.
 std::string refusal(const std::string& body) {
   const ParseResult result = parseNmea(body);
   const auto* reason = std::get_if<SentenceRefusal>(&result);
@@ -63,7 +63,7 @@ TEST_CASE("GGA without a real fix has no position, coordinates or not") {
     CHECK_FALSE(gga.altitude);
     CHECK(gga.time_of_day);
   }
-  // A position without altitude is one; an altitude without position is not.
+  // A position without altitude is valid; an altitude without position is not.
   CHECK(good<Gga>("GPGGA,204132.10,4205.7,N,08802.0,W,1,08,1.0,,M,,,3,0138").position);
   CHECK_FALSE(good<Gga>("GPGGA,204132.10,,,,,1,08,1.0,221.9,M,,,3,0138").altitude);
 }

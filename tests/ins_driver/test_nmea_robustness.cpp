@@ -25,7 +25,7 @@ const std::vector<std::string>& examples() {
   return kExamples;
 }
 
-/// The bodies of those sentences that framer and parser let through.
+/// Bodies of the sentences accepted by framer and parser.
 std::vector<std::string> acceptedOf(const std::string& bytes) {
   NmeaFramer framer;
   std::vector<std::string> bodies;
@@ -36,7 +36,7 @@ std::vector<std::string> acceptedOf(const std::string& bytes) {
   return bodies;
 }
 
-/// What an estimate promises whatever came in: status bits and NaN agree, the rest is finite.
+/// Promises of an estimate for any input: status bits and NaN agree, everything else is finite.
 void checkHonest(const InsEstimate& ins, int64_t now) {
   const bool position = !(ins.status & kNoPosition);
   CHECK(std::isfinite(ins.p_map_body.x()) == position);
@@ -49,7 +49,8 @@ void checkHonest(const InsEstimate& ins, int64_t now) {
   for (int i = 0; i < 3; ++i) CHECK_FALSE(std::isinf(ins.position_std[i]));
 }
 
-/// Changes bytes of a line; half of the time the checksum is made good again, to get at the parser.
+/// Alters bytes of a line; in half of the cases the checksum is corrected, so that the parser is
+/// reached.
 std::string mutated(std::string text, std::mt19937_64& random) {
   const int changes = 1 + static_cast<int>(random() % 4);
   for (int i = 0; i < changes && text.size() > 2; ++i) {

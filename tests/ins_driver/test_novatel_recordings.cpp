@@ -20,7 +20,7 @@ Number numberIn(const std::string& bytes, size_t at) {
   return number;
 }
 
-/// The TCP payload of an IPv4 packet in an Ethernet frame, of the side that sends from this port.
+/// TCP payload of an IPv4 packet in an Ethernet frame, sent from this port.
 std::string payloadOf(const std::string& frame, unsigned port) {
   constexpr size_t kEthernet = 14;
   const auto byte = [&](size_t at) -> size_t {
@@ -34,7 +34,7 @@ std::string payloadOf(const std::string& frame, unsigned port) {
   return end > start && end <= frame.size() ? frame.substr(start, end - start) : std::string{};
 }
 
-/// Plays the enhanced packet blocks of a pcapng file (its segments lie in order) to a driver.
+/// Plays the enhanced packet blocks of a pcapng file (segments in order) to a driver.
 template <class Play>
 void playCapture(const std::string& file, unsigned port, const Play& play) {
   constexpr uint32_t kEnhancedPacket = 6;
@@ -79,13 +79,13 @@ TEST_CASE("corrimudata.pcap: 28 BESTPOS, 29 CORRIMUDATA, 28 INSPVAX, and a pose 
   CHECK(ins.framer().refusals().count("wrong checksum") == 0);
   const AssemblerCounts& epochs = ins.assembler().counts();
   CAPTURE(epochs.epochs, epochs.attitude_only, epochs.not_newer);
-  // The capture starts late in its first epoch: by the clock offset that the second shows it is not
-  // older than that one.
+  // The capture begins within its first epoch; with the clock offset of the second one it is not
+  // older than that.
   CHECK(poses.size() == 27);
   CHECK(epochs.not_newer == 1);
   REQUIRE_FALSE(poses.empty());
   const InsEstimate& last = poses.back();
-  CHECK(last.p_map_body.head<2>().norm() < 0.6);  // it stood; the first fix may be the antenna's
+  CHECK(last.p_map_body.head<2>().norm() < 0.6);  // at rest; the first fix may be the antenna's
   CHECK(last.device_utc ==
         (int64_t{315964800} + 1820 * int64_t{604800} - 18) * 1000000 + 160207250000);
   CHECK(yawPitchRoll(last.R_map_body).yaw == Approx(-4.203 * testing::kDeg).margin(0.001));

@@ -44,7 +44,7 @@ std::string mtData2(const std::string& data) {
 const std::string kXbusTime = datum(0x1060, highFirst(20'000, 4));
 const std::string kXbusStatus = datum(0xE020, highFirst(0x01800007U, 4));
 
-/// The first reason why a message was not used; empty if it was.
+/// The first reason for not using a message; empty if it was used.
 std::string refusalOf(const std::string& data) {
   XsensIns driver{InsConfig{}};
   driver.push(mtData2(data), 5'000'000);

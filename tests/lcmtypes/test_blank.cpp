@@ -14,7 +14,7 @@
 namespace tread {
 namespace {
 
-/// Goes through a type's .lcm file and the bytes of its blank message side by side.
+/// Compares a type's .lcm file with the bytes of its blank message.
 class BlankCheck {
  public:
   explicit BlankCheck(std::vector<uint8_t> bytes) : bytes_(std::move(bytes)) {}
@@ -40,7 +40,7 @@ class BlankCheck {
       if (size.find_first_not_of("0123456789") != std::string::npos) return;  // is empty
       count = std::stoul(size);
     }
-    // "-1 unknown", "-1 = none": a value of its own that says so.
+    // "-1 unknown", "-1 = none": a special value.
     const bool minus = std::regex_search(comment, std::regex("; -1( |$)"));
     for (size_t i = 0; i < count; ++i) checkValue(type, minus);
   }
@@ -57,7 +57,7 @@ class BlankCheck {
     } else if (type == "boolean" || type == "byte") {
       CHECK(integer(1) == 0);
     } else if (type == "string") {
-      CHECK(integer(4) == 1);  // its closing zero
+      CHECK(integer(4) == 1);  // its terminating zero
       CHECK(integer(1) == 0);
     } else {
       check(type);
@@ -79,7 +79,7 @@ class BlankCheck {
   }
 
   std::vector<uint8_t> bytes_;
-  size_t at_ = 8;  ///< behind the fingerprint
+  size_t at_ = 8;  ///< after the fingerprint
 };
 
 }  // namespace

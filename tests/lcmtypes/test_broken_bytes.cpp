@@ -13,7 +13,7 @@ TEST_CASE("a message that ends early is no message, wherever it ends") {
     using Message = std::decay_t<decltype(sample)>;
     const auto whole = testing::encode(sample);
     for (size_t size = 0; size < whole.size(); ++size) {
-      // A vector of just this size, so that a sanitizer sees a read beyond it.
+      // A vector of exactly this size, so that a sanitizer detects reads beyond it.
       const std::vector<uint8_t> bytes(whole.begin(), whole.begin() + static_cast<long>(size));
       Message message{};
       CHECK_FALSE(testing::decode(bytes, message));
@@ -45,7 +45,7 @@ TEST_CASE("a broken byte anywhere costs neither memory nor time") {
       }
     }
   });
-  // Before lengths were bounded, one such byte could cost 50 GB and minutes.
+  // Without bounded lengths one such byte could cost 50 GB and minutes.
   CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(20));
 }
 

@@ -12,7 +12,7 @@
 namespace tread {
 namespace {
 
-constexpr int kMostBytes = 60'000;  // from 130 kB on, LCM loses most messages in silence
+constexpr int kMostBytes = 60'000;  // from 130 kB on LCM silently loses most messages
 
 }  // namespace
 
@@ -77,7 +77,7 @@ TEST_CASE("the largest messages that the types promise fit their channels") {
   auto program = testing::sampleOf<program_t>();
   for (program_slot_t* slot : {&program.running, &program.next}) {
     slot->num_commands = 1000;
-    slot->command.assign(1000, {0.0F, 0.0F});  // as many numbers as a pattern may have
+    slot->command.assign(1000, {0.0F, 0.0F});  // the largest number of a pattern
   }
   CHECK(program.getEncodedSize() <= kProgram.max_bytes);
 }

@@ -15,7 +15,7 @@
 namespace tread {
 namespace {
 
-/// 32 bytes a line, as hexadecimal numbers.
+/// 32 bytes per line, as hexadecimal numbers.
 std::string hexOf(const std::vector<uint8_t>& bytes) {
   constexpr const char* kDigits = "0123456789abcdef";
   std::string text;

@@ -60,7 +60,7 @@ TEST_CASE("decoded fields have the values that were sent") {
 }
 
 TEST_CASE("all fingerprints differ, so that no type is taken for another") {
-  // LCM leaves a type's name out of its fingerprint: two types of equal fields would have one.
+  // LCM's fingerprint does not include a type's name: two types with equal fields would share it.
   std::map<int64_t, std::string> types;
   testing::forEachType([&](const auto& sample) {
     using Message = std::decay_t<decltype(sample)>;
@@ -71,7 +71,7 @@ TEST_CASE("all fingerprints differ, so that no type is taken for another") {
 }
 
 TEST_CASE("no type decodes as another") {
-  // What is compiled grows with the types, not with their pairs.
+  // Compiled code grows with the number of types, not of pairs.
   struct Type {
     std::string name;
     std::vector<uint8_t> sample;

@@ -10,7 +10,7 @@
 
 namespace tread::testing {
 
-/// A message with something in every field, the same on every machine. One specialization a type.
+/// A message with a value in every field, the same on every platform. One specialization per type.
 template <class Message>
 Message sampleOf();
 
@@ -504,8 +504,8 @@ std::vector<uint8_t> encode(const Message& message) {
   return bytes;
 }
 
-/// Whether these bytes are a message, every one of them.
-// Not inlined: g++ 12 takes a variable of the generated code for uninitialized where it is.
+/// Whether these bytes decode completely as a message.
+// Not inlined: g++ 12 reports a variable of the generated code as uninitialized otherwise.
 template <class Message>
 [[gnu::noinline]] bool decode(const std::vector<uint8_t>& bytes, Message& message) {
   const int size = static_cast<int>(bytes.size());

@@ -15,7 +15,8 @@
 
 namespace tread::learner::samples {
 
-/// A learner and a fake robot on a virtual bus, with ears for all that the learner says.
+/// A learner and a fake robot on a virtual bus, with subscriptions to all of the learner's
+/// channels.
 struct Bench {
   explicit Bench(Driving driving = {}, Rule rule = "collective", FaultPlan faults = {},
                  uint64_t seed = 1, int64_t follow_us = 400'000)
@@ -45,7 +46,7 @@ struct Bench {
       if (counter.counter_name == name) return counter.counted;
     return 0;
   }
-  /// The pattern with this id of the newest version that was published whole.
+  /// The pattern with this id in the newest completely published version.
   const pattern_set_part_t& published(int id) const {
     for (auto version = parts.rbegin(); version != parts.rend(); ++version)
       if (static_cast<int32_t>(version->second.size()) ==

@@ -13,13 +13,13 @@
 
 namespace tread::learner::samples {
 
-/// A ground as the ground model describes them: corrections and how much executions differ.
+/// A ground of the ground model: corrections and scatter of executions.
 struct DrawnGround {
   SetCorrection x;
-  double noise = 1.0;  ///< [1] variance of one execution over the expected one
+  double noise = 1.0;  ///< [1] variance of one execution relative to the expected one
 };
 
-/// How far drawn grounds differ, moderately: deviations of what a scale has [1].
+/// Moderate differences between drawn grounds: standard deviations relative to a scale [1].
 struct DrawnWidths {
   double gain = 0.06, residual = 0.04, yaw = 0.16, yaw_residual = 0.06, yaw_bias = 0.02;
 };
@@ -28,7 +28,7 @@ inline double chanceOf(std::mt19937_64& random) {
   return std::normal_distribution<double>(0.0, 1.0)(random);
 }
 
-/// Grounds drawn from a distribution that the rule expects among others, and executions on them.
+/// Grounds drawn from a distribution among the rule's expectations, and executions on them.
 class DrawnWorld {
  public:
   explicit DrawnWorld(PatternSet set = richSet(), const GroundConfig& config = {})
@@ -38,13 +38,13 @@ class DrawnWorld {
   const GroundModel& model() const { return model_; }
   size_t patterns() const { return model_.patterns(); }
 
-  /// A ground about a centre; `share` of the variance that grounds have.
+  /// A ground around a centre, with `share` of the variance between grounds.
   DrawnGround ground(std::mt19937_64& random, double share, const DrawnGround& centre) const {
     const DrawnWidths widths;
     DrawnGround drawn = centre;
     for (Eigen::Index i = 0; i < TwistCorrection::kCommon; ++i) {
       if (i == TwistCorrection::kLag || i == TwistCorrection::kYawLag)
-        continue;  // patterns of one twist would not show it
+        continue;  // patterns with one twist would not show it
       const double width = i < TwistCorrection::kVelocity ? widths.gain
                            : i < TwistCorrection::kBiasX  ? widths.yaw
                                                           : widths.yaw_bias;
@@ -65,10 +65,10 @@ class DrawnWorld {
   DrawnGround ground(std::mt19937_64& random, double share = 1.0) const {
     return ground(random, share, shipped());
   }
-  /// That of the shipped set.
+  /// Ground of the shipped set.
   DrawnGround shipped() const { return {SetCorrection::none(patterns())}; }
 
-  /// What the ground makes of a pattern without chance.
+  /// Motion for a pattern on a ground, without scatter.
   std::vector<Pose2> expected(const DrawnGround& ground, size_t pattern) const {
     const auto samples = model_.profile(pattern).samples();
     std::vector<double> numbers(static_cast<size_t>(3 * samples));
@@ -76,7 +76,7 @@ class DrawnWorld {
                                       Trajectory(numbers.data(), samples, 3));
     return posesOf(ConstTrajectory(numbers.data(), samples, 3));
   }
-  /// One execution: the same, and a twist by chance for all of it.
+  /// One execution: the same plus a random constant twist.
   std::vector<Pose2> execution(const DrawnGround& ground, size_t pattern,
                                std::mt19937_64& random) const {
     const PatternPart& part = model_.whole(pattern);
@@ -98,7 +98,7 @@ class DrawnWorld {
     return driven;
   }
 
-  /// Any patterns on a ground; returns the note of the last execution.
+  /// Executes random patterns on a ground; returns the note of the last execution.
   RuleNote drive(Pupil& pupil, const DrawnGround& ground, int executions,
                  std::mt19937_64& random) const {
     RuleNote note;
@@ -108,7 +108,7 @@ class DrawnWorld {
     }
     return note;
   }
-  /// Mean distance of predicted ends from those expected on a ground [m].
+  /// Mean distance of predicted ends from the expected ones on a ground [m].
   double endError(const Pupil& pupil, const DrawnGround& ground) const {
     double sum = 0.0;
     for (size_t p = 0; p < patterns(); ++p)

@@ -11,21 +11,20 @@
 
 namespace tread::learner::samples {
 
-/// What a robot on some ground does, without vehicle, planner or bridge: INS at 50 Hz, EXECUTION at
-/// 5 Hz and on change.
+/// A robot on some ground, without vehicle, planner or bridge: INS at 50 Hz, EXECUTION at 5 Hz and
+/// on change.
 struct Driving {
-  std::vector<int> patterns = {kLeft, kStraight, kRight, kLeft};  ///< ids, over and over
+  std::vector<int> patterns = {kLeft, kStraight, kRight, kLeft};  ///< ids, repeated
   std::map<int, Twist2> truth = {
       {kStraight, {0.9, 0.0, 0.0}}, {kLeft, {0.8, 0.0, 0.6}}, {kRight, {0.8, 0.0, -0.6}}};
-  int64_t set_version = 0;     ///< named in the records; 0 = the newest heard
+  int64_t set_version = 0;     ///< named in the records; 0 = the newest received
   int executions = 1'000'000;  ///< then it stands
-  int abort_every = 0;         ///< every so many executions one is aborted at its end; 0 = none
+  int abort_every = 0;         ///< one of so many executions is aborted at its end; 0 = none
   Reason abort_reason = StopReason::kProgramLate;
-  bool wrong_commands = false;  ///< the motors get other commands than the patterns say
+  bool wrong_commands = false;  ///< the motors get commands other than the pattern's
 };
 
-/// Drives one pattern after another without a gap, one second each; does not mind what anybody
-/// says.
+/// Drives patterns without gaps, one second each, and ignores all messages.
 class FakeRobot : public Node {
  public:
   FakeRobot(Bus& bus, Driving driving) : bus_(bus), driving_(std::move(driving)) {

@@ -23,7 +23,7 @@ inline RuleConfig ruleConfig(Rule rule, double memory = 0.5) {
   return config;
 }
 
-/// A rule of a set, taught and asked in poses.
+/// A rule with a set, which takes executions and returns predictions as poses.
 class Pupil {
  public:
   Pupil(const RuleConfig& config, PatternSet set)
@@ -72,7 +72,7 @@ inline double distance(const Pose2& a, const Pose2& b) {
   return std::hypot(a.x - b.x, a.y - b.y);
 }
 
-/// What a ground makes of every twist of a shipped prediction, the same for all patterns.
+/// Effect of a ground on every twist of a shipped prediction, the same for all patterns.
 struct GroundEffect {
   double forward = 1.0;   ///< [1] factor on v_x
   double yaw = 1.0;       ///< [1] factor on omega
@@ -80,14 +80,14 @@ struct GroundEffect {
   double crab = 0.0;      ///< [1] v_y += crab v
 };
 
-/// How much one execution differs from the next: standard deviations of factors and of crab.
+/// Scatter between executions: standard deviations of factors and of crab.
 struct EffectSpread {
   double forward = 0.0;
   double yaw = 0.0;
   double crab = 0.0;
 };
 
-// Three grounds, and calm executions.
+// Three grounds, and low-noise executions.
 inline constexpr EffectSpread kCalm{0.02, 0.05, 0.02};
 inline constexpr GroundEffect kMeadow{1.0, 1.0, 0.0, 0.0};
 inline constexpr GroundEffect kMud{0.85, 1.5, 0.0, 0.0};
@@ -101,7 +101,7 @@ inline GroundEffect drawn(GroundEffect mean, const EffectSpread& spread, std::mt
   return mean;
 }
 
-/// A trajectory as this ground makes it.
+/// A trajectory on this ground.
 inline std::vector<Pose2> under(const GroundEffect& ground, const std::vector<Pose2>& shipped,
                                 double period = 0.05) {
   std::vector<Pose2> driven;
@@ -119,7 +119,7 @@ inline std::vector<Pose2> under(const GroundEffect& ground, const std::vector<Po
   return driven;
 }
 
-/// Any patterns on a ground; returns the note of the last execution.
+/// Executes random patterns on a ground; returns the note of the last execution.
 inline RuleNote driveAny(Pupil& pupil, const GroundEffect& ground, const EffectSpread& spread,
                          int executions, std::mt19937_64& random) {
   RuleNote note;
@@ -154,7 +154,7 @@ inline PatternSet richSet() {
   return checked(richContent());
 }
 
-/// A pattern that changes its twist on the way.
+/// A pattern with a varying twist.
 inline std::vector<Pose2> winding() {
   std::vector<Pose2> poses = arc({0.9, 0.0, 0.8}, 10);
   const Pose2 middle = poses.back();
@@ -162,14 +162,14 @@ inline std::vector<Pose2> winding() {
   return poses;
 }
 
-/// richSet() and the winding one, last.
+/// richSet() plus the winding one, last.
 inline PatternSet windingSet() {
   PatternSetContent content = richContent();
   content.patterns.push_back(pattern(8, "winding", {0.9, 1.0}, winding()));
   return checked(content);
 }
 
-/// Mean distance of predicted ends from those that a ground would give without chance [m].
+/// Mean distance of predicted ends from the ground's ends without scatter [m].
 inline double meanEndError(const Pupil& pupil, const GroundEffect& ground) {
   double sum = 0.0;
   for (size_t p = 0; p < pupil.patterns(); ++p)
@@ -177,7 +177,7 @@ inline double meanEndError(const Pupil& pupil, const GroundEffect& ground) {
   return sum / static_cast<double>(pupil.patterns());
 }
 
-/// The same of the end's yaw [rad].
+/// The same for the end's yaw [rad].
 inline double meanYawError(const Pupil& pupil, const GroundEffect& ground) {
   double sum = 0.0;
   for (size_t p = 0; p < pupil.patterns(); ++p)

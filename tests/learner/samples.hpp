@@ -62,7 +62,7 @@ inline PatternSet smallSet() {
   return checked(smallContent());
 }
 
-/// A fair, complete measurement with this trajectory.
+/// A valid, complete measurement with this trajectory.
 inline Measurement fair(std::vector<Pose2> trajectory) {
   Measurement measurement;
   measurement.covered = trajectory.size();

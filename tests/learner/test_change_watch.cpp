@@ -17,7 +17,7 @@ using namespace tread::learner::samples;
 namespace {
 
 constexpr double kOfSample = 0.05;
-constexpr int64_t kOnePattern = 1'000'000;  // [us] of a pattern
+constexpr int64_t kOnePattern = 1'000'000;  // [us] duration of a pattern
 constexpr GroundEffect kSlippery{0.55, 0.6, 0.0, 0.0};
 
 /// The first samples of a pattern on one ground, the rest on another.
@@ -46,7 +46,7 @@ Rows beginning(const std::vector<Pose2>& poses, size_t samples) {
   return Rows({poses.begin(), poses.begin() + static_cast<std::ptrdiff_t>(samples)});
 }
 
-/// A rule that has driven on the meadow for a while.
+/// A rule that has driven on the meadow for some time.
 Pupil atHome(std::mt19937_64& random) {
   Pupil pupil(ruleConfig("multi_model"), richSet());
   driveAny(pupil, kMeadow, kCalm, 60, random);
@@ -83,7 +83,7 @@ TEST_CASE("a change late in a pattern is noticed in the next one, which is on th
   const auto change = watch.notice(pupil.rule(), kTurnLeft, next.all(), kOfSample);
   REQUIRE(change.has_value());
   CHECK(change->after == 0);
-  // Sooner than by this pattern alone, which needs the whole window.
+  // Sooner than from this pattern alone, which needs the whole window.
   ChangeWatch alone;
   const auto later = alone.notice(pupil.rule(), kTurnLeft, next.all(), kOfSample);
   REQUIRE(later.has_value());
@@ -171,7 +171,7 @@ TEST_CASE("what lies before a change teaches nothing of the ground behind it") {
   untold.learn(kAhead, driven);
   CHECK(note.change_probability > 0.9);
   CHECK(meanEndError(told, kSlippery) < 0.6 * meanEndError(untold, kSlippery));
-  // The ground that was left is not forgotten, and comes back.
+  // The previous ground is remembered, and recognized.
   driveAny(told, kMeadow, kCalm, 3, random);
   CHECK(meanEndError(told, kMeadow) < 0.02);
 }
@@ -206,7 +206,7 @@ TEST_CASE("the learner takes a change that it notices for the set that is planne
   part.covered = 15;
   for (Learner* each : {&learner, &restored}) {
     REQUIRE(each->follow(kStraight, part, 3, ended + kOnePattern * 3 / 4));
-    // What the rest of the way was like, not what all of it was.
+    // It reflects the rest of the pattern, not all of it.
     CHECK(each->set().find(kStraight)->end().x < 0.65);
     const Correction correction = each->learn(kStraight, fair(driven), {}, ended + kOnePattern);
     REQUIRE(correction.changed_after.has_value());

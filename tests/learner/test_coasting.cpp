@@ -32,11 +32,12 @@ Measurement beginningOf(Measurement measurement) {
   return measurement;
 }
 
-/// Velocity beside the predicted one at each sample; true at the first one of an execution.
+/// Velocity in addition to the predicted one at each sample; true at the first sample of an
+/// execution.
 using Beside = std::function<Eigen::Vector2d(bool begins)>;
 
-/// Mean distances of measured ends from those of the set that was published while the pattern
-/// before ran, and from what the rule itself said then; of the second half.
+/// Mean distances of measured ends from the set published during the previous pattern, and from the
+/// rule's own prediction at that time; over the second half.
 struct Errors {
   double published = 0.0;
   double of_rule = 0.0;
@@ -143,7 +144,7 @@ TEST_CASE("only patterns that may follow begin with what is kept, and none from 
 TEST_CASE("executions after a pause tell nothing of coasting") {
   Learner learner(ofDefault(), smallSet());
   const auto faster = fair(arc({1.2, 0.0, 0.0}));
-  // Behind the numbers of the rule: two sums, then the end of the last execution and its d.
+  // The rule's numbers are followed by two sums, then the end of the last execution and its d.
   const auto sumsOf = [](const Learner& of) {
     const std::vector<double> memory = of.memory();
     return std::vector<double>(memory.end() - 5, memory.end() - 3);
@@ -198,8 +199,8 @@ TEST_CASE("coasting is learned from what follows, and kept within what a vehicle
   CHECK(coasting.tau() == 0.0);
   for (int i = 0; i < 1000; ++i) coasting.learn({0.1, 0.0}, {5.0, 0.0}, 1.0);
   CHECK(coasting.tau() == 1.0);
-  CHECK(Coasting(0.0).tau() == Approx(0.2));  // a set that moves nowhere
-  // Numbers that are none change nothing.
+  CHECK(Coasting(0.0).tau() == Approx(0.2));  // a set without motion
+  // Values that are not finite have no effect.
   coasting.learn({testing::kNan, 0.0}, {0.0, 0.0}, 1.0);
   coasting.learn({0.1, 0.0}, {testing::kNan, 0.0}, 1.0);
   CHECK(coasting.tau() == 1.0);
@@ -207,7 +208,7 @@ TEST_CASE("coasting is learned from what follows, and kept within what a vehicle
 
 TEST_CASE("a velocity beside the predicted one is measured in the body frame, at the end") {
   const Coasting coasting(1.0);
-  // Turned by 90 degrees, sliding to the left: along the old x axis it goes backwards.
+  // Rotated by 90 degrees, sliding to the left: along the old x axis it moves backwards.
   const std::vector<Pose2> predicted = arc({0.5, 0.0, M_PI_2});
   const std::vector<Pose2> measured = arc({0.5, 0.2, M_PI_2});
   const auto beside = coasting.beside(measured, predicted, 20, kStep);
@@ -216,11 +217,11 @@ TEST_CASE("a velocity beside the predicted one is measured in the body frame, at
   CHECK((*beside)[1] == Approx(0.2).margin(0.02));
   CHECK_FALSE(coasting.beside(measured, predicted, 4, kStep));
   CHECK_FALSE(coasting.beside(measured, arc({0.5, 0.0, 0.0}, 5), 20, kStep));
-  // Another turn rate is no sideways velocity.
+  // A different yaw rate is not a sideways velocity.
   const auto turned = coasting.beside(arc({1.0, 0.0, 0.6}), arc({1.0, 0.0, 1.2}), 20, kStep);
   REQUIRE(turned);
   CHECK(turned->norm() < 0.005);
-  // No more than half of the fastest is believed.
+  // At most half of the fastest velocity is accepted.
   const auto thrown = coasting.beside(arc({9.0, 0.0, 0.0}), predicted, 20, kStep);
   REQUIRE(thrown);
   CHECK(thrown->cwiseAbs().maxCoeff() == Approx(0.5));

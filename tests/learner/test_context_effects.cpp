@@ -34,7 +34,7 @@ double errorOn(const Pupil& pupil, const GroundEffect& ground) {
   return sum / static_cast<double>(pupil.patterns());
 }
 
-/// Drives on, each execution in a context that also moves it.
+/// Drives on; the context of each execution affects its motion.
 void drive(Pupil& pupil, int executions, std::mt19937_64& random,
            const std::function<std::pair<Context, GroundEffect>(int)>& world) {
   for (int i = 0; i < executions; ++i) {
@@ -56,7 +56,7 @@ Context on(double ahead) {
   return context;
 }
 
-/// A pupil after 60 executions under a voltage that sags and takes speed along, and one at a low
+/// A pupil after 60 executions under a sagging voltage that reduces speed, and one at a low
 /// voltage.
 Pupil afterSag(int seed, double evidence) {
   std::mt19937_64 random(static_cast<uint64_t>(seed));
@@ -66,7 +66,7 @@ Pupil afterSag(int seed, double evidence) {
     const double s = i == 0 ? 0.0 : sag(random);
     return std::make_pair(at(25.0 * (1.0 + s)), GroundEffect{1.0 + s, 1.0 + s, 0.0, 0.0});
   });
-  // The voltage of the last execution holds for the next.
+  // The voltage of the last execution is used for the next one.
   pupil.learn(kAhead, under({0.87, 0.87, 0.0, 0.0}, pupil.shipped(kAhead)), at(25.0 * 0.87));
   return pupil;
 }
@@ -77,7 +77,7 @@ TEST_CASE("the effect of a sagging voltage is separated from the ground, and pre
           "[statistics]") {
   double with = 0.0;
   double without = 0.0;
-  int found = 0;  // of the forward effect; measured in 11 of 20
+  int found = 0;  // the forward effect was found; measured: in 11 of 20
   const int seeds = 20;
   for (int seed = 1; seed <= seeds; ++seed) {
     for (const double evidence : {5.0, kNever}) {
@@ -112,7 +112,7 @@ TEST_CASE("the effect of a slope is subtracted, so that level ground is known be
       std::mt19937_64 random(static_cast<uint64_t>(seed));
       std::uniform_real_distribution<double> rise(-0.15, 0.15);
       Pupil pupil = pupilOf(evidence);
-      // A forward pattern loses on the way up what it gains on the way down; a hill of 20.
+      // A forward pattern loses uphill what it gains downhill; a hill of 20 executions.
       drive(pupil, 80, random, [&](int i) {
         const double ahead = i % 40 < 20 ? 0.12 : rise(random);
         return std::make_pair(on(ahead), GroundEffect{1.0 - 1.5 * ahead, 1.0, 0.0, 0.0});
@@ -124,7 +124,7 @@ TEST_CASE("the effect of a slope is subtracted, so that level ground is known be
     }
   }
   CAPTURE(with, without);
-  // Measured .88: on a hill of twenty executions the ground seems to be another.
+  // Measured .88: a hill of twenty executions looks like another ground.
   REQUIRE(with < 0.95 * without);
 }
 

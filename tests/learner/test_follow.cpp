@@ -14,7 +14,7 @@ using namespace tread::learner::samples;
 
 namespace {
 
-/// All drive left, which turns by 0.6 rad where the set says less.
+/// All patterns turn left by 0.6 rad; the set predicts less.
 Driving turning(int executions) {
   Driving driving;
   driving.patterns = {kLeft};
@@ -30,7 +30,7 @@ double shippedYaw() {
 
 TEST_CASE("a running execution teaches before it has ended") {
   Bench bench(turning(1), "multi_model");
-  bench.run(1.0);  // it begins after half a second
+  bench.run(1.0);  // the first execution begins after .5 s
   REQUIRE(bench.publishedYaw(kLeft) == shippedYaw());
   bench.run(0.4);
   REQUIRE(bench.learned.empty());
@@ -39,7 +39,7 @@ TEST_CASE("a running execution teaches before it has ended") {
   bench.run(1.0);
   REQUIRE(bench.learned.size() == 1);
   const double learned = bench.publishedYaw(kLeft);
-  // On the way from the shipped to the learned one, and at least half of it.
+  // Between the shipped and the learned value, and at least half of the way.
   REQUIRE((followed - shipped) / (learned - shipped) > 0.5);
   REQUIRE((followed - shipped) / (learned - shipped) < 1.2);
 }
@@ -54,7 +54,7 @@ TEST_CASE("an execution counts once, however often it was followed") {
     return std::set<int64_t>(bench.versions.begin(), bench.versions.end()).size();
   };
   REQUIRE(published(followed) > published(whole) + 6);
-  // The same numbers, whether a part was in time or not.
+  // The same numbers, whether or not a part arrived in time.
   REQUIRE(followed.node().set().version() == whole.node().set().version());
   REQUIRE(samePredictions(followed.node().set(), whole.node().set()));
   REQUIRE(followed.versionsNeverWentBack());
@@ -87,7 +87,7 @@ TEST_CASE("an execution that the planner stopped teaches what was driven of it")
     REQUIRE(learned.changed);
   }
   REQUIRE(bench.publishedYaw(kLeft) == Approx(0.6).epsilon(0.05));
-  // A rule that knows trajectories by heart takes whole ones only.
+  // A rule with a trajectory table uses only complete executions.
   Bench table(driving, "collective");
   table.run(8.0);
   for (const learning_t& learned : table.learned) REQUIRE_FALSE(learned.accepted);

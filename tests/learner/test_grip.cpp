@@ -20,7 +20,7 @@ constexpr double kSampling = 0.05;  // [s]
 const MotionClass kRest{"rest", {0.0, 0.0, 0.0}, {0.0, 0.0}};
 const MotionClass kFast{"fast", {2.0, 0.0, 0.0}, {1.0, 1.0}};
 
-/// A twist at a time [s].
+/// Twist as a function of time [s].
 using TwistAt = std::function<Twist2(double)>;
 
 std::vector<Pose2> driven(const TwistAt& twist, double seconds) {
@@ -37,11 +37,11 @@ std::vector<Pose2> driven(const TwistAt& twist, double seconds) {
   return poses;
 }
 
-/// A speed that goes to `to` with a lag.
+/// A speed that approaches `to` with a lag.
 TwistAt lagging(double from, double to, double lag) {
   return [=](double t) { return Twist2{to + (from - to) * std::exp(-t / lag), 0.0, 0.0}; };
 }
-/// One that changes at most by so much a second.
+/// A speed with limited acceleration.
 TwistAt limited(double from, double to, double acceleration) {
   return [=](double t) {
     const double most = acceleration * t;
@@ -86,7 +86,7 @@ TEST_CASE("A start and a stop on ice say what the ice gives") {
 }
 
 TEST_CASE("Ground that only leaves a part of the speed does not count as slippery") {
-  // The four real grounds that we know leave 40 to 79 % of the commanded speed.
+  // The four known real grounds keep 40 to 79 % of the commanded speed.
   const double share = GENERATE(0.4, 0.55, 0.79);
   const auto sign = signOf(lagging(0.0, 2.0, 0.2), kRest, lagging(0.0, 2.0 * share, 0.2));
   REQUIRE(sign);
@@ -95,9 +95,9 @@ TEST_CASE("Ground that only leaves a part of the speed does not count as slipper
 }
 
 TEST_CASE("A vehicle that enters with another speed than its class is asked for another change") {
-  // A stop that begins at a tenth of the speed says nothing of the ground.
+  // A stop from a tenth of the speed gives no information on the ground.
   CHECK_FALSE(signOf(lagging(2.0, 0.0, 0.2), kFast, limited(0.15, 0.0, 5.0)));
-  // One that begins with more, because the ground did not hold before, does.
+  // One from a higher speed, reached because the ground gave way before, does.
   const auto sign = signOf(lagging(0.0, 2.0, 0.2), kRest, limited(0.4, 2.0, 0.6));
   REQUIRE(sign);
   CHECK(sign->gave_way);
@@ -180,7 +180,7 @@ TEST_CASE("A part of an execution and its whole count once") {
 TEST_CASE("A ground that holds again is believed at once, one that nobody tries again in time") {
   GripEstimator estimator;
   estimator.take({0.6, 3.5, true}, 1);
-  // What a vehicle that crawls can feel is no proof.
+  // The deceleration of a crawling vehicle is no evidence.
   estimator.take({0.7, 0.8, false}, 2);
   CHECK(estimator.grip().gave_way);
   CHECK(estimator.grip().deceleration == Approx(0.7));
@@ -193,7 +193,7 @@ TEST_CASE("A ground that holds again is believed at once, one that nobody tries 
   CHECK(crawling.grip().deceleration == GripEstimator::kUnseen);
   estimator.take({3.2, 3.5, false}, 3);
   CHECK_FALSE(estimator.grip().gave_way);
-  // One execution may be disturbed: some of what was assumed before is left.
+  // One execution may be disturbed: part of the earlier assumption is kept.
   CHECK(estimator.grip().deceleration == Approx((GripEstimator::kUnseen + 3.2) / 2.0));
   estimator.take({0.6, 3.5, true}, 4);
   CHECK(estimator.grip().gave_way);
@@ -206,7 +206,7 @@ TEST_CASE("A crawl, however long, is no proof that the ground holds again") {
   for (int64_t started = 2; started < 60; ++started) estimator.take({0.8, 1.5, false}, started);
   CHECK(estimator.grip().gave_way);
   CHECK(estimator.grip().deceleration == Approx(0.8));
-  // Neither is one that gave way to less: what was asked first must be given.
+  // The same for a ground that gave way at less: the requested acceleration must have been reached.
   estimator.take({0.5, 1.0, true}, 60);
   estimator.take({0.8, 1.5, false}, 61);
   CHECK(estimator.grip().gave_way);

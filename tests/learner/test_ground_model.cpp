@@ -14,7 +14,7 @@ using namespace tread::learner::samples;
 
 namespace {
 
-/// Mean twist of some samples under a correction.
+/// Mean twist of some samples with a correction.
 Eigen::Vector3d meanUnder(const GroundModel& model, size_t pattern,
                           const TwistCorrection& correction, Eigen::Index first,
                           Eigen::Index samples) {
@@ -26,7 +26,7 @@ Eigen::Vector3d meanUnder(const GroundModel& model, size_t pattern,
   return meanTwist(measured, first, samples, 0.05);
 }
 
-/// One correction of all, the common ones first.
+/// One of all corrections, the common ones first.
 TwistCorrection only(int which, double value) {
   TwistCorrection correction;
   if (which < TwistCorrection::kCommon)
@@ -67,10 +67,10 @@ TEST_CASE("the mean twist of any part of a pattern is corrected exactly, also fa
       REQUIRE(part.samples == samples);
       REQUIRE((part.mean - meanUnder(model, p, {}, first, samples)).norm() < 1e-12);
       for (int i = 0; i < TwistCorrection::kCommon + TwistCorrection::kOwn; ++i) {
-        // What turns lose by lag is spread over the whole pattern.
+        // The loss of turning due to lag is spread over the whole pattern.
         if (i == TwistCorrection::kYawLag && samples < model.profile(p).samples()) continue;
         INFO(set.patterns()[p].name << ", samples " << samples << ", correction " << i);
-        // A lag beyond a sample is no longer linear where the profile winds.
+        // A lag beyond a sample is not linear for a winding profile.
         const TwistCorrection step = only(i, i == TwistCorrection::kLag ? 0.05 : 0.3);
         SetCorrection all = SetCorrection::none(model.patterns());
         all.common = step.common;
@@ -99,7 +99,7 @@ TEST_CASE("the lever of a pattern's end is the change that a steady twist makes 
       };
       const Pose2 up = moved(kStep), down = moved(-kStep);
       const auto column = model.profile(p).endLever().col(axis);
-      // To first order in the turn of one sample.
+      // To first order in the turn per sample.
       REQUIRE(column[0] == Approx((up.x - down.x) / (2.0 * kStep)).margin(3e-4));
       REQUIRE(column[1] == Approx((up.y - down.y) / (2.0 * kStep)).margin(3e-4));
       REQUIRE(column[2] == Approx((up.yaw - down.yaw) / (2.0 * kStep)).margin(3e-4));
@@ -117,7 +117,7 @@ TEST_CASE("the noise of a part grows with its shortness, the whole is its longes
       REQUIRE(part.metres >= metres);
       metres = part.metres;
       REQUIRE(part.noise.minCoeff() > 0.0);
-      // A hundredth of a metre of a measured end is a lot in a short time.
+      // An error of 1 cm at the end is large for a short pattern.
       const double seconds = 0.05 * static_cast<double>(samples);
       REQUIRE(part.noise[0] >= 1e-4 / (seconds * seconds));
       if (samples == 1) REQUIRE(part.noise[0] > 10.0 * whole.noise[0]);
@@ -141,7 +141,7 @@ TEST_CASE("noise of an execution is as configured, and partly as recorded where 
   REQUIRE(ahead[2] == Approx(at(0.005, 0.01, 1.0)));
   REQUIRE(plain.whole(kTurning).noise[0] == Approx(at(0.05 * 1.2, 0.01, 1.0)));
   REQUIRE(plain.whole(kTurning).noise[2] == Approx(at(0.08 * 1.2, 0.01, 1.0)));
-  // 0.1 m in a second of driving straight.
+  // 0.1 m in a second of straight driving.
   const GroundModel recorded(config, checked(content));
   REQUIRE(recorded.whole(kAhead).noise[0] == Approx(0.1 * ahead[0] + 0.9 * 0.01));
   REQUIRE(recorded.whole(kTurnLeft).noise == plain.whole(kTurnLeft).noise);
@@ -149,7 +149,7 @@ TEST_CASE("noise of an execution is as configured, and partly as recorded where 
 
 TEST_CASE("a recorded spread of nothing makes no execution exact") {
   PatternSetContent content = richContent();
-  // As recorded where a simulator never turned.
+  // As in recordings of a simulator without yaw noise.
   for (MotionPattern& pattern : content.patterns)
     pattern.end_covariance = {7e-4, 0.0, 0.0, 1e-3, 0.0, 0.0};
   const RuleConfig config = ruleConfig("multi_model");
@@ -173,7 +173,7 @@ TEST_CASE("patterns are alike as neighbours and mirror images are, where the set
     const auto of = [&](size_t p, size_t q) {
       return alike(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(q));
     };
-    // What slips to one side in a left turn slips to the other in a right one.
+    // Slip to one side in a left turn is slip to the other side in a right turn.
     const double mirrored = of(kHardLeft, kHardRight) / of(kHardLeft, kHardLeft);
     if (own == TwistCorrection::kAcross || own == TwistCorrection::kBiasOwn)
       REQUIRE(mirrored < -0.5);

@@ -11,7 +11,7 @@ using namespace tread::learner::samples;
 
 namespace {
 
-/// Rest, cruise and patterns like the shipped ones.
+/// Rest, cruise and patterns similar to the shipped ones.
 PatternSet drivenSet() {
   PatternSetContent content;
   content.name = "driven";
@@ -42,7 +42,7 @@ PatternSet drivenSet() {
   return *set;
 }
 
-/// MOTOR at 20 Hz, told to a watch.
+/// MOTOR at 20 Hz, fed to a watch.
 struct Motors {
   HandWatch watch;
   PatternSet set = drivenSet();
@@ -63,7 +63,7 @@ struct Motors {
   }
 };
 
-/// A robot on a straight line under MOTOR of state MANUAL.
+/// A robot on a straight line with MOTOR in state MANUAL.
 struct HandDriver {
   Bench& bench;
   int64_t seq = 0;
@@ -185,9 +185,9 @@ TEST_CASE("the beginning of a pattern driven by hand teaches a rule that learns 
     Driving driving;
     driving.executions = 0;
     Bench bench(driving, rule);
-    bench.bus.kill("robot");  // the test itself is the robot
+    bench.bus.kill("robot");  // the test itself acts as the robot
     HandDriver person(bench);
-    person.drive(1.26, 0.9, 1.0F);  // half a second of the entry class, then 0.76 of 1 s
+    person.drive(1.26, 0.9, 1.0F);  // .5 s of the entry class, then 0.76 of 1 s
     person.drive(1.0, 0.0, 0.3F);
     INFO(rule);
     const bool parts = std::string(rule) == "multi_model";
@@ -203,7 +203,7 @@ TEST_CASE("the learner learns from what a person drives, through the same gates"
   Driving driving;
   driving.executions = 0;
   Bench bench(driving);
-  bench.bus.kill("robot");  // the test itself is the robot
+  bench.bus.kill("robot");  // the test itself acts as the robot
   HandDriver person(bench);
   SECTION("at the speed of the class it is learned from") {
     person.drive(4.0, 0.9, 1.0F);

@@ -23,10 +23,10 @@ Pupil shippedRule(PatternSet set = richSet()) {
   return {ruleConfig("multi_model"), std::move(set)};
 }
 
-/// As the configuration expects of one execution.
+/// The configuration's expectation for one execution.
 constexpr EffectSpread kUsual{0.03, 0.08, 0.03};
 
-/// The same motion in a body frame that is turned by `angle`.
+/// The same motion in a body frame rotated by `angle`.
 std::vector<Pose2> turned(const std::vector<Pose2>& poses, double angle) {
   const Pose2 turn{0.0, 0.0, angle};
   std::vector<Pose2> all;
@@ -55,7 +55,7 @@ bool holds(Pupil& pupil, size_t pattern, const Pose2& end) {
   return apart.dot(covariance.inverse() * apart) <= kQuantile;
 }
 
-/// Share of ends within their regions before each of the first executions on new ground.
+/// Share of ends in their regions before each of the first executions on new ground.
 std::vector<double> coverageAfterChange(const GroundEffect& ground, int seeds, int executions) {
   std::vector<double> held(static_cast<size_t>(executions));
   for (int seed = 1; seed <= seeds; ++seed) {
@@ -78,11 +78,11 @@ double largestEigenvalue(const Eigen::Matrix2d& matrix) {
   return mean + std::sqrt(mean * mean - matrix.determinant());
 }
 
-/// One scale of a bank, computed as the formulas stand.
+/// One scale of a bank, computed directly from the formulas.
 struct PlainScale {
   double evidence;
-  Eigen::MatrixXd K;     ///< of what was measured, without noise
-  Eigen::MatrixXd left;  ///< covariance of what was measured, once it was measured
+  Eigen::MatrixXd K;     ///< of the measurements, without noise
+  Eigen::MatrixXd left;  ///< remaining covariance of the measurements
   Eigen::VectorXd mean;
 };
 
@@ -114,7 +114,7 @@ TEMPLATE_TEST_CASE("a bank of scales predicts as the Gaussian of each, weighted 
     return Eigen::MatrixXd::NullaryExpr(rows, columns, [&](auto...) { return normal(random); });
   };
   typename Bank::Scales scales;
-  constexpr int kScales = 21;  // the last eight are not full
+  constexpr int kScales = 21;  // the last eight are incomplete
   for (int s = 0; s < kScales; ++s) {
     typename Bank::Scale scale;
     for (double& variance : scale.variance) variance = 0.002 * std::exp(normal(random) + 0.3 * s);
@@ -215,7 +215,7 @@ TEST_CASE("ground that halves the speed is learned in three executions, after lo
 TEST_CASE("after a surprise the region is wide at once", "[statistics]") {
   for (const GroundEffect& ground : {GroundEffect{0.5, 0.6, 0.0, 0.0}, kMud, kRoad}) {
     const std::vector<double> held = coverageAfterChange(ground, 60, 8);
-    // The first execution nobody can know.
+    // No rule can predict the first execution.
     for (size_t i = 1; i < held.size(); ++i) {
       INFO("before execution " << i + 1 << ": " << held[i]);
       REQUIRE(held[i] > (i == 1 ? 0.7 : 0.78));
@@ -238,12 +238,12 @@ TEST_CASE("where a vehicle drives as before but slides in turns, some turns teac
     }
   }
   CAPTURE(after / before);
-  // Measured .59; 1.07 where what turns do goes with the gain.
+  // Measured .59; 1.07 if turning scales with the gain.
   REQUIRE(after < 0.7 * before);
 }
 
 TEST_CASE("new ground that may lie ahead does not stretch a region along the way") {
-  // What one drive tells of the scatter of one pattern is off by up to a fifth.
+  // The scatter of one pattern from one drive is off by up to 20 %.
   constexpr int kDrives = 8;
   std::map<size_t, double> over;
   for (int drive = 1; drive <= kDrives; ++drive) {
@@ -262,7 +262,7 @@ TEST_CASE("new ground that may lie ahead does not stretch a region along the way
         const Eigen::Vector2d apart = end.position() - mean.position();
         scatter += apart * apart.transpose() / kEnds;
       }
-      // The largest deviation in any direction over that of executions there.
+      // The largest standard deviation in any direction, relative to that of executions there.
       over[p] += std::sqrt(largestEigenvalue(scatter.inverse() * stated)) / kDrives;
     }
   }

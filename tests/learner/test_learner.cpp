@@ -34,7 +34,7 @@ bool sameTrajectory(const PatternSet& a, const PatternSet& b, int id) {
   return true;
 }
 
-/// The left turn with its poses scaled by hand.
+/// The left turn with scaled poses.
 Measurement scaledLeft(double x, double y, double yaw) {
   auto trajectory = arc({0.9, 0.0, 0.5});
   for (Pose2& pose : trajectory) pose = {pose.x * x, pose.y * y, pose.yaw * yaw};
@@ -85,12 +85,12 @@ TEST_CASE("collective scales all others by V and smooths them: Algorithm 1 with 
   REQUIRE(right.x == Approx(0.93 * right_before.x));
   REQUIRE(right.y == Approx(1.14 * right_before.y));
   REQUIRE(right.yaw == Approx(1.28 * right_before.yaw));
-  // One-dimensional patterns are scaled in the axes that they have.
+  // One-dimensional patterns are scaled along their existing axes.
   REQUIRE(learner.set().find(kStraight)->end().x == Approx(0.93));
   REQUIRE(learner.set().find(kStraight)->end().yaw == 0.0);
   REQUIRE(learner.set().find(kSpin)->end().yaw == Approx(1.28 * 1.2));
   REQUIRE(learner.set().find(kReverse)->end().x == Approx(0.93 * -0.8));
-  // The executed one gets its own measurement, not V.
+  // The executed pattern gets its own measurement instead of V.
   REQUIRE(learner.set().find(kLeft)->end().yaw == Approx((0.7 * 1.4 + 0.3) * 0.5));
 }
 
@@ -129,7 +129,7 @@ TEST_CASE("motion backwards instead of forwards gives no V") {
 
 TEST_CASE("an opposite sign within the noise still gives V") {
   PatternSetContent content = smallContent();
-  // A weak left turn of 0.06 rad; three sigma of what is assumed without recordings are 0.074 rad.
+  // A weak left turn of 0.06 rad; three sigma without recordings are 0.074 rad.
   content.patterns[1].trajectory = arc({0.9, 0.05, 0.06});
   Learner learner(config("collective"), checked(content));
   REQUIRE(
@@ -148,7 +148,7 @@ TEST_CASE("patterns without a usable axis stay as they are") {
 
 TEST_CASE("what is usable is decided once: a scaled set does not fall below the thresholds later") {
   PatternSetContent content = smallContent();
-  // 0.12 rad at first: after a few halvings its yaw interval is below both yaw limits.
+  // Initially 0.12 rad: after a few halvings its yaw interval is below both yaw limits.
   content.patterns[2].trajectory = arc({0.9, -0.1, -0.12});
   Learner learner(config("collective", 0.0), checked(content));
   for (int i = 0; i < 4; ++i) {

@@ -25,10 +25,10 @@ LearnerNodeConfig read(const std::string& text) {
   return readLearnerConfig(reader);
 }
 
-/// Values by key (SECTION.KEY); numbers as they are written shortest.
+/// Values by key (SECTION.KEY); numbers in shortest form.
 using Values = std::map<std::string, std::string>;
 
-/// "[0.05, 2]" with each number to nine digits, so that 0.2 and 0.19999999999999998 are one.
+/// "[0.05, 2]" with nine digits, so that 0.2 and 0.19999999999999998 are equal.
 std::string plain(const std::string& value) {
   static const std::regex kNumber("[-+0-9.e]+");
   std::string text;
@@ -49,7 +49,7 @@ std::string plain(const std::string& value) {
   return text.append(rest, value.end());
 }
 
-/// What the program reads, with its defaults.
+/// Keys that the program reads, with defaults.
 Values readKeys() {
   Values values;
   std::istringstream lines(read("").effective());
@@ -67,7 +67,7 @@ Values readKeys() {
   return values;
 }
 
-/// What the manual says: its tables, a section each.
+/// Keys in the manual's tables, one per section.
 Values writtenKeys() {
   Values values;
   std::istringstream lines(
@@ -82,12 +82,12 @@ Values writtenKeys() {
     CAPTURE(line);
     CHECK(values.emplace(section + match[1].str(), plain(match[2])).second);
   }
-  // Files that are named, not read from a default.
+  // File names have no default.
   CHECK(values.erase("patterns") + values.erase("robot") == 2);
   return values;
 }
 
-/// All predictions of a rule that has learned from executions with another gain and a turn.
+/// All predictions of a rule after executions with a different gain and a turn.
 std::vector<double> learned(const RuleConfig& config) {
   learner::samples::Pupil pupil(config, learner::samples::smallSet());
   for (const double gain : {0.8, 0.7, 0.75})
@@ -128,7 +128,7 @@ TEST_CASE("a mistyped key, rule or value of the learner is one line with file an
   REQUIRE_THROWS_WITH(read("memry: 0.3\n"), StartsWith("learner.yaml:2: unknown key memry"));
   REQUIRE_THROWS_WITH(read("rule: colective\n"), StartsWith("learner.yaml:2: "));
   REQUIRE_THROWS_WITH(read("memory: 1.0\n"), StartsWith("learner.yaml:2: "));
-  // Below 20 ms the set would be sent faster than LCM can take it.
+  // Below 20 ms the set would be sent faster than LCM can handle it.
   REQUIRE_THROWS_WITH(read("period: 0.01\n"), StartsWith("learner.yaml:2: "));
 }
 

@@ -13,7 +13,7 @@ using namespace tread::learner::samples;
 
 namespace {
 
-/// Damages an entry as a bad sector would.
+/// Damages an entry like a bad sector.
 void damage(Store& store, const std::string& name) {
   std::string content = *store.read(name);
   content[content.size() / 2] = '#';
@@ -58,7 +58,8 @@ TEST_CASE("an execution is reported once, also across a restart") {
   std::set<int64_t> ids;
   for (const learning_t& learned : bench.learned)
     REQUIRE(ids.insert(learned.learned_execution_id).second);
-  // Whatever ended while it was down or began before it heard the INS again cannot be measured.
+  // Executions that ended while it was down, or began before it received the INS again, cannot be
+  // measured.
   REQUIRE(ids.size() >= 11);
 }
 
@@ -159,7 +160,7 @@ TEST_CASE("when all memory is lost the version still goes up") {
   bench.bus.kill("learner");
   for (const std::string& name : bench.store.names()) bench.store.remove(name);
   bench.bus.restart("learner");
-  // Ten versions per second of robot time are more than can have been learned.
+  // Ten versions per second of robot time exceed what can be learned.
   REQUIRE(bench.node().set().version() > published);
   bench.run(5.0);
   REQUIRE(bench.versionsNeverWentBack());

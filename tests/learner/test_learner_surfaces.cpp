@@ -118,7 +118,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a state whose memory is no surfaces' starts anew under the same versions") {
-  // A sum of squares of the rule, and one of coasting: five numbers stand behind those of the rule.
+  // A sum of squares of the rule, and one of coasting: five numbers follow those of the rule.
   const size_t from_end = GENERATE(size_t{6}, size_t{4});
   SettledBench bench;
   std::string why;

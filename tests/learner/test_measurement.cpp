@@ -19,8 +19,7 @@ constexpr int64_t kStart = 10'000'000;
 using tread::testing::kSecond;
 constexpr int64_t kPeriod = 50'000;
 
-/// A robot that cruises at 1 m/s until kStart and then turns left with some twist, seen by an INS
-/// at 50 Hz.
+/// A robot that cruises at 1 m/s until kStart and then turns left, measured by an INS at 50 Hz.
 struct Drive {
   Pose2 T_map_start{3.0, -2.0, 2.9};  // the turn passes +-pi
   Twist2 cruise{1.0, 0.0, 0.0};
@@ -278,7 +277,7 @@ TEST_CASE("a beginning that the INS has not seen for 0.4 s is refused") {
 
 TEST_CASE("where the command before an execution was its class's, any twist is the ground's") {
   Drive drive;
-  drive.cruise = {0.3, 0.0, 0.0};  // ice: the class says 1 m/s
+  drive.cruise = {0.3, 0.0, 0.0};  // ice: the class has 1 m/s
   ExecutionCut cut = completed();
   REQUIRE(measured(drive, cut).gate == Gate::kEntryTwist);
   cut.steady_before = true;

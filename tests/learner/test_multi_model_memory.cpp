@@ -15,7 +15,7 @@ using tread::testing::effort;
 
 namespace {
 
-/// Any patterns, every third only begun if the rule learns from that.
+/// Executes random patterns; every third is incomplete if the rule learns from those.
 void driveOn(Pupil& pupil, const GroundEffect& ground, int executions, std::mt19937_64& random) {
   for (int i = 0; i < executions; ++i) {
     const size_t p = random() % pupil.patterns();
@@ -25,7 +25,7 @@ void driveOn(Pupil& pupil, const GroundEffect& ground, int executions, std::mt19
   }
 }
 
-/// What the learner has stored beside the memory.
+/// Data that the learner stores in addition to the memory.
 TrajectoryTable published(const Pupil& pupil) {
   PatternSetContent content = pupil.set().content();
   for (size_t p = 0; p < pupil.patterns(); ++p)
@@ -33,7 +33,7 @@ TrajectoryTable published(const Pupil& pupil) {
   return TrajectoryTable(content.patterns);
 }
 
-/// On its third ground, the second of which it remembers.
+/// On its third ground, with the second one in memory.
 const Pupil& experienced() {
   static const Pupil kPupil = [] {
     Pupil pupil(ruleConfig("multi_model"), richSet());
@@ -46,7 +46,7 @@ const Pupil& experienced() {
   return kPupil;
 }
 
-/// Whether a rule that knows something else takes a memory; if not it must stay as it was.
+/// Whether a rule with other knowledge accepts a memory; if not it must be unchanged.
 bool restores(const std::vector<double>& memory) {
   static const Pupil kOther = [] {
     Pupil pupil(ruleConfig("multi_model"), richSet());
@@ -69,7 +69,7 @@ std::vector<double> memoryOf(const Pupil& pupil) {
   return Pupil(pupil).rule().memory();
 }
 
-/// Where things stand in the memory of seven patterns.
+/// Offsets in the memory of seven patterns.
 enum Place : size_t {
   kClockAt,
   kChangesAt,
@@ -99,7 +99,7 @@ struct Hypothesis {
   size_t part =
       parts + 1;  ///< pattern, first, samples, count, sums and squares; the same of entries
 
-  /// Where the next hypothesis, or the number of fresh ones, begins.
+  /// Offset of the next hypothesis, or of the number of new ones.
   size_t end(const std::vector<double>& memory) const {
     return part + kEachPart * static_cast<size_t>(memory[parts]);
   }
@@ -230,7 +230,7 @@ TEST_CASE("the memory of another rule or of another set is refused") {
   REQUIRE_FALSE(knowing.rule().restore(rich, small.rule().memory()));
   REQUIRE_FALSE(small.rule().restore(TrajectoryTable(smallSet().patterns()), memoryOf(knowing)));
   REQUIRE(memoryOf(knowing) == memoryOf(experienced()));
-  // Rules that know predictions alone go on from any; but they must be of the same shape.
+  // Rules with predictions only continue from any; but they must have the same shape.
   REQUIRE(single.rule().restore(rich, knowing.rule().memory()));
   REQUIRE_FALSE(single.rule().restore(TrajectoryTable(smallSet().patterns()), {}));
 }
@@ -248,7 +248,7 @@ TEST_CASE("more surfaces than there is room for now are kept until the next one 
   REQUIRE(memoryOf(roomless) == memoryOf(more));
   driveOn(roomless, kMud, 20, random);
   REQUIRE(roomless.rule().remembered() == 3);
-  // A fourth ground: now there is room for one beside the shipped set's.
+  // A fourth ground: now there is space for one besides the shipped set's.
   driveOn(roomless, {0.7, 0.8, -0.1, 0.0}, 40, random);
   REQUIRE(roomless.rule().remembered() == 2);
 }
@@ -258,7 +258,7 @@ TEST_CASE("more surfaces than there is room for whatever the configuration are r
   Pupil knowing(experienced());
   const size_t second = Hypothesis(kFirstAt, asMultiModel(knowing).surface(0)).end(memory);
   const size_t fresh = Hypothesis(second, asMultiModel(knowing).surface(1)).end(memory);
-  // The second surface again and again, of no weight.
+  // Copies of the second surface, with weight 0.
   const auto with = [&](int64_t copies) {
     std::vector<double> more(memory.begin(), memory.begin() + static_cast<std::ptrdiff_t>(fresh));
     more[kSurfacesAt] += static_cast<double>(copies);

@@ -20,7 +20,7 @@ using tread::testing::effort;
 
 namespace {
 
-/// As the configuration expects of one execution, so many times in deviation.
+/// The configuration's expectation for one execution, scaled.
 EffectSpread usual(double times = 1.0) {
   return {0.03 * times, 0.08 * times, 0.03 * times};
 }
@@ -31,7 +31,7 @@ Pupil multiModel(const GroundConfig& ground = {}) {
   return {config, richSet()};
 }
 
-/// Mean change probability of the next executions.
+/// Mean change probability over the next executions.
 double changeSeen(Pupil& pupil, const GroundEffect& ground, int executions,
                   std::mt19937_64& random) {
   double sum = 0.0;
@@ -57,7 +57,7 @@ double median(std::vector<double> numbers) {
   return numbers[numbers.size() / 2];
 }
 
-/// Error of predicted ends against what is driven, over that of `off`.
+/// Error of predicted ends relative to that of `off`.
 double overOff(const Pupil& pupil, const DrawnWorld& world, const DrawnGround& ground,
                std::mt19937_64& random) {
   double learned = 0.0;
@@ -71,7 +71,7 @@ double overOff(const Pupil& pupil, const DrawnWorld& world, const DrawnGround& g
   return learned / shipped;
 }
 
-/// What a surface expects of a twist's velocity in a whole pattern, over the shipped one.
+/// A surface's expected velocity of a twist over a whole pattern, relative to the shipped one.
 double gainOf(const GroundModel& model, const Surface& surface, size_t pattern, Eigen::Index axis) {
   const PatternPart& whole = model.whole(pattern);
   return 1.0 + (whole.toBody() * surface.correction().added(whole))[axis] / whole.mean[axis];
@@ -141,8 +141,8 @@ TEST_CASE("one execution of left corrects right about as much") {
     };
     INFO(ground.forward << " " << ground.yaw << " left " << corrected(kTurnLeft) << " right "
                         << corrected(kTurnRight));
-    // Measured: left by .37 to .68 of its error, .11 where it slips only; whether the ground is
-    // another is not sure yet.
+    // Measured: a left turn is corrected by .37 to .68 of its error, by .11 if it only slips; a
+    // change of ground is not yet certain.
     REQUIRE(corrected(kTurnLeft) > 0.08);
     REQUIRE(corrected(kTurnRight) > 0.6 * corrected(kTurnLeft));
     REQUIRE(corrected(kTurnRight) <= corrected(kTurnLeft) + 1e-9);
@@ -173,10 +173,9 @@ TEST_CASE("new ground is remembered after ten executions on it, the shipped one 
 
 TEST_CASE("surfaces do not collapse: eight grounds stay eight, also after a very rough one",
           "[statistics]") {
-  // Moderate differences, as executions scatter. Measured over 30 seeds: 7.0 remembered, 5.9 of 7
-  // told apart when they come back, 13 % taken for the rough one. A narrower expectation of grounds
-  // tells more of such apart (7.6, 6.6, 3 %), and learns grounds that really differ ten times
-  // slower.
+  // Moderate differences compared with the scatter. Measured over 30 seeds: 7.0 grounds remembered,
+  // 5.9 of 7 recognized when they return, 13 % taken for the rough one. A narrower prior of grounds
+  // distinguishes more (7.6, 6.6, 3 %), but learns very different grounds ten times slower.
   const GroundEffect grounds[] = {{1.0, 1.0, 0.0, 0.0},     {1.05, 1.12, 0.03, 0.0},
                                   {0.95, 0.91, 0.0, 0.012}, {1.0, 1.21, 0.06, 0.0},
                                   {0.91, 1.06, 0.0, 0.0},   {1.09, 0.88, -0.03, 0.0},
@@ -208,8 +207,8 @@ TEST_CASE("surfaces do not collapse: eight grounds stay eight, also after a very
 
 TEST_CASE("executions of two grounds are never blended into one remembered surface",
           "[statistics]") {
-  // The ground changes in the middle of the first ten executions. The rule before predicted, ten
-  // executions later, the mean of both rather than the ground it was on in 34, 39 and 25 of 100.
+  // The ground changes within the first ten executions. Ten executions later the earlier rule
+  // predicted the mean of both grounds rather than the present one in 34, 39 and 25 of 100.
   const GroundEffect before{0.9, 1.2, 0.0, 0.0};
   const GroundEffect behind{1.1, 0.85, 0.05, 0.0};
   const GroundEffect blend{1.0, 1.025, 0.025, 0.0};
@@ -230,7 +229,7 @@ TEST_CASE("executions of two grounds are never blended into one remembered surfa
         const Surface& surface = asMultiModel(pupil).surface(static_cast<size_t>(k));
         const double yaw = gainOf(model, surface, kHardLeft, 2);
         const double forward = gainOf(model, surface, kAhead, 0);
-        // In units of the half way from one ground to the other.
+        // In units of half the difference between the grounds.
         const double from_behind = std::hypot((yaw - 0.85) / 0.175, (forward - 1.1) / 0.1);
         const double from_before = std::hypot((yaw - 1.2) / 0.175, (forward - 0.9) / 0.1);
         const double from_blend = std::hypot((yaw - 1.025) / 0.175, (forward - 1.0) / 0.1);
@@ -244,8 +243,8 @@ TEST_CASE("executions of two grounds are never blended into one remembered surfa
 }
 
 TEST_CASE("a change of ground is seen in the execution in which it happens", "[statistics]") {
-  // Measured over 200 seeds: .80, .73, .77, and .95, .87, .96 when the known ground comes back. The
-  // rule before: .10, .05, .06 at the changes, .05 back.
+  // Measured over 200 seeds: .80, .73, .77, and .95, .87, .96 when the known ground returns. The
+  // earlier rule: .10, .05, .06 at the changes, .05 at the return.
   const int seeds = 200;
   for (const GroundEffect& ground :
        {GroundEffect{0.7, 1.5, 0.0, 0.0}, GroundEffect{0.8, 1.3, 0.0, 0.0},
@@ -268,7 +267,7 @@ TEST_CASE("a change of ground is seen in the execution in which it happens", "[s
 TEST_CASE("over unchanged ground no more changes are suspected than are expected beforehand",
           "[statistics]") {
   const DrawnWorld world;
-  // A change every 12 m is expected: so probable in a pattern.
+  // A change is expected every 12 m: its probability in a pattern.
   double expected = 0.0;
   for (size_t p = 0; p < world.patterns(); ++p)
     expected += (1.0 - std::exp(-std::max(0.05, world.model().whole(p).metres) / 12.0)) / 7.0;
@@ -291,8 +290,9 @@ TEST_CASE("over unchanged ground no more changes are suspected than are expected
 
 TEST_CASE("nine in ten executions end within the region that is stated for nine in ten",
           "[statistics]") {
-  // In a world as the rule expects it: a vehicle with something of its own on all ground but the
-  // shipped one, on which it is every other time; the next metres may bring other ground.
+  // In a world that matches the rule's expectations: a vehicle with its own deviation on all
+  // grounds but the shipped one, which it is on every other time; the next metres may bring another
+  // ground.
   constexpr double kQuantile = 6.251;  // chi^2, three degrees of freedom
   const DrawnWorld world;
   const double change = 1.0 - std::exp(-1.5 / 12.0);
@@ -322,7 +322,7 @@ TEST_CASE("nine in ten executions end within the region that is stated for nine 
       }
     }
     INFO(learned << " executions: " << within << " of " << all);
-    // Measured over 500 seeds 1.000, .984, .955: grounds that really differ are expected, too.
+    // Measured over 500 seeds 1.000, .984, .955: very different grounds are expected, too.
     CHECK(within > 0.86 * all);
     CHECK((learned < 10 || within < 0.97 * all));
     within_all += within;
@@ -348,7 +348,7 @@ TEST_CASE(
     driveAny(pupil, {0.75, 0.7, 0.0, 0.0}, usual(), 30, random);
     sure.push_back(uncertainty(pupil, kHardLeft) / known);
   }
-  // Measured: a fifth of what it was, five times that at the change, one and a half after it.
+  // Measured: a fifth of the former, five times that at the change, 1.5 times after it.
   REQUIRE(median(settled) < 0.4);
   REQUIRE(median(suspected) > 2.0);
   REQUIRE(median(sure) < 0.6 * median(suspected));
@@ -387,8 +387,8 @@ TEST_CASE("the covariance of a remembered rough surface has its own noise") {
 
 TEST_CASE("after a change of ground learning does no harm from the second execution on",
           "[statistics]") {
-  // Measured over 200 seeds, of what `off` errs by: 1.21, 1.01, .97, .91, .88, .84 after 0 to 5;
-  // the chance of the executions themselves, which nothing can predict, is in both.
+  // Measured over 200 seeds, relative to the error of `off`: 1.21, 1.01, .97, .91, .88, .84 after 0
+  // to 5; both contain the unpredictable scatter of executions.
   const DrawnWorld world;
   std::vector<std::vector<double>> ratios(6);
   for (int seed = 1; seed <= 200; ++seed) {
@@ -431,7 +431,7 @@ TEST_CASE("from the shipped ground to another learning never does harm", "[stati
 
 TEST_CASE("on unchanged shipped ground the error is within 2 percent of the omniscient one",
           "[statistics]") {
-  // Measured 1.7 %. The rule before: 3.6 %.
+  // Measured 1.7 %. The earlier rule: 3.6 %.
   const DrawnWorld world;
   double learned = 0.0;
   double omniscient = 0.0;
@@ -452,7 +452,7 @@ TEST_CASE("on unchanged shipped ground the error is within 2 percent of the omni
 
 TEST_CASE("what a vehicle does on every ground it is expected to do on the next, too",
           "[statistics]") {
-  // Turns by 1.3 of what was shipped, wherever it drives; grounds differ in all else.
+  // It turns 1.3 times the shipped yaw on every ground; grounds differ in everything else.
   const GroundEffect grounds[] = {{1.0, 1.3, 0.0, 0.0}, {0.92, 1.3, 0.08, 0.0}};
   const GroundEffect third{1.25, 1.3, -0.06, 0.0};
   constexpr size_t kTurns[] = {kTurnLeft, kTurnRight, kHardLeft, kHardRight, kTurning};
@@ -473,14 +473,14 @@ TEST_CASE("what a vehicle does on every ground it is expected to do on the next,
     Pupil pupil = multiModel();
     for (const GroundEffect& ground : grounds) driveAny(pupil, ground, usual(), 30, random);
     first.push_back(yaw_over_off(pupil));
-    // Straight ahead on the third: the ground is another, and of turns nothing is known.
+    // Straight on the third ground: it is another one, and nothing is known about turns.
     RuleNote note;
     for (int i = 0; i < 2; ++i)
       note = pupil.learn(kAhead, under(drawn(third, usual(), random), pupil.shipped(kAhead)));
     REQUIRE(note.surface == 0);
     changed.push_back(yaw_over_off(pupil));
   }
-  // Measured .10 and .51 of what `off` errs by.
+  // Measured .10 and .51 of the error of `off`.
   CAPTURE(median(first), median(changed));
   REQUIRE(median(first) < 0.25);
   REQUIRE(median(changed) < 0.6);
@@ -580,14 +580,14 @@ TEST_CASE("the first half of a pattern teaches nearly what the whole of it does"
     }
     same_way += along > 0.0 ? 1 : 0;
   }
-  // Measured: 200 of 200, .91 as far.
+  // Measured: 200 of 200, .91 of the distance.
   REQUIRE(same_way >= 0.98 * seeds);
   REQUIRE(std::sqrt(halves / wholes) > 0.75);
   REQUIRE(std::sqrt(halves / wholes) < 1.05);
 }
 
 TEST_CASE("the beginning of a pattern is compared with its own beginning") {
-  // A left turn, then a right one: its first half as shipped tells of no other ground.
+  // A left turn, then a right one: a first half as shipped is no evidence of another ground.
   RuleConfig config = ruleConfig("multi_model");
   Pupil pupil(config, windingSet());
   const size_t last = pupil.patterns() - 1;
@@ -644,7 +644,7 @@ TEST_CASE("parts of a single sample do no harm, even many of them", "[statistics
     for (int i = 0; i < parts; ++i) {
       const size_t p = random() % world.patterns();
       Pose2 pose = world.execution(ground, p, random).front();
-      // As an INS measures one.
+      // As measured by an INS.
       pose = {pose.x + 0.005 * chanceOf(random), pose.y + 0.005 * chanceOf(random),
               pose.yaw + 0.005 * chanceOf(random)};
       pupil.learn(p, {pose});
@@ -683,15 +683,15 @@ TEST_CASE("the surface that was met longest ago makes room, never that of the sh
     good = good && pupil.rule().remembered() == 3;
     driveAny(pupil, kMud, kCalm, 30, random);
     REQUIRE(pupil.rule().remembered() <= 3);
-    // The third ground was met longest ago but for the shipped one.
+    // Except for the shipped one the third ground was used least recently.
     const RuleNote road = driveAny(pupil, kRoad, kCalm, 30, random);
     REQUIRE(pupil.rule().remembered() <= 3);
     const RuleNote mud = driveAny(pupil, kMud, kCalm, 10, random);
     const RuleNote meadow = driveAny(pupil, kMeadow, kCalm, 10, random);
     right += good && road.surface == 3 && mud.surface == 2 && meadow.surface == 1 ? 1 : 0;
   }
-  // Measured over 200 seeds: .91. Where not, two moments of one change, no more than an execution
-  // apart, stay about as likely, so that none is sure in time.
+  // Measured over 200 seeds: .91. In the other cases two times of one change, at most one execution
+  // apart, stay about equally likely, so that neither is certain in time.
   REQUIRE(right >= 0.85 * seeds);
 }
 
@@ -710,8 +710,8 @@ TEST_CASE("with room for one surface beside the shipped one it follows the newes
     }
     shipped += driveAny(pupil, kMeadow, kCalm, 10, random).surface == 1 ? 1 : 0;
   }
-  // Measured: always. It was one in seven when the shipped ground, on which nothing had been
-  // measured, was expected to be rougher than new ground.
+  // Measured: always. It was one in seven when the unmeasured shipped ground was expected to be
+  // noisier than new ground.
   REQUIRE(shipped >= 0.95 * seeds);
 }
 
@@ -726,8 +726,8 @@ TEST_CASE("who begins on other ground counts each change from there to the shipp
       driveAny(pupil, stay % 2 == 0 ? kMud : kMeadow, usual(), 20, random);
     changes += pupil.rule().memory()[1] / seeds;
   }
-  // Nine, and that from the shipped set to the first. Measured 11.2: a change may seem to have been
-  // at another moment once more is known. It was 4.9 when both had one beginning.
+  // Nine, plus the one from the shipped set to the first. Measured 11.2: the estimated time of a
+  // change may move with more data. It was 4.9 when both had a common beginning.
   REQUIRE(changes > 9.0);
   REQUIRE(changes < 13.0);
 }

@@ -139,8 +139,8 @@ Transition drive(Rule rule, const Recording& from, const Recording& to, int repe
   return result;
 }
 
-/// How much wider a hard left turn is after a left one was executed again and again on the ground
-/// that both were recorded on [1].
+/// Growth of a hard left turn's width after many executions of a left one on the ground of both
+/// recordings [1].
 double widthAfter(Rule rule, uint64_t seed, int executions) {
   const Recording ground(cinder(), {turning(0.82, 1.0), turning(0.55, 1.0)}, seed);
   Pupil pupil(ruleConfig(rule), ground.set());
@@ -157,8 +157,8 @@ std::array<double, 3> widthsAfter300(Rule rule) {
   return {widths[widths.size() / 2], widths.front(), widths.back()};
 }
 
-/// What is left of the error of a 90 degree turn when a gentle one was measured `executions` times,
-/// exactly, where every yaw rate is 1.37 of the predicted one [m].
+/// Remaining error of a 90 degree turn after `executions` exact measurements of a gentle one, where
+/// every yaw rate is 1.37 times the predicted one [m].
 double quarterTurnError(Rule rule, int executions) {
   PatternSetContent content = smallContent();
   content.patterns = {pattern(1, "gentle", {0.9, 1.0}, arc({1.0, 0.0, 0.33})),
@@ -171,7 +171,7 @@ double quarterTurnError(Rule rule, int executions) {
 }  // namespace
 
 TEST_CASE("single in the long run errs by sqrt(1 + (1 - w)/(1 + w)) of the omniscient error") {
-  // 1.155 at w = 0.5, as in the paper's Figure 4 (.045 / .039); other memories, other plateaus.
+  // 1.155 at w = 0.5, as in the paper's Figure 4 (.045 / .039); other memories have other plateaus.
   const Recording ground(grass(), sides(), 5);
   for (const double memory : {0.5, 0.3, 0.8}) {
     Pupil pupil(ruleConfig("single", memory), ground.set());
@@ -191,8 +191,8 @@ TEST_CASE("single in the long run errs by sqrt(1 + (1 - w)/(1 + w)) of the omnis
 }
 
 TEST_CASE("collective drifts: a pattern that is never executed grows several times in width") {
-  // Measured over 21 recordings: 4.2 in the median, 54 at worst, 1 where the recorded spread makes
-  // the width noise for good.
+  // Measured over 21 recordings: median 4.2, at most 54; 1 if the recorded spread marks the width
+  // as noise for good.
   const auto [median, least, largest] = widthsAfter300("collective");
   REQUIRE(median > 3.0);
   REQUIRE(largest > 10.0);
@@ -200,9 +200,8 @@ TEST_CASE("collective drifts: a pattern that is never executed grows several tim
 }
 
 TEST_CASE("on unchanged ground no other rule drifts", "[statistics]") {
-  // Measured over 21 recordings, median (least to largest): telescoping 1.00 (.75 to 1.21; the
-  // jitter of the executed pattern's own box, which does not add up), multi_model 1.00 (.97
-  // to 1.03).
+  // Measured over 21 recordings, median (range): telescoping 1.00 (.75 to 1.21; scatter of the
+  // executed pattern's own box, which does not accumulate), multi_model 1.00 (.97 to 1.03).
   const auto stays = [](Rule rule, double median_within, double all_within) {
     INFO(rule);
     const auto [median, least, largest] = widthsAfter300(rule);
@@ -217,8 +216,8 @@ TEST_CASE("on unchanged ground no other rule drifts", "[statistics]") {
 }
 
 TEST_CASE("scaling rules freeze the ratios between patterns, however exactly all are measured") {
-  // Ground that turns the gentle arc by 1.3 of what is predicted, the hard one as predicted. Each
-  // execution of one puts the other wrong; single and multi_model tell them apart.
+  // Ground that turns the gentle arc 1.3 times as predicted, the hard one as predicted. Each
+  // execution of one spoils the prediction of the other; single and multi_model separate them.
   const auto truth = [](size_t p) {
     return p == kTurnLeft ? arc({0.9, 0.0, 1.3 * 0.5}) : arc({0.7, 0.0, 1.0});
   };
@@ -247,8 +246,8 @@ TEST_CASE("a yaw gain from a gentle arc makes a 90 degree pattern worse when it 
 }
 
 TEST_CASE("a yaw gain from a gentle arc makes a 90 degree pattern better in twist space") {
-  // In body-twist space the very gain would leave nothing; multi_model takes a part of it
-  // for the gentle arc's own. Measured: .181 m after one execution, .099 after five.
+  // In body-twist space the exact gain would leave no error; multi_model attributes a part to the
+  // gentle arc itself. Measured: .181 m after one execution, .099 after five.
   REQUIRE(quarterTurnError("multi_model", 1) < 0.19);
   REQUIRE(quarterTurnError("multi_model", 5) < 0.11);
 }
@@ -269,7 +268,7 @@ TEST_CASE("no rule that must start on the other surface's set beats (a + 2 d) / 
     const double bound = (driven.a + 2.0 * driven.d) / 3.0;
     REQUIRE(driven.mean() > bound);
     REQUIRE(driven.mean() < 1.01 * driven.a);
-    // The first execution is predicted from the other surface, whatever the rule.
+    // The first execution is predicted from the other surface with every rule.
     REQUIRE(driven.each[0] == Approx(driven.a).epsilon(0.05));
     if (rule == "off") REQUIRE(driven.mean() == Approx(driven.a));
     if (rule != "off" && rule != "single") REQUIRE(driven.each[2] < 0.8 * driven.a);
@@ -295,11 +294,11 @@ TEST_CASE("both scaling rules have the guards: one dimension, other direction, n
     REQUIRE(others_stay(3, arc({0.05, 0.0, 0.9})));   // in place
     REQUIRE(others_stay(6, arc({0.1, 0.0, 0.1})));    // at rest
     REQUIRE(others_stay(1, arc({0.9, 0.0, -0.4})));   // turned to the other side
-    REQUIRE(others_stay(1, arc({-0.6, 0.0, 0.5})));   // went the other way
+    REQUIRE(others_stay(1, arc({-0.6, 0.0, 0.5})));   // went in the opposite direction
     REQUIRE_FALSE(others_stay(1, arc({0.8, 0.0, 0.6})));
 
-    // 0.06 rad of yaw, known to 0.03: its yaw is noise, and stays so under any scaling; its width
-    // of 2.7 cm is known to 1 mm.
+    // 0.06 rad of yaw with a deviation of 0.03: its yaw is noise, and stays so under any scaling;
+    // its width of 2.7 cm is known to 1 mm.
     Pupil pupil(fresh);
     pupil.learn(1, arc({0.9, 0.0, 0.8}));
     REQUIRE(pupil.end(5).yaw == fresh.end(5).yaw);
@@ -309,7 +308,7 @@ TEST_CASE("both scaling rules have the guards: one dimension, other direction, n
     REQUIRE(weak.scaling[1] != 1.0);
     REQUIRE(weak.scaling[2] == 1.0);
 
-    // Whatever is measured, one execution changes the others by a factor of two at most.
+    // For any measurement one execution changes the others at most by a factor of two.
     Pupil wild(fresh);
     const RuleNote note = wild.learn(1, arc({1.5, 0.0, 1.4}));
     REQUIRE(note.scaling[0] <= 2.0);

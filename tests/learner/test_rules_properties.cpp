@@ -33,7 +33,7 @@ PoseCovariance anyCovariance(Random& random) {
   return {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)};
 }
 
-/// A set of any patterns: fast, creeping, at rest, turning round and round, of one sample.
+/// A set of random patterns: fast, slow, at rest, turning many times, of one sample.
 PatternSet anySet(Random& random) {
   constexpr int64_t kPeriods[] = {5'000, 50'000, 200'000};
   PatternSetContent content;
@@ -54,7 +54,7 @@ PatternSet anySet(Random& random) {
   return checked(content);
 }
 
-/// Finite, but nothing that a vehicle drives; or what it drives.
+/// Finite, but not drivable by a vehicle; or drivable.
 std::vector<Pose2> anyMeasurement(const std::vector<Pose2>& shipped, double period,
                                   Random& random) {
   constexpr double kScales[] = {0.0, 1e-300, 1.0, 1e6, 1e150, 1e300, 1.7e308};
@@ -70,12 +70,12 @@ std::vector<Pose2> anyMeasurement(const std::vector<Pose2>& shipped, double peri
       for (size_t t = 0; t < measured.size(); ++t)
         measured[t] = t % 2 == 0 ? one : Pose2{-one.x, -one.y, -one.yaw};
       return measured;
-    case 2:  // each for itself
+    case 2:  // independent
       for (Pose2& pose : measured)
         pose = {scale * std::tanh(normal(random)), scale * std::tanh(normal(random)),
                 scale * std::tanh(normal(random))};
       return measured;
-    case 3:  // the way back
+    case 3:  // backwards
       for (Pose2& pose : measured) pose = {-pose.x, -pose.y, -pose.yaw};
       return measured;
     default:
@@ -116,7 +116,7 @@ bool near(const Pose2& a, const Pose2& b) {
   return distance(a, b) < 1e-9 && std::abs(a.yaw - b.yaw) < 1e-9;
 }
 
-/// A ground now and then another, executions with chance.
+/// Changes of ground, and executions with scatter.
 std::vector<Pose2> nextExecution(const std::vector<Pose2>& shipped, int i, double period,
                                  Random& random) {
   const GroundEffect grounds[] = {
@@ -176,7 +176,7 @@ TEST_CASE(
             REQUIRE(std::abs(pose.yaw - last.yaw) <= 20.0 * period * (1.0 + 1e-9));
             last = pose;
           }
-          // A correction that was taken back is taken back in the rule, too.
+          // A withdrawn correction is also withdrawn in the rule.
           if (i > 0) REQUIRE(near(learner.rule().predictEnd(p), published.end()));
         }
       }
@@ -185,8 +185,8 @@ TEST_CASE(
 }
 
 TEST_CASE("after absurd measurements a rule comes back to the truth") {
-  // Not so the scaling rules: they freeze what absurd measurements made of the patterns' ratios
-  // (test_rules_paper.cpp). The learner's gates are there to keep such measurements out.
+  // Unlike the scaling rules, which keep the effect of absurd measurements on the patterns' ratios
+  // (test_rules_paper.cpp); the learner's gates exclude such measurements.
   const GroundEffect ground{1.05, 1.2, 0.0, 0.0};
   for (const Rule rule : {"single", "multi_model"}) {
     INFO(rule);
@@ -265,7 +265,7 @@ TEST_CASE("the order of the patterns in the set does not matter") {
       INFO(rule << ", seed " << seed);
       Random random(seed);
       const PatternSet set = seed % 2 == 0 ? anySet(random) : richSet();
-      std::vector<size_t> from(set.patterns().size());  // place in the other set -> place here
+      std::vector<size_t> from(set.patterns().size());  // index in the other set -> index here
       std::iota(from.begin(), from.end(), size_t{0});
       std::shuffle(from.begin(), from.end(), random);
       PatternSetContent content = set.content();
@@ -316,7 +316,7 @@ TEST_CASE("same input, same bytes: also from a clone, and after assigning") {
       other.rule().assign(second.rule());
       REQUIRE(other.everything() == second.everything());
       both(second, other, 80, 130);
-      // The one that was copied from stayed as it was.
+      // The source of the copy is unchanged.
       const bool apart = first.everything() != second.everything();
       REQUIRE(apart == (rule != "off"));
     }

@@ -19,7 +19,7 @@ Axes quotient(const std::vector<Pose2>& measured, const std::vector<Pose2>& pred
   return scalingVector(boundingBox(measured), boundingBox(predicted), role, {});
 }
 
-/// Poses in a form that is changed in place.
+/// Poses that can be modified in place.
 struct Numbers {
   explicit Numbers(const std::vector<Pose2>& poses) { fill(poses, numbers); }
   Trajectory trajectory() {
@@ -75,7 +75,7 @@ TEST_CASE("a box that has shrunk to nothing is not divided by") {
 }
 
 TEST_CASE("an axis whose box is noise in the shipped set keeps the factor one for good") {
-  // 1.9 cm wide, 2.9 hundredths of a radian: below both limits; the length is not.
+  // 1.9 cm wide, 0.029 rad: below both limits; the length is not.
   const MotionPattern weak = pattern(1, "weak", {1.0, 1.0}, {{1.0, 0.019, 0.029}});
   const PatternRole role = roleOf(weak, {});
   REQUIRE(role.scalable == std::array<bool, 3>{true, false, false});
@@ -118,13 +118,13 @@ TEST_CASE("what moves in two dimensions gives scaling, whether it turns or not")
   CHECK_FALSE(gives({0.2, 0.01, 0.02}));
   CHECK_FALSE(gives({0.0, 0.2, 0.02}));
   CHECK_FALSE(gives({0.01, 0.01, 0.5}));
-  // Three recorded deviations are more than the box: what it does sideways is noise.
+  // Three recorded deviations exceed the box: its sideways motion is noise.
   CHECK_FALSE(gives({0.2, 0.1, 0.0}, {1e-4, 0.0, 0.0, 0.0016, 0.0, 1e-4}));
 }
 
 TEST_CASE("equation (2): memory is the weight of the old prediction") {
-  // w = 0.3: 0.7 of the measurement and 0.3 of the prediction; the paper's line 13 would give the
-  // reverse.
+  // w = 0.3: 0.7 of the measurement and 0.3 of the prediction; the paper's line 13 would reverse
+  // the two.
   Numbers measured({{1.0, 0.5, 1.0}});
   Numbers predicted({{0.0, 0.1, -1.0}});
   smooth(measured.fixed(), 0.3, predicted.trajectory());

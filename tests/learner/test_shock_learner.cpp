@@ -17,7 +17,7 @@ namespace {
 constexpr double kArm = 0.65;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Drives along x over ground of a slope [1] by x; the body has the slope under its origin.
+/// Drives along x over ground with a given slope [1]; the body has the slope under its origin.
 struct Driver {
   std::function<double(double)> slope = [](double) { return 0.0; };
   double noise = 0.0;  ///< of the rise, standard deviation [1]
@@ -48,7 +48,7 @@ std::function<double(double)> waves(double height) {
   };
 }
 
-/// RMS of the vertical acceleration of the front end on such waves, by calculus.
+/// RMS of the vertical acceleration of the front end on such waves, analytically.
 double trueShock(double height, double speed) {
   const double k = 2.0 * M_PI / 1.2;
   const double origin = height * k * k * speed * speed;               // -sin
@@ -72,7 +72,7 @@ double meanShock(const std::vector<FeltSegment>& segments) {
   return std::sqrt(squares / static_cast<double>(segments.size()));
 }
 
-/// A tile of 32 cells of 10 cm, all of one cost.
+/// A tile of 32 cells of 10 cm with equal cost.
 Tile tileOf(int x, Cell cost) {
   return {x, 0, 1, std::vector<Cell>(32 * 32, cost)};
 }
@@ -99,7 +99,7 @@ TEST_CASE("what the INS shows while standing is not felt while driving") {
   driver.noise = 0.003;
   const auto segments = felt(driver, 1.0, 60.0);
   REQUIRE(segments.size() > 40);
-  // Without that, noise alone would be 0.65 m x sqrt(6 / 5) x 0.003 / (0.1 s)^2 = 0.2 m/s2.
+  // Otherwise noise alone would be 0.65 m x sqrt(6 / 5) x 0.003 / (0.1 s)^2 = 0.2 m/s2.
   FeltShock shock(kArm);
   driver.drive(0.0, 20.0, [&](const BodyMotion& m) { shock.take(m); });
   CHECK(std::sqrt(shock.noise()) == Approx(0.21).epsilon(0.25));
@@ -119,7 +119,7 @@ TEST_CASE("a gap or a lost attitude ends a segment without a shock of its own") 
   };
   for (int i = 0; i < 20; ++i) {
     driver.drive(1.0, 2.7, take);
-    driver.utime += 700'000;  // it stands on another slope after each gap
+    driver.utime += 700'000;  // on another slope after each gap
     const double slope = i % 2 == 0 ? 0.2 : 0.0;
     driver.slope = [slope](double) { return slope; };
     shock.take({driver.utime, {driver.x, 0.0}, kNan, 1.0, 0.0});
@@ -131,7 +131,7 @@ TEST_CASE("a gap or a lost attitude ends a segment without a shock of its own") 
 
 TEST_CASE("what is felt teaches what was seen there") {
   ShockLearner learner(kArm);
-  // Rough and smooth ground in turn, 6.4 m each: seen as 12 mm and as 1 mm.
+  // Alternating rough and smooth ground, 6.4 m each: seen as 12 mm and as 1 mm.
   Driver driver;
   driver.x = 0.1;
   driver.slope = [](double x) { return static_cast<int>(x / 6.4) % 2 == 0 ? waves(0.01)(x) : 0.0; };

@@ -15,7 +15,7 @@ using namespace tread::learner::samples;
 
 namespace {
 
-/// Drives along x at 0.8 m/s over waves of 1.2 m, and sends what mapping would have seen of them.
+/// Drives along x at 0.8 m/s over waves of 1.2 m, and publishes what mapping would see of them.
 class BumpyDrive : public Node {
  public:
   explicit BumpyDrive(Bus& bus) : bus_(bus) {}

@@ -27,7 +27,7 @@ struct Fixture {
     prior.scatter = Eigen::Matrix3Xd::Ones(3, static_cast<Eigen::Index>(model->patterns()));
   }
   Surface surface() const { return {model, config, prior}; }
-  /// An execution on a ground that is the shipped one, with a variance over the expected one.
+  /// An execution on the shipped ground, with a variance relative to the expected one.
   TwistSample sample(size_t pattern, double noise, std::mt19937_64& random) const {
     const PatternPart& part = model->whole(pattern);
     Eigen::Vector3d by_chance = (noise * part.noise).cwiseSqrt();
@@ -40,7 +40,7 @@ struct Fixture {
   SurfacePrior prior;
 };
 
-/// The same of executions that scatter as is known: one factor on the noise.
+/// The same for executions with the known scatter: one factor on the noise.
 Fixture ofKnownNoise() {
   Fixture fixture;
   const auto keep = [](auto& scales) {
@@ -94,7 +94,7 @@ TEST_CASE("a surface learns its own noise, calm or rough, each velocity for itse
       }
       mean += surface.noise() / seeds;
     }
-    // 100 executions against the 5 that the expected noise counts for.
+    // 100 executions, and the expected noise counts as 5.
     const double expected = (100.0 * factor + 5.0) / 105.0;
     REQUIRE(mean[0] == Approx(expected).epsilon(0.15));
     REQUIRE(mean[2] == Approx(expected).epsilon(0.15));
@@ -113,7 +113,7 @@ TEST_CASE("executions beyond the longest memory fade, so that a surface may chan
   sample.mean_twist[0] *= 1.1;
   for (int i = 0; i < 60; ++i) surface.add(f.config, sample);
   REQUIRE(surface.executions() == 20.0);
-  // 20 of 20 fade by 20/21 each: .95 of what it was told.
+  // 20 of 20 decay by 20/21 each: .95 of the given value.
   REQUIRE(surface.correction().added(sample.part)[0] == Approx(0.1).epsilon(0.15));
 }
 
@@ -145,8 +145,8 @@ TEST_CASE("a surface stays symmetric, positive definite and finite, absurd or no
 
 namespace {
 
-/// An execution on the shipped ground that was entered `beside` the class's twist, which lasts for
-/// some seconds.
+/// An execution on the shipped ground with an entry twist that differs from the class's by
+/// `beside`, for some seconds.
 TwistSample enteredWith(const Fixture& f, size_t pattern, const Eigen::Vector3d& beside,
                         double seconds, std::mt19937_64& random) {
   TwistSample sample = f.sample(pattern, 1.0, random);
@@ -192,7 +192,7 @@ TEST_CASE("what executions were entered with is neither the ground's nor chance"
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     CAPTURE(axis);
     REQUIRE(told[axis] < 0.7 * not_told[axis]);
-    // Of what such a slide adds.
+    // Relative to the effect of such a slide.
     REQUIRE(on_slides[axis] < 0.6 * 0.5 * ahead.settling * kSlide[axis]);
   }
 }

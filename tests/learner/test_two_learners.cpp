@@ -11,7 +11,7 @@ using namespace tread::learner::samples;
 
 namespace {
 
-/// A bench with a second learner that has learned before, elsewhere, and starts later.
+/// A bench with a second learner that has learned elsewhere, and starts later.
 struct TwoLearners : Bench {
   TwoLearners() {
     bus.outside().subscribe<health_t>(kHealth, [this](const health_t& m) { of[m.boot_id] = m; });
@@ -46,7 +46,7 @@ TEST_CASE("of two learners the later one is silent, both say so, and versions ne
                              "and another since 21.0 s; stop one of them"));
   CHECK_THAT(bench.secondHealth().health_reason,
              Catch::Contains("passive") && Catch::Contains("another since 1.0 s"));
-  // Only the first one reports what it learned.
+  // Only the first one reports learning.
   std::map<std::pair<int64_t, int64_t>, int> reports;
   for (const learning_t& learned : bench.learned)
     CHECK(++reports[{learned.learned_run_id, learned.learned_execution_id}] == 1);

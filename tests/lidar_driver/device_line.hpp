@@ -12,8 +12,8 @@
 
 namespace tread::lidar::testkit {
 
-/// An emulated scanner and the driver's session on one line, each millisecond, with a sweep each
-/// 100 ms.
+/// An emulated scanner and the driver's session on one line, stepped each millisecond, with a sweep
+/// each 100 ms.
 template <class Session, class Device, class Scan>
 struct DeviceLine {
   using Sweep = Scan (*)(int64_t finished);
@@ -36,8 +36,8 @@ struct DeviceLine {
     return scans;
   }
 
-  /// Feeds random bytes, and sound ones of which some were changed, `step` [us] after `step`; a
-  /// sweep ends `sweep_age` [us] before each. `look` is called with every scan that comes of them.
+  /// Feeds random bytes, and valid ones with changes, in steps of `step` [us]; a sweep ends
+  /// `sweep_age` [us] before each. `look` is called with every resulting scan.
   template <class Look>
   void mistreat(int bytes_to_feed, unsigned seed, int64_t step, int64_t sweep_age, Look look) {
     std::mt19937 random(seed);
@@ -64,7 +64,7 @@ struct DeviceLine {
   }
 
   int64_t now = 1'000'000;
-  int64_t delay = 0;  ///< [us] of what the device sends
+  int64_t delay = 0;  ///< [us] of the device's output
   Session session;
   Device device;
   Sweep sweep_of;

@@ -25,11 +25,11 @@ class ScipServer {
  public:
   enum class Manner {
     kGood,     ///< answers and scans
-    kSilent,   ///< accepts and says nothing
+    kSilent,   ///< accepts, but sends nothing
     kGarbage,  ///< random bytes between the scans
     kCloses,   ///< accepts and closes at once
-    kRefuses,  ///< answers each command with an error, as of SCIP 1.1
-    kLazy      ///< answers the first two who come, scans only for those after them
+    kRefuses,  ///< replies to each command with an error, as of SCIP 1.1
+    kLazy      ///< replies to the first two clients, sends scans only to later ones
   };
 
   /// Listens on `port` of the loopback, 0 = any free one.
@@ -111,7 +111,7 @@ class ScipServer {
     }
   }
 
-  /// 3 m to the right, 5 m to the left, nothing straight ahead.
+  /// 3 m to the right, 5 m to the left, no return ahead.
   static sim::LaserScan scan() {
     sim::LaserScan scan;
     scan.utime = hostNow();

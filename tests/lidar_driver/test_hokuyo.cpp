@@ -24,7 +24,7 @@ struct ScipLine : testkit::DeviceLine<ScipSession, sim::ScipEmulator, sim::Laser
             ScipSession({short_ranges, 0.0}), [](int64_t finished) { return sweep(finished); },
             settings, 1) {}
 
-  /// 2 m to the right, 3 m to the left, nothing straight ahead, no measurement beside it.
+  /// 2 m to the right, 3 m to the left, no return ahead, no measurement next to it.
   static sim::LaserScan sweep(int64_t finished, int beams = 541) {
     sim::LaserScan scan;
     scan.utime = finished - sim::LaserParameters{}.sweep_us;
@@ -37,7 +37,7 @@ struct ScipLine : testkit::DeviceLine<ScipSession, sim::ScipEmulator, sim::Laser
   std::string reason() const { return session.reason(now).words; }
 };
 
-/// What a session that is asked for PP says to an answer to it.
+/// A session's error for a reply to PP.
 std::string refusalOf(const std::string& parameters) {
   ScipSession session({});
   int64_t now = 1'000'000;
@@ -158,7 +158,7 @@ TEST_CASE("each fault of a Hokuyo costs the scans that it touches, by name, and 
     faults.*fault.kind = true;
     line.device.setFaults(faults);
     CAPTURE(fault.counted);
-    // The first of those that are repeated is a new one.
+    // The first of the repeated ones is new.
     CHECK(line.run(1200).size() == (fault.kind == &sim::ScipFaults::repeats ? 2 : 0));
     line.device.setFaults({});
     CHECK(line.run(3000).size() >= 10);
@@ -176,7 +176,7 @@ TEST_CASE("random bytes between the scans of a Hokuyo cost few of them") {
   const std::vector<RangeScan> scans = line.run(10'000);
   CHECK(scans.size() >= 80);
   for (const RangeScan& scan : scans) {
-    // A sweep ends each 100 ms, whenever the bytes before it came.
+    // A sweep ends each 100 ms, whenever earlier bytes arrived.
     const int64_t off = (scan.utime + scan.duration_us) % 100'000;
     CHECK(std::min(off, 100'000 - off) < 5'000);
   }
@@ -299,7 +299,7 @@ TEST_CASE("a million random and mutated bytes give few scans that SCIP cannot vo
     REQUIRE(scan.utime + scan.duration_us <= line.now);
     REQUIRE(scan.duration_us == 18'750);
   });
-  // A sum of six bits lets one changed line in 64 through.
+  // A sum of six bits lets one changed line in 64 pass.
   CHECK(scans < 20);
   CHECK(line.session.counters().size() < 20);
 }

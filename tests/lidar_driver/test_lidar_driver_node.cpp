@@ -12,16 +12,16 @@ using namespace tread::lidar;
 
 namespace {
 
-/// As if it stood beside the shipped files.
+/// As if it were next to the shipped files.
 const std::string kHere = TREAD_SOURCE_DIR "/config/robots/teodor/lidar.yaml";
 
-/// What a test has its range finder measure, and why it measures nothing.
+/// Measurements of a test's range finder, and reasons for none.
 struct Script {
   std::vector<RangeScan> next;
   std::string trouble;
 };
 
-/// Gives what a script says.
+/// Returns the values of a script.
 class ScriptedDevice : public ScanDevice {
  public:
   explicit ScriptedDevice(Script& script) : script_(script) {}
@@ -39,8 +39,7 @@ class ScriptedDevice : public ScanDevice {
   Script& script_;
 };
 
-/// A robot's range finders, the second one at the ground, at the ends of lines that are up.
-/// Outlives the bus.
+/// A robot's range finders, the second one facing the ground, on connected lines. Outlives the bus.
 struct Finders {
   void join(VirtualBus& bus) {
     config.device.make = [this, made = 0]() mutable {
@@ -154,7 +153,7 @@ TEST_CASE(
   for (int i = 1; i <= 30; ++i) {
     finders.around.next = {scanAt(start + i * 100'000 - 80'000)};
     if (i <= 15) {
-      // Finished later, though it began before the other one.
+      // Finished later, though it began earlier.
       finders.ground.next = {scanAt(start + i * 100'000 - 90'000)};
     }
     bus.runUntil(start + i * 100'000);

@@ -19,7 +19,7 @@ namespace {
 
 const std::string kRobot = "robot: " TREAD_SOURCE_DIR "/config/robots/teodor/robot.yaml\n";
 
-/// The process, a bus that hears it, and its configuration file.
+/// The process, a bus that receives its messages, and its configuration file.
 class Driven {
  public:
   explicit Driven(const std::string& address) {
@@ -39,7 +39,7 @@ class Driven {
 
   void start() { process = std::make_unique<Process>("tread-lidar-driver", arguments_); }
 
-  /// Listens until the condition holds, at most so many seconds.
+  /// Listens until the condition holds, or a timeout.
   template <class Condition>
   bool until(Condition condition, double seconds) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);

@@ -28,7 +28,7 @@ struct Bench {
     config.latency = 0.0;
     return config;
   }
-  /// One period of 100 ms: a scan whose first range tells its number.
+  /// One period of 100 ms: a scan whose first range is its number.
   std::vector<RangeScan> step() {
     now += 100'000;
     sim::LaserScan scan;
@@ -62,7 +62,7 @@ struct Bench {
   int number = 0;
 };
 
-/// Nothing may leave a decoder that is no scan of a scanner in this time.
+/// A decoder must not return an invalid scan during this time.
 void requireVouched(const RangeScan& scan, int64_t now) {
   REQUIRE(scan.ranges.size() >= 2);
   REQUIRE(scan.ranges.size() <= 4000);
@@ -89,7 +89,7 @@ TEST_CASE(
     CHECK(scan.ranges[0] == Approx(1.010F));
     CHECK(scan.ranges[270] == 0.0F);
     CHECK(scan.duration_us == Approx(18'750).margin(10));
-    // Sent 1 ms after its last beam; the fixed way of 10.25 ms to the arrival cannot be known.
+    // Sent 1 ms after its last beam; the fixed transmission time of 10.25 ms is unknown.
     CHECK(scan.utime == Approx(bench.now - 1000 - 18'750).margin(20));
     CHECK(bench.session.identity().find("LMS10x") != std::string::npos);
     CHECK(bench.session.reason(bench.now).rank == Rank::kNone);
@@ -137,7 +137,7 @@ TEST_CASE("each fault of the line costs the scans that it touches, by name, and 
   struct Fault {
     bool sim::ColaFaults::*kind;
     const char* counted;
-    bool told_by_text;  // CoLa A has no checksum: a byte less may be another number there
+    bool told_by_text;  // CoLa A has no checksum: with a byte less a number may change
   };
   for (const Fault& fault :
        {Fault{&sim::ColaFaults::half_telegram, "bytes outside of telegrams", true},
@@ -238,7 +238,7 @@ TEST_CASE("a million random and mutated bytes give no scan that CoLa cannot vouc
       bench.exchange();
       if (bench.session.lost()) bench.session.open(bench.now);
     }
-    // The binary dialect's sum of 8 bits lets through one in 256, the structure fewer.
+    // The binary dialect's 8-bit sum lets one in 256 pass, its structure fewer.
     if (dialect == ColaDialect::kB) CHECK(scans < 20);
     CHECK(bench.session.counters().size() < 40);
   }
@@ -246,7 +246,7 @@ TEST_CASE("a million random and mutated bytes give no scan that CoLa cannot vouc
 
 TEST_CASE(
     "a SICK that speaks the other dialect is named with the key to set, for as long as it lasts") {
-  // One that streams as it was left and hears nothing, and one that only answers.
+  // One that streams with its last settings and ignores commands, and one that only replies.
   for (const ColaDialect configured : {ColaDialect::kA, ColaDialect::kB})
     for (const bool streams : {false, true}) {
       const bool text = configured == ColaDialect::kA;

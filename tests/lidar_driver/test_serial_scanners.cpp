@@ -25,7 +25,7 @@ struct SerialLine : testkit::DeviceLine<Session, Device, sim::LaserScan> {
       : testkit::DeviceLine<Session, Device, sim::LaserScan>(std::move(made), sweep,
                                                              sim::LaserParameters{}) {}
 
-  /// 2 m to the right, 3 m to the left, nothing straight ahead.
+  /// 2 m to the right, 3 m to the left, no return ahead.
   static sim::LaserScan sweep(int64_t finished) {
     sim::LaserScan scan;
     scan.utime = finished - sim::LaserParameters{}.sweep_us;
@@ -43,7 +43,7 @@ struct RplidarLine : SerialLine<RplidarSession, sim::RplidarEmulator> {
   explicit RplidarLine(double step = 1.0) : SerialLine(RplidarSession({step, 12.0, 0.0})) {}
 };
 
-/// How many scans come of bytes that were spoiled.
+/// Number of scans from damaged bytes.
 template <class Line>
 size_t mistreat(Line& line, int bytes_to_feed, unsigned seed) {
   size_t scans = 0;
@@ -114,14 +114,14 @@ TEST_CASE("turns of an RPLIDAR come out whole, clockwise, with their own times")
     const RangeScan& scan = scans.back();
     REQUIRE(scan.ranges.size() == static_cast<size_t>(360 / step));
     CHECK(scan.angle_step == Approx(-step * kDeg));
-    // Samples are a degree apart: of two steps of half a degree one may have none.
+    // Samples are a degree apart: of two steps of half a degree one may be empty.
     const auto at = [&](double degrees) {
       const auto beam = static_cast<size_t>(degrees / step);
       return std::isnan(scan.ranges[beam]) ? scan.ranges[beam + 1] : scan.ranges[beam];
     };
     CHECK(at(90.0) == Approx(2.0F));                                  // to the right
     CHECK(at(270.0) == Approx(3.0F));                                 // to the left
-    CHECK(std::isnan(scan.ranges[static_cast<size_t>(180 / step)]));  // behind: not seen
+    CHECK(std::isnan(scan.ranges[static_cast<size_t>(180 / step)]));  // behind: not visible
     CHECK(scan.duration_us == Approx(100'000 * (1 - step / 360)).margin(2));
     CHECK(scans[5].utime - scans[4].utime == 100'000);
     CHECK(line.session.reason(line.now).rank == Rank::kNone);
@@ -129,7 +129,7 @@ TEST_CASE("turns of an RPLIDAR come out whole, clockwise, with their own times")
 }
 
 TEST_CASE("samples of an RPLIDAR without echo, told ahead of the others, spoil no turn") {
-  // As Slamtec's SDK corrects angles: by up to 8 degrees, and only those with an echo.
+  // As Slamtec's SDK corrects angles: by up to 8 degrees, only for echoes.
   for (const double correction : {4.5, 8.0}) {
     RplidarLine line;
     sim::RplidarFaults faults;
@@ -140,11 +140,11 @@ TEST_CASE("samples of an RPLIDAR without echo, told ahead of the others, spoil n
     CHECK(line.counted("refused: turns whose angles do not run on") == 0);
     const RangeScan& scan = scans.back();
     REQUIRE(scan.ranges.size() == 360);
-    // The turn begins at the first echo, so that the first beam is the first in time.
+    // The revolution begins at the first echo, so that the first beam is the first in time.
     CHECK(scan.angle_first == Approx(std::round(correction) * kDeg).margin(1.1 * kDeg));
     const auto at = [&](double degrees) {
       const auto beam = static_cast<size_t>(std::lround(degrees + scan.angle_first / kDeg + 360.0));
-      // Corrected angles are no whole degrees: a beam may have two of them, its neighbour none.
+      // Corrected angles are fractional: a beam may have two of them, its neighbour none.
       const float range = scan.ranges[beam % 360];
       return std::isnan(range) ? scan.ranges[(beam + 1) % 360] : range;
     };
@@ -170,7 +170,7 @@ TEST_CASE("a turn of an RPLIDAR in which a byte is wrong or missing is not publi
     sim::RplidarFaults faults;
     faults.*fault.kind = true;
     line.device.setFaults(faults);
-    line.run(150);  // the last sound turn ends
+    line.run(150);  // end of the last valid revolution
     CAPTURE(fault.counted);
     CHECK(line.run(800).empty());
     CHECK(line.counted(fault.counted) > 0);
@@ -194,7 +194,7 @@ TEST_CASE("a million random and mutated bytes give no scan that LMS and RPLIDAR 
   CHECK(mistreat(lms, effort(1'100'000), 3) == 0);
   RplidarLine rplidar;
   rplidar.run(1500);
-  // Two check bits let single turns through whose other bits were changed.
+  // Two check bits let revolutions with single altered samples pass.
   CHECK(mistreat(rplidar, effort(1'100'000), 4) < 50);
   CHECK(lms.session.counters().size() + rplidar.session.counters().size() < 40);
 }

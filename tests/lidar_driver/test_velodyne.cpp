@@ -22,11 +22,11 @@ using namespace tread::testing;
 
 namespace {
 
-/// A sensor on its network line, looked at each millisecond.
+/// A sensor on its network line, stepped each millisecond.
 struct VelodyneLine {
   explicit VelodyneLine(const VelodyneConfig& config = {}) : session(config) { session.open(now); }
 
-  /// 2 m to the right, 3 m to the left, nothing straight ahead and behind.
+  /// 2 m to the right, 3 m to the left, no return ahead and behind.
   static sim::LaserScan sweep(int64_t finished) {
     sim::LaserScan scan;
     scan.utime = finished - sim::LaserParameters{}.sweep_us;
@@ -79,7 +79,7 @@ std::vector<std::pair<int64_t, std::string>> packetsOf(int count) {
   return packets;
 }
 
-/// Plays a capture in pieces; what came out, with the time at which it did.
+/// Plays a capture in pieces; returns the scans with their times.
 std::vector<RangeScan> play(VelodyneSession& session, const std::string& file, int64_t until) {
   std::vector<RangeScan> scans;
   size_t at = 0;
@@ -131,7 +131,7 @@ TEST_CASE("slices of a VLP-16 hold points in equal steps of time, NaN where noth
 
 TEST_CASE("a point's index tells the time at which the sensor looked there") {
   VelodyneLine line({19, 2, 0.0});
-  // The emulated sensor looks ahead at each full 100 ms.
+  // The emulated sensor faces ahead at each multiple of 100 ms.
   for (const RangeScan& scan : line.run(1500)) {
     const double step =
         static_cast<double>(scan.duration_us) / static_cast<double>(scan.points.size() / 16 - 1);
@@ -139,7 +139,7 @@ TEST_CASE("a point's index tells the time at which the sensor looked there") {
       if (!isReturn(scan.points[i])) continue;
       const double time = static_cast<double>(scan.utime) + step * static_cast<double>(i / 16);
       const double clockwise = 2.0 * M_PI * std::fmod(time, 100'000.0) / 100'000.0;
-      // The line is looked at each millisecond.
+      // The line is read each millisecond.
       const double late = std::remainder(-bearing(scan.points[i]) - clockwise, 2.0 * M_PI);
       REQUIRE(std::abs(late / (2.0 * M_PI) * 0.1) < 0.001);
     }
@@ -207,7 +207,7 @@ TEST_CASE("the full hour of the device's clock, at which it begins anew, loses n
   VelodyneLine line;
   line.device.reboot(1'000'000);
   line.run(500);
-  // Far on, in one step: the last two seconds of the hour.
+  // A large step: the last two seconds of the hour.
   line.session.close();
   line.now = 1'000'000 + 3'599'000'000;
   line.session.open(line.now);

@@ -12,11 +12,11 @@
 
 namespace tread::mapping {
 
-/// A cloud as octomap::OcTree::insertPointCloud() takes it with discretize = true: one beam for all
-/// points of a voxel, to the voxel's centre; beyond max_range it passes and does not hit.
+/// A cloud as in octomap::OcTree::insertPointCloud() with discretize = true: one beam for all
+/// points of a voxel, to the voxel's centre; beyond max_range it passes without a hit.
 class CloudInsertion {
  public:
-  /// The grid holds what lies within max_range [m] of any point of a voxel.
+  /// The grid covers max_range [m] around any point of a voxel.
   CloudInsertion(double resolution, double max_range)
       : max_range_(max_range),
         half_((static_cast<int>(max_range / resolution) + 4 + kBlockSide) / kBlockSide *
@@ -41,7 +41,7 @@ class CloudInsertion {
   static constexpr unsigned kSeenBits = 15;
   static constexpr uint64_t kNoKey = ~uint64_t{0};
 
-  /// Not always right about old ones: a voxel that was forgotten is traced again, to the same end.
+  /// It may be wrong about old ones: a forgotten voxel is traced again, with the same result.
   bool isNew(const octomap::OcTreeKey& key) {
     const uint64_t number = uint64_t{key[0]} | uint64_t{key[1]} << 16 | uint64_t{key[2]} << 32;
     uint64_t& seen = seen_[number * 0x9E3779B97F4A7C15u >> (64 - kSeenBits)];
@@ -64,7 +64,7 @@ class CloudInsertion {
   std::vector<uint64_t> seen_;
 };
 
-/// All of a tree, bit by bit.
+/// A complete tree, for bitwise comparison.
 inline std::string bytesOf(const octomap::OcTree& tree) {
   std::ostringstream bytes;
   tree.writeData(bytes);

@@ -14,8 +14,7 @@
 
 namespace tread::mapping {
 
-/// A body that is moved through the simulator's worlds, its laser and its INS, and who watches
-/// the laser.
+/// A body in the simulator's worlds with laser and INS, and the monitor of the laser.
 class ScanDrive {
  public:
   explicit ScanDrive(sim::WorldDescription world, int beams = 181, uint64_t seed = 1)
@@ -26,12 +25,12 @@ class ScanDrive {
     while (world_->collision({1.3, 0.68}, pose)) pose.y += 0.2;
   }
 
-  /// Moves on for some seconds; counts suspicions.
+  /// Moves for some seconds; counts suspicions.
   void drive(double v_x, double omega, double seconds) {
     const int64_t end = utime_ + std::llround(seconds * 1e6);
     while (utime_ < end) step(v_x, omega);
   }
-  /// As a robot that drives about and turns before what is in its way.
+  /// Like a robot that drives about and turns in front of obstacles.
   void wander(double seconds) {
     const auto draw = [this](double low, double high) {
       return std::uniform_real_distribution(low, high)(random);
@@ -55,7 +54,7 @@ class ScanDrive {
   int verdicts = 0;
   std::string told;                      ///< all verdicts
   double travelled = 0.0, turned = 0.0;  ///< [m, rad] in all
-  int64_t named = 0;                     ///< [us] of the last verdict's begin
+  int64_t named = 0;                     ///< [us] beginning of the last verdict
 
  private:
   static constexpr int64_t kStart = 1'000'000;

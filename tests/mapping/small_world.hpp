@@ -11,7 +11,7 @@
 
 namespace tread::mapping {
 
-/// A box that stands or hangs in the world [m], sides along the axes of map.
+/// A standing or hanging box in the world [m], with sides along the axes of map.
 struct Box {
   Eigen::Vector3d low;
   Eigen::Vector3d high;
@@ -29,7 +29,7 @@ struct SmallWorld {
     return false;
   }
 
-  /// Pose of a body that stands on the ground: its plane touches it at the origin.
+  /// Pose of a body on the ground: its plane touches the ground at the origin.
   Eigen::Isometry3d stand(double x, double y, double yaw) const {
     constexpr double kStep = 0.3;
     const double along_x = (ground(x + kStep, y) - ground(x - kStep, y)) / (2.0 * kStep);
@@ -46,7 +46,7 @@ struct SmallWorld {
   }
 };
 
-/// A level range finder 0.5 m above the ground that sees 270 degrees.
+/// A level range finder 0.5 m above the ground with 270 degrees.
 struct RangeFinder {
   Eigen::Isometry3d T_body_sensor = isometryFrom({0.25, 0.0, 0.5}, {});
   double field_of_view = 1.5 * kPi;
@@ -60,7 +60,7 @@ struct RangeFinder {
     const auto isSolidAt = [&](double r) {
       return world.isSolid(T_map_sensor * Eigen::Vector3d(direction * r));
     };
-    double range = 0.05;  // nothing in these worlds is thinner than the step
+    double range = 0.05;  // no object in these worlds is thinner than the step
     while (range < range_max && !isSolidAt(range)) range += 0.1;
     const bool hit = range < range_max;
     double clear = range - 0.1;
@@ -78,7 +78,7 @@ struct RangeFinder {
   }
 };
 
-/// The usual map of a robot of the usual size.
+/// The default map of a robot of usual size.
 inline OccupancyMapConfig usualMap() {
   OccupancyMapConfig config;
   config.robot = {0.65, 0.65, 0.34};
@@ -98,7 +98,7 @@ struct Mapper {
       refusal = map.insert(range_finder.scan(world, utime += 100'000, T_map_body));
     return refusal;
   }
-  /// Drives straight, a scan every 10 cm.
+  /// Drives straight, with a scan every 10 cm.
   void drive(const SmallWorld& world, Eigen::Vector2d from, Eigen::Vector2d to) {
     const Eigen::Vector2d way = to - from;
     const double yaw = std::atan2(way.y(), way.x());

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kLower = -32;
 
-/// The bit of the voxel that holds a height [m], voxels of 0.1 m.
+/// The bit of the voxel for a height [m], voxels of 0.1 m.
 uint64_t at(double z) {
   return uint64_t{1} << (static_cast<int>(std::floor(z * 10.0)) - kLower);
 }
@@ -57,10 +57,10 @@ TEST_CASE(
 }
 
 TEST_CASE("the ground is no higher than the lowest voxel that was seen, within the doubt") {
-  // Seen free at -0.2: ground below. What is occupied at 0.15 stands 0.25 above it.
+  // Free at -0.2: the ground is below. Occupied at 0.15 is 0.25 above it.
   REQUIRE(classified(at(-0.15), at(0.15), 0.0, 0.0) == kObstacle);
   REQUIRE(classified(at(-0.15) | at(0.55), 0, 0.0, 0.1) == kFree);
-  // One false beam far below the ground must not lift an obstacle over the robot.
+  // A single false beam far below the ground must not raise an obstacle above the robot.
   REQUIRE(classified(at(-2.0), at(0.55), 0.0, 0.1) == kObstacle);
 }
 

@@ -44,7 +44,7 @@ TEST_CASE("a short pitch moves the ground far ahead little") {
   for (double x = 0.0; x < 6.0; x += 0.2) ground.learn(levelAt(x));
   ground.learn({{6.0, 0.0, 0.0}, {-0.09, 0.0}});
   ground.learn({{6.0, 0.0, 0.0}, {-0.09, 0.0}});
-  REQUIRE(std::abs(ground.at({118, 0}).z) < 0.12);  // the plane itself says -0.52
+  REQUIRE(std::abs(ground.at({118, 0}).z) < 0.12);  // the plane itself gives -0.52
 }
 
 TEST_CASE("a patch that was driven over keeps its height when the robot has gone elsewhere") {

@@ -14,7 +14,7 @@ using namespace tread::mapping;
 
 namespace {
 
-/// As if it stood beside the shipped files.
+/// As if it were next to the shipped files.
 const std::string kHere = TREAD_SOURCE_DIR "/config/robots/teodor/mapping.yaml";
 
 MappingConfig usualConfig() {
@@ -36,7 +36,7 @@ ins_t insAt(int64_t utime, int64_t seq, const Eigen::Isometry3d& T_map_body) {
   return message;
 }
 
-/// Ranges of a level range finder at a standing robot.
+/// Ranges of a level range finder on a standing robot.
 scan_t scanAt(int64_t utime, int64_t seq, const SmallWorld& world,
               const Eigen::Isometry3d& T_map_body) {
   RangeFinder range_finder;
@@ -98,7 +98,7 @@ class Instruments : public Node {
   int64_t seq_ = 0;
 };
 
-/// A bus whose time is unknown at first, as that of a process that follows the messages' time.
+/// A bus whose time is initially unknown, as for a process that follows the messages' time.
 class FollowingBus : public Bus {
  public:
   int64_t now() const override { return time; }
@@ -120,7 +120,7 @@ class FollowingBus : public Bus {
   void listen(const char* /*channel*/) override {}
 };
 
-/// The node, its instruments and who listens.
+/// The node, its instruments and subscribers.
 struct Rig {
   explicit Rig(const FaultPlan& faults = {}, uint64_t seed = 1) : bus(seed, faults) {
     world.boxes = {{{4.03, -2.0, -1.0}, {4.4, 2.0, 2.0}}};
@@ -458,7 +458,7 @@ TEST_CASE("A frozen range finder is named at once, is left out of the map, and r
     scan.ranges = last;
   };
   rig.run(1.0);
-  // Standing it shows the same, and nobody can tell.
+  // At rest it shows the same, so it cannot be detected.
   CHECK(rig.health.health_state == health_t::HEALTH_OK);
   rig.instruments().speed = 0.8;
   rig.run(0.55);

@@ -69,7 +69,7 @@ TEST_CASE("where a map begins the robot can turn on the spot, unless an obstacle
   Mapper mapper;
   mapper.look(world, world.stand(0, 0, 0.0));
   REQUIRE(mapper.at(-0.9, 0.0) == kFree);  // behind, never seen
-  REQUIRE(mapper.at(-0.5, 0.6) == kFree);  // beside the rear, never seen
+  REQUIRE(mapper.at(-0.5, 0.6) == kFree);  // at the rear, never seen
   REQUIRE(mapper.at(-1.2, 0.0) == kUnknown);
   REQUIRE(mapper.at(0.5, 0.86) == kObstacle);
 }
@@ -80,10 +80,10 @@ TEST_CASE(
   Mapper mapper;
   mapper.drive(world, {0, 0}, {6, 0});
   REQUIRE(count(mapper, kFree, -0.6, -0.3, 6.6, 0.3) == 72 * 6);
-  // An obstacle that seems to reach under the robot: the robot stands there all the same.
+  // An obstacle that seems to reach under the robot, which stands there nevertheless.
   world.boxes = {wall(6.43, -2.0, 7.5, 2.0)};
   mapper.look(world, world.stand(5.0, 0, 0),
-              2);  // the first hit on well known free space is not enough
+              2);  // the first hit in well-known free space is not enough
   REQUIRE(mapper.at(6.45, 0.0) == kObstacle);
   mapper.look(SmallWorld{}, world.stand(6.0, 0, 0));
   REQUIRE(mapper.at(6.45, 0.0) == kFree);
@@ -153,7 +153,7 @@ TEST_CASE("a robot that pitches on a bump does not see the ground as a wall") {
     mapper.look(world, T_map_body);
     CAPTURE(degrees);
     REQUIRE(count(mapper, kObstacle, 0.0, -9.0, 18.0, 9.0) == 0);
-    REQUIRE(mapper.at(11.95, 0.0) == kFree);  // where the pitched beams end on the ground
+    REQUIRE(mapper.at(11.95, 0.0) == kFree);  // where the pitched beams reach the ground
     REQUIRE(mapper.at(12.15, 0.0) == kFree);
   }
 }
@@ -198,7 +198,7 @@ TEST_CASE("behind an edge there is no way down, neither seen at a slant nor from
     mapper.drive(world, {0.0, 0.0}, {3.2, 0.0});
     CAPTURE(look_down);
     for (double x = 1.0; x < 3.9; x += 0.1) CHECK(isFree(mapper.at(x, 0.05)));
-    // Somewhere within reach of the edge a row across the way is not free.
+    // Near the edge a row across the path is not free.
     int closed = 0;
     for (double x = 4.0; x < 4.6; x += 0.1) {
       bool free = false;
@@ -276,7 +276,7 @@ TEST_CASE("the beams of one scan are put where the robot was at each beam's time
   SmallWorld world;
   world.boxes = {wall(-6.0, 5.0, 6.0, 5.3), wall(-6.0, -5.3, 6.0, -5.0)};
   Mapper mapper;
-  // Turning left at 90 degrees in 0.1 s while the beams go round.
+  // Turning left by 90 degrees in 0.1 s during the sweep.
   Scan scan = mapper.range_finder.scan(world, 2'000'000, world.stand(0, 0, 0));
   scan.T_map_body_last = world.stand(0, 0, kPi / 2);
   for (size_t i = 0; i < scan.beams.size(); ++i) {

@@ -21,7 +21,7 @@ RoughnessMap seen(Height&& height, double noise, double tilt = 0.0) {
   std::normal_distribution<double> normal;
   for (double x = 1.0; x < 3.0; x += 0.1) {
     std::vector<GroundPoint> points;
-    const double pose_error = 0.01 * normal(random);  // moves a whole sweep
+    const double pose_error = 0.01 * normal(random);  // shifts a complete sweep
     for (double y = -4.0; y < 4.0; y += 0.04)
       points.push_back(
           {{x, y, height(x, y) + tilt * y + pose_error + noise * normal(random)}, noise * noise});

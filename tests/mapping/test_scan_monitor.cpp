@@ -25,7 +25,7 @@ sim::WorldDescription yard() {
   return world;
 }
 
-/// Old scans, whatever their time is; each with bits of its own.
+/// Old scans with any time stamps, but distinct content.
 class Past {
  public:
   void show(scan_t& scan, size_t ago) {
@@ -39,10 +39,10 @@ class Past {
 };
 
 void turnBeams(scan_t& scan, double angle) {
-  scan.angle_first += angle;  // the same as turned, without what leaves the view
+  scan.angle_first += angle;  // the same as rotated, without beams outside of the view
 }
 
-/// Drives on with a lie that begins now, and says how far until it has its name.
+/// Drives on under a lie from now on; returns the distance until it is named.
 struct Named {
   double seconds = 1e9, way = 0.0, turn = 0.0;
   ScanDefect defect = ScanDefect::kNone;
@@ -72,7 +72,7 @@ TEST_CASE("a range finder that repeats its last frame is named within half a sec
     CHECK(named.defect == ScanDefect::kFrozen);
     CHECK(named.seconds < 0.55);
     CHECK_THAT(named.words, Contains("it repeats bit for bit"));
-    // And as long as it goes on, also where the robot stands.
+    // Also as long as it lasts, and while the robot stands.
     drive.drive(0.0, 0.0, 5.0);
     CHECK(drive.monitor.verdict() == ScanDefect::kFrozen);
     drive.disturb = nullptr;
@@ -131,7 +131,7 @@ TEST_CASE("an open field where nothing is seen is no lie, nor is a corridor", "[
 }
 
 TEST_CASE("a steep hillside that shows only ground as the robot rolls is no lie", "[statistics]") {
-  // Slopes up to 0.52 rad to both sides: what was above the robot's own ground no longer is.
+  // Slopes up to 0.52 rad to both sides: objects above the robot's own ground are below it later.
   sim::WorldDescription world;
   world.base_surface = "grass";
   world.bounds = {{-30.0, -60.0}, {120.0, 60.0}};
@@ -140,7 +140,7 @@ TEST_CASE("a steep hillside that shows only ground as the robot rolls is no lie"
     world.terrain.bumps.push_back({{x, -8.0}, -1.55, 6.0});
   }
   int verdicts = 0;
-  // On each of these a verdict was made before; of seeds 1 to 200 on none is today.
+  // Each of these once had a false verdict; of seeds 1 to 200 none has today.
   for (const uint64_t seed : {2, 31, 34, 37}) {
     ScanDrive drive(world, 541, seed);
     drive.pose = {8.0, 0.0, 0.0};
@@ -236,7 +236,7 @@ TEST_CASE(
     std::fill(scan.ranges.begin(), scan.ranges.end(), std::numeric_limits<float>::infinity());
   };
   drivenUntilNamed(drive, 0.7, 0.1);
-  // Somebody arms again and drives: the place of the last good scan is left.
+  // Somebody arms again and drives away from the place of the last good scan.
   for (int i = 0; i < 8; ++i) {
     drive.drive(0.3, 0.6, 1.0);
     REQUIRE(drive.monitor.verdict() == ScanDefect::kSeesThrough);
@@ -255,7 +255,7 @@ TEST_CASE("who was named a moment ago is named at the first scan that shows it a
   lag = 5;
   const Named first = drivenUntilNamed(drive, 0.8, 0.2);
   REQUIRE(first.defect == ScanDefect::kDelayed);
-  // Old scans of a robot that stands are as good as new ones.
+  // Old scans of a standing robot are as good as new ones.
   drive.drive(0.0, 0.0, 4.0);
   REQUIRE(drive.monitor.verdict() == ScanDefect::kNone);
   const Named again = drivenUntilNamed(drive, 0.8, 0.2);

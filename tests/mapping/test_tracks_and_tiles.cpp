@@ -45,7 +45,7 @@ TEST_CASE("a track refuses what is not newer and forgets what is old") {
   const auto pose = isometryFrom({1, 2, 3}, {});
   track.push(100'000, pose);
   REQUIRE(track.push(100'000, pose) == SpatialTrack::PoseCheck::kNotNewer);
-  // A time before all clocks, of which no difference may be taken.
+  // A time before all clocks, for which no difference may be computed.
   SpatialTrack empty(1'000'000, 10.0);
   for (const int64_t utime : {INT64_MIN, int64_t{-1}})
     REQUIRE(empty.push(utime, pose) == SpatialTrack::PoseCheck::kNotNewer);

@@ -24,7 +24,7 @@ point3d pointAt(double x, double y, double z) {
 }
 
 /// Walls of a room of this radius around the origin of map, seen from a place in it; a third of the
-/// points anywhere, some of them beyond the room.
+/// points are random, some beyond the room.
 Pointcloud roomFrom(std::mt19937_64& random, const point3d& origin, double radius, int points) {
   Pointcloud cloud;
   const double turn = between(random, -3.1, 3.1);
@@ -39,7 +39,7 @@ Pointcloud roomFrom(std::mt19937_64& random, const point3d& origin, double radiu
   return cloud;
 }
 
-/// Both ways of insertion side by side.
+/// Both methods of insertion.
 struct Pair {
   Pair(double resolution, double range)
       : max_range(range), theirs(resolution), ours(resolution), insertion(resolution, range) {}
@@ -104,7 +104,7 @@ TEST_CASE("wide free space is one pruned node in both, opened again where someth
   const point3d origin = pointAt(1.61, 1.62, 1.63);
   for (int scan = 0; scan < 6; ++scan) pair.insert(all_around, origin);
   pair.requireSame();
-  // Larger than a block, so that nodes above the blocks are opened, too.
+  // Larger than a block, so that nodes above the blocks are expanded, too.
   REQUIRE(pair.ours.search(pair.ours.coordToKey(1.6, 1.6, 1.6), 11) != nullptr);
   size_t large = 0;
   for (auto leaf = pair.ours.begin_leafs(); leaf != pair.ours.end_leafs(); ++leaf)

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kSide = 64;
 
-/// Rays from about the middle of the window that start together, as insertPointCloud() wants it.
+/// Rays from about the middle of the window with a common origin, as insertPointCloud() requires.
 std::vector<Ray> randomRays(std::mt19937_64& random, const Eigen::Vector3d& middle) {
   std::uniform_real_distribution<double> turn(-3.1, 3.1);
   std::uniform_real_distribution<double> tilt(-0.1, 0.1);
@@ -28,7 +28,7 @@ std::vector<Ray> randomRays(std::mt19937_64& random, const Eigen::Vector3d& midd
   return rays;
 }
 
-/// The definition: OctoMap's own insertion; beams without return come back from beyond its range.
+/// By definition: OctoMap's own insertion; beams without return end beyond its range.
 void insertByOctoMap(octomap::OcTree& tree, const std::vector<Ray>& rays) {
   octomap::KeySet passed;
   octomap::KeySet hit;
@@ -49,7 +49,7 @@ octomap::OcTreeKey keyAt(CellIndex cell, int z) {
   return {key(cell.x), key(cell.y), key(z)};
 }
 
-/// Pruned and up to date: doing both anew changes no byte.
+/// Pruned and up to date: repeating both changes no byte.
 void requireNeat(const octomap::OcTree& tree) {
   octomap::OcTree again(tree);
   again.updateInnerOccupancy();
@@ -57,7 +57,7 @@ void requireNeat(const octomap::OcTree& tree) {
   REQUIRE((bytesOf(again) == bytesOf(tree)));
 }
 
-/// The bit image against the tree, voxel by voxel.
+/// The bit image compared with the tree, voxel by voxel.
 void requireSameAsTree(const VoxelMap& map) {
   size_t known = 0;
   size_t wrong = 0;
@@ -73,7 +73,7 @@ void requireSameAsTree(const VoxelMap& map) {
     }
   }
   REQUIRE(wrong == 0);
-  size_t voxels = 0;  // also those that the tree holds outside of the window
+  size_t voxels = 0;  // including voxels that the tree has outside of the window
   for (auto leaf = map.tree().begin_leafs(); leaf != map.tree().end_leafs(); ++leaf)
     voxels += size_t{1} << 3 * (16 - leaf.getDepth());
   REQUIRE(voxels == known);
@@ -143,5 +143,5 @@ TEST_CASE("the columns told as changed are those whose known or occupied voxels 
   REQUIRE(map.changed().empty());
   REQUIRE(map.touched().size() == 11);
   map.insert({{{0.05, 0.05, 0.05}, {2.05, 0.05, 0.05}, false}});
-  REQUIRE(map.changed().size() == 9);  // beyond the hit, which two hits against one miss keep
+  REQUIRE(map.changed().size() == 9);  // except for the hit, which two hits and one miss keep
 }

@@ -10,7 +10,7 @@
 
 namespace tread::motor {
 
-/// The newest record of a log, if any.
+/// The newest record of a log; nullopt if it is empty.
 inline std::optional<ExecutionRecord> newest(const ExecutionLog& log) {
   return log.records().empty() ? std::nullopt : std::optional(log.records().back());
 }
@@ -26,8 +26,8 @@ struct BridgeWorld {
   bool ins_alive = true;
   bool operator_alive = true;
   int64_t ins_seq = 0;
-  int64_t view_age = 10'000;  ///< [us] age of what the operator sees
-  InsMotion motion;           ///< as the INS says
+  int64_t view_age = 10'000;  ///< [us] age of the operator's view
+  InsMotion motion;           ///< measured by the INS
   InsTilt tilt;
 
   static constexpr int64_t kStep = 10'000;

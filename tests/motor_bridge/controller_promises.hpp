@@ -13,7 +13,7 @@
 
 namespace tread::motor {
 
-/// Drives until the commands are on the motors.
+/// Drives until the commands reach the motors.
 template <class Rig>
 void requireDriving(Rig& rig) {
   rig.drive();
@@ -21,7 +21,7 @@ void requireDriving(Rig& rig) {
   REQUIRE(rig.turning());
 }
 
-/// Nothing moves for so long; then an ARM makes it drive again.
+/// Nothing moves for a time; then an ARM makes it drive again.
 template <class Rig>
 void standsUntilArmed(Rig& rig, int64_t us) {
   rig.last_motion = 0;
@@ -30,7 +30,7 @@ void standsUntilArmed(Rig& rig, int64_t us) {
   requireDriving(rig);
 }
 
-/// The planner's end, the bridge's end and a pulled plug bring the motors to zero in time [us].
+/// The end of planner or bridge, and an unplugged line, bring the motors to zero in time [us].
 template <class Make>
 void stopsInTime(Make make, int64_t watchdog_us) {
   {
@@ -55,9 +55,8 @@ void stopsInTime(Make make, int64_t watchdog_us) {
   CHECK(rig.count("start-ups") == 2);
 }
 
-/// Random bytes and mutated talk of the device, `count` in all: no crash, no growth, and a command
-/// to one that is not started up leaves nothing. `talk` is what the device says to a
-/// good start-up.
+/// Random bytes and mutated output of the device, `count` in all: no crash, no growth, and a
+/// command before start-up has no effect. `talk` is the device's output during start-up.
 template <class Connection, class Config>
 void bearsRandomBytes(const Config& config, const std::string& talk, int64_t count) {
   std::mt19937_64 random(11);
@@ -82,7 +81,7 @@ void bearsRandomBytes(const Config& config, const std::string& talk, int64_t cou
       const bool ready = connection.ready();
       const std::string sent = connection.poll(now);
       REQUIRE(sent.size() < 2000);
-      // Between two moments at which it is not started up, a command leaves nothing behind.
+      // Between two times without completed start-up a command leaves no trace.
       if (!ready && !connection.ready()) {
         connection.command({0.5, -0.5}, now);
         REQUIRE(connection.poll(now).empty());

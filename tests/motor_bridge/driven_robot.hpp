@@ -12,19 +12,19 @@
 
 namespace tread::motor {
 
-/// What two motors make of a robot, and what its INS says: tracks with a lag of 0.1 s, half of a
-/// turn lost to slip.
+/// A robot driven by two motors, and its INS: tracks with a lag of 0.1 s, half of a turn lost to
+/// slip.
 class DrivenRobot {
  public:
-  /// What is wrong with the INS.
-  bool frozen = false;    ///< it repeats its last measurement with new times
-  Pose2 offset;           ///< added to what it measures, in map
-  double yaw_sign = 1.0;  ///< -1: it counts turns the wrong way
-  double roll = 0.0;      ///< [rad] of the ground it stands on
+  /// Faults of the INS.
+  bool frozen = false;    ///< repeats its last measurement with new times
+  Pose2 offset;           ///< added to the measured pose, in map
+  double yaw_sign = 1.0;  ///< -1: turns have the wrong sign
+  double roll = 0.0;      ///< [rad] of the ground
   bool attitude = true;   ///< roll and pitch are measured
-  double grip = 1.0;      ///< [1] of the tracks' travel that the ground takes
+  double grip = 1.0;      ///< [1] share of the tracks' travel that becomes motion
 
-  /// Powers [1/1000] up to utime [us].
+  /// Sets powers [1/1000] up to utime [us].
   void follow(int left, int right, int64_t utime) {
     const double dt = utime_ == 0 ? 0.0 : 1e-6 * static_cast<double>(utime - utime_);
     utime_ = utime;

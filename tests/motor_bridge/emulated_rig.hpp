@@ -14,7 +14,7 @@
 
 namespace tread::motor {
 
-/// Bridge, connection and emulated controller in steps of 10 ms; the line is paced at 115200 baud.
+/// Bridge, connection and emulated controller in steps of 10 ms; the line runs at 115200 baud.
 template <class Connection, class Device>
 struct EmulatedRig {
   Bridge bridge{BridgeConfig{}};
@@ -27,7 +27,7 @@ struct EmulatedRig {
   bool planner_alive = true;
   bool bridge_alive = true;
   bool plugged = true;
-  double lost_bytes = 0.0;  ///< share, both ways
+  double lost_bytes = 0.0;  ///< share, in both directions
   std::mt19937 random{1};
 
   template <class Config, class... Settings>

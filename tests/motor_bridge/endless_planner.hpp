@@ -12,12 +12,12 @@
 
 namespace tread::motor {
 
-/// A planner that drives for ever: always a running and a next slot, led by what was executed.
+/// A planner that drives for ever: always a running and a next slot, following the executions.
 class EndlessPlanner {
  public:
   explicit EndlessPlanner(int64_t run_id = 1) : run_id_(run_id) {}
 
-  /// Program of now [us], from the newest execution the bridge reported.
+  /// Program for now [us], from the newest execution that the bridge reported.
   Program plan(int64_t now, const std::optional<ExecutionRecord>& last) {
     if (running_.empty() && !stands) {
       running_ = fresh();
@@ -29,13 +29,13 @@ class EndlessPlanner {
     program.run_id = run_id_;
     return program;
   }
-  int commands = 8;     ///< of the slots from now on, of 50 ms each
-  bool endless = true;  ///< false: never names a next slot
+  int commands = 8;     ///< per slot from now on, 50 ms each
+  bool endless = true;  ///< false: has no next slot
   bool stands = false;  ///< true: its programs are empty
   double least_power = 0.2;
-  std::optional<Command> always;                 ///< the same power in each slot instead
-  std::function<ProgramSlot(int64_t id)> slots;  ///< or these
-  double right = -1.0;  ///< power of the right track, as a share of the left one's
+  std::optional<Command> always;                 ///< a constant power in each slot
+  std::function<ProgramSlot(int64_t id)> slots;  ///< or these slots
+  double right = -1.0;  ///< power of the right track relative to the left one's
 
  private:
   void follow(const ExecutionRecord& last) {

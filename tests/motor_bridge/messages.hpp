@@ -13,7 +13,7 @@
 
 namespace tread::motor {
 
-/// A slot as the planner sends it.
+/// A slot in the planner's format.
 inline program_slot_t toMessage(const ProgramSlot& slot) {
   program_slot_t message{};
   message.execution_id = slot.execution_id;
@@ -42,7 +42,7 @@ inline program_t toMessage(const Program& program) {
   return message;
 }
 
-/// A good measurement at the origin.
+/// A valid measurement at the origin.
 inline ins_t makeIns(int64_t utime, int64_t seq) {
   ins_t message{};
   message.utime = utime;
@@ -51,7 +51,7 @@ inline ins_t makeIns(int64_t utime, int64_t seq) {
   return message;
 }
 
-/// The newest record, as far as a planner needs it.
+/// The newest record, with the fields that a planner needs.
 inline std::optional<ExecutionRecord> newest(const execution_t& message) {
   if (message.records.empty()) return std::nullopt;
   const execution_record_t& newest = message.records.back();

@@ -52,7 +52,7 @@ class InsNode : public Node {
   int64_t seq_ = 0;
 };
 
-/// Somebody at the remote control.
+/// The remote operator.
 class OperatorNode : public Node {
  public:
   explicit OperatorNode(Bus& bus) : beacon_(bus, "operator") {}
@@ -65,7 +65,7 @@ class OperatorNode : public Node {
   OperatorBeacon beacon_;
 };
 
-/// The controller on the other end of the line, looked at every millisecond.
+/// The controller at the other end of the line, stepped every millisecond.
 class ControllerNode : public Node {
  public:
   ControllerNode(ScriptedRoboteq& device, Link& link, std::vector<int64_t>& moving,
@@ -95,10 +95,10 @@ class ControllerNode : public Node {
   DrivenRobot& robot_;
 };
 
-/// Everything that motor_bridge meets, on the virtual bus.
+/// All peers of motor_bridge on the virtual bus.
 struct NodeWorld {
   ScriptedRoboteq device;
-  std::vector<int64_t> moving;  ///< milliseconds in which the motors turned [us]
+  std::vector<int64_t> moving;  ///< times at which the motors turned [us]
   DrivenRobot robot;
   std::pair<std::unique_ptr<Link>, std::unique_ptr<Link>> pipe = makePipe();
   VirtualBus bus;
@@ -110,7 +110,7 @@ struct NodeWorld {
   int64_t motors = 0;
   int64_t executions = 0;
 
-  /// With a key all of them have it, and so has the operator.
+  /// With a key all processes have it, including the operator's.
   explicit NodeWorld(uint64_t seed = 1, const FaultPlan& faults = {}, const NodeTiming& timing = {},
                      std::optional<SealKey> key = {})
       : bus(seed, faults) {
@@ -177,9 +177,9 @@ struct NodeWorld {
     run(300'000);
   }
   bool drives() const { return motor.bridge_state == motor_t::STATE_DRIVING && stoodFor() < 5'000; }
-  /// Since the motors last turned [us].
+  /// Time since the motors last turned [us].
   int64_t stoodFor() const { return moving.empty() ? INT64_MAX : now() - moving.back(); }
-  /// Runs and returns when the motors last turned in that time, counted from its begin [us].
+  /// Runs for a time; returns the last motion of the motors, relative to its beginning [us].
   int64_t lastMotionWithin(int64_t us) {
     const int64_t begin = now();
     run(us);

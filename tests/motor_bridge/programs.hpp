@@ -8,7 +8,7 @@
 
 namespace tread::motor {
 
-/// A slot of constant power; period 50 ms.
+/// A slot of constant power with a period of 50 ms.
 inline ProgramSlot makeSlot(int64_t execution_id, int commands, double left = 0.5,
                             double right = 0.5) {
   ProgramSlot slot;

@@ -17,23 +17,23 @@
 
 namespace tread::motor {
 
-/// A drive without a break: commands (track speeds) and what was measured, by time.
+/// A continuous drive: commands (track speeds) and measurements over time.
 struct RecordedRun {
   struct Sample {
     int64_t utime = 0;
-    TrackCommand command;  ///< [m/s] from then on
+    TrackCommand command;  ///< [m/s] from this time on
     TrackCommand wheels;   ///< [m/s] measured
-    InsMotion ins;         ///< without a pose where there is none
+    InsMotion ins;         ///< without a pose if there is none
   };
   /// A pose of the lidar.
   struct Fix {
     double time = 0.0;  ///< [s]
     Pose2 T_map_body;   ///< yaw unwrapped
-    double gap = 0.0;   ///< [s] without a pose before it
+    double gap = 0.0;   ///< [s] without a pose before
   };
   std::string session;
-  int step = 0;       ///< -1 = a whole log
-  bool sound = true;  ///< the lidar's poses did not fail in it
+  int step = 0;       ///< -1 = a complete log
+  bool sound = true;  ///< the lidar's poses were sound
   std::vector<Sample> samples;
   std::vector<Fix> fixes;
 
@@ -45,12 +45,12 @@ struct RecordedRun {
   }
 };
 
-/// The poses that an INS would make of the lidar's: those are late by a varying time, come 4 to 10
-/// times a second and catch up in jumps.
-/** Heading: the integrated gyro, moved by the smoothed difference to the lidar's yaw (3 s);
-    position: local lines through the lidar's positions (0.35 s). Gyro and heading are no longer
-    independent of each other. Where the lidar was silent for longer than kMaxGap there is no pose,
-    as its README asks. */
+/// Poses of an INS, synthesized from the lidar's, which have a varying delay, come 4 to 10 times
+/// per second and catch up in jumps.
+/** Heading: the integrated gyro, corrected by the smoothed difference from the lidar's yaw (3 s);
+ * position: local lines through the lidar's positions (0.35 s). Gyro and heading are then no
+ * longer independent. During gaps of the lidar above kMaxGap there is no pose, as its README
+ * requires. */
 class Fusion {
  public:
   static constexpr double kMaxGap = 0.4;  ///< [s]
@@ -93,7 +93,7 @@ class Fusion {
     const auto i = static_cast<size_t>(after - run.samples.begin());
     return heading[std::min(i, heading.size() - 1)];
   }
-  /// Value at `now` of the line through those around it, weighted by a bell of that width [s].
+  /// Value at `now` of a line fitted to neighbours, weighted by a bell of that width [s].
   template <class Value>
   static double line(const RecordedRun& run, size_t begin, double now, double width, Value value) {
     double w = 0.0, wt = 0.0, wtt = 0.0, wv = 0.0, wtv = 0.0;
@@ -121,7 +121,7 @@ struct RecordedSession {
   std::vector<RecordedRun> runs;
 };
 
-/// Reads the folder of recorded drives: whole logs where there are, else step by step.
+/// Reads the folder of recorded drives: complete logs if available, else steps.
 class SessionReader {
  public:
   explicit SessionReader(std::string folder) : folder_(std::move(folder)) {}
@@ -145,7 +145,7 @@ class SessionReader {
 
  private:
   static constexpr double kStart = 100.0;       ///< [s] utime of the first sample
-  static constexpr double kStepInterval = 8.0;  ///< [s] 6 in truth: 2 s of speeds before each
+  static constexpr double kStepInterval = 8.0;  ///< [s] 6 really: 2 s of speeds before each
 
   static RecordedSession describe(const recordings::CsvTable& table, size_t row) {
     RecordedSession session;
@@ -156,14 +156,14 @@ class SessionReader {
     session.limits.full_speed = session.name.rfind("husky", 0) == 0 ? 1.0 : 5.0;
     session.limits.speed_per_command = 1.0;
     session.limits.dead_band = 0.1;
-    session.limits.delay = 0.45;  // with that of the encoders and of the poses
+    session.limits.delay = 0.45;  // including those of encoders and poses
     session.limits.acceleration = 3.0;
-    session.limits.time_error = 0.1;  // what is left of the lidar's
+    session.limits.time_error = 0.1;  // remaining error of the lidar's
     return session;
   }
   static int64_t us(double seconds) { return std::llround((kStart + seconds) * 1e6); }
 
-  /// The robot's own log: commands of the drive, wheel speeds where people drove.
+  /// The robot's own log: commands of the drive, wheel speeds during manual driving.
   static void readWhole(const std::string& path, RecordedSession& session) {
     const recordings::CsvTable table(path);
     RecordedRun run;
@@ -173,7 +173,7 @@ class SessionReader {
       RecordedRun::Sample sample;
       const double t = table.number(row, "t_s");
       sample.utime = us(t);
-      // Wheel speeds are an effect: what was wanted came earlier.
+      // Wheel speeds are an effect: the command came earlier.
       const size_t ahead = std::min(row + 6, table.rows() - 1);
       const double v = table.number(row, "cmd_v_m_s"), w = table.number(row, "cmd_w_rad_s");
       sample.wheels = tracks(table, row, "wheel", session.radius);
@@ -243,7 +243,7 @@ class SessionReader {
     session.runs.push_back(std::move(run));
   }
 
-  /// Gyro by step and 20ths of a second: the aligned files leave it out.
+  /// Gyro by step and 20ths of a second: the aligned files omit it.
   std::map<std::pair<int, long>, double> readRates(const RecordedSession& session) const {
     const recordings::CsvTable table(folder_ + "/steps/" + session.name + ".csv");
     std::map<std::pair<int, long>, double> rates;

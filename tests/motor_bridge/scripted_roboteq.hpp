@@ -9,24 +9,24 @@
 
 namespace tread::motor {
 
-/// A small Roboteq for tests, from the manual: what it hears, what it says, what its motors do.
-/** Watchdog fed by commands only; after its expiry any good command but zero first resumes the old
-    speed, as the manual says. */
+/// A small Roboteq for tests, from the manual: received and sent lines, motor output.
+/** Only commands feed the watchdog; after its expiry any valid command without a zero first resumes
+ * the old speed, as documented. */
 class ScriptedRoboteq {
  public:
-  // What a test may do to it.
+  // Faults that a test can set.
   bool mute = false;       ///< its replies are lost
-  bool deaf = false;       ///< it hears nothing
+  bool deaf = false;       ///< it receives nothing
   bool mute_plus = false;  ///< only its acknowledgements are lost
   int refuse = 0;          ///< so many of the next commands are refused
   int lose = 0;            ///< so many of the next replies are lost
   int cut = 0;             ///< so many of the next replies lose their second half and their CR
   int fault_flags = 0;
   int status_flags = 1;
-  long forced_watchdog = -1;  ///< the watchdog's setting stays at this, whatever is set
+  long forced_watchdog = -1;  ///< fixed watchdog setting
 
   std::vector<std::string> heard;  ///< every line, as received
-  int resumed = 0;                 ///< times a watchdog stop was ended by a command other than zero
+  int resumed = 0;                 ///< number of watchdog stops ended by a non-zero command
 
   void write(const std::string& bytes, int64_t now) {
     now_ = now;

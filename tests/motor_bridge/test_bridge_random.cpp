@@ -17,7 +17,7 @@ namespace {
 
 constexpr int64_t kStep = 10'000;
 
-/// A bridge among peers that fail at random, and a witness who knows only what was delivered.
+/// A bridge among randomly failing peers, and an observer that knows only the delivered messages.
 class Chaos {
  public:
   explicit Chaos(uint64_t seed) : random_(seed) {}

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int64_t kCycle = 10'000;
 
-/// Drives a failsafe in virtual time; inputs are good unless a test says otherwise.
+/// Drives a failsafe in virtual time; inputs are good unless set otherwise.
 struct Rig {
   Failsafe failsafe;
   FailsafeInputs in;
@@ -52,7 +52,7 @@ struct Rig {
   }
 };
 
-/// The inputs that stop, worst first, with the state they lead to.
+/// The inputs that stop, highest priority first, with the resulting state.
 struct Cause {
   Reason FailsafeInputs::*fault;
   State state;
@@ -78,7 +78,7 @@ TEST_CASE("an INS message counts once, and neither from the future nor from long
   constexpr int64_t kNow = 10'000'000;
   CHECK_FALSE(watch.receive({kNow + 60'000}, kNow));
   CHECK(watch.receive({kNow - 20'000}, kNow));
-  CHECK_FALSE(watch.receive({kNow - 20'000}, kNow));  // the same again
+  CHECK_FALSE(watch.receive({kNow - 20'000}, kNow));  // a repetition
   CHECK_FALSE(watch.receive({kNow - 40'000}, kNow));  // overtaken
   CHECK_FALSE(watch.receive({kNow + 2'000'000 - 600'000}, kNow + 2'000'000));
 }
@@ -320,7 +320,7 @@ TEST_CASE("each change of state, of its reason or of a refusal is told, and noth
   rig.step();
   REQUIRE(rig.out.state == State::kStopping);
   const std::string reason = rig.out.reason;
-  CHECK(reason == "series ended");  // nobody has told why
+  CHECK(reason == "series ended");  // no reason was given
   const int64_t stopped = rig.in.now;
   while (rig.out.state == State::kStopping) {
     rig.step();

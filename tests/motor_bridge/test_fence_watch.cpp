@@ -26,13 +26,13 @@ BridgeConfig fenced(std::vector<Fence> own) {
   return config;
 }
 
-/// A robot that does what it is told, late, and tells its pose.
+/// A robot that follows commands with a delay and publishes its pose.
 struct FencedWorld : BridgeWorld {
   Pose2 truth;
   double left = 0.0, right = 0.0;  ///< [m/s]
   double lag = 0.2;                ///< [s] of the tracks
   bool tells_speed = true, tells_turn = true;
-  double least_room = 1e9;  ///< [m] of the true outline, to any fence of the bridge
+  double least_room = 1e9;  ///< [m] least distance of the true outline to any fence of the bridge
 
   explicit FencedWorld(std::vector<Fence> own, const Pose2& start = {}) : truth(start) {
     bridge = Bridge(fenced(std::move(own)));
@@ -72,7 +72,7 @@ struct FencedWorld : BridgeWorld {
     arm();
     runFor(100'000);
   }
-  /// Forgets what it was about to drive, after a stop.
+  /// Discards pending motion after a stop.
   void restart(double power_left, double power_right) {
     planner.stands = true;
     runFor(1'000'000);
@@ -166,7 +166,7 @@ TEST_CASE("what measures no velocity counts as fast as it can be") {
   world.bridge = Bridge(fenced({yard()}));
   world.motion = InsMotion{0, 9.0, 0.0, 0.0};
   world.drive();
-  // It would be over the fence within its stopping time.
+  // It would cross the fence within its stopping time.
   CHECK(world.state() == State::kDisarmed);
   CHECK_THAT(world.reason(), Contains("fence yard"));
 }
@@ -203,8 +203,7 @@ TEST_CASE("blind for its speed it counts as fast after its last command, and the
   world.start(1.0, 1.0);
   while (world.state() == State::kDriving) world.runFor(10'000);
   const int64_t stopped = world.now;
-  // It says why for as long as it may still go on.
-  // It says why for as long as it may still go on.
+  // It reports the reason as long as it may still continue.
   while (world.now < stopped + 700'000) {
     world.runFor(10'000);
     REQUIRE_THAT(world.reason(), Contains("fence yard"));
@@ -239,7 +238,7 @@ TEST_CASE("over a ditch it drives out to either side, but not across, and not ba
       CHECK(across.state() == State::kDisarmed);
       CHECK_THAT(across.reason(), Contains("outside fence ditch") && Contains("only back in"));
       CHECK(side * across.truth.x > 0.1);
-      // Some of the way out, then back.
+      // Outwards for a part, then back.
       FencedWorld turns({ditch}, there);
       turns.start(0.5 * side, 0.5 * side);
       turns.runFor(300'000);
@@ -374,7 +373,7 @@ namespace {
 
 constexpr int64_t kNow = 10'000'000;  // [us]
 
-/// The watch by itself: a robot within the yard, `room` [m] from its front to the fence ahead.
+/// The watch alone: a robot in the yard, `room` [m] from its front to the fence ahead.
 struct FenceBench {
   FenceWatch watch{{{yard()}, kBody, 0.5}, {}};
   InsMotion ins{kNow, 0, 0, 0, 0.0, 0.0, 0.0, 0.0};
@@ -455,7 +454,7 @@ TEST_CASE("over a fence a way may lead 5 cm farther out, for poses are no better
 }
 
 TEST_CASE("ways are looked at every 0.1 s: a corner that swings out between is seen") {
-  // Where the outline's diagonal points at the fence the corner is farthest out.
+  // With the outline's diagonal towards the fence the corner is farthest out.
   const double reach = std::hypot(0.65, 0.34);
   const double diagonal = kPi / 2 - std::atan2(0.34, 0.65);
   constexpr double kRate = 1.3;  // [rad/s]
@@ -602,7 +601,7 @@ TEST_CASE("outside it may not be farther out than it was, where it stands, eithe
   CHECK(bench.fault().empty());
   bench.ins.x += 0.2;
   CHECK_THAT(bench.fault(), Contains("only back in"));
-  // Another fence: where it stands counts anew.
+  // Another fence: its present position is evaluated again.
   FenceBook& book = bench.watch.book();
   const Fence moved{"moved", false, {{-5, -5}, {9, -5}, {9, 5}, {-5, 5}}};
   FenceWatch watch({{}, kBody, 0.5}, {});

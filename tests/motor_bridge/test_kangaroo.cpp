@@ -61,7 +61,7 @@ TEST_CASE("Kangaroo packets: known checksums and numbers, split, glued and damag
   CHECK(packets.push(damaged + "garbage" + talk).size() == 1);
   CHECK(packets.badChecksums() == 1);
   CHECK(packets.garbageBytes() == 7);
-  // A packet that broke off does not take the next one with it.
+  // An incomplete packet does not destroy the next one.
   CHECK(packets.push(talk.substr(0, 6) + talk).size() == 1);
 }
 

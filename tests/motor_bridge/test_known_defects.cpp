@@ -9,7 +9,7 @@ using namespace tread;
 using namespace tread::motor;
 
 TEST_CASE("a heartbeat of anybody does not keep the last speed alive") {
-  // vesc-motor-controller: every HEARTBEAT sends the last speed again, for ever.
+  // vesc-motor-controller: every HEARTBEAT repeats the last speed, for ever.
   NodeWorld world;
   world.planner().planner.commands = 200;
   world.drive();
@@ -26,7 +26,7 @@ TEST_CASE("a heartbeat of anybody does not keep the last speed alive") {
 }
 
 TEST_CASE("the timeout runs without any message coming in") {
-  // animatics-motor: evaluated only when a heartbeat arrives, and then 10 s long.
+  // animatics-motor: evaluated only when a heartbeat arrives, and with a limit of 10 s.
   NodeWorld world;
   world.planner().planner.commands = 200;
   world.drive();
@@ -36,7 +36,7 @@ TEST_CASE("the timeout runs without any message coming in") {
 }
 
 TEST_CASE("every way to end a process in order gives zero") {
-  // vesc-motor-controller: only SIGINT does, SIGTERM leaves the motors running. Here both lead to
+  // vesc-motor-controller: only SIGINT stops; SIGTERM leaves the motors running. Here both call
   // shutdown().
   NodeWorld world;
   world.drive();
@@ -51,8 +51,7 @@ TEST_CASE("every way to end a process in order gives zero") {
 }
 
 TEST_CASE("ages are not the sender's: a planner with a clock of its own cannot drive") {
-  // animatics-motor compares two stamps of the sender, vesc-motor-controller starts from the wall
-  // clock.
+  // animatics-motor compares two stamps of the sender, vesc-motor-controller uses the wall clock.
   for (const int64_t offset : {-3'600'000'000LL, -300'000LL, 60'000LL, 3'600'000'000LL}) {
     NodeWorld world;
     world.bus.kill("planner");
@@ -113,7 +112,7 @@ TEST_CASE("a command is looked at with its age every time it is used") {
 }
 
 TEST_CASE("it goes on sending zero when all its inputs are silent") {
-  // twist_mux publishes only inside callbacks: when its inputs stop, it says nothing more.
+  // twist_mux publishes only in callbacks: without inputs it sends nothing.
   NodeWorld world;
   world.drive();
   world.bus.kill("planner");
@@ -129,7 +128,7 @@ TEST_CASE("it goes on sending zero when all its inputs are silent") {
 }
 
 TEST_CASE("a zero within the reason of an E-stop does not keep the bridge from telling its state") {
-  // Ours, found by fuzzing: MOTOR with such a reason could not be encoded, and was not sent.
+  // Tread's own, found by fuzzing: MOTOR with such a reason could not be encoded, and was not sent.
   NodeWorld world;
   world.drive();
   estop_t message{};

@@ -43,7 +43,7 @@ void readsThem(const MotorTelemetry& told) {
   CHECK(told.measured[1] == Approx(-0.4).margin(0.002));
 }
 
-/// What a Mole says to a start-up and to ten seconds of driving.
+/// A Mole's output during start-up and ten seconds of driving.
 std::string talkOfMole() {
   MoleRig rig{described("mole")};
   std::string talk;

@@ -16,11 +16,11 @@ namespace {
 constexpr int64_t kBridgeStep = BridgeWorld::kStep;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// A bridge in its world, and a person's program that sends MANUAL at 50 Hz.
+/// A bridge in its world, and a program for manual control that sends MANUAL at 50 Hz.
 struct HandWorld : BridgeWorld {
   ManualNotice wish{7, "operator", 0, 0, true, false, 0.0, 0.0};
   bool hand_alive = true;
-  bool loop_closed = true;  ///< the program hears MOTOR
+  bool loop_closed = true;  ///< the program receives MOTOR
   int64_t seen = 0;         ///< [us]
 
   void tell() {
@@ -36,7 +36,7 @@ struct HandWorld : BridgeWorld {
   void run(int64_t us) {
     for (const int64_t end = now + us; now < end;) step();
   }
-  /// A planner that wants nothing: only the hand may move the robot, which is armed.
+  /// A planner without motion: only manual control may move the armed robot.
   void armForHand() {
     planner.stands = true;
     const bool holds = std::exchange(wish.hold, false);
@@ -50,7 +50,7 @@ struct HandWorld : BridgeWorld {
     wish.left = left;
     wish.right = right;
   }
-  /// Runs until the planner drives, a person's hand at the resting stick.
+  /// Runs until the planner drives, with the stick at rest.
   void drive() {
     wish.hold = false;
     run(1'200'000);
@@ -68,7 +68,7 @@ struct HandWorld : BridgeWorld {
     REQUIRE(state() == State::kManual);
     REQUIRE(out.command == Command{0.5, 0.5});
   }
-  /// Steps until `done`; returns how long it took [us].
+  /// Steps until `done`; returns the duration [us].
   template <class Done>
   int64_t until(Done&& done) {
     const int64_t from = now;
@@ -87,7 +87,7 @@ TEST_CASE("a moved stick takes over within 100 ms of its message, and the progra
   world.stick(0.6, 0.4);
   world.tell();
   CHECK(world.until([&] { return world.state() == State::kManual; }) <= kBridgeStep);
-  CHECK(world.stands());  // what the pattern gave is gone before the hand's command grows
+  CHECK(world.stands());  // the pattern's power is gone before the manual command rises
   CHECK(world.until([&] { return world.out.command[0] > 0.0; }) <= 100'000 - kBridgeStep);
   CHECK(world.reason() == "driven by hand by operator");
   CHECK(world.last().execution_id == execution);
@@ -162,14 +162,14 @@ TEST_CASE(
   CHECK(world.stands());
   world.hand_alive = world.loop_closed = true;
   world.run(1'000'000);
-  CHECK(world.stands());  // nobody has touched the stick since
+  CHECK(world.stands());  // the stick has not been touched since
   CHECK(world.reason() ==
         "in the hand of operator: the stick was not seen at rest: let it go once");
   world.wish.hold = false;
   world.run(50'000);
   world.wish.hold = true;
   world.run(500'000);
-  CHECK(world.stands());  // a released button is no rest
+  CHECK(world.stands());  // a released button does not count as rest
   world.stick(0.0, 0.0);
   world.run(50'000);
   world.stick(0.5, 0.5);
@@ -316,7 +316,7 @@ TEST_CASE("the hand needs the dead-man's button, the lease and valid numbers to 
     for (const auto& [left, right] : std::vector<std::pair<double, double>>{
              {kUnknown, 0.5}, {0.5, kUnknown}, {0.5, kInfinite}, {0.5, -1.5}, {-1.5, 0.5}}) {
       CAPTURE(left, right);
-      // Only a stick that was seen at rest could take over.
+      // Only a stick measured at rest could take over.
       world.stick(0.0, 0.0);
       world.run(200'000);
       world.stick(left, right);
@@ -372,7 +372,7 @@ TEST_CASE("armed again after a stop with the stick still held, nothing moves bef
     world.bridge.receive(ArmRequest{world.now, false, "operator", ""}, world.now);
   }
   world.run(1'500'000);
-  world.planner.stands = true;  // so that only the hand may move it
+  world.planner.stands = true;  // so that only manual control may move it
   world.arm();
   world.run(50'000);
   CHECK(world.state() == State::kDisarmed);
@@ -503,7 +503,7 @@ TEST_CASE("where the hand has limits of tilt or fences to keep, a silent INS sto
   world.stick(0.0, 0.0);
   world.run(2'500'000);
   CHECK(world.state() == State::kDisarmed);
-  // Who arms again knows it.
+  // A person who arms again knows it.
   world.arm();
   world.run(50'000);
   CHECK(world.state() == State::kManual);
@@ -594,7 +594,7 @@ TEST_CASE("a track at a time is no rest: both are seen at rest in one message") 
   world.armForHand();
   world.run(500'000);
   world.hand_alive = false;
-  world.run(500'000);  // silent: it must be seen at rest again
+  world.run(500'000);  // silent: it must be measured at rest again
   world.hand_alive = true;
   for (int i = 0; i < 50; ++i) {
     world.stick(i % 2 == 0 ? 0.0 : 1.0, i % 2 == 0 ? 1.0 : 0.0);

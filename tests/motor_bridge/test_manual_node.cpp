@@ -12,7 +12,7 @@ using namespace tread::motor;
 
 namespace {
 
-/// A person's program at 50 Hz, on a bridge with its controller.
+/// A program for manual control at 50 Hz, on a bridge with its controller.
 struct HandOnTheBus : NodeWorld {
   manual_t wish = blank<manual_t>();
 

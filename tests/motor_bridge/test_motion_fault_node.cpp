@@ -12,7 +12,7 @@ using namespace tread::motor;
 
 namespace {
 
-/// A robot in full straight drive.
+/// A robot driving straight at full power.
 struct StraightWorld : NodeWorld {
   explicit StraightWorld(double right = 1.0) {
     planner().planner.right = right;

@@ -15,23 +15,24 @@ using namespace tread::motor;
 
 namespace {
 
-/// A robot on tracks with a good INS at 50 Hz, in front of a monitor. Each part may be spoiled.
+/// A tracked robot with a good INS at 50 Hz, and a monitor. Each part can be made faulty.
 struct Drive {
   explicit Drive(const MotionLimits& limits = {}) : monitor(limits) {}
 
   MotionMonitor monitor;
   TrackCommand command;
   MotorTelemetry motors;
-  double slip_left = 0.85, slip_right = 0.85;  ///< [1] of the commanded speed that becomes motion
+  /// [1] share of the commanded speed that becomes motion
+  double slip_left = 0.85, slip_right = 0.85;
   double turn_slip = 0.6;
-  Twist2 shove;  ///< [m/s, rad/s] real motion that nobody commanded
-  Pose2 offset;  ///< of what the INS reports
+  Twist2 shove;  ///< [m/s, rad/s] additional real motion
+  Pose2 offset;  ///< of the INS's pose
   Twist2 drift;  ///< of that offset, in map, per second
   double noise = 1.0;
   bool velocity = true, gyro = true;
   std::function<void(InsMotion&)> spoil = [](InsMotion&) {};
 
-  /// Drives for a time [s]; the verdict, if there was one, and when, counted from now [s].
+  /// Drives for a time [s]; returns the verdict, if any, and its time from now [s].
   std::pair<double, std::string> run(double seconds) {
     for (int i = 0; i < static_cast<int>(50.0 * seconds + 0.5); ++i) {
       const std::string verdict = step();
@@ -39,11 +40,11 @@ struct Drive {
     }
     return {99.0, ""};
   }
-  /// Drives for a time [s], whatever is said.
+  /// Drives for a time [s] and ignores verdicts.
   void settle(double seconds) {
     for (double t = 0.0; t < seconds; t += 0.02) run(0.02);
   }
-  /// The same, after good driving, of which the verdict must be nothing.
+  /// The same after healthy driving, which must have no verdict.
   void good(double left, double right, double seconds = 4.0) {
     command = {left, right};
     CHECK(run(seconds).second.empty());
@@ -91,7 +92,7 @@ struct Drive {
   Pose2 truth_;
 };
 
-/// It was told in time, in one short line that begins like this.
+/// Checks that it was reported in time, in one short line with this beginning.
 void checkTold(const std::pair<double, std::string>& told, const std::string& begin,
                double limit = 1.5) {
   INFO(told.first << " s: " << told.second);
@@ -262,7 +263,7 @@ TEST_CASE("motion: a dead track is told by the turn towards it, or by its own sp
 }
 
 TEST_CASE("motion: after some driving, dead, blocked and mirrored tracks are told within 1.5 s") {
-  // 0.4 of the power is 0.44 m/s, turns on the spot among them.
+  // 0.4 of the power is 0.44 m/s, including turns on the spot.
   const TrackCommand kCommands[] = {{0.4, 0.4}, {0.9, 0.9}, {-0.5, -0.4}, {0.5, 0.9}, {-0.6, 0.6}};
   for (const TrackCommand& command : kCommands) {
     CAPTURE(command.left, command.right);
@@ -389,7 +390,7 @@ TEST_CASE("motion: a broken message among good ones is passed over, a second one
 
 namespace {
 
-/// Smallest drift of a kind that is told within a time [s], in steps of a tenth.
+/// Smallest drift of a kind that is reported within a time [s], in steps of 10 %.
 double smallestTold(double within, const std::function<void(Drive&, double)>& spoil) {
   for (double size = 0.01; size < 5.0; size *= 1.1) {
     Drive drive;

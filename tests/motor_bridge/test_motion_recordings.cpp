@@ -19,7 +19,7 @@ namespace {
 
 using Sample = RecordedRun::Sample;
 
-/// All sessions; none where the recordings are not there.
+/// All sessions; empty if the recordings are absent.
 const std::vector<RecordedSession>& sessions() {
   static const std::vector<RecordedSession> kSessions = [] {
     const std::string folder = tread::testing::recorded("drive");
@@ -48,7 +48,7 @@ std::vector<Verdict> verdictsOn(const MotionLimits& limits, const std::vector<Sa
     monitor.command(sample.command, sample.utime);
     monitor.receive(sample.ins);
     const std::string words = monitor.fault(sample.utime).words;
-    // The bridge would be disarmed: what follows at once is the same event.
+    // The bridge would be disarmed: an immediate successor is the same event.
     const bool same = !verdicts.empty() && sample.utime - verdicts.back().utime < 5'000'000;
     if (!words.empty() && words != last && !same) verdicts.push_back({sample.utime, words});
     last = words;
@@ -57,12 +57,12 @@ std::vector<Verdict> verdictsOn(const MotionLimits& limits, const std::vector<Sa
 }
 
 struct Count {
-  int sound = 0;   ///< verdicts where the recording's own checks found nothing
-  int failed = 0;  ///< where they did
+  int sound = 0;   ///< verdicts in steps that the recording's own checks passed
+  int failed = 0;  ///< verdicts in the others
   double hours = 0.0;
 };
 
-/// The runs of a session lie one behind another: what was learned in one holds in the next.
+/// The runs of a session in sequence: learning in one is used in the next.
 std::vector<Sample> joined(const RecordedSession& session) {
   std::vector<Sample> samples;
   for (const RecordedRun& run : session.runs)
@@ -92,13 +92,13 @@ Count countVerdicts(size_t half) {
   return count;
 }
 
-/// Something wrong from a moment on; `since` [s] counts from it, `before` is the last good sample.
+/// A fault from some time on; `since` [s] counts from it, `before` is the last good sample.
 using Spoil = std::function<void(Sample& sample, double since, const Sample& before, double gauge)>;
 
-/// Delays of the verdicts on spoiled drives [s].
+/// Delays of the verdicts on faulty drives [s].
 struct Delays {
   std::vector<double> seconds;  ///< sorted
-  int missed = 0;               ///< nothing within 3 s
+  int missed = 0;               ///< no verdict within 3 s
 
   double quantile(double q) const {
     const size_t all = seconds.size() + static_cast<size_t>(missed);
@@ -112,8 +112,8 @@ struct Delays {
   }
 };
 
-/// Where a fault may begin: the robot has driven with a pose for 1.2 s and goes on for 2.5 s, at
-/// 0.5 m/s or more (or as the filter says).
+/// Possible start of a fault: the robot has driven with a pose for 1.2 s and continues for 2.5 s,
+/// at 0.5 m/s or more (or as in the filter).
 using Moment = std::function<bool(const std::vector<Sample>& samples, size_t i)>;
 
 double speedAt(const std::vector<Sample>& samples, size_t i) {
@@ -134,7 +134,7 @@ bool drives(const std::vector<Sample>& samples, size_t i) {
   return speed >= 0.5 && later >= 0.5;
 }
 
-/// A monitor that follows a session; a copy of it meets the fault.
+/// A monitor that follows a session; the fault is applied to a copy of it.
 class Follower {
  public:
   explicit Follower(const MotionLimits& limits) : monitor_(limits) {}
@@ -143,9 +143,9 @@ class Follower {
     feed(sample);
     if (!monitor_.fault(sample.utime).empty()) told_ = sample.utime;
   }
-  /// The robot would drive: nothing was told shortly before.
+  /// The robot would drive: no recent verdict.
   bool drives(int64_t utime) const { return utime - told_ > 5'000'000; }
-  /// Adds the time from the onset to the first verdict on the samples; those before it are skipped.
+  /// Adds the time from the onset to the first verdict on the samples; earlier samples are skipped.
   void addDelay(Delays& delays, const std::vector<Sample>& samples, int64_t onset) const {
     Follower other = *this;
     for (const Sample& sample : samples) {
@@ -168,7 +168,7 @@ class Follower {
   int64_t told_ = 0;
 };
 
-/// Delays of a fault that begins every 2 s of the sound runs of one half.
+/// Delays for a fault that begins every 2 s in the sound runs of one half.
 Delays delaysOf(size_t half, const Spoil& spoil, const Moment& moment = drives) {
   Delays delays;
   for (size_t s = half; s < sessions().size(); s += 2) {
@@ -192,7 +192,7 @@ Delays delaysOf(size_t half, const Spoil& spoil, const Moment& moment = drives) 
   return delays;
 }
 
-/// The same, with its figures for -s.
+/// The same; prints its figures with -s.
 Delays told(const std::string& what, Delays delays) {
   char figures[160];
   snprintf(figures, sizeof figures,
@@ -224,8 +224,8 @@ bool stands(const std::vector<Sample>& samples, size_t i) {
          speedAt(samples, i + 40) < 0.02 && samples[i + 50].command == TrackCommand{};
 }
 
-/// Both tracks are driven, neither at less than half of the other's speed, at a speed of the robot
-/// within [min, max) or on the spot.
+/// Both tracks are driven, neither below half of the other's speed, with the robot's speed within
+/// [min, max) or on the spot.
 bool bothDriven(const std::vector<Sample>& samples, size_t i, double min, double max) {
   for (size_t k = i - 10; k <= i + 40; ++k) {
     const TrackCommand& command = samples[k].command;
@@ -237,15 +237,15 @@ bool bothDriven(const std::vector<Sample>& samples, size_t i, double min, double
   return std::min(speed, later) >= min && std::max(speed, later) < max;
 }
 
-/// Both tracks as the faster one.
+/// Both tracks like the faster one.
 TrackCommand alike(const TrackCommand& command) {
   const double most =
       std::abs(command.left) > std::abs(command.right) ? command.left : command.right;
   return {most, most};
 }
 
-/// When one track stands by command while the other drives: the step's begin, or when its wheels
-/// stand; nothing in other steps.
+/// Time from which one track stands by command while the other drives: the step's begin, or when
+/// its wheels stand; nullopt in other steps.
 std::optional<int64_t> deadTrackOnset(const RecordedRun& run, bool from_standing) {
   const TrackCommand command = run.samples.back().command;
   const double most = alike(command).left;
@@ -264,8 +264,8 @@ std::optional<int64_t> deadTrackOnset(const RecordedRun& run, bool from_standing
   return begin == run.samples.end() ? std::nullopt : std::optional<int64_t>(begin->utime);
 }
 
-/// Steps in which one track was told to stand, told to the monitor as both driving alike: delays
-/// from the step's beginning, or from when that track's wheels stood.
+/// Steps in which one track was commanded to stand, presented to the monitor as both driving:
+/// delays from the step's beginning, or from the standstill of that track's wheels.
 Delays deadTrackDelays(size_t half, bool from_standing) {
   Delays delays;
   for (size_t s = half; s < sessions().size(); s += 2) {
@@ -284,9 +284,9 @@ Delays deadTrackDelays(size_t half, bool from_standing) {
   return delays;
 }
 
-/// The left (1) or right (-1) track dies: what the other one does alone is left.
+/// The left (1) or right (-1) track fails: only the other one's motion is left.
 Spoil deadTrack(double side) {
-  constexpr double kTravel = 0.92, kTurn = 0.5;  // shares of the recordings (their README)
+  constexpr double kTravel = 0.92, kTurn = 0.5;  // shares in the recordings (their README)
   return [=, pose = Pose2{}, last = Pose2{}](Sample& sample, double since, const Sample& before,
                                              double gauge) mutable {
     if (since == 0.0) last = pose = {before.ins.x, before.ins.y, before.ins.yaw};
@@ -303,7 +303,7 @@ Spoil deadTrack(double side) {
   };
 }
 
-/// The robot is held within 0.2 s.
+/// The robot is stopped by force within 0.2 s.
 void holdBack(Sample& sample, double since, const Sample& before, double) {
   const double share = std::min(0.05, since) + 0.0001 * std::sin(40.0 * since);
   sample.ins.x = before.ins.x + share * (sample.ins.x - before.ins.x);
@@ -424,9 +424,9 @@ TEST_CASE("real drives: a track that dies and a robot that is held are told with
   const size_t half = eachHalf();
   struct Case {
     double min, max;         // [m/s]
-    double dies, held_back;  // [1] told within 1.5 s, at least
+    double dies, held_back;  // [1] reported within 1.5 s, at least
   };
-  // The slower it drives, the less of a fault shows above the slack of a window.
+  // At lower speed less of a fault shows above the tolerance of a window.
   for (const Case& at : {Case{0.0, 0.2, 0.45, 0.7}, {0.5, 0.9, 0.6, 0.8}, {0.9, 9.0, 0.92, 0.97}}) {
     const auto moment = [&at](const std::vector<Sample>& samples, size_t i) {
       return bothDriven(samples, i, at.min, at.max);

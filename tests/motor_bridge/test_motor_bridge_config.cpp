@@ -12,7 +12,7 @@ using namespace tread::motor;
 
 namespace {
 
-/// As if it stood beside the shipped files.
+/// As if it were next to the shipped files.
 const std::string kFolder = TREAD_SOURCE_DIR "/config/robots/teodor/";
 
 MotorBridgeConfig read(const std::string& text) {
@@ -20,7 +20,7 @@ MotorBridgeConfig read(const std::string& text) {
   return readMotorBridgeConfig(reader);
 }
 
-/// The one line that refuses a text; empty if it is accepted.
+/// The error line for a text; empty if it is accepted.
 std::string refusal(const std::string& text) {
   try {
     read(text);

@@ -93,10 +93,10 @@ class Process {
   int status_ = -1;
 };
 
-/// A planner, an INS, an operator and a controller in real time around the process.
+/// A planner, INS, operator and controller in real time around the process.
 class Rig {
  public:
-  /// `key`: the process has one, `our_key`: the others have it, too.
+  /// `key`: the process has one; `our_key`: the others have it, too.
   explicit Rig(bool key = false, bool our_key = false) : url_(tread::testing::ownLcmUrl()) {
     const std::string key_file = "/tmp/tread_motor_bridge_" + std::to_string(getpid()) + ".key";
     unlink(key_file.c_str());
@@ -114,11 +114,11 @@ class Rig {
   }
   ~Rig() { unlink(config_.c_str()); }
 
-  /// Lets everything run for a time [us], looked at about every millisecond.
+  /// Runs everything for a time [us], in steps of about 1 ms.
   void run(int64_t us) {
     for (const int64_t end = bus_->now() + us; bus_->now() < end;) turn();
   }
-  /// Arms until the motors turn, for at most a minute: a stall within the second before disarms.
+  /// Arms until the motors turn, for at most a minute: a stall within that second disarms.
   bool drive() {
     for (int i = 0; i < 240 && !turning(); ++i) {
       say(true);
@@ -133,7 +133,7 @@ class Rig {
     arm.armed_by = "test";
     bus_->publish(kArm, arm);
   }
-  /// An emergency stop of a program that has no key.
+  /// An emergency stop from a program without the key.
   void stopUnsealed() const {
     LcmBus other(url_, TimeSource::kHost);
     estop_t stop{};
@@ -151,7 +151,7 @@ class Rig {
   }
   Process& process() { return *process_; }
   const motor_t& motor() const { return motor_; }
-  /// A counter in the bridge's HEALTH; 0 without.
+  /// A counter in the bridge's HEALTH; 0 if absent.
   int64_t counted(const std::string& name) const {
     for (const counter_t& counter : health_.counters)
       if (counter.counter_name == name) return counter.counted;
@@ -193,7 +193,7 @@ class Rig {
   int64_t next_program_ = 0;
 };
 
-/// A rig, or nothing where LCM has no network.
+/// A rig; null if LCM has no network.
 std::unique_ptr<Rig> rigOrSkip(bool key = false, bool our_key = false) {
   try {
     return std::make_unique<Rig>(key, our_key);
@@ -203,14 +203,14 @@ std::unique_ptr<Rig> rigOrSkip(bool key = false, bool our_key = false) {
   }
 }
 
-/// A rig that drives, or nothing where LCM has no network.
+/// A driving rig; null if LCM has no network.
 std::unique_ptr<Rig> driving() {
   std::unique_ptr<Rig> rig = rigOrSkip();
   if (rig) REQUIRE(rig->drive());
   return rig;
 }
 
-/// For a busy machine, on top of what virtual time shows [us].
+/// Allowance for a busy machine, in addition to virtual time [us].
 constexpr int64_t kSlack = 50'000;
 
 }  // namespace
@@ -224,7 +224,7 @@ TEST_CASE("SIGTERM, SIGINT and a closed terminal: zero, then exit 0") {
     for (int i = 0; i < 100 && !rig->process().ended(); ++i) rig->run(20'000);
     REQUIRE(rig->process().ended());
     CHECK(rig->process().status() == 0);
-    // Only now: a query may follow the first zero on the line.
+    // Only now, because a query may follow the first zero on the line.
     rig->run(20'000);
     CHECK(rig->device.heard.back() == "!M 0 0");
   }
@@ -257,7 +257,7 @@ TEST_CASE("SIGSTOP and SIGCONT: stopped by the watchdog, and nothing moves until
 TEST_CASE("with a key, ARM and PROGRAM of a program without it move nothing") {
   const std::unique_ptr<Rig> rig = rigOrSkip(true, false);
   if (!rig) return;
-  // Its own MOTOR is read by everybody, so we know that it runs and has heard us.
+  // Its MOTOR is readable for all, so it runs and has received our messages.
   for (int i = 0; i < 100 && rig->counted("refused: unsealed") < 100; ++i) {
     rig->say(true);
     rig->run(100'000);

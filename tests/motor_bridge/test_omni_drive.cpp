@@ -37,7 +37,7 @@ std::string omniRefusal(const std::string& more) {
   return "accepted";
 }
 
-/// Gives a command for two seconds, 100 times a second.
+/// Sends a command for 2 s at 100 Hz.
 template <class Device>
 void holdCommand(MotorController& connection, Device& device, const Command& command,
                  int64_t& now) {
@@ -73,7 +73,7 @@ TEST_CASE("VESCs hold the rims of a holonomic base's wheels, an inverted one the
   REQUIRE(connection->ready());
   const sim::MotorValues held = device.heldSpeeds().value();
   CHECK(held[0] == Approx(0.5).epsilon(1e-3));
-  CHECK(held[1] == Approx(0.25).epsilon(1e-3));  // its motor is mounted the other way round
+  CHECK(held[1] == Approx(0.25).epsilon(1e-3));  // its motor is mounted in reverse
   CHECK(held[2] == Approx(1.0).epsilon(1e-3));
   const MotorTelemetry told = connection->telemetry();
   CHECK(told.measured[0] == Approx(0.2).epsilon(0.01));
@@ -105,7 +105,7 @@ TEST_CASE("a described controller drives three wheels and reads them back") {
   CHECK(told.measured[1] == Approx(-0.3).epsilon(0.01));
   CHECK(told.measured[2] == Approx(-0.4).epsilon(0.01));
   CHECK(told.current[1] == Approx(2.0));
-  // Its watchdog lets all wheels go.
+  // Its watchdog stops all wheels.
   CHECK(device.output(now + 1'000'000) == sim::MotorValues{});
 }
 
@@ -137,7 +137,7 @@ TEST_CASE(
   const Command arc = config.motion.motion(omni.speeds({0.5, 0.0, 0.5}));
   CHECK(arc[0] == Approx(0.5 - 0.42 * 0.5));
   CHECK(arc[1] == Approx(0.5 + 0.42 * 0.5));
-  // Half of max_command by hand: ahead, and on the spot.
+  // Half of max_command under manual control: ahead, and on the spot.
   const double most = config.manual.max_command;
   const Twist2 ahead = omni.twist(commandOf({most, most}, config.manual));
   CHECK(ahead.v_x == Approx(most));

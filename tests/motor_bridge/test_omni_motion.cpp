@@ -40,7 +40,8 @@ struct OmniDrive {
   MotionMonitor monitor{limits};
   Twist2 wanted;
   double slip = 0.85;
-  std::array<double, 3> wheel_share{1.0, 1.0, 1.0};  ///< of its command that each wheel makes
+  /// share of its command that each wheel executes
+  std::array<double, 3> wheel_share{1.0, 1.0, 1.0};
   bool encoders = true;
   Twist2 shove;
 
@@ -162,7 +163,7 @@ TEST_CASE("a fence holds a holonomic base that drives to the side, with and with
       if (!fences.fault(now).empty()) stopped_at = y;
     }
     CAPTURE(measured, stopped_at);
-    // The outline ends at 0.5 m to the left, and goes on for half a second.
+    // The outline extends 0.5 m to the left, and the motion continues for 0.5 s.
     CHECK(stopped_at < 5.0 - 0.5 - 0.25);
     CHECK(stopped_at > 5.0 - 0.5 - (measured ? 0.6 : 1.5));
   }
@@ -170,7 +171,7 @@ TEST_CASE("a fence holds a holonomic base that drives to the side, with and with
 
 namespace {
 
-/// A bridge of the base whose programs command so many channels.
+/// The base's bridge, with programs of so many channels.
 std::string reasonFor(size_t channels) {
   BridgeConfig config;
   config.motion = omniLimits();

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int64_t kLease = 1'000'000;
 
-/// Steps until the command is zero; how long that took [us].
+/// Steps until the command is zero; returns the duration [us].
 int64_t stepsToZero(BridgeWorld& world) {
   const int64_t from = world.now;
   while (!isZero(world.out.command) && world.now - from < 30'000'000) world.step();
@@ -48,7 +48,7 @@ TEST_CASE("operator killed, frozen or cut off: zero within the lease, armed agai
     REQUIRE(world.state() == State::kDriving);
     const int64_t cut = world.now;
     for (int64_t seen = cut; !isZero(world.out.command);) {
-      // A frozen view: its messages go on, what it has seen does not.
+      // A frozen view: its messages continue, its view of the robot does not.
       world.operator_alive = false;
       if (frozen_view && world.now % 200'000 == 0)
         world.bridge.receive(OperatorNotice{1, "operator", true, seen, 0, ""}, world.now);
@@ -106,7 +106,7 @@ TEST_CASE("`finish`: what runs ends, nothing begins, and the robot is disarmed")
   world.operator_alive = false;
   world.run(kLease + 300'000);
   CHECK(world.state() == State::kDriving);
-  // The planner has nothing that follows.
+  // The planner has no next pattern.
   const int64_t running = world.out.execution_id;
   world.planner_alive = false;
   stepsToZero(world);

@@ -168,7 +168,7 @@ TEST_CASE("the smallest utime of all is old, not new: no difference overflows") 
 
 namespace {
 
-/// What an INS watch says at `now` of one measurement, received at kNow.
+/// An INS watch's verdict at `now` on one measurement received at kNow.
 std::string faultOf(int64_t utime, int64_t now = kNow) {
   InsWatch watch({});
   watch.receive({utime, true}, kNow);
@@ -269,7 +269,7 @@ TEST_CASE("each channel of a slot is held to its own kind and range") {
     CHECK(checkSlot(slot, limits) == SlotFault::kOutOfRange);
   }
   slot.series[2] = {0.0, 0.0};
-  slot.series[2][2] = 0.1;  // a channel that the drive does not have
+  slot.series[2][2] = 0.1;  // a channel that the drive lacks
   CHECK(checkSlot(slot, limits) == SlotFault::kOutOfRange);
   slot.kinds.push_back(CommandKind::kPower);
   CHECK(checkSlot(slot, limits) == SlotFault::kUnknownKind);

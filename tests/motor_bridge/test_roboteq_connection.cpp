@@ -14,7 +14,7 @@ using Lines = std::vector<std::string>;
 
 namespace {
 
-/// A connection and a controller on one wire, in virtual time; commands every 20 ms.
+/// A connection and a controller on one line in virtual time; commands every 20 ms.
 struct Wire {
   RoboteqConfig config;
   ScriptedRoboteq device;

@@ -10,7 +10,7 @@ using namespace tread::motor;
 
 namespace {
 
-/// A world with a key, of which somebody hears everything and says what he likes.
+/// A world with a key, and an attacker who receives everything and sends anything.
 struct AttackedWorld : NodeWorld {
   AttackedWorld() : NodeWorld(1, {}, {}, SealKey{}) {
     bus.setTap([this](int64_t, const char* channel, const uint8_t* bytes, size_t size) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int64_t kStart = 5'000'000;
 
-/// A player that started execution 1 (4 commands of 50 ms) at kStart, next as given.
+/// A player that started execution 1 (4 commands of 50 ms) at kStart, with this next slot.
 SeriesPlayer playing(const ProgramSlot& next = {}) {
   SeriesPlayer player;
   player.beginRun(1);

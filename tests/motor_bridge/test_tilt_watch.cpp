@@ -24,7 +24,7 @@ InsTilt level() {
   return {0, 0.0, 0.0, 0.0, 0.0};
 }
 
-/// A driving robot whose tilt the test sets.
+/// A driving robot with a tilt set by the test.
 struct TiltWorld : BridgeWorld {
   TiltWorld() {
     bridge = Bridge(watched());
@@ -32,7 +32,7 @@ struct TiltWorld : BridgeWorld {
     drive();
     REQUIRE(state() == State::kDriving);
   }
-  /// How long it takes to a zero [us].
+  /// Time until zero [us].
   int64_t timeToZero() {
     const int64_t from = now;
     while (!isZero(out.command) && now - from < 5'000'000) step();
@@ -85,7 +85,7 @@ TEST_CASE("a slow INS is waited for: two measurements are no proof, however far 
   watch.receive({100'000, 40 * kDeg, 0, 0, 0}, 100'000);
   watch.receive({200'000, 40 * kDeg, 0, 0, 0}, 200'000);
   CHECK(watch.fault(200'000).empty());
-  watch.receive({200'000, 40 * kDeg, 0, 0, 0}, 200'000);  // the same again
+  watch.receive({200'000, 40 * kDeg, 0, 0, 0}, 200'000);  // a repetition
   CHECK(watch.fault(200'000).empty());
   watch.receive({300'000, 40 * kDeg, 0, 0, 0}, 300'000);
   CHECK_FALSE(watch.fault(300'000).empty());
@@ -103,14 +103,14 @@ TEST_CASE(
   CHECK(world.state() == State::kArmed);
   CHECK(isZero(world.out.command));
   CHECK_THAT(world.reason(), Contains("programs refused: rolled 35 deg, limit 30"));
-  world.tilt.roll = 28 * kDeg;  // below, but not by enough
+  world.tilt.roll = 28 * kDeg;  // below, but not by the margin
   world.run(2'000'000);
   CHECK(world.state() == State::kArmed);
   CHECK_THAT(world.reason(), Contains("programs refused: rolled 35 deg, limit 30"));
   world.tilt.roll = 26 * kDeg;
   world.run(400'000);
   CHECK(world.state() == State::kArmed);
-  world.tilt.roll = 35 * kDeg;  // a swing back begins the half second anew
+  world.tilt.roll = 35 * kDeg;  // another swing restarts the half second
   world.run(40'000);
   world.tilt.roll = 26 * kDeg;
   world.run(400'000);
@@ -123,7 +123,7 @@ TEST_CASE("it does not arm while it has just tipped, and never by itself") {
   TiltWorld world;
   world.tilt.pitch = 35 * kDeg;
   world.timeToZero();
-  // For a second it is a fault, and then inputs must have been good for a second.
+  // It is a fault for 1 s, and then inputs must have been good for 1 s.
   for (const int64_t wait : {300'000, 700'000, 700'000}) {
     world.run(wait);
     world.arm();
@@ -161,7 +161,7 @@ TEST_CASE("what is told late stops for as long as what is told at once") {
   TiltWatch watch(kLimits);
   InsTilt tilted = level();
   tilted.roll = 0.9;
-  // The INS driver hung for 1.2 s; what it measured meanwhile comes now.
+  // The INS driver hung for 1.2 s; its earlier measurements arrive now.
   const int64_t now = 5'000'000;
   for (int64_t utime = now - 1'200'000; utime < now - 900'000; utime += 20'000) {
     tilted.utime = utime;
@@ -201,12 +201,12 @@ TEST_CASE("each time of the tilt watch is kept to the microsecond") {
   CHECK(watch.fault(99'999).empty());
   watch.receive(tilted(100'000, 0.9), 100'000);
   CHECK_FALSE(watch.fault(100'000).empty());
-  // It stands for a second.
+  // It stands for 1 s.
   watch.receive(tilted(1'100'000, 0.9), 1'100'000);
   CHECK_FALSE(watch.fault(1'100'000).empty());
   CHECK(watch.fault(1'100'001).empty());
   CHECK_FALSE(watch.beyond().empty());
-  // Level for half a second.
+  // Level for .5 s.
   watch.receive(tilted(1'200'000, 0.0), 1'200'000);
   watch.receive(tilted(1'699'999, 0.0), 1'699'999);
   CHECK_FALSE(watch.beyond().empty());

@@ -13,11 +13,11 @@ using namespace tread::motor;
 
 namespace {
 
-/// What the motors must never do: turn this long after the end of a lease or series [us].
+/// The motors must not turn this long after the end of a lease or series [us].
 constexpr int64_t kBudget = 250'000;
 
-/// Longest time from a cause to the last motion [us], over 200 moments of a drive (shown by -s;
-/// fewer in an instrumented build: each keeps the budget by itself).
+/// Longest time from a cause to the last motion [us], over 200 times in a drive (shown by -s; fewer
+/// in an instrumented build: each must keep the limit).
 int64_t worst(const std::function<void(NodeWorld&)>& cause) {
   std::mt19937_64 random(9);
   int64_t longest = 0;
@@ -30,7 +30,7 @@ int64_t worst(const std::function<void(NodeWorld&)>& cause) {
     cause(world);
     longest = std::max(longest, world.lastMotionWithin(600'000));
     REQUIRE(world.stoodFor() >= 300'000);
-    // Everything whole again for the next round.
+    // Restore everything for the next round.
     setPipeConnected(*world.pipe.first, true);
     world.device.fault_flags = 0;
     world.device.mute = world.device.deaf = false;

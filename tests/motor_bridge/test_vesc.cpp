@@ -34,7 +34,7 @@ std::string refusal(const std::string& text, const DriveDescription& drive = {})
   return "";
 }
 
-/// 5000 electrical rpm at 1 m/s, as the emulated ones.
+/// 5000 electrical rpm at 1 m/s, like the emulated ones.
 const std::string kGeared = "{pole_pairs: 5, gear_ratio: 10.471975512, wheel_radius: 0.1}";
 
 template <class Rig>
@@ -63,7 +63,7 @@ void drivesAndReads(Rig& rig) {
 }  // namespace
 
 TEST_CASE("VESC packets: the firmware's example, split and glued, garbage and wrong ends between") {
-  // COMM_GET_VALUES as VESC Tool sends it.
+  // COMM_GET_VALUES in VESC Tool's encoding.
   const std::string ask("\x02\x01\x04\x40\x84\x03", 6);
   CHECK(vescPacket("\x04") == ask);
   VescPackets packets;
@@ -205,7 +205,7 @@ TEST_CASE("VESC: a speed command is held by the controller itself") {
   connection.open();
   double speed = 0.0;
   for (int64_t now = 1'000'000; now < 6'000'000; now += 1'000) {
-    speed += 0.001 * (1.4 * device.output(now)[0] - speed) / 0.2;  // the track, with its lag
+    speed += 0.001 * (1.4 * device.output(now)[0] - speed) / 0.2;  // the track with its lag
     device.measure({25.0, {1.0, 1.0}, {speed, speed}});
     if (now % 10'000 != 0) continue;
     connection.receive(device.transmit(now), now);
