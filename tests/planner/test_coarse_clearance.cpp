@@ -25,7 +25,7 @@ Coarse coarseOf(CellIndex cell, int coarse) {
           static_cast<int>(std::floor(static_cast<double>(cell.y) / coarse))};
 }
 
-/// Everything worked out again, slowly, in maps that know no windows.
+/// Slow reference that computes everything again, in maps without windows.
 struct Reference {
   Reference(const Grid& grid, const ClearanceField& field, int coarse, double radius) {
     for (int y = grid.lower().y; y < grid.lower().y + grid.height(); ++y) {
@@ -74,14 +74,14 @@ Eigen::Vector2d centreOf(Coarse at, double size) {
   return {(at.first + 0.5) * size, (at.second + 0.5) * size};
 }
 
-/// A map, its passages and what they must be.
+/// A map, its passages and the expected ones.
 struct Bench {
   explicit Bench(std::mt19937_64& random)
       : ground(smallGround(random)),
         grid(ground.draw(random)),
         field(grid, drawn(random, 0, 1) == 0),
         coarse(drawn(random, 1, 4)),
-        // Between the distances that there are, so that rounding decides nothing.
+        // Between the possible distances, so that rounding has no influence.
         radius(0.05 * drawn(random, 0, 7) + 0.012),
         passages(grid, field, coarse),
         reference(grid, field, coarse, radius) {
@@ -208,7 +208,7 @@ TEST_CASE("where a disc can go from cell to cell, one area reaches") {
   std::mt19937_64 random(5);
   for (int i = 0; i < testing::effort(60); ++i) {
     const Bench bench(random);
-    // Between two neighbours with room both lie in one area, or the map would be cut in two there.
+    // Two free neighbours are in the same area; otherwise the map would be divided there.
     for (int y = bench.grid.lower().y; y < bench.grid.lower().y + bench.grid.height(); ++y) {
       for (int x = bench.grid.lower().x; x < bench.grid.lower().x + bench.grid.width() - 1; ++x) {
         const Eigen::Vector2d here = bench.grid.centre({x, y});

@@ -19,7 +19,7 @@ PlannerConfig closeConfig() {
   return config;
 }
 
-/// A closed box of 3 m around the goal of the rig, which lies at (12, 0).
+/// A closed box of 3 m around the rig's goal at (12, 0).
 Playground walledGoal(bool closed) {
   Playground ground;
   ground.addWall({10.5, -1.5}, {13.5, -1.5});
@@ -37,7 +37,7 @@ TEST_CASE("The nearest place within reach has a way to it, and no nearer one has
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> draw(-4.0, 4.0);
     Playground ground;
-    // Around the goal a wall, and some boxes anywhere.
+    // A wall around the goal, and some random boxes.
     for (const double s : {-1.0, 1.0}) {
       ground.addWall({4.0, s}, {6.0, s}, 0.2);
       ground.addWall({5.0 + s, -1.0}, {5.0 + s, 1.0}, 0.2);
@@ -53,14 +53,14 @@ TEST_CASE("The nearest place within reach has a way to it, and no nearer one has
     const DistanceToGoal way(map, goal, p_vehicle, {}, config);
     REQUIRE(way.unreachable());
     const auto nearest = way.nearestWithinReach(p_vehicle, {5.0, 0.0});
-    if (!nearest) continue;  // the vehicle stands on a box
+    if (!nearest) continue;  // the vehicle is on a box
     ++found;
     CAPTURE(seed, nearest->transpose());
     const double off = (*nearest - Eigen::Vector2d(5.0, 0.0)).norm();
-    // Outside of the wall and its inflation, but not much.
+    // Outside of the wall and its inflation, but not by much.
     CHECK(off > 1.0 + config.inflation);
     CHECK(off < 1.0 + config.inflation + 0.5);
-    // There is a way to it, and no other place that is nearer has one.
+    // It is reachable, and no nearer place is.
     const Goal there{2, {nearest->x(), nearest->y(), 0.0}, 0.05, 4.0};
     CHECK_FALSE(DistanceToGoal(map, there, p_vehicle, {}, config).unreachable());
     for (double angle = 0.0; angle < 6.2; angle += 0.1) {
@@ -83,7 +83,7 @@ TEST_CASE("Of two places that are as near the one that was chosen before is kept
   const Eigen::Vector2d p_goal(12.0, 0.0);
   const auto nearest = way.nearestWithinReach({0.0, 0.0}, p_goal);
   REQUIRE(nearest);
-  // The walls are the same on both sides.
+  // The walls are symmetric.
   const Eigen::Vector2d mirrored(nearest->x(), -nearest->y());
   CHECK(*way.nearestWithinReach({0.0, 0.0}, p_goal, mirrored) == mirrored);
   CHECK(*way.nearestWithinReach({0.0, 0.0}, p_goal, Eigen::Vector2d(8.0, 0.0)) == *nearest);
@@ -98,7 +98,7 @@ TEST_CASE(
   CHECK_THAT(decision.report.reason.words, Catch::Contains("as close as possible"));
   decision = rig.run(25.0);
   CHECK(decision.report.status == PlanStatus::kUnreachable);
-  CHECK(decision.report.reason.code == StopReason::kNoWayFound);  // obstacles may go again
+  CHECK(decision.report.reason.code == StopReason::kNoWayFound);  // obstacles may disappear
   CHECK_THAT(decision.report.reason.words, Catch::Contains("obstacles enclose"));
   CHECK(std::hypot(rig.pose().x - 12.0, rig.pose().y) < 3.2);
   CHECK(std::abs(rig.speed()) < 0.02);

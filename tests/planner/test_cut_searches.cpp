@@ -13,7 +13,7 @@ using namespace tread::planner::testkit;
 
 namespace {
 
-/// A boulder dead ahead, and noise that makes either side the shorter one.
+/// A boulder straight ahead, and noise that makes either side the shorter one.
 struct Drive {
   Drive() : rig(boulder(), thorough()) {}
 

@@ -34,8 +34,8 @@ ClearanceMap mapOf(const Grid& grid) {
   return map;
 }
 
-/// Shortest way of a point that keeps a distance from obstacles, over the fine cells and 16
-/// directions: an upper bound of the true one that is at most 3 % longer.
+/// Shortest path of a point that keeps a distance from obstacles, over the fine cells and 16
+/// directions: an upper bound, at most 3 % too long.
 std::vector<double> waysTo(const Grid& grid, const ClearanceField& room, double radius,
                            CellIndex goal) {
   std::vector<double> way(grid.cells().size(), std::numeric_limits<double>::infinity());
@@ -122,7 +122,7 @@ TEST_CASE("An enclosed goal is unreachable at once, so is one on obstacles and o
   CHECK(enclosed.unreachable());
   CHECK(enclosed.problem() == "obstacles enclose the goal or the vehicle");
   CHECK(std::isinf(enclosed.length({0.0, 0.0})));
-  // The box around the goal is small: little needs to be looked at to know.
+  // The box around the goal is small: few cells need to be visited.
   CHECK(enclosed.filled() < 500);
   const DistanceToGoal blocked(map, {1, {20.0, 0.0, 0.0}, 0.3, 4.0}, {0.0, 0.0}, {}, plain());
   CHECK(blocked.unreachable());

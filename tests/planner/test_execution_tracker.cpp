@@ -24,7 +24,7 @@ PlannerInputs at(int64_t now) {
   return s;
 }
 
-/// MOTOR says that it plays an execution.
+/// MOTOR reports this execution as running.
 PlannerInputs playing(int64_t now, int64_t execution_id, int index = 0) {
   PlannerInputs s = at(now);
   s.bridge = BridgeReading{};
@@ -107,7 +107,7 @@ TEST_CASE("The tracker switches by the clock where nothing is heard of the bridg
 TEST_CASE("A next pattern that was replaced too late is what runs") {
   const PatternSet set = samplePatterns();
   ExecutionTracker tracker = begun(set);
-  tracker.setNext(set, set.findByName("left")->id);  // execution 3, but the bridge plays 2 already
+  tracker.setNext(set, set.findByName("left")->id);  // execution 3, but the bridge already plays 2
   CHECK(tracker.follow(playing(11 * kSecond, 2)) == Event::kSwitched);
   CHECK(tracker.running().execution_id == 2);
   CHECK(tracker.running().pattern_id == set.findByName("straight")->id);

@@ -24,7 +24,7 @@ PlannerConfig fenced(std::vector<Fence> fences) {
   return config;
 }
 
-/// Across the straight way of the rig to (12, 0), with a way around.
+/// Across the rig's straight path to (12, 0), with a way around.
 Fence pond() {
   return {"pond", true, {{4, -2.5}, {6, -2.5}, {6, 3.5}, {4, 3.5}}};
 }
@@ -32,7 +32,7 @@ Fence yard(double east) {
   return {"yard", false, {{-6, -6}, {east, -6}, {east, 6}, {-6, 6}}};
 }
 
-/// Runs until it arrives, and tells the least room of the footprint to any of the fences.
+/// Runs until arrival; returns the least distance of the footprint to any of the fences.
 double leastRoom(Rig& rig, const std::vector<Fence>& fences, double seconds,
                  const std::function<void(PlannerInputs&)>& tamper = nullptr) {
   double least = 1e9;
@@ -109,7 +109,7 @@ TEST_CASE(
 }
 
 TEST_CASE("Over a fence it drives back in, and never farther out on its way") {
-  // It stands at the origin; the goal lies in a yard that begins east of it.
+  // It starts at the origin; the goal is in a yard that begins to its east.
   for (const double west : {-0.2, 0.5, 2.0, 4.0}) {
     const Fence gate{"gate", false, {{west, -8}, {25, -8}, {25, 8}, {west, 8}}};
     Rig rig(Playground{}, fenced({gate}));
@@ -127,7 +127,7 @@ TEST_CASE("Over a fence it drives back in, and never farther out on its way") {
 }
 
 TEST_CASE("On its way out of a fence no obstacle takes the place of forbidden ground") {
-  // It stands before a pond that reaches under its nose, a wall a little behind it.
+  // It stands in front of a pond that reaches under its nose, with a wall close behind.
   Playground ground;
   Grid grid = ground.paint(0.1, {-6.4, -6.4}, {6.4, 6.4});
   const FencedGround pond({{"pond", true, {{0.3, -2}, {3, -2}, {3, 2}, {0.3, 2}}}}, 0.0);

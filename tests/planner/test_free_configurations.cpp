@@ -19,7 +19,7 @@ namespace {
 const FootprintSize kSize = kVehicle;
 constexpr double kBin = 2.0 * kPi / FreeConfigurations::kHeadings;
 
-/// A ground and what is free on it, with and without the short cuts.
+/// A ground and its free configurations, with and without shortcuts.
 struct ConfigurationBench {
   explicit ConfigurationBench(std::mt19937_64& random, bool unknown_blocks)
       : ground(shape(random)),
@@ -38,7 +38,7 @@ struct ConfigurationBench {
     const Footprint exact(kSize, 0.0);
     return exact.blockedCells(around.grid(), pose, unknown) == 0;
   }
-  /// How many centres of cells in a square have room for the footprint, and how many there are.
+  /// Number of cell centres in a square where the footprint is free, and of all.
   std::pair<int, int> freeCentres(int column, int row, int heading) const {
     const Grid& grid = around.grid();
     const int side = static_cast<int>(std::lround(configurations.size() / grid.cellSize()));
@@ -75,7 +75,7 @@ TEST_CASE("a square is free in a heading only if the footprint has room at one o
       const auto [room, all] = bench.freeCentres(column, row, heading);
       const size_t square = configurations.number(column, row);
       const bool is_free = configurations.isFree(square, heading);
-      REQUIRE(configurations.isFree(square, heading) == is_free);  // kept as it was found out
+      REQUIRE(configurations.isFree(square, heading) == is_free);  // cached as computed
       if (is_free) REQUIRE(room > 0);
       if (room == all) REQUIRE(is_free);
       if (room > 0) REQUIRE(configurations.passable(square));

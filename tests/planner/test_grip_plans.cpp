@@ -19,7 +19,7 @@ PatternSet twoSpeeds() {
   return readPatternFile(std::string(TREAD_SOURCE_DIR) + "/config/patterns/teodor_speeds.yaml");
 }
 
-/// A wall across the way, at x [m].
+/// A wall across the path, at x [m].
 Playground wallAt(double x) {
   Playground ground;
   ground.addWall({x + 0.1, -9.0}, {x + 0.1, 9.0});
@@ -61,7 +61,7 @@ TEST_CASE("After each pattern of a plan the vehicle may slide until this ground 
   };
   problem.deceleration = deceleration;
   CHECK(nearest() > 0.0);
-  // Without it the plan counts on stopping as on the ground of the set.
+  // Otherwise the plan assumes the stopping distance of the set's ground.
   problem.deceleration = kNoLimit;
   if (deceleration < 0.5) CHECK(nearest() <= 0.0);
 }
@@ -82,11 +82,11 @@ TEST_CASE("Where the ground gave way only slow patterns begin, and those that sl
   CHECK(begins("rest") > 0);
   CHECK(begins("cruise") > 0);
   CHECK(begins("cruise") < from_cruise);
-  // The slowest class that drives forward always remains: it stops by itself where that is wanted.
+  // The slowest class that drives forward always remains: it stops by itself if requested.
   active.limitSpeed(0.01);
   CHECK(begins("rest") > 0);
   CHECK(begins("slow") > 0);
-  // A set that comes later is limited, too.
+  // A later set is limited, too.
   PatternSetContent next = set.content();
   next.version = 2;
   std::string why;
@@ -103,7 +103,7 @@ TEST_CASE("What few executions say of the ground is believed with less speed") {
   const GripKnowledge slides{1.7, true, GripKnowledge::kSure};
   CHECK(few.stopWithin() < many.stopWithin());
   CHECK(slides.stopWithin() < few.stopWithin());
-  // A set with classes of .49 and 1.08 m/s: only the slow one begins on what few have said.
+  // A set with classes of .49 and 1.08 m/s: with little experience only the slow one is used.
   const PatternSet set = twoSpeeds();
   const auto fastest = [&](int signs) {
     Rig rig;
@@ -119,14 +119,14 @@ TEST_CASE("What few executions say of the ground is believed with less speed") {
   };
   CHECK(fastest(1) < 0.7);
   CHECK(fastest(GripKnowledge::kSure - 1) < 0.7);
-  // Who has felt nothing must begin with something.
+  // Without experience it must start somehow.
   CHECK(fastest(0) > 1.0);
   CHECK(fastest(GripKnowledge::kSure) > 1.0);
 }
 
 TEST_CASE("Where the ground gave way a wall ahead stops the vehicle from farther away",
           "[statistics]") {
-  // How far away a wall that appears still makes it drop what it drives [m].
+  // Largest distance of an appearing wall at which the running plan is dropped [m].
   const auto farthest = [](const GripKnowledge& grip) {
     double reach = 0.0;
     for (double distance = 0.5; distance < 2.2; distance += 0.1) {
@@ -148,7 +148,7 @@ TEST_CASE("Where the ground gave way a wall ahead stops the vehicle from farther
 
 namespace {
 
-/// A door across the way at x = 4 m with 6 cm of room on each side.
+/// A door across the path at x = 4 m with 6 cm of space on each side.
 Playground door() {
   Playground ground;
   for (const double side : {-1.0, 1.0}) ground.addWall({4.1, side * 0.5}, {4.1, side * 9.0});

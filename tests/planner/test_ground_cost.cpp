@@ -32,7 +32,7 @@ Grid ground(Cell cost, double from = 8.0, double to = 16.0, double half_width = 
   return grid;
 }
 
-/// A model without doubts: 1 m/s2 on 1 cm at 1 m/s.
+/// A certain model: 1 m/s2 on 1 cm at 1 m/s.
 ShockKnowledge known() {
   ShockKnowledge shock;
   shock.model.mean = {0.0, 1.0, 2.0};
@@ -41,7 +41,7 @@ ShockKnowledge known() {
   return shock;
 }
 
-/// Mean speed of a plan over the patterns that begin between two places [m/s].
+/// Mean speed of a plan's patterns that begin between two places [m/s].
 double speedBetween(const SearchResult& plan, const PatternTable& table, double from, double to) {
   double length = 0.0, time = 0.0, x = 0.0;
   for (const PlanStep& step : plan.steps) {
@@ -93,7 +93,7 @@ TEST_CASE("ground that nobody saw is as rough as the nearest that somebody did")
   CHECK(costs[2 * 20 + 1] == 7);
   CHECK(costs[5 * 20 + 10] == 30);
   CHECK(costs[9 * 20 + 15] == 30);
-  CHECK(costs[0 * 20 + 7] == kFree);  // nine steps from the one, too far
+  CHECK(costs[0 * 20 + 7] == kFree);  // nine steps from the first one, too far
   Grid grid(0.1, {0, 0}, 30, 30);
   for (Cell& cell : grid.cells()) cell = kFree;
   grid.set({3, 3}, 9);
@@ -155,7 +155,7 @@ TEST_CASE("under a top speed only slow patterns are begun, and stopping stays po
   for (int i = 0; i < table.classCount(); ++i)
     for (const TablePattern* pattern : table.from(i))
       if (i != table.classIndex("cruise")) CHECK(pattern->length / pattern->duration <= 0.6);
-  // From a speed that is too high only patterns that slow down begin.
+  // Above the allowed speed only slowing patterns are available.
   CHECK_FALSE(table.from(table.classIndex("cruise")).empty());
   for (const TablePattern* pattern : table.from(table.classIndex("cruise")))
     CHECK(table.motionClass(pattern->exit).twist.v_x <= 0.6);

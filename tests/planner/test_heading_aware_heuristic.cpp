@@ -31,7 +31,7 @@ Primitive move(const Pose2& end, double cost) {
   return primitive;
 }
 
-/// Ahead 2 s/m, left and right arcs, on the spot 3 s/rad; back 5 s/m if wanted.
+/// Ahead 2 s/m, left and right arcs, on the spot 3 s/rad; back 5 s/m if requested.
 std::vector<Primitive> plainMoves(bool reverse) {
   std::vector<Primitive> moves{move({0.5, 0.0, 0.0}, 1.0), move({0.0, 0.0, 0.4}, 1.2),
                                move({0.0, 0.0, -0.4}, 1.2)};
@@ -39,7 +39,7 @@ std::vector<Primitive> plainMoves(bool reverse) {
   return moves;
 }
 
-/// A ground and the guide on it.
+/// A ground and the heuristic on it.
 struct HeuristicBench {
   HeuristicBench(const Grid& grid, bool unknown_blocks, const PatternTable& patterns)
       : around(grid, kHeuristicSize, Margins{}, unknown_blocks),
@@ -48,7 +48,7 @@ struct HeuristicBench {
   HeadingAwareHeuristic guide(const Pose2& start, const Goal& goal, double beyond = kEverything) {
     return HeadingAwareHeuristic(configurations, goal, start, rates, beyond);
   }
-  /// Cost at the middle of a square, in the middle of a bin.
+  /// Cost at the centre of a square and of a bin.
   double at(const HeadingAwareHeuristic& guide, int column, int row, int heading) const {
     const Eigen::Vector2d p = configurations.centre(column, row);
     return static_cast<double>(
@@ -162,7 +162,7 @@ TEST_CASE("filled in as far as the start, the guide is right wherever it may be 
           const double value = bench.at(guide, column, row, heading);
           if (from_start + expected < (1.0 + kBeyond) * whole)
             REQUIRE(value == Approx(expected).epsilon(1e-4).margin(1e-4));
-          else  // what was left out does not look better than that
+          else  // cells left out do not look better
             REQUIRE(from_start + value >= (1.0 + kBeyond) * whole * (1.0 - 1e-4));
         });
       });
@@ -182,7 +182,7 @@ TEST_CASE("filled in as far as the start, the guide is nowhere more than what br
                       less += value < 0.99 * expected ? 1 : 0;
                     });
                   });
-  CHECK(less > testing::effort(10'000));  // enough was not filled in
+  CHECK(less > testing::effort(10'000));  // enough cells were left out
 }
 
 TEST_CASE("on empty ground a way ahead and a turn cost what the patterns charge for them") {
@@ -200,7 +200,7 @@ TEST_CASE("on empty ground a way ahead and a turn cost what the patterns charge 
     CHECK(bench.at(guide, 20, 20, turn) == Approx(3.0 * turn * kHeadingBin).epsilon(1e-4));
     CHECK(bench.at(guide, 20, 20, 16 - turn) == Approx(3.0 * turn * kHeadingBin).epsilon(1e-4));
   }
-  // A quarter turn, and the way across to the goal, sideways being no direction to drive in.
+  // A quarter turn, and the path across to the goal, as it cannot drive sideways.
   CHECK(bench.at(guide, 20, 10, 0) == Approx(20.0 * size + 3.0 * kPi).epsilon(0.1));
 }
 
@@ -212,7 +212,7 @@ TEST_CASE("with the patterns of the tests a way ahead costs its time at the best
       bench.guide({}, {1, {middle.x(), middle.y(), 0.0}, 0.01, 0.01});
   const double way = 15 * bench.configurations.size();
   CHECK(bench.at(guide, 5, 20, 0) == Approx(way / table.bestSpeed()).epsilon(1e-3));
-  CHECK(bench.at(guide, 35, 20, 0) > 1.5 * way / table.bestSpeed());  // back is slower
+  CHECK(bench.at(guide, 35, 20, 0) > 1.5 * way / table.bestSpeed());  // reversing is slower
 }
 
 TEST_CASE("a set that cannot reverse is never guided backwards") {
@@ -224,7 +224,7 @@ TEST_CASE("a set that cannot reverse is never guided backwards") {
   for (int squares = 1; squares <= 12; ++squares)  // there and back, with two half turns
     CHECK(bench.at(guide, 20 + squares, 20, 0) >=
           2.0 * squares * bench.configurations.size() + 3.0 * kPi * 2.0 - 1e-3);
-  // Wherever it stands, no step against its heading alone brings it nearer.
+  // From any position, a single step against its heading does not approach the goal.
   for (int squares = -10; squares < 12; ++squares)
     if (squares < 0 || squares > 2)
       CHECK(bench.at(guide, 20 + squares, 20, 8) > bench.at(guide, 20, 20, 8) - 1e-3);
@@ -275,7 +275,7 @@ TEST_CASE("outside the map, and on a map smaller than a square, the guide still 
   REQUIRE(guide.reached());
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double far : {4.2, -4.01, 1e12, nan}) {
-    // Not less than what was filled in: nobody is led out of the map.
+    // Not below the computed values: nothing leads out of the map.
     CHECK(guide.at(far, 0.0, 0.0F) >= guide.at(-2.0, 0.0, 0.0F));
     CHECK(guide.at(0.0, far, 0.0F) >= guide.at(-2.0, 0.0, 0.0F));
   }

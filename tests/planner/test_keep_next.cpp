@@ -20,14 +20,14 @@ int64_t keptBy(Rig& rig) {
   return found == counters.end() ? 0 : found->second;
 }
 
-/// Id of what was handed over to follow the running pattern; 0 = nothing.
+/// Id of the pattern that was sent to follow the running one; 0 = none.
 int nextOf(Rig& rig) {
   const ExecutionTracker& tracker = rig.supervisor().program();
   return tracker.next().empty() ? 0 : tracker.next().pattern_id;
 }
 
-/// A door across the way with 6 cm of room on each side: enough for what is under way, too little
-/// for a new plan.
+/// A door across the path with 6 cm of space on each side: enough for the running pattern, too
+/// little for a new plan.
 Playground doorAt(double x) {
   Playground ground;
   for (const double side : {-1.0, 1.0})
@@ -35,10 +35,10 @@ Playground doorAt(double x) {
   return ground;
 }
 
-/// What was seen while a vehicle in full drive came to a door that was not there before.
+/// Observations while a vehicle at full speed approached a new door.
 struct Approach {
-  int kept = 0;          ///< steps in which the next pattern was kept to
-  int kept_to_it = 0;    ///< those after which it was still the next one, or had begun
+  int kept = 0;          ///< steps in which the next pattern was kept
+  int kept_to_it = 0;    ///< steps after which it was still the next one, or had begun
   double closest = 1e9;  ///< [m] to the door
 };
 
@@ -98,7 +98,7 @@ TEST_CASE("Standing boxed in there is no next pattern to keep to, not even one o
 
 namespace {
 
-/// Before a dead end: searches while driving are cut off before they find the way out.
+/// In front of a dead end: searches while driving are cut off before they find the way out.
 Rig inDeadEnd() {
   Playground ground;
   ground.addWall({2.2, -2.0}, {2.2, 2.0});

@@ -70,7 +70,7 @@ TEST_CASE("A set with other commands for what runs leaves the robot driving and 
   CHECK(yard.plan.plan_status == plan_t::PLAN_DRIVING);
   CHECK(yard.health.health_state == health_t::HEALTH_DEGRADED);
   CHECK_THAT(yard.health.health_reason, Catch::Contains("PATTERN_SET version 2 waits"));
-  // At the goal nothing is under way any more.
+  // At the goal nothing is running.
   yard.run(25.0);
   CHECK(yard.plan.plan_status == plan_t::PLAN_ARRIVED);
   CHECK(yard.plan.set_version == 2);

@@ -17,7 +17,7 @@ constexpr uint64_t kKeyBits = (uint64_t{1} << 56U) - 1;
 
 using KnownNodes = std::unordered_map<uint64_t, std::pair<float, int>>;
 
-/// Asks for a key and compares with what is known; then stores something new in it.
+/// Queries a key and compares with the known values; then stores a new value.
 void visit(NodeTable& table, KnownNodes& known, uint64_t key, int number) {
   NodeTable::Entry& slot = table[key];
   const auto found = known.find(key);
@@ -33,7 +33,7 @@ void visit(NodeTable& table, KnownNodes& known, uint64_t key, int number) {
   known[key] = {slot.cost, slot.node};
 }
 
-/// Keys as a search has them: neighbours in x, y, heading and class.
+/// Keys as in a search: neighbours in x, y, heading and class.
 uint64_t cellKey(std::mt19937_64& random, int spread) {
   const auto draw = [&random](int count) {
     return static_cast<uint64_t>(std::uniform_int_distribution<int>(0, count - 1)(random));
@@ -71,7 +71,7 @@ TEST_CASE("what was cleared never comes back, also after many more clears than a
   NodeTable table;
   for (int round = 0; round < 600; ++round) {
     KnownNodes known;
-    // Few and the same keys in most rounds: slots keep what earlier rounds left in them.
+    // In most rounds few repeated keys: slots keep the content of earlier rounds.
     const int count = round % 50 == 0 ? 3000 : 30;
     for (int i = 0; i < count; ++i) visit(table, known, cellKey(random, 6), round * 10'000 + i);
     for (const auto& [key, value] : known) REQUIRE(table[key].node == value.second);

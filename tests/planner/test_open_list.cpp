@@ -16,10 +16,10 @@ namespace {
 
 using KnownKeys = std::multimap<float, std::pair<int, float>>;
 
-/// How far above the least a bucket's estimates may be [1].
+/// Largest ratio of a bucket's estimates to the least one [1].
 constexpr float kBucket = 1.0F + 1.0F / 2048.0F;
 
-/// Takes one and finds it in what is known: its estimate must be the least, nearly.
+/// Takes one and looks it up: its estimate must be nearly the least.
 void takeOne(OpenList& open, KnownKeys& known, float least) {
   const OpenList::Entry entry = open.take();
   const float limit = std::max(least, known.begin()->first) * kBucket;
@@ -38,7 +38,7 @@ void playAtRandom(std::mt19937_64& random, OpenList& open, float least, double s
   open.clear(least);
   int node = 0;
   for (int i = 0; i < 3000; ++i) {
-    const bool more = (i / 500) % 2 == 0;  // it grows and shrinks in turns
+    const bool more = (i / 500) % 2 == 0;  // it grows and shrinks alternately
     if (known.empty() || chance(random) < (more ? 70 : 30)) {
       const float value = chance(random) == 0 ? 0.0F : estimate(random);
       const auto cost = static_cast<float>(chance(random));
@@ -62,7 +62,7 @@ void playAtRandom(std::mt19937_64& random, OpenList& open, float least, double s
 
 TEST_CASE("of all that waits the least comes first, to a 2048th, and nothing is lost or invented") {
   std::mt19937_64 random(1);
-  OpenList open;  // the same one: what was cleared must not come back
+  OpenList open;  // the same object: cleared entries must not return
   for (int i = 0; i < tread::testing::effort(20); ++i) {
     playAtRandom(random, open, 1e-3F, 0.5);
     playAtRandom(random, open, 0.7F, 0.01);

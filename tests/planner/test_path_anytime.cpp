@@ -13,7 +13,7 @@ using namespace tread::planner::testkit;
 
 namespace {
 
-/// An answer and what was told while it was looked for.
+/// An answer and the solutions reported before it.
 struct Told {
   PathAnswer answer;
   std::vector<double> costs;
@@ -120,7 +120,7 @@ TEST_CASE("a stop while the way is worked out is heard as soon as one while sear
         return expansions > 0 || asked >= limit;
       });
       if (asked == 0 || told.answer.search.exhausted) continue;
-      // The guide, the search and a finer one may ask once more each.
+      // Heuristic, search and a finer search may each check once more.
       CHECK(asked <= limit + 3);
       CHECK(told.answer.search.expansions <= 16);
       heard += told.begun == 1 && asked >= limit ? 1 : 0;
@@ -143,8 +143,8 @@ TEST_CASE("a stop before anything was found says so and promises nothing") {
 }
 
 TEST_CASE("an exhausted search is at least as cheap as one that begins with greater care") {
-  // Whatever weights it begins with, the last search leaves nothing better at the resolution but
-  // what sharing a cell hides.
+  // For any initial weights the last search has no better result at the resolution, except for
+  // plans hidden by a shared cell.
   onQueries(1700, testing::effort(12), [&](PathBench& bench, const PathQuery& query) {
     const Told greedy = ask(bench, query, after(40'000));
     if (!greedy.answer.search.exhausted || greedy.answer.end != PathEnd::kSolved) return;

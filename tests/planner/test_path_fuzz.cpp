@@ -17,9 +17,9 @@ using namespace tread::planner::testkit;
 
 namespace {
 
-constexpr int kBatch = 16;  // expansions between two questions to the predicate
+constexpr int kBatch = 16;  // expansions between two checks of the predicate
 
-/// Patterns as nobody would make them: one sample or many, standing, sliding, spinning, tiny.
+/// Unusual patterns: one sample or many, standing, sliding, spinning, tiny.
 std::vector<Primitive> strangePatterns(std::mt19937_64& random, int count) {
   std::vector<Primitive> patterns;
   for (int i = 0; i < count; ++i) {
@@ -37,7 +37,7 @@ std::vector<Primitive> strangePatterns(std::mt19937_64& random, int count) {
   return patterns;
 }
 
-/// Maps as nobody would send them.
+/// Unusual maps.
 Grid strangeGrid(std::mt19937_64& random) {
   constexpr std::array<int, 8> kSides{0, 1, 2, 7, 60, 90, 90, 120};
   const double cell = std::array<double, 3>{0.05, 0.1, 0.5}[random() % 3];
@@ -133,7 +133,7 @@ TEST_CASE("a search that looks again with smaller cells stops when it is told to
   int stopped = 0;
   for (uint64_t seed = 1; seed <= static_cast<uint64_t>(testing::effort(40)); ++seed) {
     PathBench bench(seed);
-    bench.config.search.cell = 1.5;  // so coarse that all is soon seen
+    bench.config.search.cell = 1.5;  // so coarse that it is soon completely seen
     bench.config.search.heading_bins = 4;
     PathPlanner planner(bench.grid, *bench.table, bench.config);
     const PathQuery query = bench.query();

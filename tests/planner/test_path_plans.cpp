@@ -35,8 +35,8 @@ std::vector<SweptPose> finePoses(const PathBench& bench, const TablePattern& pat
                      SweepResolution{0.01, 0.01, 0.3, kVehicle.widened(0.09)});
 }
 
-/// Whether the footprint, made smaller by so much [m] on all sides, still meets something; on all
-/// ways or on straight ones only.
+/// Whether the footprint, reduced by so much [m] on all sides, still touches something; on all
+/// paths or on straight ones only.
 bool cutsBy(double smaller, const PathBench& bench, const PathQuery& query,
             const PathAnswer& answer, bool straight_only) {
   const FootprintSize size = kVehicle;

@@ -15,7 +15,7 @@ using namespace tread::planner::testkit;
 
 namespace {
 
-/// Whether a disc could be moved from cell to cell, by a plain flood fill over all of them.
+/// Whether a disc can move from cell to cell, by a plain flood fill.
 bool connected(const Grid& grid, const ClearanceField& field, const PathQuery& query,
                double radius) {
   std::vector<uint8_t> seen(grid.cells().size(), 0);
@@ -47,7 +47,7 @@ bool anyBegins(const PathBench& bench, const Pose2& start) {
   return false;
 }
 
-/// An open ground of 8 m by 6 m around the origin, to build walls on.
+/// An open ground of 8 m by 6 m around the origin, for building walls.
 struct Room {
   Room() {
     for (Cell& cell : grid.cells()) cell = kFree;
@@ -84,7 +84,7 @@ TEST_CASE("unreachable is only what a plain flood fill of the inscribed disc fin
       if (answer.end == PathEnd::kSolved) ++solved;
       if (answer.end != PathEnd::kUnreachable) continue;
       ++refused;
-      CHECK(answer.search.expansions == 0);  // told at once
+      CHECK(answer.search.expansions == 0);  // reported at once
       if (answer.reason.find("no legal successor") == std::string::npos)
         CHECK_FALSE(joined);
       else
@@ -123,7 +123,7 @@ TEST_CASE("each refusal says why, and where the vehicle could stand nearest to t
 TEST_CASE("a start on obstacles is left if so many patterns as may overlap them lead off") {
   Room room;
   room.block({-40, -30}, {-10, 29});
-  // 15 cm, and more than the whole of the vehicle.
+  // 15 cm, and more than the complete vehicle.
   for (const double x : {-0.4, -2.0, -3.0}) {
     const Pose2 start{x, 0.0, 0.0};
     const PathAnswer answer = room.answer(start, {2.0, 0.0, 0.0});
@@ -156,7 +156,7 @@ TEST_CASE("a start so deep in obstacles that they may not be left is told so") {
 }
 
 TEST_CASE("a start that no pattern may leave because it would deepen the overlap is told so") {
-  // One obstacle under the vehicle, and nothing but obstacles around it.
+  // One obstacle under the vehicle, and only obstacles around it.
   Room room;
   room.block({-40, -30}, {39, 29});
   const Pose2 start{0.0, 0.0, 0.0};
@@ -171,7 +171,7 @@ TEST_CASE("a start that no pattern may leave because it would deepen the overlap
 }
 
 TEST_CASE("a start that no pattern may leave is told so") {
-  // A slot as wide as the vehicle, closed ahead: from there the patterns only go back.
+  // A slot as wide as the vehicle, closed ahead: it can only reverse out of it.
   Room room;
   PatternSetContent content = samplePatterns().content();
   for (size_t i = content.patterns.size(); i-- > 0;)

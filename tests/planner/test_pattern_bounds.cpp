@@ -30,7 +30,7 @@ Primitive arc(int id, const Twist2& twist, double duration, double cost) {
   return primitive;
 }
 
-/// Arcs, ways straight ahead, back and sideways and turns on the spot, at any price.
+/// Random arcs, straight motions ahead, back and sideways, and turns on the spot, at random costs.
 std::vector<Primitive> randomPrimitives(std::mt19937_64& random) {
   std::vector<Primitive> primitives;
   const int count = drawn(random, 1, 12);
@@ -49,7 +49,7 @@ double turnOf(const TablePattern& pattern) {
   return std::abs(pattern.end().pose.yaw);
 }
 
-/// No pattern is cheaper than either bound; each bound is as high as one pattern lets it be.
+/// No pattern is cheaper than either bound; each bound is reached by a pattern.
 void checkBounds(const PatternTable& table) {
   double nearest[2] = {std::numeric_limits<double>::infinity(),
                        std::numeric_limits<double>::infinity()};
@@ -112,7 +112,7 @@ TEST_CASE("each pattern costs at least what its direction is said to cost at lea
                 pattern.cost * (1.0 + 1e-6));
         continue;
       }
-      if (turn > 0.0 && pattern.length < 0.06 * turn) continue;  // either way is right
+      if (turn > 0.0 && pattern.length < 0.06 * turn) continue;  // both directions are valid
       if (pattern.length < 0.002) continue;
       const double towards = wrapAngle(std::atan2(end.y, end.x) - end.yaw / 2.0);
       const double bins = towards / kBin;

@@ -17,7 +17,7 @@ using namespace tread::planner::testkit;
 
 namespace {
 
-/// No penalty, no guessing: the cheapest plan at the resolution of the search space.
+/// Without penalty and inflation: the cheapest plan at the resolution of the search space.
 SearchConfig exact() {
   SearchConfig config;
   config.distance_share = DistanceToGoal::kAdmissibleShare;
@@ -36,7 +36,7 @@ DistanceFieldConfig plainField() {
   return config;
 }
 
-/// Exact test of a pose: every cell under the footprint, without fields and short cuts.
+/// Exact test of a pose: every cell under the footprint, without clearance fields and shortcuts.
 bool collides(const Grid& grid, const Pose2& pose, double margin) {
   const FootprintSize size = kVehicle;
   const Footprint footprint(size, margin);
@@ -52,8 +52,8 @@ bool sweepCollides(const Grid& grid, const Pose2& start, const TablePattern& pat
   return false;
 }
 
-/// Cheapest time over the lattice of whole metres and quarter turns, by brute force; infinite if
-/// there is none.
+/// Least time over the lattice of whole metres and quarter turns, by brute force; infinite if there
+/// is none.
 double bruteForce(const Grid& grid, const PatternTable& table, const Goal& goal, double margin) {
   using State = std::tuple<int, int, int>;
   std::map<State, double> best;
@@ -208,8 +208,7 @@ TEST_CASE(
 
 TEST_CASE(
     "A pattern asks for the room of its own uncertainty, the next one for its start's as well") {
-  // A corridor that leaves 0.25 m on both sides. "ahead" ends 0.3 m off: 0.2 m of room are asked
-  // for.
+  // A corridor with 0.25 m on both sides. "ahead" ends 0.3 m off: 0.2 m are requested.
   Playground ground;
   for (const double y : {-0.69, 0.69}) ground.addWall({1.0, y}, {12.0, y}, 0.2);
   const Grid grid = ground.paint(0.05, {-3.2, -3.2}, {12.8, 3.2});
@@ -227,7 +226,7 @@ TEST_CASE(
   const SearchResult free = search.run(problem, after(100'000));
   REQUIRE(free.end == SearchEnd::kGoal);
   CHECK(free.steps.front().pattern_id == kAhead);
-  // All that gathers is promised to those who look at the plan.
+  // The published uncertainty is the accumulated one.
   CHECK(free.steps.back().uncertainty.yy == Approx(0.09 * static_cast<double>(free.steps.size())));
   problem.start_uncertainty.xx = problem.start_uncertainty.yy = 0.36F;
   CHECK(search.run(problem, after(100'000)).steps.empty());

@@ -66,7 +66,7 @@ TEST_CASE("How far ahead is planned follows from how long the set's patterns are
   };
   CHECK(usual("/config/patterns/teodor.yaml") == Approx(1.5));
   CHECK(usual("/tests/data/robots/jackal/patterns.yaml") == Approx(0.7));
-  // Where all begin and end at rest all are counted.
+  // If all patterns begin and end at rest, all are counted.
   CHECK(PatternTable(latticePatterns(), usualSweep(), {}).usualDuration() == Approx(1.0));
 }
 
@@ -114,7 +114,8 @@ TEST_CASE("What is left of a running pattern is scaled by how much of it has com
     const Prediction plain = predict(expected, half, pattern, table);
     CHECK(plain.T_map_end.yaw == Approx(pattern.end().pose.yaw).margin(1e-9));
     CHECK(plain.T_map_end.x == Approx(pattern.end().pose.x).margin(1e-9));
-    // Ground that turns the vehicle half as far again will go on to do so, doubt subtracted.
+    // Ground on which the vehicle turns 1.5 times as far is expected to continue, minus the
+    // uncertainty.
     const MotionRatio more =
         motionRatio({expected.x, expected.y, 1.5 * expected.yaw}, half, pattern, period);
     CHECK(more.turn >= 1.0);
@@ -126,7 +127,7 @@ TEST_CASE("What is left of a running pattern is scaled by how much of it has com
 }
 
 TEST_CASE("A start without margin may go on only where room is gained") {
-  // A wall along the vehicle's left side, a centimetre from its outline.
+  // A wall along the vehicle's left side, 1 cm from its outline.
   const FootprintSize body = kVehicle;
   Playground ground;
   ground.addWall({-3.0, body.half_width + 0.12}, {5.0, body.half_width + 0.12}, 0.2);
@@ -144,7 +145,8 @@ TEST_CASE("A start without margin may go on only where room is gained") {
         around.sweepRegains(turned(start), level, pattern, CollisionChecker::kPlan);
     if (std::abs(end.x) > 0.9 && std::abs(end.y) < 0.01) {
       ++along;
-      CHECK(around.sweepFree(start, pattern, level));  // nothing is touched, yet no room is gained
+      // no contact, but no increase of the distance
+      CHECK(around.sweepFree(start, pattern, level));
       CHECK_FALSE(regains);
     }
     if (regains) {

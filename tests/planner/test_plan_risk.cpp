@@ -18,9 +18,9 @@ using namespace tread::planner::testkit;
 namespace {
 
 constexpr double kCell = 0.05;
-constexpr double kLong = 10.0;  // [s] of reaction: the whole plan
+constexpr double kLong = 10.0;  // [s] of reaction: covers the whole plan
 
-/// The lattice's patterns, whose covariance is that of `errors` at their ends.
+/// The lattice's patterns with the covariance of `errors` at their ends.
 PatternSet lattice(const Eigen::Vector3d& errors) {
   PatternSetContent content = latticePatterns().content();
   for (MotionPattern& pattern : content.patterns)
@@ -30,7 +30,8 @@ PatternSet lattice(const Eigen::Vector3d& errors) {
   return *PatternSet::make(std::move(content), why);
 }
 
-/// Walls along the x axis; their faces lie in the middle of cells, so far from the vehicle's sides.
+/// Walls along the x axis at this distance from the vehicle's sides, with faces in the middle of
+/// cells.
 Playground corridor(double room) {
   Playground ground;
   for (const double side : {-1.0, 1.0}) {
@@ -60,7 +61,7 @@ Grid painted(const Playground& ground) {
   return ground.paint(kCell, {-4.0, -3.0}, {6.0, 3.0});
 }
 
-/// Share of drives over one metre with drawn errors that touch a wall.
+/// Share of drives over one metre with random errors that touch a wall.
 double touched(const Playground& ground, const Eigen::Vector3d& errors) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal(0.0, 1.0);
@@ -89,8 +90,8 @@ TEST_CASE("The risk of a pattern is the share of drives with drawn errors that t
   const Ahead ahead(painted(ground), errors, 1);
   const double true_share = touched(ground, errors);
   INFO(room << " m, " << errors.transpose() << ": " << true_share);
-  // Of a side its worst point counts, though a turn may bring the other end of it nearer; and what
-  // was seen may lie anywhere in its cell.
+  // For each side its worst point counts, although a turn may bring the other end closer; and an
+  // obstacle may be anywhere in its cell.
   CHECK(ahead.risk(kLong).touch > 0.65 * true_share);
   CHECK(ahead.risk(kLong).touch < 1.35 * true_share + 0.01);
 }
@@ -115,7 +116,7 @@ TEST_CASE("What is noticed in time does not count, and each pattern adds to the 
   CHECK(of_three.touch > 2.5 * of_one.touch);
   CHECK(of_three.touch < 4.5 * of_one.touch);
   CHECK(of_three.per_metre == Approx(of_three.touch / 3.0));
-  // Errors of the patterns before are part of what it may be off by where it is noticed late.
+  // Errors of earlier patterns count if they are noticed late.
   CHECK(three.risk(kLong).touch > of_three.touch);
 }
 

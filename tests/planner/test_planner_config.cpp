@@ -12,7 +12,7 @@ using namespace tread::planner;
 
 namespace {
 
-/// As if it stood beside the shipped files.
+/// As if it were next to the shipped files.
 const std::string kHere = TREAD_SOURCE_DIR "/config/robots/teodor/planner.yaml";
 
 }  // namespace

@@ -69,7 +69,7 @@ TEST_CASE("The node comes up disarmed: a permission from before its start counts
   CHECK(yard.plan.plan_status == plan_t::PLAN_WAITING);
   CHECK(yard.health.health_state == health_t::HEALTH_DEGRADED);
   CHECK(yard.health.health_reason == "not armed since the planner's start");
-  // The toy bridge remembers ids of the old run: only the new run's id matters here.
+  // The toy bridge remembers ids of the old run: here only the new run's id matters.
   yard.armAndGo();
   yard.run(0.3);
   CHECK(yard.run_id > old_run);
@@ -104,7 +104,7 @@ TEST_CASE("Whom the bridge has armed for holds the robot, whoever was heard firs
       yard.run(0.05);
     }
   };
-  run(1.0);  // the planner takes this one for the holder
+  run(1.0);  // the planner takes this operator as the holder
   yard.operator_there = true;
   run(1.0);
   yard.arm(true, "a test (test)");
@@ -122,7 +122,7 @@ TEST_CASE("Whom the bridge has armed for holds the robot, whoever was heard firs
 }
 
 TEST_CASE("When the time jumps, as at the start of a real process, an earlier permission is void") {
-  // A process that only hears the time starts near zero.
+  // The time of a passive process starts near zero.
   DrivingPermission permission(300'000);
   arm_t arm{};
   arm.armed = true;
@@ -196,7 +196,7 @@ TEST_CASE("Disarming and an emergency stop empty the program in the next step") 
     }
     yard.arm();
     yard.run(2.0);
-    // Arming alone moves nothing: the goal was given before.
+    // Arming alone moves nothing: the goal is older.
     CHECK(yard.robot().program().running.execution_id == 0);
     CHECK_THAT(yard.plan.reason, Catch::Contains("then give the goal again"));
     yard.renewGoal();
@@ -268,7 +268,7 @@ TEST_CASE("A range finder that mapping does not believe: zero at once, disarmed,
   CHECK(disarmed->armed_by == "planner");
   CHECK(disarmed->arm_reason == "mapping: range finder: it is frozen");
   yard.run(1.0);
-  // While it lasts, nobody is driven blindly.
+  // Meanwhile the robot must not drive blindly.
   yard.armAndGo();
   yard.sendGoal(10.0);
   yard.run(1.0);
@@ -335,7 +335,7 @@ TEST_CASE("Messages that make no sense are counted and change nothing") {
   tile.tile_cells = 32;
   tile.num_cells = 32 * 32;
   tile.cells.assign(32 * 32, kObstacle);
-  // With a cell of 1.1 mm one tile kept the planner busy for 50 s.
+  // With a cell of 1.1 mm one tile once occupied the planner for 50 s.
   for (const double size : {std::numeric_limits<double>::quiet_NaN(), 0.0011, 0.51}) {
     tile.cell_size = size;
     yard.bus.outside().publish(kMap, tile);
@@ -404,7 +404,7 @@ TEST_CASE("The sender of a goal is killed: the goal ends with its lease, and sta
   yard.armAndGo();
   yard.run(3.0);
   REQUIRE(yard.robot().speed() > 0.5);
-  // Somebody else of the same name still holds the robot.
+  // Another program of the same name still holds the robot.
   OperatorBeacon other(yard.bus.outside(), "test");
   yard.operator_there = false;
   const auto run = [&](double seconds) {
@@ -416,7 +416,7 @@ TEST_CASE("The sender of a goal is killed: the goal ends with its lease, and sta
   run(1.3);
   CHECK(yard.robot().program().running.execution_id == 0);
   CHECK(yard.plan.reason == "the operator who gave the goal is gone: give it again");
-  // It thaws: what has ended does not go on by itself.
+  // After thawing an ended goal must not continue by itself.
   yard.operator_there = true;
   yard.sendGoal(10.0);
   run(3.0);
@@ -558,7 +558,7 @@ TEST_CASE(
     CHECK(yard.plan.reason == line);
     CHECK(yard.health.health_state == health_t::HEALTH_DEGRADED);
     CHECK(yard.health.health_reason == line);
-    // Not all of them: a new fence does not say that no other is missing.
+    // Not all of them: a new fence does not imply that the others exist.
     say(false, pond);
     yard.bus.kill("planner");
     yard.bus.restart("planner");
@@ -583,7 +583,7 @@ TEST_CASE("A goal out of a log moves nothing, and takes nothing from the goal of
   yard.run(3.0);
   const int64_t goal = yard.plan.goal_id;
   REQUIRE(yard.robot().speed() > 0.5);
-  // An hour older, and, from before a reboot, with times that fit by chance.
+  // An hour old, and, from before a reboot, with accidentally matching times.
   for (const int64_t age : {3'600'000'000LL, 0LL}) {
     goal_t old{};
     old.utime = yard.bus.now() - age;
@@ -617,7 +617,7 @@ TEST_CASE("A version that no learner can have come to is refused, and the learne
   const int64_t version = GENERATE(1'000'000'000'000'000, 1'000'000'000'001, 500'000'000'000,
                                    1'000'000, std::numeric_limits<int64_t>::max());
   yard.run(0.01);
-  // Before the learner was heard a version that a learner may have is all that is known.
+  // Before the learner is received only the general range of versions is known.
   if (version > PatternSet::kHighestVersion) forge(version, 3);
   yard.run(1.5);
   yard.sendGoal(10.0);
@@ -654,7 +654,7 @@ TEST_CASE(
   CHECK(yard.plan.set_version == 90'000'000'000);
   tell(1'000'000'100'000, 4.0);
   CHECK(yard.plan.set_version == 90'000'000'000);
-  tell(1'000'000'100'000, 4.0);  // gone above what is believed at most
+  tell(1'000'000'100'000, 4.0);  // above the highest acceptable value
   CHECK(yard.plan.set_version == 1'000'000'100'000);
   yard.run(6.0);
   tell(1'000'000'200'001, 0.5);

@@ -69,7 +69,7 @@ TEST_CASE("Boxed in, nothing is found and it says so") {
   ground.addWall({-0.9, -0.6}, {-0.9, 0.6}, 0.1);
   ground.addWall({0.9, -0.6}, {0.9, 0.6}, 0.1);
   const Grid grid = ground.paint(0.1, {-6.4, -6.4}, {12.8, 6.4});
-  // Seen from the distance to the goal there must be one: the goal is taken near.
+  // As judged by the distance to the goal there must be a path: the goal is close.
   SearchBench bench(grid, samplePatterns(), {1, {0.8, 0.0, 0.0}, 0.3, 4.0});
   PatternSearch search(SearchConfig{});
   const SearchResult result = search.run(bench.problem({}), after(20'000));
@@ -121,7 +121,7 @@ TEST_CASE(
 TEST_CASE("A plan is kept while another is hardly better, and left when it is blocked") {
   const auto plan = [](bool boulder_moved, bool block_right, std::vector<int> committed) {
     Playground ground;
-    // A boulder straight ahead, a little nearer to one side: both ways around are nearly equal.
+    // A boulder straight ahead, slightly off to one side: both ways around are nearly equal.
     ground.add({{4.0, boulder_moved ? 0.04 : -0.04, 0.0}, 0.5, 0.5});
     if (block_right) ground.addWall({4.0, -8.0}, {4.0, 0.0});
     const Grid grid = ground.paint(0.02, {-2.0, -6.0}, {12.0, 6.0});
@@ -140,7 +140,7 @@ TEST_CASE("A plan is kept while another is hardly better, and left when it is bl
   const auto first = plan(true, false, {});
   const auto second = plan(false, false, {});
   REQUIRE(first.second != 0.0);
-  REQUIRE(first.second * second.second < 0.0);  // without memory it flips
+  REQUIRE(first.second * second.second < 0.0);  // without hysteresis it flips
   const auto kept = plan(false, false, first.first);
   CHECK(kept.second * first.second > 0.0);
   const auto& right = first.second < 0.0 ? first : second;

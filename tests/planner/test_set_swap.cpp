@@ -58,7 +58,7 @@ TEST_CASE("A set with other commands for what is under way waits until that has 
   CHECK_THAT(supervisor.setRefusal(), Catch::Contains("pattern " + std::to_string(id)));
   rig.run(0.05);
   CHECK(supervisor.program().running().set->version() == 1);
-  // Without a goal the vehicle comes to rest: nothing is under way, and the set is taken.
+  // Without a goal the vehicle comes to rest: nothing is running, and the set is accepted.
   rig.inputs().goal.reset();
   rig.run(8.0);
   CHECK(rig.speed() < 0.05);
@@ -72,7 +72,7 @@ TEST_CASE("A set with other commands for what is under way waits until that has 
 TEST_CASE("A set that cannot be driven with is not taken while something runs") {
   Rig rig;
   rig.run(4.0);
-  // The same names, but nothing stands any more.
+  // The same names, but no class at rest.
   PatternSetContent content = samplePatterns(2).content();
   for (MotionClass& motion_class : content.classes) motion_class.twist.v_x += 0.05;
   std::string why;

@@ -17,7 +17,7 @@ using namespace tread::planner::testkit;
 
 namespace {
 
-/// Plans by the names of their patterns; where their steps end plays no part here.
+/// Plans by their patterns' names; the ends of their steps do not matter here.
 class Names {
  public:
   std::vector<int> ids(const std::vector<std::string>& names) const {
@@ -60,20 +60,20 @@ SearchResult resultOf(SearchEnd end, double cost, double expected) {
   return result;
 }
 
-/// A boulder on the straight line, and a little more room to its left or right.
+/// A boulder on the straight line, with slightly more space to its left or right.
 Grid boulder(double aside) {
   Playground ground;
   ground.add({{5.0, aside, 0.0}, 0.6, 0.6});
   return ground.paint(0.1, {-4.0, -8.0}, {16.0, 8.0});
 }
 
-/// How often a drive's plans went over from one side of a boulder to the other.
+/// Number of plans that changed the side of a boulder during a drive.
 struct SideChanges {
   int count = 0;
   DriveOutcome outcome;
 };
 
-/// Drives at a boulder with poses so noisy that either side may seem to be the shorter one.
+/// Drives towards a boulder with very noisy poses, for which either side may be shorter.
 SideChanges driveAtBoulder(double gain, uint64_t seed) {
   SideChanges changes;
   const PatternSet set = samplePatterns();
@@ -88,7 +88,7 @@ SideChanges driveAtBoulder(double gain, uint64_t seed) {
   options.config.search.horizon = 9.0;  // so far ahead that plans pass the boulder
   double side = 0.0;
   options.on_decision = [&](double, const Decision& decision) {
-    // Where the plan passes the boulder.
+    // Side on which the plan passes the boulder.
     for (const PlanStep& step : decision.report.steps) {
       const Pose2& end = step.T_map_end;
       if (end.x < 8.0 || end.x > 10.0 || std::abs(end.y) < 0.5) continue;
@@ -215,7 +215,7 @@ TEST_CASE("Along a branch that is not free, or cannot be joined, there is no pla
 
 TEST_CASE("For what was planned before the margin for checking is enough") {
   Playground ground;
-  // Beside the vehicle 4 cm are left: less than a new plan needs.
+  // 4 cm are left at the vehicle's side: less than a new plan needs.
   const FootprintSize size = kVehicle;
   ground.addWall({-3.0, size.half_width + 0.14}, {2.2, size.half_width + 0.14}, 0.2);
   Margins margins;

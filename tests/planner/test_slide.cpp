@@ -39,7 +39,7 @@ TEST_CASE(
   CHECK(slides({1.0, 0.4, 0.1}, straight));
   CHECK(slides({1.0, 0.0, 0.0}, {0.5, 0.0, 0.0}));
   CHECK_FALSE(slides({0.4, 0.0, 0.0}, straight));
-  CHECK_FALSE(slides({0.1, 0.5, 0.0}, {0.0, 0.5, 0.0}));  // aside on purpose
+  CHECK_FALSE(slides({0.1, 0.5, 0.0}, {0.0, 0.5, 0.0}));  // intended sideways motion
 }
 
 TEST_CASE(
@@ -53,7 +53,7 @@ TEST_CASE(
 }
 
 TEST_CASE("A vehicle that slides beside a wall's end gets past it by steering, not by a stop") {
-  // The wall reaches 5 cm into its way.
+  // The wall reaches 5 cm into its path.
   const CollisionChecker around =
       checkerOf(acrossAt(1.5 + kVehicle.front, kVehicle.half_width - 0.05));
   CHECK(impactSpeed(around, at(2.0), {}) > 0.5);
@@ -77,7 +77,7 @@ TEST_CASE("The answer to a slide is what touches nothing, or else most slowly") 
   const SlideAnswer crash = answer(acrossAt(0.6 + kVehicle.front));
   CHECK(crash.kind == SlideAnswer::Kind::kStop);
   CHECK(crash.impact > 1.5);
-  // Another pattern is taken where it leads past what a stop would touch.
+  // Another pattern is used if it avoids the contact of a stop.
   MotionPattern aside = *table.set().findByName("straight");
   for (Pose2& pose : aside.trajectory) pose = {0.3 * pose.x, -2.0 * pose.x, 0.0};
   TablePattern follower = *choices.next;
@@ -108,7 +108,7 @@ TEST_CASE("A slide towards a wall is answered at once, one on free ground is not
   rig.inputs().goal->T_map_goal.x = 14.0;
   rig.run(3.2);
   REQUIRE(rig.speed() > 0.9);
-  // Farther than the stop of ground that holds, nearer than that of ice.
+  // Farther than the stop on firm ground, nearer than that on ice.
   if (wall) rig.paint(acrossAt(rig.pose().x + kVehicle.front + 0.45));
   const auto sliding = [](PlannerInputs& seen) { seen.pose->twist = Twist2{1.0, 0.5, 0.0}; };
   rig.run(0.1, sliding);

@@ -25,7 +25,7 @@ PlannerConfig careful() {
   return config;
 }
 
-/// A pit on the way of the rig to (12, 0): its slope at a distance from its centre.
+/// A pit on the rig's path to (12, 0): its slope by distance from its centre.
 struct Pit {
   Eigen::Vector2d centre{6.0, 0.0};
   double steepest = 0.5;  ///< [rad] at 2 m from the centre
@@ -91,7 +91,7 @@ TEST_CASE(
     std::optional<Fence> told;
     for (int i = 0; i < 5; ++i) {
       now += 20'000;
-      // It drives backwards: the slope grows behind it.
+      // It reverses: the slope increases behind it.
       const std::optional<Fence> found =
           guard.take({now, {-x, 0.0, 0.0}, Twist2{-0.5, 0.0, 0.0}, 0.0, slope});
       if (found) {
@@ -115,7 +115,7 @@ TEST_CASE(
   CHECK(at(2.1, 0.36));
   CHECK_FALSE(at(1.0, 0.1));
   CHECK(at(2.0, 0.3));
-  // One step over a stone is no slope.
+  // A single step over a stone is no slope.
   at(0.0, 0.0);
   CHECK_FALSE(guard.take({now += 20'000, {0.0, 0.0, 0.0}, {}, 0.0, 0.5}));
   CHECK_FALSE(guard.take({now += 20'000, {0.0, 0.0, 0.0}, {}, 0.0, 0.1}));

@@ -135,7 +135,7 @@ TEST_CASE("A wall that appears close ahead while driving: the running pattern is
 }
 
 TEST_CASE("On ground on which it takes longer to stop, a wall ahead stops it earlier") {
-  // How far away a wall that appears still makes it drop what it drives [m].
+  // Largest distance of an appearing wall at which the running plan is dropped [m].
   const auto farthest = [](double seconds) {
     double reach = 0.0;
     for (double distance = 0.5; distance < 1.5; distance += 0.1) {
@@ -212,7 +212,7 @@ TEST_CASE("A pattern that the bridge ends early is told with the bridge's reason
   Rig rig;
   rig.run(3.0);
   rig.bridge().setArmed(false);
-  // Without the news of being disarmed: what is left is the aborted execution.
+  // Without the message of disarming only the aborted execution shows it.
   const Decision decision =
       rig.run(0.1, [](PlannerInputs& s) { s.bridge->state = BridgeReading::State::kArmed; });
   CHECK(decision.report.status == PlanStatus::kWaiting);
@@ -238,7 +238,7 @@ TEST_CASE("Boxed in it says that it is blocked, and drives when it is let out") 
 }
 
 TEST_CASE("Where no plan is found the vehicle tries to get out before it calls itself blocked") {
-  // In front a passage that a point at half the vehicle's width can pass but the vehicle cannot.
+  // In front of it a passage that half the vehicle's width fits through, but not the vehicle.
   Playground ground;
   ground.addWall({1.6, -9.0}, {1.6, -0.40}, 0.2);
   ground.addWall({1.6, 0.40}, {1.6, 9.0}, 0.2);
@@ -309,7 +309,7 @@ TEST_CASE(
     REQUIRE(std::isfinite(decision.report.time_to_go));
     for (const int64_t id : decision.report.execution_ids) REQUIRE(id == 0);
   }
-  // Moving it would go on, not begin at rest.
+  // While moving, the next pattern continues instead of beginning at rest.
   const Decision shown = rig.run(0.3, [&](PlannerInputs& seen) {
     by_hand(seen);
     seen.pose->twist = Twist2{1.0, 0.0, 0.0};
@@ -319,7 +319,7 @@ TEST_CASE(
   const MotionPattern* first = set.find(shown.report.steps.front().pattern_id);
   REQUIRE(first != nullptr);
   CHECK(first->entry_class != "rest");
-  // Given back it drives on to the goal by itself.
+  // After giving back it drives on to the goal by itself.
   rig.run(2.0);
   CHECK(rig.speed() > 0.5);
   CHECK(rig.supervisor().program().running().execution_id > before);

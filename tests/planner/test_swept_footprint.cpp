@@ -18,7 +18,7 @@ using namespace tread::planner::testkit;
 
 namespace {
 
-/// Poses of a pattern, 1 cm and 0.005 rad apart at most.
+/// Poses of a pattern, at most 1 cm and 0.005 rad apart.
 std::vector<SweptPose> finePoses(const std::vector<Pose2>& trajectory, double period) {
   return sampleSweep(trajectory, period, SweepResolution{0.01, 0.005, 0.3, kVehicle});
 }
@@ -41,8 +41,8 @@ struct Count {
   int refused = 0;  // by the exact test, with a smaller footprint
 };
 
-/// Draws grounds and motions, and levels of margin if there are any; counts what is accepted
-/// although a footprint that is `smaller` [m] on all sides meets something on the way.
+/// Draws grounds and motions, and levels of margin if there are any; counts accepted motions with a
+/// contact of a footprint that is `smaller` [m] on all sides.
 template <class DrawPoses>
 Count judge(uint64_t seed, const SweepResolution& step, double smaller, const DrawPoses& draw,
             const FootprintSize& size = kVehicle, const Margins& margins = withoutMargin()) {
@@ -145,7 +145,7 @@ TEST_CASE("long, wide and off-centre vehicles and skidding ones cut no more than
 }
 
 TEST_CASE("where a pattern is refused for what lies between its poses it hits or scrapes it") {
-  // What is refused must be refused for a reason: a footprint larger by 1 mm meets something.
+  // A refusal must be justified: a footprint larger by 1 mm has a contact.
   std::mt19937_64 random(8);
   const FootprintSize size = kVehicle;
   const Footprint larger(size, 1e-3);

@@ -26,7 +26,7 @@ Matrix matrixOf(const Uncertainty& u) {
   return m;
 }
 
-/// Greatest variance in any direction, by trying many of them.
+/// Largest variance over many directions.
 double greatestVariance(const Eigen::Matrix2d& m) {
   double greatest = 0.0;
   for (int i = 0; i < 3600; ++i) {
@@ -42,7 +42,7 @@ Uncertainty fromMatrix(const Matrix& m) {
   return {at(0, 0), at(0, 1), at(0, 2), at(1, 1), at(1, 2), at(2, 2)};
 }
 
-/// A covariance with any correlations, standard deviations about `sigma`.
+/// A covariance with random correlations and standard deviations of about `sigma`.
 Uncertainty randomUncertainty(std::mt19937_64& random, double sigma) {
   std::normal_distribution<double> draw(0.0, sigma);
   Matrix root;
@@ -72,7 +72,7 @@ Pose2 moved(const Pose2& pose, const Vector& by) {
   return {pose.x + by.x(), pose.y + by.y(), pose.yaw + by.z()};
 }
 
-/// Derivatives of T_map_b * T_b_c by the components of the first or of the second.
+/// Derivatives of T_map_b * T_b_c with respect to the first or the second.
 Matrix jacobian(const Pose2& first, const Pose2& second, bool of_first) {
   constexpr double kStep = 1e-6;
   Matrix result;
@@ -86,7 +86,7 @@ Matrix jacobian(const Pose2& first, const Pose2& second, bool of_first) {
 }
 
 void requireAlike(const Matrix& a, const Matrix& b, double share) {
-  // Entries in metres and radians are about as large here.
+  // Entries in metres and radians have similar sizes here.
   INFO(a << "\n-- against --\n" << b);
   REQUIRE((a - b).norm() <= share * b.norm());
 }
@@ -132,7 +132,7 @@ TEST_CASE("a composed covariance is what a sample of disturbed poses scatters by
     }
     const Vector mean = sum / kCount;
     const Matrix sampled = squares / kCount - mean * mean.transpose();
-    // A sample of that size is about 1 % off; what is left out is of second order.
+    // A sample of that size is off by about 1 %; the neglected part is of second order.
     requireAlike(matrixOf(composed(at, step, T_map_b, T_b_c)), sampled, 0.05);
   }
 }
@@ -148,7 +148,7 @@ TEST_CASE("what is certain stays certain, and a long chain gathers what each lin
     along = composed(along, step, pose, {1.0, 0.0, 0.0});
     pose = pose * Pose2{1.0, 0.0, 0.0};
   }
-  // Straight ahead each of the 100 turns moves the end sideways by the way that follows it.
+  // Straight ahead each of the 100 turn errors moves the end sideways by the remaining path.
   double sideways = 0.0;
   for (int i = 0; i < 100; ++i) sideways += 1e-4 * i * i;
   CHECK(static_cast<double>(along.yawyaw) == Approx(0.01).epsilon(1e-4));
@@ -189,13 +189,13 @@ TEST_CASE("no point at the end of an arm scatters more than is said, and some sc
     const Uncertainty u = randomUncertainty(random, 0.3);
     const double towards = angle(random);
     const double arm = length(random);
-    Eigen::Matrix<double, 2, 3> moves;  // of the point, with x, y and yaw
+    Eigen::Matrix<double, 2, 3> moves;  // of the point, with respect to x, y and yaw
     moves << 1.0, 0.0, -arm * std::sin(towards), 0.0, 1.0, arm * std::cos(towards);
     const Eigen::Matrix2d scatter = moves * matrixOf(u) * moves.transpose();
     const double worst = greatestVariance(scatter);
     REQUIRE(worst <= static_cast<double>(u.ofPoint(static_cast<float>(arm))) * (1.0 + 1e-5));
   }
-  // Sideways error and turn in step: an arm ahead moves by the sum of both.
+  // Correlated sideways error and turn: a point ahead moves by the sum of both.
   Uncertainty together;
   together.yy = 0.04F;
   together.yawyaw = 0.01F;

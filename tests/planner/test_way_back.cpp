@@ -11,7 +11,7 @@ using namespace tread::planner;
 
 namespace {
 
-/// A robot on its way east, seen ten times a second.
+/// A robot on its way east, observed ten times per second.
 struct Walk {
   WayBack way_back;
   LinkReading link;
@@ -34,7 +34,7 @@ struct Walk {
     link.good = false;
     link.lost = true;
   }
-  /// Drives to where it is told, if it is, and says where that was.
+  /// Drives to the given place, if any, and returns it.
   std::optional<double> follow() {
     if (!goal) return std::nullopt;
     link.T_map_body->x = goal->T_map_goal.x;

@@ -117,7 +117,7 @@ TEST_CASE("the five patterns end within 3 percent of the calibration on each sur
       const Trajectory driven = simulated(surface, pattern.power, nullptr);
       const double length = pathLength(wanted);
       const double net_yaw = wanted.back().yaw;
-      // Straight patterns have no yaw of their own: 3 % of 0.1 rad there.
+      // Straight patterns have no yaw: 3 % of 0.1 rad there.
       const double yaw_scale = std::max(std::abs(net_yaw), 0.1);
       const double end = distance(driven.back(), wanted.back()) / length;
       const double yaw = (driven.back().yaw - net_yaw) / yaw_scale;

@@ -70,7 +70,7 @@ TEST_CASE("in a bend friction holds a fast car, and on ice it goes wide") {
     turned[on_ice] = driveCar(car, {1.0, 1.0}, levelGround(on_ice ? ice : tarmac), 1.2).yaw;
     const Twist2 v = car.velocity();
     CAPTURE(on_ice, v.v_x, v.v_y, v.omega, turned[on_ice]);
-    CHECK(v.v_x > 0.8);  // it slides on, it does not stand
+    CHECK(v.v_x > 0.8);  // it slides on instead of stopping
     const double across = std::hypot(v.v_x, v.v_y) * v.omega;
     if (on_ice) CHECK(across < 1.1 * ice.friction * 9.81);
     if (!on_ice) CHECK(across > 1.1 * ice.friction * 9.81);

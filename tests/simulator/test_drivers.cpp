@@ -21,7 +21,7 @@ namespace {
 constexpr int64_t kStart = 1'000'000;
 constexpr int64_t kStep = 2000;
 
-/// The robot on hilly ground between the two drivers' cores.
+/// The robot on hilly ground, between the two drivers' cores.
 struct Loop {
   Loop() : devices(world(), settings()), ins(insConfig()), motor(motor::RoboteqConfig{}) {
     motor.open();
@@ -81,7 +81,7 @@ TEST_CASE("what ins_driver reads from the emulated INS is where the simulated ro
     loop.step({0.8, loop.now / 3000000 % 2 == 0 ? 0.6 : 0.9});
     while (const auto estimate = loop.ins.next(loop.now)) {
       const auto truth = loop.track.find(estimate->utime);
-      if (truth == loop.track.end()) continue;  // the very first, at the start
+      if (truth == loop.track.end()) continue;  // the very first one, at the start
       const RobotTruth& there = truth->second;
       const YawPitchRoll angles = yawPitchRoll(estimate->R_map_body);
       position += (estimate->p_map_body - there.body.p_map).squaredNorm();
@@ -99,7 +99,7 @@ TEST_CASE("what ins_driver reads from the emulated INS is where the simulated ro
   const ins::NmeaCounts counts = loop.ins.counts();
   CHECK(counts.decoded == counts.sentences);
   CHECK(counts.stray_bytes == 0);
-  // Each is the instrument's own noise: nothing is turned, mirrored or late.
+  // Only the instruments' own noise: nothing is rotated, mirrored or late.
   CHECK(std::sqrt(position / count) < 0.009);
   CHECK(std::sqrt(yaw / count) < 0.0015);
   CHECK(std::sqrt(attitude / count) < 0.002);

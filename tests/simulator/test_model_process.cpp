@@ -24,7 +24,7 @@ const std::string kHidden =
     "measurement:\n  lever_arm_x: {offset: 0.5}\n  ins_latency: {latency: 0.3}\n"
     "envelope: {v: 0.3, omega: 3, v_omega: 3}\n";
 
-/// What a model makes of the powers that were really on the motors, at each 2 ms.
+/// A model's prediction for the actual motor powers, every 2 ms.
 std::vector<MotionSample> predicted(const ModelDocument& model,
                                     const std::vector<sim::TruthRow>& truth) {
   constexpr double kStep = 0.002;
@@ -88,7 +88,7 @@ TEST_CASE("a model file in the simulator's process is what the robot's INS drive
     largest_without =
         std::max(largest_without, (T_map_body.position() - elsewhere.position()).norm());
   }
-  // The INS has noise of its own: 3 mm and 1 mrad a sample, and biases of 2 cm and 2 mrad.
+  // The INS has its own noise: 3 mm and 1 mrad per sample, and biases of 2 cm and 2 mrad.
   CAPTURE(largest, largest_yaw);
   CHECK(largest < 0.1);
   CHECK(largest_yaw < 0.02);

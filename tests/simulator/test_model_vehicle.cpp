@@ -23,7 +23,7 @@ namespace tread::sim {
 namespace {
 
 constexpr int64_t kStart = 1'000'000;
-constexpr int64_t kSlice = 2000;  // [us], a step of the node
+constexpr int64_t kSlice = 2000;  // [us] step of the node
 
 const std::string kPlain =
     "name: m\nkind: power\nfull_speed: 1.1\ngauge: 0.6\nlag: 0.15\ndelay: 0.05\n"
@@ -35,14 +35,14 @@ const std::string kHidden = kPlain +
                             "  ins_latency: {latency: 0.2}\n";
 const std::string kOfSpeeds =
     "name: m\nkind: track_speed\ngauge: 0.6\nlag: 0.15\ndelay: 0.05\nyaw_gain: 0.8\n";
-constexpr double kTopSpeed = 1.4;  // [m/s] of a controller that holds speeds
+constexpr double kTopSpeed = 1.4;  // [m/s] of a controller with speed loops
 const std::string kEverythingOff = kPlain +
                                    "effects:\n  turn_power_limit: {inverse_limit: 0}\n"
                                    "  centrifugal_drift: {time: 0}\n"
                                    "measurement:\n  lever_arm_x: {offset: 0}\n"
                                    "  ins_latency: {latency: 0}\n";
 
-/// Instruments without noise: what is left is what they can resolve.
+/// Instruments without noise: the remaining error is their resolution.
 SimulatorSettings settingsOf(bool motion_noise, std::optional<double> top_speed) {
   SimulatorSettings settings;
   settings.robot = shippedRobot();
@@ -73,7 +73,7 @@ std::array<int, 2> commandAt(int64_t since_start) {
   return kCommands[static_cast<size_t>(since_start / 2'000'000) % kCommands.size()];
 }
 
-/// A simulator that runs a model on a virtual bus; a test at the drivers' ends of its lines.
+/// A simulator that runs a model on a virtual bus, with the drivers' line ends in the test.
 class Bench {
  public:
   explicit Bench(const std::string& model, bool motion_noise = false, WorldDescription world = {},
@@ -95,7 +95,7 @@ class Bench {
                                        [this](const health_t& message) { health = message; });
   }
 
-  /// Commands, and takes down what the motors and the INS made of them.
+  /// Sends commands, and records powers and INS.
   void drive(double seconds) {
     const int64_t end = bus_.now() + static_cast<int64_t>(seconds * 1e6);
     while (bus_.now() < end) {
@@ -115,7 +115,7 @@ class Bench {
     }
   }
 
-  /// What simulate() and measure() make of the same commands with a model file.
+  /// Result of simulate() and measure() for the same commands with a model file.
   std::vector<MotionSample> predicted(const std::string& model) const {
     const ModelDocument document = parseModelDocument(model, "m.yaml");
     std::vector<MotionSample> motion{{0.0, settings_.robot.start, 0.0}};
@@ -133,7 +133,7 @@ class Bench {
     return measure(motion, document.measurement);
   }
 
-  /// Largest distances of the INS from a prediction: m, rad, rad/s.
+  /// Largest differences of the INS from a prediction: m, rad, rad/s.
   std::array<double, 3> apartFrom(const std::vector<MotionSample>& said_by_ins) const {
     std::array<double, 3> apart{};
     for (const ins::InsEstimate& estimate : estimates) {
@@ -192,7 +192,7 @@ TEST_CASE("the INS of a simulated model file says what simulate() and measure() 
   CAPTURE(apart[0], apart[1], apart[2]);
   CHECK(apart[0] < 0.003);
   CHECK(apart[1] < 0.002);
-  // The effects are really there: without them the same commands lead elsewhere.
+  // The effects are really active: without them the same commands lead elsewhere.
   const std::array<double, 3> plain = bench.apartFrom(bench.predicted(kPlain));
   CHECK(plain[0] > 0.5);
   CHECK(plain[1] > 0.5);
@@ -241,7 +241,7 @@ TEST_CASE("each measurement effect of a model file acts in what the INS says") {
 TEST_CASE("a negative latency looks ahead along the arc of the last samples") {
   const std::string model = kPlain + "measurement:\n  ins_latency: {latency: -0.1}\n";
   Bench bench(model);
-  bench.drive(1.99);  // straight ahead at a steady speed by then
+  bench.drive(1.99);  // straight at a steady speed by then
   const ins::InsEstimate& newest = bench.estimates.back();
   const double time = 1e-6 * static_cast<double>(newest.utime - kStart);
   const Pose2 now = poseAt(bench.predicted(kPlain), time);
@@ -290,7 +290,7 @@ TEST_CASE("out of its model's envelope the simulator says so, once, and in HEALT
                                 Catch::Contains("made from up to 0.7 rad/s"));
   CHECK(bench.health.health_state == health_t::HEALTH_DEGRADED);
   CHECK_THAT(bench.health.health_reason, Catch::Contains("model m: yaw rate"));
-  // The largest mean motions: what chance makes of them is nothing that anybody asked for.
+  // Largest mean motions: noise may exceed commanded ones.
   Bench mean(kPlain +
                  "spread: {forward: 0.1, yaw: 0.1}\n"
                  "envelope: {v: 0.93, omega: 1.8, v_omega: 1.3}\n",

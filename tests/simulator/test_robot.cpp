@@ -31,7 +31,7 @@ void append(std::string& bytes, const Value& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
 }
 
-/// All that the robot says while it drives for a while, as bytes. `slice` is how often it is asked.
+/// All bytes of the robot's devices during a drive. `slice` is the period of reading.
 std::string bytesOfDrive(uint64_t seed, int64_t slice_us) {
   RobotSettings settings = shippedRobot();
   settings.seed = seed;
@@ -55,7 +55,7 @@ std::string bytesOfDrive(uint64_t seed, int64_t slice_us) {
   return bytes;
 }
 
-/// Measurements only, in order of kind: the order between kinds depends on how often one asks.
+/// Only measurements, sorted by kind: the order between kinds depends on the period of reading.
 Pose2 endOfDrive(uint64_t seed, int64_t slice_us) {
   RobotSettings settings = shippedRobot();
   settings.seed = seed;

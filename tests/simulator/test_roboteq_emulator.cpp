@@ -7,7 +7,7 @@
 namespace tread::sim {
 namespace {
 
-/// A driver's end of the line: says something, waits, hears the answer.
+/// The driver's end of the line: sends, waits, and reads the reply.
 class Terminal {
  public:
   explicit Terminal(const RoboteqSettings& settings = {}) : controller(settings) {}
@@ -17,7 +17,7 @@ class Terminal {
     now += wait_us;
     return controller.transmit(now);
   }
-  /// Echo off, so that only replies come back.
+  /// Echo off, so that only replies return.
   void quiet() { ask("^ECHOF 1\r"); }
   MotorValues output() { return controller.output(now); }
 
@@ -105,7 +105,7 @@ TEST_CASE("the watchdog stops the motors at its time, to the byte") {
   line.quiet();
   line.ask("^RWD 100\r");
   line.controller.receive("!M 500 500\r", line.now);
-  // The last of 11 bytes has passed 955 us later; that is when the command counts.
+  // The last of 11 bytes has arrived 955 us later, when the command takes effect.
   const int64_t heard = line.now + 955;
   CHECK(line.controller.output(heard - 1) == Output{0.0, 0.0});
   CHECK(line.controller.output(heard) == Output{0.5, 0.5});
@@ -174,7 +174,7 @@ TEST_CASE("bytes take their time on the line in both directions") {
   Terminal line;
   line.quiet();
   line.controller.receive("?FF\r", line.now);
-  // 4 bytes there (348 us), 300 us of thought, 5 bytes back (435 us).
+  // 4 bytes there (348 us), 300 us of processing, 5 bytes back (435 us).
   CHECK(line.controller.transmit(line.now + 640) == "");
   CHECK(line.controller.transmit(line.now + 830) == "FF");
   CHECK(line.controller.transmit(line.now + 1100) == "=0\r");

@@ -23,7 +23,7 @@ LaserScan scanOf(int beams, int64_t utime) {
   return scan;
 }
 
-/// Ranges [mm] out of an answer's data lines, each with its sum checked.
+/// Ranges [mm] in the data lines of a reply, with verified checksums.
 std::vector<int> rangesOf(const std::vector<std::string>& lines, size_t first) {
   std::string values;
   for (size_t i = first; i < lines.size() && !lines[i].empty(); ++i) {

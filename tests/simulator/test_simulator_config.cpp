@@ -8,7 +8,7 @@ namespace tread::sim {
 namespace {
 
 const std::string kSimulators = TREAD_SOURCE_DIR "/config/simulators/";
-/// As if it stood among the shipped ones.
+/// As if it were next to the shipped files.
 const std::string kHere = kSimulators + "test.yaml";
 const std::string kWorld =
     "world: ../worlds/meadow.yaml\nrobot: ../robots/teodor/robot.yaml\n"
@@ -28,7 +28,7 @@ std::string refusalOf(const std::string& text) {
   return "accepted";
 }
 
-/// Where a vehicle of a configuration is after two seconds of a command.
+/// Position of a configuration's vehicle after 2 s of a command.
 Pose2 driven(const std::string& text, const MotorPower& power) {
   RobotSettings settings = read(kWorld + text).settings.robot;
   settings.motion_noise = false;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int64_t kStart = 1'000'000;
 
-/// A simulator on a virtual bus and the drivers' ends of its lines.
+/// A simulator on a virtual bus, with the drivers' ends of its lines.
 class Bench {
  public:
   explicit Bench(uint64_t seed) : bus_(1), devices_(world(), settings(seed)) {
@@ -31,7 +31,7 @@ class Bench {
     });
   }
 
-  /// Runs for a time [us] and collects what the lines say.
+  /// Runs for a time [us] and collects the lines' output.
   void run(int64_t duration) {
     for (const int64_t end = bus_.now() + duration; bus_.now() < end;) {
       bus_.runUntil(bus_.now() + 10000);
@@ -116,7 +116,7 @@ TEST_CASE("commands on the motor line move the robot, the INS line tells of it")
   CHECK(bench.ins_bytes.find("$GPGGA") != std::string::npos);
   CHECK(bench.ins_bytes.find("$PASHR") != std::string::npos);
 
-  // No more commands: the controller's watchdog stops the motors.
+  // Without commands the controller's watchdog stops the motors.
   bench.run(2000000);
   const double stopped = bench.truth().distance;
   bench.run(1000000);

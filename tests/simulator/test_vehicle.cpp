@@ -24,7 +24,7 @@ Pose2 drive(TrackedVehicle& vehicle, const MotorPower& power, const Ground& grou
   return T_start_body;
 }
 
-/// Rounding of sums that cancel is not motion.
+/// Rounding of cancelling sums is no motion.
 constexpr double kRest = 1e-9;
 
 }  // namespace
@@ -154,7 +154,7 @@ TEST_CASE("the battery pays for what the tracks do and slowly runs down") {
   const VehicleParameters parameters = shippedVehicle();
   drive(vehicle, {1.0, 1.0}, ground, 5.0);
   const Battery& battery = vehicle.battery();
-  // Rolling resistance times speed is what leaves the vehicle; the rest is heat.
+  // Rolling resistance times speed is the output power; the rest is heat.
   const double resistance =
       parameters.mass * 9.81 *
       (cinder.resistance_constant + cinder.resistance_viscous * vehicle.velocity().v_x);

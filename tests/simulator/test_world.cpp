@@ -44,8 +44,7 @@ std::vector<Eigen::Vector2d> outlineOf(const Obstacle& obstacle) {
   return outline;
 }
 
-/// Distance of a segment's crossing along a ray by solving two equations; infinity without
-/// crossing.
+/// Distance to an edge along a ray by solving two equations; infinity without intersection.
 double edgeDistance(const Eigen::Vector2d& start, const Eigen::Vector2d& direction,
                     const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   Eigen::Matrix2d system;
@@ -143,8 +142,8 @@ TEST_CASE("beams meet sloping ground where a fine march along the beam meets it"
     }
     const auto found = world.castRay(start, direction, 15.0);
     if (!hit || wanted > 14.9) continue;
-    if (!found && ++missed <= 3) continue;  // grazing, within the table's millimetres
-    // The height differs by millimetres: compare heights, not the distances of grazing beams.
+    if (!found && ++missed <= 3) continue;  // grazing, within millimetres
+    // Heights differ by millimetres: compare heights, not the distances of grazing beams.
     REQUIRE(found);
     const Eigen::Vector3d at = start + *found * direction;
     CHECK(std::abs(at.z() - world.height(at.head<2>())) < 0.02);
@@ -187,7 +186,7 @@ TEST_CASE("footprint and obstacle touch exactly when some point belongs to both"
       const Extent extent = extentOf(obstacle);
       if ((extent.low - pose.position()).maxCoeff() > 1.0) continue;
       if ((pose.position() - extent.high).maxCoeff() > 1.0) continue;
-      // Corners of the one in the other, and a dense set of points of the footprint's border.
+      // Corners of one in the other, and a dense set of points on the footprint's border.
       const auto outline = outlineOf(obstacle);
       for (const Eigen::Vector2d& corner : outline) {
         const Eigen::Vector2d p = inverse(pose) * corner;
@@ -205,7 +204,7 @@ TEST_CASE("footprint and obstacle touch exactly when some point belongs to both"
     }
     const auto found = world.collision(footprint, pose);
     if (margin < 0.05) {
-      ++near;  // closer than the points lie apart: the points cannot judge
+      ++near;  // closer than the points' spacing: undecidable
       continue;
     }
     CHECK(found.has_value() == wanted);

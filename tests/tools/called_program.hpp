@@ -17,7 +17,7 @@
 
 namespace tread::samples {
 
-/// Exit status and what a program printed, errors included.
+/// Exit status and output of a program, errors included.
 struct CalledProgram {
   int status = -1;
   std::string printed;
@@ -26,8 +26,8 @@ struct CalledProgram {
   bool isOneLine() const { return !printed.empty() && printed.find('\n') == printed.size() - 1; }
 };
 
-/// A program of the build, called as people call it: "tread-report drive.lcmlog"; after `through`,
-/// for instance "timeout 5".
+/// A program of the build, run by a command line: "tread-report drive.lcmlog"; prefixed by
+/// `through`, for instance "timeout 5".
 inline CalledProgram called(const std::string& command_line, const std::string& through = "") {
   const std::string command = through + " " + TREAD_BIN_DIR + "/" + command_line + " 2>&1";
   FILE* pipe = popen(command.c_str(), "r");
@@ -40,11 +40,11 @@ inline CalledProgram called(const std::string& command_line, const std::string& 
   return result;
 }
 
-/// A folder of this test that is gone afterwards.
+/// A temporary folder.
 class OwnFolder {
  public:
   OwnFolder() {
-    // What a killed test has left may have the name of any pid.
+    // A killed test may have left a folder named after any pid.
     std::string name = (std::filesystem::temp_directory_path() / "tread-tools-XXXXXX").string();
     path_ = mkdtemp(name.data());
   }

@@ -21,14 +21,14 @@ using tread::testing::linesOf;
 
 namespace {
 
-/// A program or one of its commands, with the places where it takes a file's name.
+/// A program or one of its commands, with the places for file names.
 struct Command {
   std::string words;
-  size_t arguments = 0;              ///< that stand without an option
-  std::vector<std::string> options;  ///< with a text behind them
+  size_t arguments = 0;              ///< positional ones
+  std::vector<std::string> options;  ///< with a text
 };
 
-/// Programs that wait for a running robot, or for people, whose arguments are words.
+/// Programs that wait for a running robot, or for people; their arguments are words.
 bool talks(const std::string& words) {
   for (const char* program :
        {"tread-arm", "tread-stop", "tread-goal", "tread-fence", "tread-drive", "tread-top",
@@ -86,7 +86,7 @@ std::vector<std::string> programs() {
   return names;
 }
 
-/// Files that are none of what any program reads, and some that begin as if they were.
+/// Files that no program can read, and some with a plausible beginning.
 std::vector<std::string> badInputs(const OwnFolder& folder) {
   std::mt19937 random(3);
   std::string noise(5000, '\0');
@@ -94,7 +94,7 @@ std::vector<std::string> badInputs(const OwnFolder& folder) {
   const std::string robot =
       contentOf(std::string(TREAD_SOURCE_DIR) + "/config/robots/teodor/robot.yaml");
   std::filesystem::create_directories(folder.path("folder"));
-  // The event of an LCM log, and the head of an MCAP file, each cut off.
+  // The event of an LCM log, and the head of an MCAP file, both truncated.
   const std::string lcm = std::string("\xED\xA1\xDA\x01\0\0\0\0\0\0\0\1", 12) + "cut";
   return {folder.path("missing"),
           folder.path("folder"),
@@ -109,7 +109,7 @@ std::vector<std::string> badInputs(const OwnFolder& folder) {
           folder.write("empty", "") + "/below"};
 }
 
-/// Where words of a library stand in what a program printed; empty if nowhere.
+/// Where a program's output contains words of a library; empty if nowhere.
 std::string foreignWords(const std::string& printed) {
   static const std::regex foreign(
       "std::|\\bbad_[a-z]|basic_[a-z]|_M_|vector::|deque::|\\bmap::|\\b(stoi|stol|stoul|stof|stod)"
@@ -123,7 +123,7 @@ std::string foreignWords(const std::string& printed) {
 
 constexpr int kTimedOut = 124;  // of timeout(1)
 
-/// `ends`: it has nothing to do but to refuse.
+/// `ends`: it can only refuse.
 void check(const std::string& command_line, bool ends) {
   const CalledProgram program =
       called(command_line + " </dev/null", ends ? "timeout 30" : "timeout 1");
@@ -133,17 +133,18 @@ void check(const std::string& command_line, bool ends) {
   CHECK((program.status < 126 && (program.status != kTimedOut || !ends)));
 }
 
-/// Every third program, from this one on: the parts run beside each other.
+/// Every third program, from this one on: the parts run in parallel.
 void tryPrograms(size_t part) {
   const OwnFolder folder;
   const std::vector<std::string> inputs = badInputs(folder);
   const std::vector<std::string> all = programs();
   REQUIRE(all.size() > 25);
-  // Behind an option there are three of them, one that ends nowhere for what works without an end.
+  // For options three of them, one that never ends only for programs that must not wait for the
+  // end.
   const std::vector<std::string> few{folder.path("folder"), folder.path("noise"),
                                      folder.path("empty") + "/below"};
   const std::filesystem::path here = std::filesystem::current_path();
-  std::filesystem::current_path(folder.path("folder"));  // for what is written without a path
+  std::filesystem::current_path(folder.path("folder"));  // for output without a path
   size_t calls = 0;
   for (size_t i = part; i < all.size(); i += 3)
     for (const Command& command : commandsOf(all[i])) {

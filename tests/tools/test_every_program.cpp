@@ -49,8 +49,7 @@ TEST_CASE("every program and command says in --help what it is for, and how it i
   }
 }
 
-// The commit: of this checkout when the program was linked, or none in an archive that does not say
-// it.
+// The commit is that of this checkout when the program was linked; an archive may have none.
 TEST_CASE("every program says its version, the same for all, and the commit it was built from") {
   const std::regex words(R"re(([a-z-]+) (\d+\.\d+\.\d+)( \(commit [0-9a-f]{7,}(-dirty)?\))?\n)re");
   std::set<std::string> versions;

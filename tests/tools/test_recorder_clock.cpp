@@ -27,7 +27,7 @@ const std::string kModel = TREAD_SOURCE_DIR "/config/models/teodor_tarmac.yaml";
 
 struct WrongClock {
   const char* name;
-  const char* told;  ///< in one line; empty: nothing is wrong
+  const char* told;  ///< in one line; empty: no problem
   std::function<void(std::vector<LogEvent>&)> spoil;
 };
 
@@ -35,7 +35,8 @@ void addFrom(std::vector<LogEvent>& events, size_t from, int64_t us) {
   for (size_t i = from; i < events.size(); ++i) events[i].utime += us;
 }
 
-/// Every seventh event of the second half has one bit of its time flipped, each bit in turn.
+/// Every seventh event of the second half has one bit of its time flipped, a different one each
+/// time.
 void flipBits(std::vector<LogEvent>& events) {
   size_t at = events.size() / 2;
   for (int bit = 21; bit < 64; ++bit, at += 7)
@@ -63,7 +64,7 @@ const std::vector<WrongClock>& wrongClocks() {
   return all;
 }
 
-/// A drive as lcm-logger records it, in UTC; and the same under a wrong clock.
+/// A drive as recorded by lcm-logger, in UTC; and the same with a wrong clock.
 class Recording {
  public:
   Recording() {
@@ -76,7 +77,7 @@ class Recording {
     addFrom(events_, 0, kUtc);
     write(events_);
   }
-  /// Writes the log anew, under the same name, so that tools say the same.
+  /// Writes the log again under the same name, so that tools' outputs are comparable.
   void spoil(const WrongClock& clock) const {
     std::vector<LogEvent> events = events_;
     clock.spoil(events);
@@ -84,7 +85,7 @@ class Recording {
   }
   std::string log() const { return folder_.path("drive.lcmlog"); }
   size_t events() const { return events_.size(); }
-  /// What a tool says of it, and its exit status.
+  /// A tool's output and exit status for it.
   std::string of(const std::string& tool) const {
     for (const char* output : {"out", "out.csv", "out.mcap", "back.lcmlog"})
       std::filesystem::remove_all(folder_.path(output));
@@ -106,7 +107,7 @@ class Recording {
   std::vector<LogEvent> events_;
 };
 
-/// The text without the lines that tell what is wrong with the log; how many there were.
+/// The text without the lines about damage of the log, and their number.
 std::string without(const std::string& told, const std::string& text, int& lines) {
   std::istringstream in(text);
   std::string rest;
@@ -115,7 +116,7 @@ std::string without(const std::string& told, const std::string& text, int& lines
   return rest;
 }
 
-/// What waited how long is not known of events that have lost their time.
+/// Delays of events with lost times are unknown.
 std::string withoutLatencies(const std::string& text) {
   std::istringstream in(text);
   std::string rest;

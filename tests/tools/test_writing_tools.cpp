@@ -40,18 +40,18 @@ constexpr int kRefused = 2;
 constexpr int kNotWritten = 1;
 
 const std::string kConfig = std::string(TREAD_SOURCE_DIR) + "/config/";
-/// A few seconds of the whole robot, to a goal that lies near.
+/// A few seconds of the complete robot, to a near goal.
 const std::string kShortMission =
     "tread-missions --goal 3 0 --simulator " + kConfig + "simulators/meadow.yaml";
 const std::string kData = std::string(TREAD_SOURCE_DIR) + "/tests/data/";
 
-/// A command that writes: IN and OUT stand for the paths of what it reads and writes, DIR for the
-/// folder of OUT, @ for that of Inputs.
+/// A command that writes: IN and OUT are the paths of input and output, DIR is the folder of OUT, @
+/// that of Inputs.
 struct WritingCommand {
   std::string words;
-  std::string input;  ///< a file or a folder of Inputs, or of the source
+  std::string input;  ///< a file or folder of Inputs, or of the source
   std::string output = "made";
-  bool folder = false;  ///< it writes one
+  bool folder = false;  ///< it writes a folder
 };
 
 const std::vector<WritingCommand>& commands() {
@@ -113,12 +113,12 @@ const std::vector<WritingCommand>& commands() {
   return all;
 }
 
-/// What the commands read, made once.
+/// Inputs of the commands, created once.
 class Inputs {
  public:
   Inputs() : drives_("writing_tools") {
     gap::samples::writeDrive(path("arcs.lcmlog"), 60.0);
-    // What takes more than 200 s of driving is faster with fewer poses.
+    // A drive above 200 s is faster with fewer poses.
     gap::samples::writeDrive(path("long.lcmlog"), 205.0, 0.49, "", 16);
     gap::samples::writeDrive(path("longer.lcmlog"), 210.0, 0.49, "", 16);
     folder_.write("faults.yaml", "messages: []\n");
@@ -185,7 +185,7 @@ class Inputs {
 
 using Content = std::map<std::string, std::string>;
 
-/// All files of a folder; without those whose name says that they are unfinished.
+/// All files of a folder, optionally without unfinished ones.
 Content contentOf(const std::string& folder, bool with_unfinished) {
   Content content;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -202,7 +202,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-/// A command with a folder of its own in which its input lies.
+/// A command with a separate folder that contains its input.
 class Desk {
  public:
   Desk(const WritingCommand& command, const Inputs& inputs) : command_(command), inputs_(inputs) {
@@ -212,7 +212,7 @@ class Desk {
     const fs::path from = ours ? inputs.path(command.input) : command.input;
     in_ = folder_.path(from.filename().string());
     fs::copy(from, in_, fs::copy_options::recursive);
-    // A map's picture lies beside it.
+    // A map's picture is in the same folder.
     if (from.filename() == "office.yaml")
       fs::copy_file(from.parent_path() / "office.pgm", folder_.path("office.pgm"));
   }
@@ -243,7 +243,7 @@ class Desk {
   std::string in_;
 };
 
-/// Runs a command that must be refused before it opens anything; what the table says of it.
+/// Runs a command that must be refused before it opens any file; returns its cell of the table.
 std::string refused(const Desk& desk, const std::string& out, const std::string& words,
                     Trouble trouble, const std::string& more = "") {
   const Content before = desk.content();
@@ -256,7 +256,7 @@ std::string refused(const Desk& desk, const std::string& out, const std::string&
   return outcome.status == kRefused && desk.content() == before ? "refused" : "LOST";
 }
 
-/// A command that fails while it writes over what is there.
+/// A command that fails while it overwrites a file.
 std::string failed(const Desk& desk, Trouble trouble) {
   const Content before = desk.content();
   const Outcome outcome = desk.run(desk.out(), trouble, " --force");
@@ -270,7 +270,7 @@ std::string failed(const Desk& desk, Trouble trouble) {
   return desk.content(!killed) == before ? killed ? "old whole" : "told, old whole" : "LOST";
 }
 
-/// An output that is the input: by name, or a file in it, or the folder around it.
+/// The output is the input: by name, or a file in it, or its folder.
 std::string inputAsOutput(const WritingCommand& command, const std::string& in) {
   if (command.folder) return fs::path(in).parent_path();
   if (!fs::is_directory(in)) return in;
@@ -294,7 +294,7 @@ Row rowOf(const WritingCommand& command, const Inputs& inputs) {
       row[0] = refused(desk, inputAsOutput(command, desk.in()), "input", Trouble::kNone, more);
   row[1] = refused(desk, desk.out(), never_replaces ? "File exists" : "--force", Trouble::kNone);
   row[2] = refused(desk, desk.closed(), "ermission denied", Trouble::kUnwritable);
-  if (never_replaces) return row;  // it makes a new file or none
+  if (never_replaces) return row;  // it creates a new file or none
   row[3] = failed(desk, Trouble::kFullDisk);
   row[4] = failed(desk, Trouble::kKilled);
   return row;
@@ -322,8 +322,8 @@ std::string shortened(const std::string& words) {
 }  // namespace
 
 TEST_CASE("no command that writes loses anything: input, old output, no rights, full disk, kill") {
-  // Each output is waited for until it is on the disk: what drives in real time beside this test
-  // must not wait, too.
+  // Every output is synced to disk; a real-time test running in parallel must not be delayed by
+  // that.
   if (::access("/dev/shm", W_OK) == 0) ::setenv("TMPDIR", "/dev/shm", 1);
   const Inputs inputs;
   std::map<std::string, Row> table;

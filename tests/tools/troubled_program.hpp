@@ -17,15 +17,15 @@
 
 namespace tread::samples {
 
-/// What a program that writes may meet.
+/// Troubles of a program that writes.
 enum class Trouble { kNone, kUnwritable, kFullDisk, kKilled };
 
 struct Outcome {
   int status = -1;
   int signal = 0;
-  std::string complaint;  ///< what stood on stderr
+  std::string complaint;  ///< output on stderr
 
-  /// Warnings are about other things.
+  /// Warnings concern other things.
   bool isOneLine() const {
     size_t lines = 0;
     for (const std::string& line : testing::linesOf(complaint))
@@ -34,10 +34,10 @@ struct Outcome {
   }
 };
 
-/// In the child. A limit on file sizes fails in the middle of writing, as a full disk does; who
-/// does not ignore its signal is killed by it, there and then.
+/// Runs in the child. A limit on file sizes fails in the middle of writing, like a full disk; a
+/// program that does not ignore its signal is killed at that point.
 inline void meet(Trouble trouble) {
-  // Root writes everywhere, but not without this capability.
+  // Root can write everywhere, unless it lacks this capability.
   if (trouble == Trouble::kUnwritable) ::prctl(PR_CAPBSET_DROP, CAP_DAC_OVERRIDE);
   if (trouble != Trouble::kFullDisk && trouble != Trouble::kKilled) return;
   const rlimit none{0, 0};

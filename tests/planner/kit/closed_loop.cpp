@@ -77,7 +77,7 @@ struct Orders {
   PlannedExecution next;
 };
 
-/// A drive under way.
+/// A drive in progress.
 class Drive {
  public:
   Drive(Mission mission, const PatternSet& set, const DriveOptions& options)

@@ -12,14 +12,14 @@
 
 namespace tread::planner::testkit {
 
-/// Plays slots at their period and joins them without a gap; what motor_bridge does, without its
-/// care.
+/// Plays slots at their period and joins them without a gap, as motor_bridge does, but without its
+/// checks.
 class ToyBridge {
  public:
-  /// What the planner wants, received at now [us].
+  /// The planner's program, received at now [us].
   void receive(int64_t run_id, const PlannedExecution& running, const PlannedExecution& next,
                int64_t now);
-  /// The command of now.
+  /// The command at `now`.
   Command step(int64_t now);
   void setArmed(bool armed) { armed_ = armed; }
 
@@ -43,27 +43,26 @@ class ToyBridge {
   std::vector<ExecutionReading> executions_;
 };
 
-/// How much the ground differs from what was learned: standard deviations, drawn for each
-/// execution.
+/// Deviation of the ground from the learned set: standard deviations, drawn for each execution.
 struct GroundErrors {
   double gain = 0.05;         ///< [1] of the distance
   double turn = 0.05;         ///< [1] of the turn
   double drift = 0.02;        ///< [rad] sideways
-  double turn_bias = 1.0;     ///< [1] all turns are so much wider than learned
+  double turn_bias = 1.0;     ///< [1] factor on all turns relative to the learned set
   double pose_noise = 0.003;  ///< [m], and a third of it in radians
 };
 
-/// What came of a closed-loop drive.
+/// Result of a closed-loop drive.
 struct DriveOutcome {
   PlanStatus status = PlanStatus::kIdle;
   std::string reason;
   double time = 0.0;             ///< [s]
   double distance = 0.0;         ///< [m]
-  double least_clearance = 0.0;  ///< [m] between footprint and obstacles; 0 = touched
+  double least_clearance = 0.0;  ///< [m] between footprint and obstacles; 0 = contact
   int patterns = 0;
-  int collisions = 0;            ///< steps in which the footprint touched something
-  double planner_seconds = 0.0;  ///< of the processor, all steps together
-  double worst_step = 0.0;       ///< [s] of the processor
+  int collisions = 0;            ///< steps with a contact of the footprint
+  double planner_seconds = 0.0;  ///< processor time of all steps
+  double worst_step = 0.0;       ///< [s] processor time
   std::map<std::string, int64_t> counters;
 };
 
@@ -76,7 +75,7 @@ struct DriveOptions {
   double time_limit = 300.0;  ///< [s]
   bool whole_map_known = false;
   int64_t latency = 20'000;  ///< [us] from measurement to planner, and from planner to bridge
-  /// Called each 50 ms with the time [s] and the true pose; may change the world or the set.
+  /// Called every 50 ms with the time [s] and the true pose; may change the world or the set.
   std::function<void(double, const Pose2&, Supervisor&, Playground&)> on_step;
   std::function<void(double, const Decision&)> on_decision;
 };

@@ -12,10 +12,10 @@
 
 namespace tread::planner::testkit {
 
-/// The costs that HeadingAwareHeuristic stands for: Dijkstra over all squares and headings, nothing
-/// left out.
-/** Written from the description of the moves: each of 16 directions goes to one square, next or
- * one beyond; the heading turns by at most one bin on the way, or by one on the spot. */
+/// Reference for HeadingAwareHeuristic: Dijkstra over all squares and headings, without shortcuts.
+/** Implemented from the description of the moves: each of 16 directions leads to one square,
+ * adjacent or one further; the heading changes by at most one bin on the way, or by one on the
+ * spot. */
 class GuideReference {
  public:
   GuideReference(FreeConfigurations& configurations, const Goal& goal, const Pose2& start,
@@ -64,7 +64,7 @@ class GuideReference {
       }
     }
   }
-  /// The nearest whole squares in a direction: 1:0, 2:1, 1:1, 1:2 and so on round.
+  /// Integer direction vectors in order: 1:0, 2:1, 1:1, 1:2 and so on.
   static std::pair<int, int> stepIn(int direction) {
     const double angle = direction * kBin;
     const int reach = direction % 2 == 0 ? 1 : 2;
@@ -92,7 +92,7 @@ class GuideReference {
                cost + static_cast<double>(rate.cost(way, std::abs(turn) * kBin)));
     }
   }
-  /// A long step passes two squares; one of them must be passable.
+  /// A long step passes two squares, of which one must be passable.
   bool between(int column, int row, int dx, int dy) const {
     if (std::abs(dx) + std::abs(dy) <= 2) return true;
     const int straight_x = std::abs(dx) == 2 ? dx / 2 : 0;

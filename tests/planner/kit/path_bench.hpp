@@ -15,7 +15,7 @@
 
 namespace tread::planner::testkit {
 
-/// A random ground with queries on it, the patterns of the tests and a planner.
+/// A random ground with queries, the tests' patterns and a planner.
 struct PathBench {
   explicit PathBench(uint64_t seed, bool unknown_blocks = true, SweepResolution step = usualSweep())
       : random(seed), ground(shape(random)), grid(ground.draw(random)) {
@@ -59,7 +59,7 @@ struct PathBench {
   std::optional<PathPlanner> planner;
 };
 
-/// All that an answer says, byte by byte.
+/// All fields of an answer as bytes.
 inline std::vector<unsigned char> bytesOf(const PathAnswer& answer) {
   std::vector<unsigned char> bytes;
   const auto add = [&bytes](const auto& value) {

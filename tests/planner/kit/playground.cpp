@@ -42,7 +42,7 @@ double enter(const Box& box, const Eigen::Vector2d& p, double angle) {
   return from <= to ? from : std::numeric_limits<double>::infinity();
 }
 
-/// Cells whose centre is nearer than this to a box become obstacles.
+/// Cells whose centre is closer to a box become obstacles.
 void markNear(const std::vector<Box>& boxes, double distance, Grid& grid) {
   for (const Box& box : boxes) {
     const double reach = std::hypot(box.half_length, box.half_width) + distance;

@@ -20,20 +20,20 @@ struct Box {
   double half_width = 0.5;
 };
 
-/// A place with obstacles, the truth of a test.
+/// The true place of a test with its obstacles.
 class Playground {
  public:
   void add(const Box& box) { boxes_.push_back(box); }
-  /// A wall along the straight line between two points, `thickness` [m] thick.
+  /// A wall along the line between two points, `thickness` [m] thick.
   void addWall(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double thickness = 0.2);
   const std::vector<Box>& boxes() const { return boxes_; }
 
   bool isObstacle(const Eigen::Vector2d& p_map) const;
-  /// Least distance between the footprint and any box [m]; 0 or less when it touches one.
+  /// Least distance between the footprint's edge and any box [m]; 0 or less at a contact.
   double clearance(const FootprintSize& size, const Pose2& T_map_body) const;
-  /// The whole truth as a grid over a rectangle: a cell with any obstacle in it is one.
+  /// The truth as a grid over a rectangle: any obstacle in a cell blocks it.
   Grid paint(double cell_size, const Eigen::Vector2d& lower, const Eigen::Vector2d& upper) const;
-  /// Whether a disc of a radius [m] could be moved from one point to the other.
+  /// Whether a disc of a radius [m] can move from one point to the other.
   bool connected(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double radius) const;
 
  private:
@@ -65,20 +65,20 @@ struct Mission {
   Goal goal;
 };
 
-/// A walled yard with cross walls whose gaps may be as narrow as the footprint and 0.4 m, boxes and
-/// a pocket.
-/** The goal is at least 25 m away, and a way of that width exists. */
+/// A walled yard with cross walls, whose gaps may be as narrow as the footprint plus 0.4 m, boxes
+/// and a pocket.
+/** The goal is at least 25 m away, and a path of that width exists. */
 Mission randomMission(uint64_t seed);
 
-/// Tiles of a grid, as mapping would send them.
+/// Tiles of a grid, as published by mapping.
 std::vector<Tile> tilesOf(const Grid& grid, int tile_cells, int64_t utime);
 
-/// A scanning laser and a map that remembers: free where beams passed, obstacle where they ended.
+/// A scanning laser and a persistent map: free where beams passed, obstacle at their ends.
 class ToyMapping {
  public:
   explicit ToyMapping(uint64_t seed) : random_(seed) {}
 
-  /// Scans from a pose and returns the tiles that changed, or one of the others if none did.
+  /// Scans from a pose and returns the changed tiles, or any tile if none changed.
   std::vector<Tile> scan(const Playground& ground, const Pose2& T_map_body, int64_t utime);
 
   static constexpr double kCell = 0.1;

@@ -9,7 +9,7 @@
 
 namespace tread::planner::testkit {
 
-/// A supervisor with an ideal robot: poses come true exactly, MOTOR and EXECUTION are prompt.
+/// A supervisor with an ideal robot: motions are exact, MOTOR and EXECUTION are prompt.
 class Rig {
  public:
   explicit Rig(const Playground& ground = {}, const PlannerConfig& config = usualPlanner())
@@ -26,7 +26,7 @@ class Rig {
       supervisor_.map().put(std::move(tile), 0.1, 32);
   }
 
-  /// Runs for a time [s]; `tamper` may spoil the situation of each step.
+  /// Runs for a time [s]; `tamper` may change the inputs of each step.
   Decision run(double seconds, const std::function<void(PlannerInputs&)>& tamper = nullptr) {
     Decision decision;
     const int64_t end = now_ + static_cast<int64_t>(seconds * 1e6);

@@ -8,7 +8,7 @@
 
 namespace tread::planner::testkit {
 
-/// Whole number from..to, both included.
+/// Random integer from..to, inclusive.
 inline int drawn(std::mt19937_64& random, int from, int to) {
   return std::uniform_int_distribution<int>(from, to)(random);
 }
@@ -16,17 +16,17 @@ inline double drawn(std::mt19937_64& random, double from, double to) {
   return std::uniform_real_distribution<double>(from, to)(random);
 }
 
-/// How a random ground is made.
+/// Parameters of a random ground.
 struct RandomGround {
   double cell_size = 0.1;  ///< [m]
   CellIndex lower{-40, -30};
   int width = 90;   ///< [cells]
   int height = 80;  ///< [cells]
   int blocks = 12;  ///< rectangles
-  int largest = 8;  ///< [cells] their longest side
+  int largest = 8;  ///< [cells] longest side
   int specks = 10;  ///< single cells
-  int walls = 0;    ///< across the whole ground, each with one gap
-  int gap = 9;      ///< [cells] width of such a gap
+  int walls = 0;    ///< across the whole ground, with one gap each
+  int gap = 9;      ///< [cells] width of the gap
   Cell what = kObstacle;
 
   Grid draw(std::mt19937_64& random) const {
@@ -52,7 +52,7 @@ struct RandomGround {
     return {drawn(random, lower.x, lower.x + width - 1),
             drawn(random, lower.y, lower.y + height - 1)};
   }
-  /// A pose on it, at any place and heading.
+  /// A random pose on it.
   Pose2 pose(std::mt19937_64& random) const {
     return {cell_size * (lower.x + width * drawn(random, 0.0, 1.0)),
             cell_size * (lower.y + height * drawn(random, 0.0, 1.0)), drawn(random, -kPi, kPi)};

@@ -13,7 +13,7 @@ constexpr int64_t kPeriodUs = 50'000;
 constexpr double kPeriod = 0.05;
 constexpr double kFine = 0.005;
 
-/// A part of a command series: the same command for a time.
+/// A part of a command series with a constant command.
 struct Phase {
   Command command;
   double time;

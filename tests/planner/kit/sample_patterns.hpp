@@ -6,8 +6,8 @@
 
 namespace tread::planner::testkit {
 
-/// Track speed follows power with a first-order lag; the body turns by the difference of the
-/// tracks.
+/// Track speed follows power with a first-order lag; the body's yaw rate follows the tracks'
+/// difference.
 struct TrackModel {
   double top_speed = 1.10;  ///< [m/s] at full power
   double gauge = 0.60;      ///< [m]
@@ -21,13 +21,12 @@ struct TrackState {
   double right = 0.0;
 };
 
-/// Moves it on by dt under a power command. `gain` and `turn_gain` [1] are what the ground makes of
-/// it.
+/// Advances it by dt under a power command. `gain` and `turn_gain` [1] are effects of the ground.
 TrackState moveOn(TrackState state, Command power, double dt, const TrackModel& model,
                   double gain = 1.0, double turn_gain = 1.0, double drift = 0.0);
 
-/// A set like the paper's with start, stop, reverse and turns on the spot, predicted by the model.
-/** `turn_error` [1] scales the yaw of all predictions: a set that has not learned yet. */
+/// A set like the paper's, plus start, stop, reverse and turns on the spot, predicted by the model.
+/** `turn_error` [1] scales the yaw of all predictions, as before any learning. */
 PatternSet samplePatterns(int64_t version = 1, double turn_error = 1.0);
 
 /// A small lattice: steps of 1 m straight and quarter turns, all from rest to rest, 1 s each.

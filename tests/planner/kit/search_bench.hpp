@@ -10,7 +10,7 @@
 
 namespace tread::planner::testkit {
 
-/// A place, wholly known, with everything that a search wants of it.
+/// A completely known place with all inputs of a search.
 struct SearchBench {
   SearchBench(const Grid& grid, const PatternSet& set, const Goal& aim, const Margins& margins = {},
               const DistanceFieldConfig& field = usualField())
@@ -41,7 +41,7 @@ struct SearchBench {
   DistanceToGoal distance_to_goal;
 };
 
-/// A predicate that ends a search after so many expansions.
+/// A predicate that ends a search after a number of expansions.
 inline StopPredicate after(int expansions) {
   return [expansions](int count) { return count >= expansions; };
 }

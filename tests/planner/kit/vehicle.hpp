@@ -7,7 +7,7 @@
 
 namespace tread::planner::testkit {
 
-/// The vehicle of the tests; no configuration has one of its own.
+/// The vehicle of all planner tests.
 inline constexpr FootprintSize kVehicle{0.65, 0.65, 0.34};
 
 inline SweepResolution usualSweep() {

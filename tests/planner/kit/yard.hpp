@@ -15,7 +15,7 @@
 
 namespace tread::planner::testkit {
 
-/// The planner node and a toy robot on a virtual bus, and somebody who listens.
+/// The planner node and a toy robot on a virtual bus, with subscriptions of the test.
 struct Yard {
   explicit Yard(FaultPlan faults = {}, const PlannerConfig& config = usualPlanner())
       : bus(7, std::move(faults)), start(bus.now()), beacon(bus.outside(), "test") {
@@ -65,7 +65,7 @@ struct Yard {
     message.armed_by = by;
     bus.outside().publish(kArm, message);
   }
-  /// Arms, and gives the last goal again, as it counts only after the arming.
+  /// Arms and repeats the last goal, which is valid only after the arming.
   void armAndGo() {
     arm();
     run(0.2);
@@ -81,7 +81,7 @@ struct Yard {
     bus.outside().publish(kEstop, message);
   }
 
-  /// From now on goals are new ones.
+  /// Gives the following goals a new id.
   void renewGoal() { beacon.standFor(++goal_id); }
 
   void run(double seconds) {
@@ -93,7 +93,7 @@ struct Yard {
   }
   ToyRobot& robot() { return *dynamic_cast<ToyRobot*>(bus.node("robot")); }
 
-  MemoryStore store;  ///< of the planner; outlives it
+  MemoryStore store;  ///< of the planner, which it outlives
   VirtualBus bus;
   int64_t start;
   OperatorBeacon beacon;

@@ -50,8 +50,8 @@ LatticePlanner::LatticePlanner(const CellCosts& costs, double cell_size, int bin
 PathAnswer LatticePlanner::answer(const planner::PathQuery& query,
                                   const planner::StopPredicate& stop,
                                   const planner::PathEvents& events) {
-  if (!rules_.isFree(query.T_map_start.position())) return refused("the start is on an obstacle");
-  if (!rules_.isFree(query.T_map_goal.position())) return refused("the goal is on an obstacle");
+  if (!rules_.isFree(query.T_map_start.position())) return refused("the start lies on obstacles");
+  if (!rules_.isFree(query.T_map_goal.position())) return refused("the goal lies on obstacles");
   planner::SearchProblem problem;
   problem.T_map_start = query.T_map_start;
   problem.start_class = patterns_.restClass();

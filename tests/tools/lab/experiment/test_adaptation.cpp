@@ -122,7 +122,7 @@ TEST_CASE("what cannot be left out and rules that nobody knows are refused in on
   settings.rules = {"slip"};
   CHECK_THROWS_WITH(runAdaptation(one, settings, nullptr), Catch::Contains("'off' is required"));
   settings.rules = {kOff, kOff};
-  CHECK_THROWS_WITH(runAdaptation(one, settings, nullptr), Catch::Contains("there twice"));
+  CHECK_THROWS_WITH(runAdaptation(one, settings, nullptr), Catch::Contains("is given twice"));
 }
 
 TEST_CASE("intervals are over sessions") {

@@ -17,7 +17,7 @@ using operators::CallResult;
 
 const Wishes kRests{0.0, 0.0};
 
-/// A stick in the test's own hand.
+/// A stick controlled by the test.
 class HeldStick : public Stick {
  public:
   HeldStick(Wishes& wishes, std::string& gone) : wishes_(wishes), gone_(gone) {}
@@ -39,7 +39,7 @@ class Idle : public Node {
   void step(int64_t /*utime*/) override {}
 };
 
-/// A robot that says what the test wants, and a person's program on the outside of its bus.
+/// A robot with output set by the test, and a program for manual control at the outside of its bus.
 struct Cockpit {
   VirtualBus bus{1};
   Wishes wishes = kRests;
@@ -207,7 +207,7 @@ TEST_CASE("a stick that is gone ends in one line, and a robot in the hand is dis
         "the gamepad is gone: No such device; the robot is let go");
   CHECK_FALSE(pit.told.back().hold);
   CHECK_FALSE(pit.told.back().give_back);
-  CHECK(std::isnan(pit.told.back().hand_left));  // a stick that is gone rests nowhere
+  CHECK(std::isnan(pit.told.back().hand_left));  // an unplugged stick is not at rest
   REQUIRE(!pit.arms.empty());
   CHECK_FALSE(pit.arms.back().armed);
   CHECK(pit.operators_heard.back().allowed == operator_t::ALLOW_NOTHING);

@@ -23,7 +23,7 @@
 namespace tread::testing {
 namespace {
 
-/// tread-drive as the foreground program of a terminal of its own.
+/// tread-drive as the foreground program of a separate terminal.
 class InTerminal {
  public:
   explicit InTerminal(const std::string& url) {
@@ -60,7 +60,7 @@ class InTerminal {
     for (int i = 0; i < 500 && (now().c_lflag & ECHO) != 0; ++i) read();
     return (now().c_lflag & (ECHO | ICANON)) == 0;
   }
-  /// What it has written so far.
+  /// Its output so far.
   const std::string& read() {
     ::fcntl(master_, F_SETFL, O_NONBLOCK);
     std::array<char, 4096> bytes{};
@@ -170,7 +170,7 @@ TEST_CASE("a gamepad of the kernel is found, moves, and says when it is pulled o
   for (int i = 0; i < 100 && !drive::padFound(); ++i) ::usleep(10'000);
   drive::EvdevPad pad("");
   CHECK_THAT(pad.name(), Catch::Contains("tread test pad"));
-  CHECK(std::isnan(pad.read(0).forward));  // where it was before is no measurement
+  CHECK(std::isnan(pad.read(0).forward));  // an old position is no measurement
   device.say(EV_KEY, BTN_TR, 1);
   device.say(EV_ABS, ABS_Y, 0);
   ::usleep(50'000);

@@ -14,7 +14,7 @@
 namespace tread::drive {
 namespace {
 
-/// A recording that is gone after the test.
+/// A temporary recording.
 struct Recording {
   explicit Recording(const std::string& text)
       : path(std::filesystem::temp_directory_path() /
@@ -70,7 +70,7 @@ TEST_CASE("an axis counts from the first event that tells another value than it 
   pad.setRange(ABS_X, 0, 255);
   pad.setRange(ABS_Y, 0, 255);
   const auto forward = [&] { return pad.wishes().forward; };
-  CHECK(std::isnan(forward()));  // nobody said anything
+  CHECK(std::isnan(forward()));  // no measurement yet
   pad.begin(EV_ABS, ABS_Y, 0);
   CHECK(std::isnan(forward()));
   pad.take(EV_ABS, ABS_Y, 0);
@@ -78,9 +78,9 @@ TEST_CASE("an axis counts from the first event that tells another value than it 
   CHECK(std::isnan(forward()));  // a repetition is no movement
   pad.take(EV_ABS, ABS_Y, 255);
   CHECK(forward() == -1.0);
-  CHECK(std::isnan(pad.wishes().turn));  // one axis says nothing of the other
+  CHECK(std::isnan(pad.wishes().turn));  // one axis does not imply the other
   pad.take(EV_ABS, ABS_X, 128);
-  CHECK(std::isnan(pad.wishes().turn));  // its first value: nobody knows whether it moved
+  CHECK(std::isnan(pad.wishes().turn));  // its first value: unknown whether it moved
   pad.take(EV_ABS, ABS_X, 127);
   CHECK(pad.wishes().turn == 0.0);
   pad.take(EV_ABS, ABS_Y, 0);
@@ -160,7 +160,7 @@ TEST_CASE("a key drives while it repeats and 200 ms longer, space stops at once"
   CHECK(keys.wishes(2'000'000).turn == 0.5);
   keys.take("D", 2'050'000);
   CHECK(keys.wishes(2'050'000).turn == -1.0);
-  keys.take("\x1b", 2'100'000);  // cut in two by the terminal
+  keys.take("\x1b", 2'100'000);  // split by the terminal
   keys.take("[A", 2'110'000);
   CHECK(keys.wishes(2'110'000).forward == 0.5);
   CHECK(keys.wishes(2'110'000).turn == 0.0);
@@ -177,8 +177,8 @@ TEST_CASE("the escape key and keys of many bytes stop, too") {
   CHECK(keys.wishes(1'080'000).forward == 0.0);
   CHECK_FALSE(keys.wishes(1'080'000).hold);
   CHECK(keys.wishes(1'080'000).stop);
-  CHECK_FALSE(keys.wishes(9'000'000).stop);  // who is armed later is not disarmed for it
-  keys.take("g", 1'100'000);                 // what comes next does not take the stop back
+  CHECK_FALSE(keys.wishes(9'000'000).stop);  // a robot armed later is not disarmed by it
+  keys.take("g", 1'100'000);                 // the next key does not cancel the stop
   CHECK(keys.wishes(1'110'000).give_back);
   CHECK_FALSE(keys.wishes(1'110'000).hold);
   for (const char* function_key :

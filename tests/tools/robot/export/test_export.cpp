@@ -14,7 +14,7 @@ using tread::samples::OwnFolder;
 
 namespace {
 
-/// A log of some messages, one of them foreign and one broken.
+/// A log of some messages, one foreign and one damaged.
 void writeLog(const std::string& path) {
   LogWriter log(path);
   for (int i = 0; i < 50; ++i) {

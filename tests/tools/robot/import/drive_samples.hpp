@@ -13,10 +13,10 @@
 
 #include "common/log/event_log.hpp"
 
-// Small recordings in the three formats, written by the tests themselves.
+// Small synthetic recordings in the three formats.
 namespace tread::samples {
 
-/// A folder that is gone after the test.
+/// A temporary folder.
 class Folder {
  public:
   explicit Folder(const std::string& name)

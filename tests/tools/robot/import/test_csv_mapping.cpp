@@ -38,7 +38,7 @@ ForeignDrive readText(const std::string& csv, const std::string& yaml) {
   return readMappedCsv(folder.file("drive.csv", csv), mappingOf(yaml));
 }
 
-/// What reading throws, without the folder.
+/// The exception's text when reading, without the folder.
 std::string complaint(const std::string& csv, const std::string& yaml) {
   try {
     readText(csv, yaml);
@@ -191,7 +191,7 @@ TEST_CASE("times and places whose last digits a spreadsheet took away are named"
   CHECK(complaint("t,x,y,yaw\n1.76414E+12,1,2,0\n1.76414E+12,1.1,2,0\n", kPoses) ==
         "drive.csv:2: column t is 1.76414E+12: in all rows a spreadsheet or program has rounded "
         "it, to 10000 s; export it as numbers with all their digits");
-  // A step of 1e7 ms comes once in ten thousand seconds only.
+  // Steps of 1e7 ms would come once in ten thousand seconds only.
   CHECK_THAT(
       complaint("t,x,y,yaw\n1.76414E+12,1,2,0\n1.76414E+12,1,2,0\n1.76415E+12,1,2,0\n", kPoses),
       Catch::Contains("has rounded it, to 10000 s"));
@@ -268,7 +268,7 @@ TEST_CASE(
   REQUIRE(zeros.notes.size() == 1);
   CHECK_THAT(zeros.notes[0], Catch::Contains("2 times") && Catch::Contains("drive.csv:102"));
 
-  // Metres that are millimetres are no jumps: what the commands explain says so.
+  // Metres instead of millimetres are no jumps: the comparison with the commands detects them.
   const ForeignDrive millimetres = driven([](int, double& x, double&) { x *= 1000.0; });
   CHECK(millimetres.drive.fixes.size() == 300);
   CHECK_THAT(millimetres.notes.at(0), Catch::Contains("299 of 300") && Catch::Contains("units"));
@@ -333,7 +333,7 @@ TEST_CASE("between two commands that are further apart than their period allows 
   CHECK(executions({1.0, 2.0, 2}) == std::pair<size_t, size_t>(4, 0));
   counts = {};
   CHECK(executions({1.0, 3.0, 2}) == std::pair<size_t, size_t>(3, 1));
-  // Where commands are only written when they change, the mapping says how long one lasts.
+  // If commands are written only on change, the mapping states how long they hold.
   CHECK(readText(csv, "command_hold: 10\n" + mapping).drive.drive.size() == 400);
 }
 

@@ -21,7 +21,7 @@ using tread::samples::line;
 
 namespace {
 
-/// A base that moves in any direction: its channels are wanted v_x, v_y and turn, as wheel speeds.
+/// A base that moves in any direction: its channels are v_x, v_y and turn, as wheel speeds.
 CommandChannels threeWheels() {
   CommandChannels channels;
   for (const char* name : {"front", "left_rear", "right_rear"})
@@ -37,7 +37,7 @@ Command three(double a, double b, double c) {
   return command;
 }
 
-/// What the ground makes of a command, linear in it.
+/// Motion for a command on a ground, linear in it.
 Twist2 answer(const Command& u, double slip) {
   return {slip * (u[0] + 0.2 * u[2]), slip * (u[1] - 0.1 * u[0]), 0.5 * slip * u[2]};
 }
@@ -47,7 +47,7 @@ struct Held {
   double seconds;
 };
 
-/// Commands held one after the other, the answer at once, a pose every 40 ms.
+/// Consecutive commands, immediate motion, a pose every 40 ms.
 RecordedDrive driven(const std::vector<Held>& parts, double slip = 0.7) {
   RecordedDrive drive;
   drive.channels = threeWheels();
@@ -132,7 +132,7 @@ TEST_CASE("what is in no piece is counted by its reason, and nothing of it is cu
     if (fix.time > 6.02 && fix.time < 6.06) fix.new_track = true;
   }
   const CutSurface surface = cutOf(drive, layoutOf(2.0, 1.0, 1));
-  // 1-3 whole, 3-5 has the gap, 5-7 the jump, 7-9 whole, 1 s of rest; then two of 4.9 s.
+  // 1-3 complete, 3-5 has the gap, 5-7 the jump, 7-9 complete, 1 s of rest; then two of 4.9 s.
   CHECK(surface.pieces.size() == 4);
   CHECK(surface.left_out.size() == 4);
   const UncutPart& poses =
@@ -234,7 +234,7 @@ const std::string kMapping =
     "      yaw: {column: yaw}\n"
     "      pose_new: {column: new}\n";
 
-/// Runs of 5.1 s, each from its own time 0 and pose 0: front 1 rad/s and boom 10 deg by speed.
+/// Runs of 5.1 s, each with its own time 0 and pose 0: front 1 rad/s and boom 10 deg by speed.
 std::string runs(double slip) {
   std::string csv = "run,speed,t,front,boom,f,x,y,yaw,new\n";
   int run = 0;
@@ -332,7 +332,7 @@ TEST_CASE("tread-import --cut writes recordings, to which surfaces can be added"
   REQUIRE(run.status == 0);
   CHECK(run.says("existing patterns kept"));
   CHECK(recordings::readRecordings(out).surfaces.size() == 3);
-  // Pieces of another length are of no pattern that is there.
+  // Pieces of another length match no existing pattern.
   run = tread::samples::called(call + "--set surface=ice --cut 2 " + soft + " --force -o " + out);
   CHECK(run.status != 0);
   run = tread::samples::called("tread-import --format csv --mapping " + folder.file("map.yaml") +

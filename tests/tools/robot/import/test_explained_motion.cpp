@@ -20,7 +20,7 @@ using tread::samples::line;
 
 namespace {
 
-/// What a row of the drive says.
+/// Values of a row of the drive.
 struct DriveRow {
   double t = 0.0, left = 0.0, right = 0.0, speed_left = 0.0, speed_right = 0.0;
   double x = 0.0, y = 0.0, yaw = 0.0, gyro = 0.0;
@@ -63,8 +63,7 @@ struct Told {
   std::vector<std::string> lines, problems;
 };
 
-/// The log of such a drive; commands are missing where `given` says no, and poses, too, if
-/// `both`.
+/// The log of such a drive; commands are missing if `given` is false, and poses, too, if `both`.
 std::vector<LogEvent> logOf(
     const std::function<void(DriveRow&)>& change, const std::string& command = "unit: m/s",
     bool gyro = true, bool speeds = false,
@@ -105,7 +104,7 @@ std::vector<LogEvent> logOf(
   return makeLog(foreign.drive, session, "csv", {}, counts);
 }
 
-/// What import and find say of it.
+/// Results of import and find for it.
 Told told(const std::function<void(DriveRow&)>& change, const std::string& command = "unit: m/s",
           bool gyro = true, bool speeds = false) {
   Told result;
@@ -256,12 +255,12 @@ TEST_CASE("commands and poses on two clocks are found with the offset, and clock
 }
 
 TEST_CASE("where commands are missing nothing is predicted, executed or measured by find") {
-  // Six seconds in every fifty, as a radio that drops out leaves them.
+  // Six seconds of every fifty, as with radio dropouts.
   const auto given = [](double time) { return std::fmod(time, 50.0) < 43.9999; };
   const auto isHole = [](double begin, double end) {  // [s] since the first message
     return std::floor((end + 5.9) / 50.0) > std::floor((begin + 0.05) / 50.0);
   };
-  // The poses are there all the time, or they are missing with the commands.
+  // The poses are continuous, or missing together with the commands.
   const bool both = GENERATE(false, true);
   const auto events = logOf([](DriveRow&) {}, "unit: m/s", true, false, given, both);
   const gap::Drive drive = gap::toDrive(toDriveLog("drive", events));
@@ -275,7 +274,7 @@ TEST_CASE("where commands are missing nothing is predicted, executed or measured
     CHECK_FALSE(isHole(execution.begin, execution.end));
   for (const motor_t& motor : samples::messagesOn(kMotor, events))
     CHECK(given(1e-6 * static_cast<double>(motor.utime) - 1.0));
-  // The learner takes completed executions alone.
+  // The learner uses only completed executions.
   for (const execution_t& message : samples::messagesOn(kExecution, events))
     for (const execution_record_t& record : message.records)
       if (record.outcome == execution_record_t::OUTCOME_COMPLETED)

@@ -24,7 +24,7 @@ uint64_t fingerprintOf(const std::string& name) {
   return foreignTypes().fingerprint(*foreignTypes().find(name));
 }
 
-/// Big-endian bytes of a message, as lcm-gen's encoders make them.
+/// Big-endian bytes of a message, as from lcm-gen's encoders.
 class Bytes {
  public:
   explicit Bytes(const std::string& type) { add(fingerprintOf(type), 8); }
@@ -45,7 +45,7 @@ class Bytes {
   }
 };
 
-/// A log written in a folder of its own.
+/// A log in a temporary folder.
 class ForeignLog {
  public:
   ForeignLog() : folder_("import_foreign"), path_(folder_.file("foreign.log", "")) {
@@ -105,7 +105,7 @@ TEST_CASE("held commands of a foreign log become executions, body speeds become 
     const int64_t utime = kBegin + 20'000 * i;
     log.pose(utime, "ODOMETRY", 0.01 * i);
     const double v = i < 50 ? 0.0 : i < 350 ? 0.4 : 0.2;
-    // Without a time of its own it has the logger's.
+    // Without its own time it has the logger's.
     log.add(utime, "MOTORS", Bytes("mbot_motor_command_t").time(0).number(v).number(1.0));
   }
   REQUIRE_THROWS_WITH(log.read(), Catch::Contains("--baseline"));
@@ -174,7 +174,7 @@ TEST_CASE("bytes of a foreign log that are damaged are counted with the seconds 
   file.close();
   const ForeignDrive foreign = readForeignLog(path, {});
   REQUIRE(foreign.losses.size() == 2);
-  // The event before the hole is whole only if a sync word follows it.
+  // The event before the gap is complete only if a sync word follows.
   CHECK(foreign.losses[0].unit == "bytes");
   CHECK(foreign.losses[0].lost == Approx(double(to - from)).margin(120.0));
   CHECK(foreign.losses[1].unit == "s");
@@ -228,7 +228,7 @@ TEST_CASE(
       const int64_t recorded = recorder_begin + recorder_period * i;
       log->add(recorded, "POSE",
                Bytes("pose_xyt_t").time(utime).number(0.01 * i).number(0).number(0));
-      // Without a time of its own it has the recorder's.
+      // Without its own time it has the recorder's.
       log->add(recorded, "PWM", Bytes("mbot_motor_pwm_t").time(0).number(0.5).number(0.5));
     }
     return log;

@@ -25,7 +25,7 @@ struct Imported {
   std::vector<LogEvent> events;
   std::vector<ins_t> ins;
   std::vector<motor_t> motor;
-  std::vector<execution_record_t> executions;  ///< the last word on each
+  std::vector<execution_record_t> executions;  ///< the last record of each
   ImportCounts counts;
 };
 
@@ -50,7 +50,7 @@ Imported importedSteps() {
   return imported(readSteps(csv, session), session, "steps");
 }
 
-/// What reading a steps file with this content throws.
+/// The exception for a steps file with this content.
 std::string complaint(const std::string& content, int rows = 242) {
   const Folder folder("import_bad");
   try {
@@ -68,14 +68,14 @@ std::string complaint(const std::string& content, int rows = 242) {
 TEST_CASE("steps: a fix is an INS message only where it is new, at the time it was measured") {
   const Imported log = importedSteps();
   REQUIRE(log.ins.size() == 2 * 61);
-  // The robot was at x after t seconds; the pose came 0.2 s late. Log time of the step's start from
-  // MOTOR.
+  // The robot was at x = t; the pose came 0.2 s late. Log time of the step's start from MOTOR.
   const int64_t onset = log.motor.front().utime;
   for (size_t i = 0; i < 61; ++i) {
     REQUIRE(log.ins[i].utime == onset + static_cast<int64_t>(i) * 100'000 - 200'000);
     REQUIRE(log.ins[i].position[0] == Approx(0.1 * static_cast<double>(i)));
   }
-  // The gyro is not late: at the pose's time it read that time (the sample writes t as the rate).
+  // The gyro is not delayed: at the pose's time its value is that time (the sample writes t as the
+  // rate).
   REQUIRE(log.ins[20].rate[2] == Approx(1.8));
   REQUIRE(std::isnan(log.ins[20].velocity[0]));
   REQUIRE((log.ins[20].ins_status & ins_t::STATUS_NO_ATTITUDE) != 0);
@@ -349,7 +349,7 @@ TEST_CASE("packed recordings are read, and those of other packers are named") {
   };
   CHECK(exitOf("gzip -kf", path + ".gz") == 0);
   CHECK_THAT(words(), Catch::Contains(" 100 MOTOR"));
-  // The line at the end of what can be unpacked is cut, too: that is not the table's fault.
+  // The last unpacked line is truncated, too: that is not the table's fault.
   const auto whole = std::filesystem::file_size(path + ".gz");
   std::filesystem::resize_file(path + ".gz", whole * 2 / 3);
   CHECK(exitOf("true", path + ".gz") != 0);

@@ -39,7 +39,7 @@ CObservationOdometry::Ptr odometryAt(double seconds, double x) {
   return odometry;
 }
 
-/// Half a turn of 181 beams, clockwise, of which one hits nothing and one is no measurement.
+/// Half a revolution of 181 beams, clockwise; one has no return and one is invalid.
 CObservation2DRangeScan::Ptr sweepAt(double seconds) {
   auto sweep = CObservation2DRangeScan::Create();
   sweep->timestamp = rawlogTime(seconds);
@@ -165,7 +165,7 @@ TEST_CASE("what is no rawlog is refused with one line") {
 TEST_CASE("damaged rawlogs never crash the program that reads them") {
   const RawlogFile file("damaged");
   file.write({odometryAt(0.0, 0.0), sweepAt(0.1), odometryAt(0.2, 0.1), sweepAt(0.3)});
-  // Packed bytes would rarely come out as anything: the damage is done to the open ones.
+  // Damaging packed bytes would rarely give any object, so the unpacked ones are damaged.
   std::string open;
   {
     const std::string gunzip = "gzip -dc < " + file.path();

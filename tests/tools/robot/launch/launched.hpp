@@ -20,7 +20,7 @@
 
 namespace tread::testing {
 
-/// True as soon as `condition` is, false after so many seconds.
+/// True as soon as `condition` is, false on timeout.
 inline bool within(double seconds, const std::function<bool()>& condition) {
   const auto deadline = std::chrono::steady_clock::now() +
                         std::chrono::milliseconds(static_cast<int64_t>(1000.0 * seconds));
@@ -33,7 +33,7 @@ inline bool within(double seconds, const std::function<bool()>& condition) {
 
 using tread::testing::contentOf;
 
-/// What is wrong, line by line. Advice is left out: a host may have little disk or small buffers.
+/// The findings without advice, line by line: a host may have little disk space or small buffers.
 inline std::vector<std::string> withoutAdvice(const std::string& output) {
   std::istringstream all(output);
   std::vector<std::string> lines;
@@ -42,12 +42,12 @@ inline std::vector<std::string> withoutAdvice(const std::string& output) {
   return lines;
 }
 
-/// A launch file with stand-ins in a folder of its own, and what tread-launch makes of it.
+/// A launch file with stand-ins in a temporary folder, and tread-launch running it.
 class Launched {
  public:
-  /// `natures` are those of the stand-ins p0, p1, ...: good, deaf, brief, wrong, see
-  /// there; what stands behind a nature are further keys. The last process
-  /// is an external one, which knows nothing of its parent. `more` are further lines of the file.
+  /// `natures` are those of the stand-ins p0, p1, ...: good, deaf, brief, wrong (see there);
+  /// further keys may follow a nature. The last process is an external one, unaware of its parent.
+  /// `more` are further lines of the file.
   explicit Launched(const std::vector<std::string>& natures, const std::string& stand_in,
                     const std::string& more = "simulated: true\n")
       : folder(std::filesystem::temp_directory_path() /
@@ -69,7 +69,7 @@ class Launched {
   }
   ~Launched() {
     for (const int pid : pids()) kill(pid, SIGKILL);
-    // The supervisor removes files of its own meanwhile.
+    // The supervisor removes its own files meanwhile.
     std::error_code none;
     std::filesystem::remove_all(folder, none);
   }
@@ -88,7 +88,7 @@ class Launched {
     return within(seconds, [&] { return said().find(text) != std::string::npos; });
   }
 
-  /// All processes that work in the run folder, supervisor apart.
+  /// All processes that work in the run folder, except for the supervisor.
   std::vector<int> pids() const {
     std::vector<int> found;
     for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
@@ -101,7 +101,7 @@ class Launched {
     }
     return found;
   }
-  /// The one whose command has this word; 0 if none.
+  /// The one with this word in its command line; 0 if none.
   int pidOf(const std::string& word) const {
     for (const int pid : pids())
       if (contentOf("/proc/" + std::to_string(pid) + "/cmdline").find(word) != std::string::npos)

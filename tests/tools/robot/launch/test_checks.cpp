@@ -24,7 +24,7 @@ NetworkFacts goodNetwork() {
   return facts;
 }
 
-/// The lines that the findings give, one behind the other.
+/// The lines of all findings.
 std::string lines(const std::vector<HostFinding>& findings) {
   std::string text;
   for (const HostFinding& finding : findings) text += findingLine("robot", finding) + "\n";
@@ -107,7 +107,7 @@ TEST_CASE("a port that other hosts reach needs a key, or the route by the loopba
   NetworkFacts facts = goodNetwork();
   LcmAddress address;
   address.ttl = 1;
-  CHECK(checkNetwork(address, facts, false).empty());  // what is sent stays on lo
+  CHECK(checkNetwork(address, facts, false).empty());  // sent messages stay on lo
   facts.route_device = "wlan0";
   CHECK(oneLine(checkNetwork(address, facts, false)) ==
         "robot: LCM's port 7667 can be reached from outside by wlan0 (ttl is 1), and without a key "

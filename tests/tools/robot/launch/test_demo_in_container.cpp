@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The loopback device has no route for multicast; a device like eth0 has.
+/// The loopback device has no route for multicast; a device like eth0 has one.
 const std::string kContainer =
     "ip link set lo up && ip link add e0 type veth peer name e1 && ip link set e0 up && "
     "ip link set e1 up && ip addr add 10.9.9.1/24 dev e0 && ip route add default dev e0";

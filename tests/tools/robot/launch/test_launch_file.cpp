@@ -16,7 +16,7 @@ LaunchFile read(const std::string& text, const LaunchSettings& settings = kSetti
   return readLaunchFile(reader, settings);
 }
 
-/// The one line that a mistaken file gives.
+/// The error line for a faulty file.
 std::string mistake(const std::string& text, const LaunchSettings& settings = kSettings) {
   try {
     read(text, settings);

@@ -29,7 +29,7 @@ TEST_CASE("a killed tread-launch takes its supervisor and all processes with it"
   launch.signal(SIGKILL);
   REQUIRE(launch.waitFor(5));
   CHECK(within(20, [&] { return launched.pids().empty(); }));
-  // The next start is refused until the supervisor has gone, then it goes well.
+  // The next start is refused until the supervisor has ended, then it works.
   CHECK(within(20, [&] { return !RunLock::isHeld(launched.run() / "lock"); }));
   std::filesystem::remove(launched.output());
   Process again("tread-launch", launched.arguments(), launched.output());

@@ -17,7 +17,7 @@ namespace {
 
 const std::string kLaunch = std::string(TREAD_SOURCE_DIR) + "/config/launch/";
 
-/// A folder that goes with its test, and a bus and a port of its own.
+/// A temporary folder, a separate bus and a port.
 struct Place {
   explicit Place(const std::string& name = "")
       : folder(fs::temp_directory_path() /
@@ -57,7 +57,7 @@ std::vector<int> workersIn(const fs::path& run) {
 
 TEST_CASE("the shipped launch files pass the start-up checks, absent instruments are an advice") {
   const Place place;
-  // A robot of another size, by its configuration alone.
+  // A robot of another size, by its configuration only.
   const CommandOutcome small =
       runCommand({std::string(TREAD_BIN_DIR) + "/tread-launch", kLaunch + "robot.yaml", "--run",
                   (place.folder / "run").string(), "--set",
@@ -70,7 +70,7 @@ TEST_CASE("the shipped launch files pass the start-up checks, absent instruments
                   (place.folder / "run").string(), "--check"},
                  60.0);
   INFO(robot.output);
-  // Nothing but the network may be missing, which is the host's.
+  // Only the host's network may be missing.
   for (const std::string& line : withoutAdvice(robot.output))
     CHECK_THAT(line, Contains("robot: ready to start") || Contains("multicast"));
   const CommandOutcome simulated = place.checked();
@@ -78,7 +78,7 @@ TEST_CASE("the shipped launch files pass the start-up checks, absent instruments
   CHECK(simulated.code == 0);
   CHECK_THAT(simulated.output, !Contains("device") && !Contains("without a key"));
   CHECK_THAT(robot.output, !Contains("key"));
-  // Checks make nothing.
+  // Checks create nothing.
   CHECK_FALSE(fs::exists(place.folder / "run/key"));
 }
 
@@ -113,7 +113,7 @@ TEST_CASE("a port that is in use is named with its remedy before anything is sta
 }
 
 TEST_CASE("the simulated robot starts, records, and leaves no process when its supervisor dies") {
-  // What shells and configuration files would expand.
+  // Characters that shells and configuration files would expand.
   const Place place("100% \"odd\" %(here)s it's;");
   const fs::path run = place.folder / "run";
   const fs::path output = place.folder / "output.txt";

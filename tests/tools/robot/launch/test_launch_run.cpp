@@ -47,7 +47,7 @@ TEST_CASE("processes start, one that is killed comes back, and all are gone afte
   CHECK(launched.says("trial: stopped after"));
   CHECK(launched.pids().empty());
   CHECK_FALSE(std::filesystem::exists(launched.run() / "life.sock"));
-  // They were asked, not killed, the last one first.
+  // They were asked to end, last one first, instead of being killed.
   CHECK_THAT(contentOf(launched.run() / "log/p0.log"), Contains("ends by signal 2"));
   const std::string log = contentOf(launched.run() / "log/supervisor.log");
   CHECK(log.find("stopped: p1 (exit status 0)") < log.find("stopped: p0 (exit status 0)"));
@@ -100,7 +100,7 @@ TEST_CASE(
     "a robot makes its key at its first start, keeps it, and drives without one only if told") {
   const Launched robot({"good"}, TREAD_STAND_IN, "");
   const std::string key = (robot.run() / "key").string();
-  // Where the host refuses the robot's network, nothing starts and there is nothing to see here.
+  // If the host refuses the robot's network nothing starts, and there is nothing to test.
   const CommandOutcome check = call(robot, {"--check"});
   if (check.code != 0) {
     CHECK_THAT(check.output, Contains("multicast"));
@@ -185,7 +185,7 @@ TEST_CASE("the status tells which process is not well, and why") {
   std::string url = contentOf(launched.folder / "trial.yaml");
   url = url.substr(url.find("lcm_url: ") + 9);
   url = url.substr(0, url.find('\n'));
-  // A recorder whose file may not grow loses messages: its own HEALTH.
+  // A recorder whose file cannot grow loses messages: see its own HEALTH.
   Process recorder("/bin/sh", {"-c", "ulimit -f 1; exec \"$0\" \"$@\"", logger,
                                (launched.folder / "x.lcmlog").string(), "--lcm-url", url});
   CHECK(within(20.0, [&] {

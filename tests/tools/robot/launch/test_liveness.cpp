@@ -16,7 +16,7 @@ LaunchProcess named(const std::string& name) {
 
 constexpr const char* kBeat = "WATCHDOG=1";
 
-/// What is told while so many seconds pass, in steps of 0.1 s.
+/// Messages while the time passes, in steps of 0.1 s.
 std::vector<std::string> told(Liveness& liveness, double seconds) {
   std::vector<std::string> lines;
   for (int i = 0; i < static_cast<int>(10.0 * seconds + 0.5); ++i)
@@ -36,7 +36,7 @@ TEST_CASE(
   liveness.hear(7, "READY=1\nWATCHDOG=1");
   CHECK(told(liveness, 1.5).empty());
   liveness.hear(7, kBeat);
-  liveness.hear(8, kBeat);  // somebody else
+  liveness.hear(8, kBeat);  // another process
   CHECK(told(liveness, 1.8).empty());
   CHECK(told(liveness, 0.4) == Lines{"planner hangs: no sign of life for 2.0 s; it is aborted"});
   CHECK(told(liveness, 0.7).empty());

@@ -12,7 +12,7 @@ namespace {
 
 using Task = ProcessTable::Task;
 
-constexpr int kExit1 = 1 << 8;  // as waitpid(2) has it
+constexpr int kExit1 = 1 << 8;  // as in waitpid(2)
 
 std::vector<LaunchProcess> namedProcesses(const std::vector<std::string>& names) {
   std::vector<LaunchProcess> processes;
@@ -24,12 +24,12 @@ std::vector<LaunchProcess> namedProcesses(const std::vector<std::string>& names)
   return processes;
 }
 
-/// The table of a robot whose processes start whenever they are due, with pids counted up.
+/// The table of a robot whose processes start when due, with increasing pids.
 struct TableBench {
   explicit TableBench(const std::vector<std::string>& names)
       : table("robot", namedProcesses(names)) {}
 
-  /// Up to a time, in steps of 50 ms: what was to be done, as words.
+  /// Runs up to a time in steps of 50 ms; returns the due actions as words.
   std::string runTo(double end) {
     std::string done;
     for (; now < end; now += 0.05)

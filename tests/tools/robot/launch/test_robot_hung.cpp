@@ -17,7 +17,7 @@ using namespace tread::testing;
 
 namespace {
 
-/// A robot that tread-launch has started, and `run`, which operates it.
+/// A robot started by tread-launch, and `run`, which operates it.
 class LaunchedRobot {
  public:
   LaunchedRobot()
@@ -33,7 +33,8 @@ class LaunchedRobot {
     });
     INFO(contentOf(output()));
     REQUIRE(all_run);
-    run = std::make_unique<RobotRun>(kYard, "[0, 0, 0]", "", url_);  // it starts none of its own
+    // it starts no processes itself
+    run = std::make_unique<RobotRun>(kYard, "[0, 0, 0]", "", url_);
   }
   ~LaunchedRobot() {
     launch_.signal(SIGINT);
@@ -46,7 +47,7 @@ class LaunchedRobot {
   bool says(const std::string& text, double seconds) {
     return run->until(seconds, [&] { return contentOf(output()).find(text) != std::string::npos; });
   }
-  /// By the supervisor's log: the last one that was started under this name.
+  /// From the supervisor's log: the last one started under this name.
   int pidOf(const std::string& process) const {
     const std::string log = contentOf(folder() + "/log/supervisor.log");
     const std::string mark = "spawned: '" + process + "' with pid ";
@@ -102,15 +103,15 @@ TEST_CASE(
     CHECK(seconds(halted, back) < (process == "logger" ? 13.0 : 5.0));
     run.wait(2.0);
     const auto zero = zeroAfter(robot.truth(), halted, 1'000'000);
-    // Without learner or logger it drives on, to its goal.
+    // Without learner or logger it drives on to its goal.
     if (needed.count(process) > 0) {
       REQUIRE(zero.has_value());
       std::printf(", motors at zero after %.2f s", seconds(halted, *zero));
       CHECK(seconds(halted, *zero) < 1.0);
       for (const sim::TruthRow& row : robot.truth())
         CHECK((row.utime < *zero || row.motorsAtZero()));
-      // What only looks is back without a person, but wants another goal. A busy machine's stall of
-      // the INS is another stop.
+      // A process that only observes returns without a person, but needs another goal. A stall of
+      // the machine that delays the INS is a different stop.
       const std::string& why = run.motor().message().state_reason;
       INFO(why);
       if (process == "mapping") {

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder for announcements of its own, and no default URL.
+/// A separate folder for announcements, and no default URL.
 class OwnFolder {
  public:
   OwnFolder() {
@@ -50,7 +50,7 @@ TEST_CASE("the only robot that runs is found, and an address that is given goes 
   setenv("LCM_DEFAULT_URL", "memq://", 1);
   CHECK(findRobot("", "").lcm_url.empty());
   unsetenv("LCM_DEFAULT_URL");
-  // Who names the address of a robot that runs here need not name its key, too.
+  // With the address of a robot that runs here its key need not be given.
   for (const bool by_variable : {false, true}) {
     const std::string url = "udpm://239.255.76.67:7668?ttl=0";
     if (by_variable) setenv("LCM_DEFAULT_URL", url.c_str(), 1);

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Configuration and units, installed into a folder of this test, with our programs beside them.
+/// Configuration and units, installed into a temporary folder together with the programs.
 class Installed {
  public:
   Installed()

@@ -21,7 +21,7 @@ map_tile_t tile(int x) {
   return message;
 }
 
-/// How many of these pass in so many seconds.
+/// Number of messages that pass within a time.
 template <class Message>
 int passing(LinkFilter& filter, const Channel<Message>& channel, const Message& message,
             double rate, double seconds, int64_t& now) {

@@ -17,7 +17,7 @@ using namespace tread::testing;
 
 namespace {
 
-/// One of our programs at the station, on the link's bus.
+/// A program at the station, on the link's bus.
 std::unique_ptr<Process> atStation(const TwoHosts& hosts, const std::string& name,
                                    const std::vector<std::string>& arguments,
                                    const std::string& output) {
@@ -30,7 +30,7 @@ std::unique_ptr<Process> atStation(const TwoHosts& hosts, const std::string& nam
   return std::make_unique<Process>(program, words, output);
 }
 
-/// Messages a second of a channel, as tread-top says; 0 where it is not there.
+/// Messages per second of a channel, from tread-top; 0 if absent.
 double rateOf(const std::string& seen, const std::string& channel) {
   std::smatch found;
   return std::regex_search(seen, found, std::regex("\n" + channel + " +([0-9.]+) "))
@@ -56,8 +56,8 @@ struct LinkedRobot {
   bool moves() const {
     return run.motor().message().command[0] != 0.0F || run.motor().message().command[1] != 0.0F;
   }
-  /// Arms and gives a goal from the station; whether the robot drives then. A stall of a busy
-  /// machine may take the permission back, as it must: then once more.
+  /// Arms and sends a goal from the station; returns whether the robot drives then. A stall of a
+  /// busy machine may disarm it; it is then repeated once.
   bool drive() {
     for (int i = 0; i < 4; ++i) {
       goal.reset();
@@ -100,7 +100,7 @@ TEST_CASE("over the link crosses what is chosen, and a robot whose operator is c
               ->waitFor(20.0));
   const std::string seen = contentOf(robot.folder.path("top.txt"));
   CAPTURE(seen, contentOf(robot.folder.path("link.txt")));
-  // The robot's INS comes at 50 Hz, and the range finder's scans are not for the station.
+  // The robot's INS comes at 50 Hz, and the range finder's scans do not cross.
   CHECK(rateOf(seen, "INS") > 6.0);
   CHECK(rateOf(seen, "INS") < 13.0);
   CHECK(rateOf(seen, "MOTOR") > 12.0);
@@ -120,11 +120,11 @@ TEST_CASE("over the link crosses what is chosen, and a robot whose operator is c
 
 TEST_CASE(
     "a link that is late and loses frames is driven over, and stops the robot when it is gone") {
-  // As a radio at the end of its range: 60 to 100 ms, one frame in ten.
+  // Like a radio at the end of its range: 60 to 100 ms, one frame in ten lost.
   const auto hosts = hostsOrSkip({0.06, 0.04, 0.1});
   if (!hosts) return;
   LinkedRobot robot(*hosts);
-  // Now and then it stands between two patterns.
+  // At times it stands between two patterns.
   int moving = 0;
   for (int trial = 0; trial < 3 && moving <= 25; ++trial) {
     REQUIRE(robot.drive());

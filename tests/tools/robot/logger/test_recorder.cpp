@@ -66,7 +66,7 @@ class Speaker {
   LcmBus bus_;
 };
 
-/// Speaks until the recorder hears.
+/// Publishes until the recorder receives.
 void meet(Speaker& speaker, const std::string& file) {
   for (int i = 0; i < 100; ++i) {
     speaker.say(20);
@@ -128,7 +128,7 @@ TEST_CASE("a full file moves up and the next one goes on without a gap") {
   Process recorder("tread-logger", {file, "--split-mb", "1", "--keep", "3", "--lcm-url", url});
   Speaker speaker(url);
   meet(speaker, file + ".0");
-  // Larger than MARK may be is refused by our bus, so many small ones.
+  // The test's bus refuses messages above MARK's limit, so it sends many small ones.
   for (int i = 0; i < 60 && !fs::exists(file + ".1"); ++i) speaker.say(100, 900);
   speaker.say(400, 900);
   recorder.signal(SIGINT);
@@ -190,7 +190,7 @@ TEST_CASE("a new log moves the earlier ones up and removes the oldest") {
   CHECK(contentOf(log + ".1") == "third");
   CHECK(contentOf(log + ".2") == "second");
   CHECK_FALSE(fs::exists(log + ".3"));
-  // Beyond a gap nothing has to move.
+  // Beyond a gap no file has to be renamed.
   makeRoomForLog(log, 3);
   CHECK(contentOf(log + ".2") == "second");
   makeRoomForLog((folder / "none/x").string(), 3);

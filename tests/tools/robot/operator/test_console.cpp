@@ -11,7 +11,7 @@ using tread::operators::OperatorConsole;
 
 namespace {
 
-/// A console, and a robot that only says that it is armed.
+/// A console, and a robot that only reports that it is armed.
 struct Console {
   VirtualBus bus{1};
   OperatorConsole console{bus.outside(), "ADA", "test"};
@@ -60,7 +60,7 @@ struct Console {
       console.step(bus.now());
     }
   }
-  /// A page that shows what is now, unless the command says itself what it has seen.
+  /// A page with a current view, unless the command has its own "seen".
   std::string take(const std::string& json, uint64_t page = 1) {
     const bool whole = json.find("\"seen\"") != std::string::npos || json.back() != '}';
     const std::string seen = ",\"seen\":" + std::to_string(bus.now()) + "}";
@@ -155,7 +155,7 @@ TEST_CASE("what a page says to have seen in the future, or in no time at all, ho
   CHECK_FALSE(console.take(saying(R"("arm")")).empty());
   console.run(0.5, false);
   CHECK(console.arms == 0);
-  // Nor does it keep a robot that was taken rightly.
+  // Nor does it keep a robot that was taken properly.
   REQUIRE(console.take(R"({"op":"goal","x":3,"y":4})").empty());
   for (int i = 0; i < 10; ++i) {
     CHECK_FALSE(console.take(saying(R"("alive")")).empty());
@@ -192,7 +192,7 @@ TEST_CASE("an emergency stop ends what asked for its opposite") {
   CHECK(console.stops > 5);
   CHECK(console.clears == cleared);
   CHECK(console.arms == armed);
-  // However often the key is pressed, it is one call.
+  // Repeated keys make a single call.
   const int stops = console.stops;
   for (int i = 0; i < 50; ++i) console.take(R"({"op":"estop"})");
   console.run(1.0, true);
@@ -203,7 +203,7 @@ TEST_CASE("a page that takes over from a silent one does not inherit what that h
   Console console;
   REQUIRE(console.take(R"({"op":"goal","x":3,"y":4})", 1).empty());
   console.run(0.5, true);
-  // Time passes, and the other page is there before the console has looked.
+  // Time passes, and the other page connects before the console's next step.
   console.bus.runUntil(console.bus.now() + 700'000);
   const int cancels = console.cancels;
   REQUIRE(console.take(R"({"op":"alive"})", 2).empty());

@@ -12,7 +12,7 @@
 namespace tread::operators {
 namespace {
 
-/// A robot that answers as it is told to, on the operator's own endpoint.
+/// A robot with controllable replies, on the operator's endpoint.
 struct Stand {
   explicit Stand(Bus& operators_bus) : bus(operators_bus) {
     bus.subscribe<arm_t>(kArm, [this](const arm_t& message) {
@@ -71,7 +71,7 @@ struct Stand {
   std::vector<fence_t> fences;
 };
 
-/// A node that does nothing by itself.
+/// A passive node.
 class Seat : public Node {
  public:
   int64_t period() const override { return 1'000'000; }
@@ -90,7 +90,7 @@ struct Scene {
   Bus& desk = bus.outside();
   std::unique_ptr<Stand> stand;
 
-  /// Steps a call each 20 ms until it ends or the time is over; `act` is the robot.
+  /// Steps a call each 20 ms until it ends or the time is over; `act` plays the robot.
   CallResult run(Call& call, double seconds, const std::function<void(int64_t)>& act) {
     for (int i = 0; i < static_cast<int>(seconds * 50.0); ++i) {
       act(bus.now());
@@ -238,7 +238,7 @@ TEST_CASE("a goal is repeated each second, ends with the arrival, and gives up w
   auto result = scene.run(call, 10.0, [&](int64_t now) {
     scene.stand->motor(now, motor_t::STATE_ARMED);
     if (now - begun < 2'000'000) return;
-    // The arrival at somebody else's goal is none of ours.
+    // The arrival at another operator's goal does not count.
     const bool ours = now - begun > 4'000'000;
     scene.stand->plan(now, ours ? 77 : 76, plan_t::PLAN_ARRIVED);
   });
@@ -250,7 +250,7 @@ TEST_CASE("a goal is repeated each second, ends with the arrival, and gives up w
   const int64_t asked = scene.bus.now();
   result = scene.run(hopeless, 10.0, [&](int64_t now) {
     scene.stand->motor(now, motor_t::STATE_ARMED);
-    // A moment's block is no end.
+    // A short block does not end it.
     const bool free = now - asked > 1'000'000 && now - asked < 1'500'000;
     scene.stand->plan(now, 78, free ? plan_t::PLAN_DRIVING : plan_t::PLAN_BLOCKED);
   });
@@ -267,7 +267,7 @@ TEST_CASE("a permission that is lost on the way ends the call with the bridge's 
   const int64_t begun = scene.bus.now();
   const auto result = scene.run(call, 10.0, [&](int64_t now) {
     scene.stand->plan(now, 5, plan_t::PLAN_DRIVING);
-    // Armed, then lost; a moment's loss alone would be none.
+    // Armed, then lost; a short loss would be tolerated.
     const double t = static_cast<double>(now - begun) * 1e-6;
     const bool armed = t < 4.0;
     scene.stand->motor(now, armed ? motor_t::STATE_DRIVING : motor_t::STATE_FAULT, "INS is stale");

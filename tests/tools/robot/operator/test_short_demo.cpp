@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a user types: programs with their output and exit code, in a folder of their own.
+/// A user's desk: programs with output and exit code, in a temporary folder.
 class Desk {
  public:
   Desk() { fs::create_directories(folder); }
@@ -108,7 +108,7 @@ TEST_CASE("the short demo: launch, arm, drive, stop, go on, arrive, report, repl
   CHECK_THAT(report.words, Catch::StartsWith("arrived after ") && Catch::Contains("contacts 0"));
   CHECK(fs::file_size(picture) > 10000);
 
-  // What the robot learned and planned comes out of its log again.
+  // Learning and plans of the robot are reproduced from its log.
   for (const std::string process : {"learner", "planner"}) {
     const auto replayed = desk.type("tread-replay", {process, log});
     INFO(process << ": " << replayed.words);

@@ -10,7 +10,7 @@
 
 namespace tread::patterns::kit {
 
-/// A pattern of ten samples that moves with one twist; `commands` are held throughout.
+/// A pattern of ten samples with one twist; `commands` are held throughout.
 inline MotionPattern pattern(int id, const std::string& name, const TrackCommand& command,
                              const Twist2& twist, const std::string& entry = "cruise",
                              const std::string& exit = "cruise") {
@@ -36,7 +36,7 @@ inline PatternSet setOf(std::vector<MotionPattern> patterns, bool rest = false) 
   return PatternSet::make(std::move(content), why).value();
 }
 
-/// start, straight, left and stop: everything but the mirror image of left.
+/// start, straight, left and stop: without the mirror image of left.
 inline PatternSet withoutRight() {
   return setOf({pattern(1, "straight", {0.5, 0.5}, {0.5, 0.0, 0.0}),
                 pattern(2, "left", {0.4, 0.5}, {0.5, 0.01, 0.1}),

@@ -12,7 +12,7 @@ namespace tread::patterns::kit {
 using Run = tread::samples::CalledProgram;
 using Folder = tread::samples::OwnFolder;
 
-/// tread-patterns, called as people call it.
+/// Runs tread-patterns with a command line.
 inline Run run(const std::string& arguments) {
   return tread::samples::called("tread-patterns " + arguments);
 }

@@ -127,7 +127,7 @@ TEST_CASE("A mirror image was never learned, and keeps the length of its path") 
   const MotionPattern right = mirrored(left, kTracks);
   CHECK(right.times_learned == 0);
   CHECK(right.pathLength() == left.pathLength());
-  // A straight sample has no negative zero, which a file would show as -0.
+  // A straight sample has no negative zero, which a file would contain as -0.
   MotionPattern straight = *kit::withoutRight().findByName("straight");
   for (const Pose2& pose : mirrored(straight, kTracks).trajectory) {
     CHECK_FALSE(std::signbit(pose.y));

@@ -46,7 +46,7 @@ TEST_CASE("What a model recorded averages to what the model predicts, ends scatt
     CHECK(std::hypot(pattern.end().x - predicted.end().x, pattern.end().y - predicted.end().y) <
           0.012);
     CHECK(std::abs(pattern.end().yaw - predicted.end().yaw) < 0.025);
-    // INS noise comes on top: 3 mm and 1 mrad.
+    // Plus INS noise of 3 mm and 1 mrad.
     CHECK(pattern.end_covariance[0] ==
           Approx(predicted.end_covariance[0] + 9e-6).epsilon(0.4).margin(4e-6));
     CHECK(pattern.end_covariance[5] ==
@@ -97,7 +97,7 @@ TEST_CASE("What the model file says of the INS is in what is recorded") {
       CHECK(std::atan2(turned.y, turned.x) - std::atan2(straight.y, straight.x) ==
             Approx(0.1).margin(1e-6));
   }
-  // In a steady motion a late INS says the same; while it starts it still says standing.
+  // In steady motion a late INS makes no difference; at the start it still shows standstill.
   ModelDocument late = still;
   late.measurement.ins_latency = 0.2;
   const auto of_late = recordModel(set, late, "grass", how);

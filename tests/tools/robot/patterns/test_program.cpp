@@ -9,7 +9,7 @@ using namespace tread::patterns::kit;
 
 namespace {
 
-/// A small set that is good.
+/// A small valid set.
 const std::string kGood = R"(name: tiny
 kind: power
 period_us: 100000
@@ -206,7 +206,7 @@ TEST_CASE("show prints one row a pattern, and draws a single set") {
   const Run shown = run("show " + kSet + " --picture " + folder.path("one.png"));
   INFO(shown.printed);
   CHECK(shown.status == 0);
-  // A line of the set, its three classes, a head and 23 patterns.
+  // One line for the set, three classes, a heading and 23 patterns.
   CHECK(std::count(shown.printed.begin(), shown.printed.end(), '\n') == 1 + 3 + 1 + 23);
   CHECK(folder.text("one.png").substr(1, 3) == "PNG");
   const Run nowhere = run("show " + kSet + " --picture /nowhere/one.png");

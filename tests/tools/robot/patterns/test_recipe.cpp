@@ -67,7 +67,7 @@ TEST_CASE("A recipe makes a pattern and its mirror image, predicted by the model
   REQUIRE(left.commands.size() == 10);
   CHECK(left.commands[3][0] == -0.5);
   CHECK(right.commands[3][0] == 0.5);
-  // A lag only delays: the whole angle is rate times time, up to what is left after three lags.
+  // A lag only delays: the total angle is rate times time, except for the rest after three lags.
   CHECK(left.end().yaw == Approx(0.9 * 2.0 * 0.2).epsilon(0.06));
   CHECK(right.end().yaw == -left.end().yaw);
   CHECK(set.version() == 1);

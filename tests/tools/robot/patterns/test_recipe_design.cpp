@@ -18,7 +18,7 @@ using namespace tread::patterns;
 
 namespace {
 
-/// A vehicle of each kind, with what its robot.yaml allows.
+/// A vehicle of each kind, with the limits of its robot.yaml.
 struct Designed {
   std::string name;
   VehicleModel model;

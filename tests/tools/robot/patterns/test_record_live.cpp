@@ -33,7 +33,7 @@ PatternSet threePatterns() {
   return PatternSet::make(content, why).value();
 }
 
-/// The simulated robot as far as a recorder needs it, and the recorder.
+/// The parts of the simulated robot that a recorder needs, and the recorder.
 class RecorderRun {
  public:
   explicit RecorderRun(const std::string& executions)

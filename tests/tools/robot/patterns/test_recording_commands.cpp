@@ -82,7 +82,7 @@ TEST_CASE("Recording and averaging refuse what makes no sense with one line") {
   const std::string bad =
       "record " + kSet + " --recordings " + folder.path("b") + " --surface a/b ";
   CHECK(run(bad + "--model " + kGrass).status == 2);
-  // Before it drives for an hour, not afterwards.
+  // Before an hour of driving rather than afterwards.
   const Run live = run(bad + "--live");
   CHECK(live.status == 2);
   CHECK(live.says("surface 'a/b': its name is that of its file"));

@@ -75,7 +75,7 @@ inline learning_t learningAt(double seconds, bool accepted, double position, dou
   return learning;
 }
 
-/// 10 s at 1 m/s to a goal 10 m ahead, from second 5 on; how it ends is the caller's to say.
+/// 10 s at 1 m/s to a goal 10 m ahead, from second 5 on; the caller adds the end.
 inline std::vector<LogEvent> tenMetres() {
   std::vector<LogEvent> events;
   events.push_back(eventOf(kMotor, motorAt(5.0, motor_t::STATE_ARMED)));

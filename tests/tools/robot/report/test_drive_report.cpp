@@ -39,7 +39,7 @@ sim::TruthRow truthAt(double seconds, const std::string& surface, int contacts =
   return row;
 }
 
-/// Rows at 50 Hz over the drive of tenMetres(), on the surface that `surface` names at a time.
+/// Rows at 50 Hz over the drive of tenMetres(), on the surface that `surface` returns for a time.
 template <class SurfaceAt>
 std::vector<sim::TruthRow> truthOn(const SurfaceAt& surface) {
   std::vector<sim::TruthRow> rows;
@@ -76,7 +76,7 @@ TEST_CASE("a log without a goal is told so, whatever else it holds") {
   CHECK(resultOf({}) == "no goal in this log");
   CHECK(resultOf({eventOf(kIns, insAt(1.0, 0.0)),
                   eventOf(kPlan, planAt(2.0, plan_t::PLAN_ARRIVED))}) == "no goal in this log");
-  // An operator who takes the goal back sends goal 0.
+  // An operator who cancels the goal sends goal 0.
   CHECK(resultOf({eventOf(kGoal, goalAt(1.0, 5.0, 0))}) == "no goal in this log");
 }
 
@@ -299,7 +299,8 @@ TEST_CASE("errors by rule are told before, just after and long after a change of
     execution.began = i * kSecond;
     execution.ended = execution.began + 900'000;
     execution.measured = true;
-    // Both know the old ground; off never learns the new one, multi_model does after three.
+    // Both know the old ground; off never learns the new one, multi_model does after three
+    // executions.
     const bool old = i < 15;
     execution.by_rule = {{old ? 0.1 : 0.5, 0.0}, {old || i >= 18 ? 0.1 : 0.5, 0.0}};
     errors.executions.push_back(execution);

@@ -27,7 +27,7 @@ plan_t shadowAt(double seconds, double x, double y) {
   return plan;
 }
 
-/// 10 s by hand at 0.5 m/s along x; `plan` says what the planner shows each second.
+/// 10 s of manual driving at 0.5 m/s along x; `plan` returns the planner's plan for each second.
 template <class Plan>
 HandRecord tenSeconds(Plan&& plan, int16_t state_after) {
   std::vector<LogEvent> events;
@@ -70,7 +70,7 @@ TEST_CASE("who drove how long, how often taken over and given back") {
 TEST_CASE("a planner that would have gone the same way, faster, agrees") {
   const auto ahead = [](double time, double x) { return shadowAt(time, x + 1.0, 0.1); };
   const ShadowComparison shadow = tenSeconds(ahead, motor_t::STATE_STOPPING).shadow;
-  CHECK(shadow.plans == 10);  // what came of the last one is not known
+  CHECK(shadow.plans == 10);  // the result of the last one is unknown
   CHECK(shadow.same == 10);
   CHECK(shadow.would_stand == 0);
   CHECK(shadow.turned_away.front() == Approx(0.1).margin(0.01));

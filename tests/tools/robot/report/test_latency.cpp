@@ -14,7 +14,7 @@ using namespace tread::samples;
 
 namespace {
 
-/// A message as the logger received it, some milliseconds after its own time.
+/// A message as received by the logger, some milliseconds after its own time.
 template <class Message>
 LogEvent received(const Channel<Message>& channel, const Message& message, int64_t late_ms = 0) {
   LogEvent event = eventOf(channel, message);
@@ -69,7 +69,7 @@ TEST_CASE("a quantile is the value that a share does not exceed, and not a numbe
 TEST_CASE("INS to set runs from the INS that passes the execution's end to the set's first part") {
   Latencies latencies;
   latencies.add(received(kIns, insAt(1.98, 0.0), 3));
-  latencies.add(received(kIns, insAt(2.02, 0.0), 4));  // the first behind the end at 2 s
+  latencies.add(received(kIns, insAt(2.02, 0.0), 4));  // the first one after the end at 2 s
   latencies.add(received(kIns, insAt(2.04, 0.0), 3));
   SECTION("LEARNING comes before the set") {
     latencies.add(received(kLearning, learnedAt(2.0, 5), 30));
@@ -80,7 +80,7 @@ TEST_CASE("INS to set runs from the INS that passes the execution's end to the s
     latencies.add(received(kLearning, learnedAt(2.0, 5), 60));
   }
   latencies.add(received(kPatternSet, partAt(2.06, 5, 1, 2)));
-  latencies.add(received(kPatternSet, partAt(4.05, 5, 0, 2)));  // repeated: no second time
+  latencies.add(received(kPatternSet, partAt(4.05, 5, 0, 2)));  // a repetition, no second time
   REQUIRE(latencies.insToSet().count() == 1);
   CHECK(latencies.insToSet().quantile(0.5) == Approx(26.0));
 }

@@ -48,7 +48,7 @@ TEST_CASE("a log tells what each rule would have predicted, as shadows of the dr
       equal += std::abs(replayed[rule].position - execution.by_rule[rule].position) < 1e-6 ? 1 : 0;
   }
   CHECK(compared > 45);
-  CHECK(equal >= compared - 6);  // a log's clock may give a set a step earlier or later
+  CHECK(equal >= compared - 6);  // a log's clock may shift a set by a step
 
   const std::string words = report::reportOf(errors, {errors.executions[10].ended});
   for (const char* word :

@@ -18,13 +18,13 @@ using tread::testing::kDeg;
 
 namespace {
 
-/// A car, and what is behind its plugs.
+/// A car with hidden properties.
 struct HiddenCar {
   bool throttle_reversed = false;
   bool steering_reversed = false;
   bool steering_dead = false;
   bool mirrored = false;
-  double askew = 0.0;  ///< [1] of the full steering
+  double askew = 0.0;  ///< [1] relative to the full steering
   double ins_yaw = 0.0, ins_x = 0.0, ins_y = 0.0;
   double wheelbase = 0.9;
   double steering_rate = 2.0;
@@ -91,7 +91,7 @@ std::string carWords(const WiringReport& report) {
   return words;
 }
 
-/// Whether exactly the hidden faults were named.
+/// Whether exactly the hidden faults were reported.
 bool carNamed(const HiddenCar& hidden, const WiringReport& report) {
   const bool turned = std::abs(hidden.ins_yaw) > 0.1;
   return report.unsure.empty() && report.has(FaultKind::kReversed) == hidden.throttle_reversed &&
@@ -193,8 +193,8 @@ TEST_CASE("before a drive a car's wrong parts are named within less than a metre
       expected.brief = true;
       const WiringReport report = checkWiring(driven.commands, driven.fixes, expected);
       ++all;
-      // Throttle and steering both reversed look like an INS turned by half a turn, and on so short
-      // a way a mirrored one like reversed steering: both are said.
+      // Throttle and steering both reversed look like an INS turned by 180 deg, and on such a short
+      // drive a mirrored one looks like reversed steering: both are reported.
       const bool either = (kind == 3 && report.has(FaultKind::kInsTurned)) ||
                           (kind == 7 && report.has(FaultKind::kSteeringReversed));
       if (carNamed(hidden, report) || either) {

@@ -34,7 +34,7 @@ record: yes
 go: yes
 )";
 
-/// A yard with walls all around and a few boulders beyond the free circle.
+/// A walled yard with a few boulders outside of the free circle.
 sim::WorldDescription yard(const std::string& surface) {
   sim::WorldDescription world;
   world.name = "yard";
@@ -172,7 +172,7 @@ TEST_CASE("a car whose throttle and steering are reversed: to the first goal") {
   hidden.settings.robot.laser.range_max = laser.range_max;
   hidden.settings.robot.wiring.invert_left = hidden.settings.robot.wiring.invert_right = true;
   hidden.settings.robot.ins.mounting.angles.yaw = 0.3;
-  // Where it looks in the end is free for 10 m, as the person is asked.
+  // The direction that it faces at the end is free for 10 m, as asked in the question.
   hidden.world.obstacles.resize(4);
   VirtualSite site(hidden);
   VirtualPerson person(site, R"(name: beetle
@@ -204,7 +204,7 @@ go: yes
   CHECK(result.findings.wiring.has(FaultKind::kSteeringReversed));
   CHECK(result.findings.wiring.has(FaultKind::kInsTurned));
   CHECK(std::abs(result.findings.robot.ins.angles.yaw - 0.3) < 0.05);
-  // The servo's ends that were told turn the wheels less far than it can.
+  // With the given servo ends the wheels turn less than possible.
   CHECK(std::abs(drive.max_steering - 0.5 * 0.35 / 0.4) < 0.05);
 }
 
@@ -232,7 +232,7 @@ TEST_CASE("a servo that stands askew gets ends that are even to both sides") {
     findings.robot.drive.invert_right = inverted;
     findings.controller.kind = "vesc";
     WiringReport wiring;
-    // From .15 to .85 the wheels go from .3 rad to the right to .5 to the left, or the other way.
+    // From .15 to .85 the wheels go from .3 rad to the right to .5 to the left, or reversed.
     wiring.steering_left.value = 0.5;
     wiring.steering_right.value = -0.3;
     wiring.steering_straight.value = 0.1;
@@ -241,7 +241,7 @@ TEST_CASE("a servo that stands askew gets ends that are even to both sides") {
     findings.wiring = wiring;
     proposeLimits(findings);
     CHECK(findings.robot.drive.max_steering == Approx(0.3));
-    // Per radian .7 / .8 of its range: straight at .4125, or its mirror image.
+    // .7 / .8 of its range per radian: straight at .4125, or its mirror image.
     const double to_left = inverted ? findings.servo_right : findings.servo_left;
     const double to_right = inverted ? findings.servo_left : findings.servo_right;
     CHECK(to_left == Approx(inverted ? 0.325 : 0.675));
@@ -337,7 +337,7 @@ TEST_CASE("machines drawn at random, wired in any way: to the first goal", "[sta
 
 namespace {
 
-/// What the ten seconds say of a machine of which something was changed after it was set up.
+/// Result of the ten seconds for a machine with a part changed after the setup.
 struct ChangedPart {
   const char* what;
   void (*change)(sim::SimulatorSettings& settings);
@@ -417,7 +417,7 @@ TEST_CASE("what a setup writes is what the robot's processes and its launch file
     CAPTURE(checked.printed);
     CHECK(checked.status == 0);
   }
-  // Devices and network are the host's: nothing of the robot's own may be wrong.
+  // Devices and network are the host's: the robot's own part must be correct.
   const auto launch = tread::samples::called(
       "tread-launch " TREAD_SOURCE_DIR "/config/launch/robot.yaml --set robot=" + robot +
       " --run " + folder.path("run") + " --check");

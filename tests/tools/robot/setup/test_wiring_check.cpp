@@ -18,18 +18,18 @@ using tread::testing::kDeg;
 
 namespace {
 
-/// What is behind the plugs.
+/// Hidden properties of a machine.
 struct Hidden {
   bool swapped = false;
-  bool reverse_left = false;  ///< the motor of the real left track
+  bool reverse_left = false;  ///< motor of the real left track
   bool reverse_right = false;
-  bool mirrored = false;  ///< heading the wrong way round
+  bool mirrored = false;  ///< heading with the wrong sign
   double left_power = 1.0, right_power = 1.0;
   double ins_yaw = 0.0;  ///< [rad]
   double ins_x = 0.0, ins_y = 0.0;
   double power_lag = 0.09;
   double dead_power = 0.0;
-  double wider = 1.0;  ///< than Teodor
+  double wider = 1.0;  ///< relative to Teodor
   double faster = 1.0;
   std::string surface = "grass";
 };
@@ -40,7 +40,7 @@ struct Driven {
   std::string problem;
   double path = 0.0;
   double farthest = 0.0;
-  double full_left = 0.0, full_right = 0.0;  ///< [m/s] of the belts, the fastest
+  double full_left = 0.0, full_right = 0.0;  ///< [m/s] of the faster belt
 };
 
 sim::RobotSettings settingsOf(const Hidden& hidden, uint64_t seed) {
@@ -106,7 +106,7 @@ double uniform(std::mt19937_64& random, double low, double high) {
   return low + (high - low) * static_cast<double>(random() >> 11) * 0x1.0p-53;
 }
 
-/// A machine drawn at random with nothing wrong: speed, width, lag, ground.
+/// A random fault-free machine: speed, width, lag, ground.
 Hidden drawn(std::mt19937_64& random) {
   Hidden hidden;
   const auto surfaces = sim::builtInSurfaces();
@@ -118,7 +118,7 @@ Hidden drawn(std::mt19937_64& random) {
   return hidden;
 }
 
-/// Whether exactly the hidden faults of wiring were named.
+/// Whether exactly the hidden wiring faults were reported.
 bool named(const Hidden& hidden, const WiringReport& report) {
   const bool turned = std::abs(hidden.ins_yaw) > 0.1;
   return report.unsure.empty() && report.has(FaultKind::kSwapped) == hidden.swapped &&
@@ -162,8 +162,8 @@ TEST_CASE("a drive of a minute stays in its circle and names every wrong wire on
 
 namespace {
 
-/// [m/s] that the machine goes straight ahead at full command, without the ground's chance, and the
-/// time [s] after which it has reached 63 % of that.
+/// [m/s] steady straight speed at full command without ground noise, and the time [s] to 63 % of
+/// it.
 std::pair<double, double> steadySpeed(const Hidden& hidden) {
   sim::RobotSettings settings = settingsOf(hidden, 1);
   settings.motion_noise = false;
@@ -191,7 +191,7 @@ TEST_CASE("the minute's numbers hold: speed, mounting, place of the INS, lag, wi
   double speed_error = 0.0, yaw_error = 0.0, place_error = 0.0, lag_error = 0.0;
   for (int i = 0; i < seeds; ++i) {
     Hidden hidden = drawn(random);
-    if (hidden.surface == "ice") hidden.surface = "sand";  // full speed is not reached in 5 m
+    if (hidden.surface == "ice") hidden.surface = "sand";  // full speed is not reached within 5 m
     hidden.ins_yaw = uniform(random, -0.6, 0.6);
     hidden.ins_x = uniform(random, -0.4, 0.4);
     hidden.ins_y = uniform(random, -0.3, 0.3);
@@ -219,7 +219,7 @@ TEST_CASE("the minute's numbers hold: speed, mounting, place of the INS, lag, wi
   CHECK(across >= 0.85 * seeds);
   CHECK(speed_error < 0.04);
   CHECK(yaw_error < 1.0 * kDeg);
-  CHECK(place_error < 0.1);  // beside the point that it turns about, which is not quite the middle
+  CHECK(place_error < 0.1);  // relative to the centre of rotation, which is not exactly the middle
   CHECK(lag_error < 0.05);
 }
 

@@ -16,7 +16,7 @@
 namespace tread::setup {
 namespace {
 
-/// A vehicle that may be lifted: its tracks then run free, and it stands.
+/// A vehicle that may be lifted: its tracks then run free, and it does not move.
 class LiftableVehicle : public sim::Plant {
  public:
   LiftableVehicle(const sim::VehicleParameters& parameters, std::shared_ptr<bool> lifted)
@@ -66,7 +66,7 @@ class VirtualSite::PortLink : public Link {
   PortLink(Link* line, std::string address, bool right_rate)
       : line_(line), address_(std::move(address)), right_rate_(right_rate) {
     if (line_ == nullptr) return;
-    setPipeConnected(*line_, false);  // what came before is gone
+    setPipeConnected(*line_, false);  // discards earlier bytes
     setPipeConnected(*line_, true);
   }
 
@@ -99,7 +99,7 @@ class VirtualSite::PortLink : public Link {
   bool right_rate_;
 };
 
-/// The nodes of a folder, on the bus until this is gone.
+/// The nodes of a folder, on the bus for the lifetime of this object.
 class VirtualSite::Running : public RobotSession {
  public:
   Running(VirtualSite& site, const std::string& folder, Processes which)
@@ -170,7 +170,7 @@ VirtualSite::VirtualSite(const HiddenMachine& machine)
 }
 
 void VirtualSite::beginBus(int64_t utime) {
-  bus_.reset();  // before another one has the same lines
+  bus_.reset();  // before another one gets the same lines
   bus_ = std::make_unique<VirtualBus>(seed_, FaultPlan{}, utime);
   bus_->addNode("simulator", [this](Bus& bus) {
     return std::make_unique<sim::SimulatorNode>(

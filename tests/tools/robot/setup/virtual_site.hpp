@@ -15,17 +15,17 @@
 
 namespace tread::setup {
 
-/// A simulated machine, and what hangs on which port. The setup sees the ports only.
+/// A simulated machine and the devices at its ports. The setup sees only the ports.
 struct HiddenMachine {
   sim::SimulatorSettings settings;
   sim::WorldDescription world;
-  std::string ins_port, motor_port, laser_port;      ///< as ports() names them
-  int ins_baud = 0, motor_baud = 0, laser_baud = 0;  ///< 0 = no serial line
-  std::vector<std::string> empty_ports;              ///< nothing is on them
+  std::string ins_port, motor_port, laser_port;      ///< as in ports()
+  int ins_baud = 0, motor_baud = 0, laser_baud = 0;  ///< 0 = not a serial line
+  std::vector<std::string> empty_ports;              ///< without a device
 };
 
 /// The machine's host in virtual time: real device bytes over in-memory lines, real nodes. A serial
-/// line opened at another rate than its device's carries garbage.
+/// line opened at a wrong rate has garbage.
 class VirtualSite : public Site {
  public:
   explicit VirtualSite(const HiddenMachine& machine);
@@ -49,7 +49,7 @@ class VirtualSite : public Site {
   };
   class PortLink;
   class Running;
-  /// A bus with nothing but the simulator on it: who listened on the one before may be gone.
+  /// A bus with only the simulator: subscribers of the previous one may be gone.
   void beginBus(int64_t utime);
 
   std::shared_ptr<bool> lifted_;
@@ -58,10 +58,10 @@ class VirtualSite : public Site {
   std::unique_ptr<sim::SimulatedDevices> devices_;
   std::map<std::string, MemoryStore> stores_;
   uint64_t seed_;
-  std::unique_ptr<VirtualBus> bus_;  ///< last: its nodes refer to the rest
+  std::unique_ptr<VirtualBus> bus_;  ///< last: its nodes refer to the other members
 };
 
-/// A person who does what is asked before answering from a file.
+/// A person who acts as asked before answering from a file.
 class VirtualPerson : public AnswersFile {
  public:
   VirtualPerson(VirtualSite& site, const std::string& answers);

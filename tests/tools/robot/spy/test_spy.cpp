@@ -26,7 +26,7 @@ std::string contentOf(const std::string& file) {
   return out.str();
 }
 
-/// A folder for outputs, gone after the test.
+/// A temporary folder for outputs.
 class Folder {
  public:
   Folder()
@@ -42,7 +42,7 @@ class Folder {
   std::filesystem::path path_;
 };
 
-/// A display in memory; DISPLAY names it while it lives.
+/// An in-memory display, named by DISPLAY while this object lives.
 class Display {
  public:
   explicit Display(const Folder& folder)
@@ -59,7 +59,7 @@ class Display {
   ~Display() { unsetenv("DISPLAY"); }
 
  private:
-  /// The line that is a number: beside another display it first complains of those that are taken.
+  /// The line with a number: next to another display it first complains about those in use.
   static std::string displayIn(const std::string& said) {
     std::istringstream lines(said);
     std::string line;
@@ -99,7 +99,7 @@ class Publisher {
   std::thread thread_;
 };
 
-/// Whether lcm-spy can run here; else one line says why not.
+/// Whether lcm-spy can run here; else prints the reason in one line.
 bool possible() {
   const bool tools = std::filesystem::exists(TREAD_XVFB) && std::filesystem::exists(TREAD_JAVA);
   const bool jar =
@@ -156,7 +156,7 @@ TEST_CASE("tread-spy starts, finds our types and ends when it is told to") {
   INFO(said);
   REQUIRE(said.find("tread-lcmtypes.jar") != std::string::npos);
   REQUIRE(said.find("Found ") != std::string::npos);
-  // The types of the channels and those within them.
+  // The types of the channels and those nested in them.
   int types = 0;
   REQUIRE(std::sscanf(said.c_str() + said.find("Found "), "Found %d LCM types", &types) == 1);
   REQUIRE(types >= static_cast<int>(kChannels.size()));

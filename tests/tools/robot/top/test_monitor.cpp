@@ -11,7 +11,7 @@ using namespace tread::top;
 
 namespace {
 
-/// A monitor and the time it is told.
+/// A monitor with the time set by the test.
 struct Watched {
   Monitor monitor;
   int64_t now = 1'000'000'000;
@@ -21,7 +21,7 @@ struct Watched {
     const auto bytes = encoded(message);
     monitor.take(channel.name, bytes.data(), bytes.size(), now);
   }
-  /// INS at a rate for so many seconds; each `gap`-th is missing.
+  /// INS at a rate for a time; each `gap`-th message is missing.
   void drive(double seconds, double rate, int gap = 0) {
     for (int i = 0; i < static_cast<int>(seconds * rate); ++i) {
       now += static_cast<int64_t>(1e6 / rate);

@@ -16,7 +16,7 @@ using namespace tread::testing;
 
 namespace {
 
-/// A robot's end of the bus: MOTOR, and what it was asked.
+/// The robot's end of the bus: publishes MOTOR, and stores requests.
 class Robot {
  public:
   explicit Robot(const std::string& url, const std::string& key = "")

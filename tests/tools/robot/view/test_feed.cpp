@@ -37,7 +37,7 @@ ins_t insAt(double x, int64_t utime) {
   return ins;
 }
 
-/// Ten seconds of driving at 1 m/s; a tile each second, the first one again each second.
+/// Ten seconds of driving at 1 m/s; a new tile each second, and the first one repeatedly.
 void writeLog(const std::string& path) {
   LogWriter log(path);
   for (int i = 0; i <= 100; ++i) {
@@ -55,7 +55,7 @@ void writeLog(const std::string& path) {
   }
 }
 
-/// What a viewer of a channel gets at once.
+/// The messages that a new viewer of a channel gets at once.
 std::vector<FeedMessage> stateOf(Feed& feed, const char* topic) {
   std::vector<FeedMessage> state;
   const uint32_t channel = feed.channels().find(topic)->id;
@@ -63,7 +63,7 @@ std::vector<FeedMessage> stateOf(Feed& feed, const char* topic) {
   return state;
 }
 
-/// A viewer that subscribes to everything and keeps what came.
+/// A viewer that subscribes to everything and stores it.
 struct Viewer {
   std::vector<FeedMessage> got;
   Feed feed{[](uint32_t) { return true; },
@@ -93,7 +93,7 @@ TEST_CASE("a seek tells the newest of each part, and later ones only what differ
   viewer.got.clear();
   viewer.feed.seek(6'050'000, 7);
   CHECK(viewer.last("INS")["position"][0] == 5.0);
-  CHECK(viewer.count("MAP") == 6);  // five new tiles, and the one that changed
+  CHECK(viewer.count("MAP") == 6);  // five new tiles, and the changed one
   CHECK(viewer.last("view/player")["now"] == 6'050'000);
   CHECK(viewer.last("view/player")["answered"] == 7);
   viewer.got.clear();
@@ -102,7 +102,7 @@ TEST_CASE("a seek tells the newest of each part, and later ones only what differ
   CHECK(viewer.count("INS") == 0);
   viewer.feed.seek(3'050'000, 9);
   CHECK(viewer.last("INS")["position"][0] == 2.0);
-  CHECK(viewer.count("MAP") == 1);  // the first tile as it was then
+  CHECK(viewer.count("MAP") == 1);  // the first tile as of that time
 }
 
 TEST_CASE("a log is played at its speed, message for message, and stops at its end") {
@@ -164,7 +164,7 @@ TEST_CASE("who looks at the scene late, or goes back in time, gets all of it") {
             [&](const FeedMessage& message) { got.push_back(message); });
   feed.openLogs({folder.path("drive.lcmlog")});
   feed.seek(6'050'000, 1);
-  CHECK(got.size() <= 2);  // where the playback is
+  CHECK(got.size() <= 2);  // the playback position
   looks = true;
   const uint32_t map = feed.channels().find("scene/map")->id;
   CHECK(stateOf(feed, "scene/map").size() == 1);
@@ -216,7 +216,7 @@ TEST_CASE("names, counters and channels that somebody makes up fill no memory") 
   const Json told = Json::parse(*history.at(0).payload);
   CHECK(told["events"].size() >= 2000);
   CHECK(told["events"].size() <= 4000);
-  // The newest stay.
+  // The newest are kept.
   CHECK(told["events"].back()[2] == "process 29999");
 }
 

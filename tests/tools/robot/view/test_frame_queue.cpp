@@ -61,7 +61,7 @@ TEST_CASE("an allowance is used up, and comes again with time up to its most") {
   CHECK(allowance.left() == 1.0);
   allowance.wait(100.0);
   CHECK(allowance.left() == 5.0);
-  // Who is refused uses nothing: it is over when the flood is.
+  // A refused viewer costs nothing: all is normal after the flood.
   int taken = 0;
   for (int i = 0; i < 1000; ++i) taken += allowance.take() ? 1 : 0;
   CHECK(taken == 5);

@@ -34,7 +34,7 @@ namespace {
 
 const std::string kScripts = std::string(TREAD_SOURCE_DIR) + "/tests/tools/robot/view/browser/";
 
-/// The log of a mission of the whole robot, made once.
+/// The log of a mission of the complete robot, made once.
 std::string missionLog() {
   static const OwnFolder folder;
   static const std::string path = [] {
@@ -49,7 +49,7 @@ std::string missionLog() {
   return path;
 }
 
-/// tread-view, and where it says that it can be opened.
+/// tread-view, and its printed address.
 class View {
  public:
   View(const OwnFolder& folder, std::vector<std::string> arguments) {
@@ -75,14 +75,14 @@ class View {
   std::string url_;
 };
 
-/// The most memory that a process has had so far [bytes].
+/// Peak memory of a process so far [bytes].
 int64_t peakMemory(pid_t pid) {
   const std::string status = contentOf("/proc/" + std::to_string(pid) + "/status");
   const size_t at = status.find("VmHWM:");
   return at == std::string::npos ? 0 : 1024 * std::atoll(status.c_str() + at + 6);
 }
 
-/// What a process has computed so far [s].
+/// Processor time of a process so far [s].
 double computedBy(pid_t pid) {
   const std::string text = contentOf("/proc/" + std::to_string(pid) + "/stat");
   std::istringstream words(text.substr(text.rfind(')') + 1));
@@ -93,7 +93,7 @@ double computedBy(pid_t pid) {
   return (user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
 }
 
-/// One that nobody listens at now.
+/// A port that nobody listens at.
 int freePort() {
   const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in place{};
@@ -107,8 +107,8 @@ int freePort() {
   return ntohs(place.sin_port);
 }
 
-/// Runs a script of node; `during` is called every 50 ms with what it has printed. `behind`: words
-/// of another command, which must become it (exec).
+/// Runs a node script; `during` is called every 50 ms with its output so far. `behind`: words of
+/// another command that ends in exec.
 template <class During>
 void runScript(const OwnFolder& folder, const std::string& name, std::vector<std::string> arguments,
                const During& during, std::vector<std::string> behind = {}) {
@@ -149,7 +149,7 @@ TEST_CASE(
     "the page shows a log in a browser: map, slider, events, playing, and a server that is back") {
   const OwnFolder folder;
   View view(folder, {missionLog()});
-  // The same place for the one that follows.
+  // The same port for the next one.
   const std::string port = view.url().substr(view.url().rfind(':') + 1);
   std::unique_ptr<Process> again;
   runScript(folder, "page.mjs", {view.url(), "log", folder.path("log.png")},
@@ -196,7 +196,7 @@ TEST_CASE("of a robot with a key the page is shown what is sealed by it, and not
   LcmBus robot(BusAccess{url, hostSealer(key)}, TimeSource::kHost);
   auto motor = blank<motor_t>();
   motor.bridge_state = motor_t::STATE_DRIVING;
-  // The robot is heard at last only, so that a forged message could be the first.
+  // The robot is received last, so that a forged message could be the first.
   for (LcmBus* const sender : {&stranger, &robot}) {
     const std::string output = folder.path(sender == &robot ? "robot.txt" : "stranger.txt");
     Process page("/usr/bin/env",
@@ -232,7 +232,7 @@ TEST_CASE("viewers without end cost neither memory nor the robot's drive") {
   int64_t memory = 0;
   const double before = computedBy(view.process().pid());
   const tread::launch::StallWatch watch;
-  // Started by root, a browser would take a higher priority than the robot has.
+  // Started by root, a browser would get a higher priority than the robot.
   std::vector<std::string> behind;
   if (::geteuid() == 0) behind = {"setpriv", "--bounding-set", "-sys_nice"};
   runScript(
@@ -252,8 +252,8 @@ TEST_CASE("viewers without end cost neither memory nor the robot's drive") {
   CHECK(contentOf(output).find("is armed") != std::string::npos);
   CHECK(memory > 1'000'000);
   CHECK(memory < 200'000'000);
-  // Viewers could take the page's own lease from it, or the processor. That a busy machine delays
-  // an instrument by 100 ms is not theirs.
+  // Viewers could take the page's lease, or the processor. A delay of an instrument by 100 ms on a
+  // busy machine is not their fault.
   if (watch.longest() < 0.5)
     CHECK_THAT(contentOf(output), !Catch::Contains("operator") && !Catch::Contains("has let go"));
   CHECK(computed < 2.0 + 0.3 * seconds);
@@ -315,7 +315,8 @@ TEST_CASE("the page works behind a proxy, under a path, and operates only from o
   std::vector<std::string> words{"--lcm-url", ownLcmUrl(), "--token", "secret"};
   if (named) words.insert(words.end(), {"--origin", "https://127.0.0.1:" + port + "/robot/"});
   const View view(folder, words);
-  // A proxy that passes on name and path is a page of its own, and finds none under its path.
+  // A proxy that passes on name and path makes its own page address, and finds no page under its
+  // path.
   if (how == "keep" && !named) return;
   runScript(folder, "proxy.mjs", {view.url(), port, pem, how, named ? "ours" : "foreign"});
 }

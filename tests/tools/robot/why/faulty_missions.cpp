@@ -71,7 +71,7 @@ const std::vector<Kind>& kinds() {
   return all;
 }
 
-/// The vehicle becomes another one, or the ground is.
+/// The vehicle changes, or the ground does.
 struct VehicleKind {
   const char* world;
   std::set<std::string> causes;

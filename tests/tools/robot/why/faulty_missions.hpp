@@ -9,18 +9,18 @@
 
 namespace tread::testing {
 
-/// A mission in which one thing goes wrong, and what a debrief may call it.
+/// A mission with a single fault, and acceptable causes for a debrief.
 struct FaultyMission {
   uint64_t seed = 0;
   std::string fault;             ///< in words
   double from = 0.0;             ///< [s] since the log began
-  std::set<std::string> causes;  ///< each of these names it rightly
+  std::set<std::string> causes;  ///< each is a correct cause
 };
 
-/// Kinds of faults that are drawn.
+/// Number of fault kinds.
 size_t faultKinds();
 
-/// Drives the mission of a seed and records it; kind = seed % faultKinds(), all else is drawn.
+/// Drives the mission of a seed and records it; kind = seed % faultKinds(), the rest is random.
 FaultyMission driveFaulty(uint64_t seed, const std::string& log);
 
 }  // namespace tread::testing

@@ -58,7 +58,7 @@ uint64_t numberFrom(const char* variable, uint64_t otherwise) {
 TEST_CASE(
     "the cause of a faulty mission is found, of each kind one, and nothing is said without "
     "evidence") {
-  // Seeds that nothing was tuned on: what is found in them stands in RESULTS.md.
+  // Seeds that were never used for tuning: the results are in RESULTS.md.
   const Score score = scoreOf(70'000, faultKinds(), false);
   CAPTURE(score.wrong);
   CHECK(score.right >= score.missions - 2);

@@ -18,8 +18,7 @@ using tread::samples::OwnFolder;
 
 namespace {
 
-/// A drive of 20 s along x to a goal 10 m ahead; `stop` [s]: motor_bridge disarms then for a
-/// second.
+/// A drive of 20 s along x to a goal 10 m ahead; `stop` [s]: motor_bridge disarms then for 1 s.
 struct InventedDrive {
   double stop = -1.0;
   Reason reason = {StopReason::kInsStale, "INS is stale: nothing new within 100 ms"};
@@ -29,8 +28,8 @@ struct InventedDrive {
   double error = 0.04;
   double error_late = 0.04;  ///< from 10 s on
   int refused = 0;           ///< of the twenty patterns
-  std::string gap;           ///< what tread-gap watch says after 5 s; empty = nothing
-  bool gap_gone = false;     ///< and takes back after 6 s
+  std::string gap;           ///< report of tread-gap watch after 5 s; empty = none
+  bool gap_gone = false;     ///< withdrawn after 6 s
 
   void write(const std::string& path) const {
     DriveLogBuilder log;
