@@ -17,7 +17,7 @@ std::size_t allocations() {
 }
 }  // namespace tread::experiment::testing
 
-#ifndef TREAD_INSTRUMENTED  // sanitizers bring their own
+#ifndef TREAD_INSTRUMENTED  // sanitizers have their own
 void* operator new(std::size_t size) {
   count.fetch_add(1, std::memory_order_relaxed);
   if (void* memory = std::malloc(size)) return memory;

@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-// Drives of a made-up robot with three wheels from one floor to the next, for tread-experiment
+// Synthetic drives of a three-wheel robot from one floor to the next, for tread-experiment
 // crossings.
 namespace tread::samples {
 
@@ -16,7 +16,7 @@ inline std::string seamMapping() {
   return std::string(TREAD_SOURCE_DIR) + "/config/imports/three_wheels_seam.yaml";
 }
 
-/// Runs of a robot whose speed falls to a share where it comes from one floor to the next.
+/// Runs of a robot whose speed falls to a share when it enters the next floor.
 inline void writeRuns(const std::string& path, int runs, double share) {
   constexpr double kStep = 0.05;    // [s]
   constexpr double kLength = 16.0;  // [s] of a run

@@ -8,10 +8,10 @@
 #include "tests/common/recordings/synthetic_drives.hpp"
 #include "tools/lab/experiment/adaptation/reference.hpp"
 
-// Driving on ground that is known: drawn commands, each held for six seconds.
+// Driving on known ground: random commands, each held for six seconds.
 namespace tread::adaptation {
 
-/// What ground makes of lagged commands.
+/// Motion for lagged commands on a ground.
 struct DrawnGround {
   double forward = 0.95;  ///< [1]
   double yaw = 0.5;       ///< [1]
@@ -25,7 +25,8 @@ inline std::vector<recordings::BodyCommand> drawnCommands(int steps, uint64_t se
   return commands;
 }
 
-/// A session of so many steps; executions scatter by `noise` (uniform, relative), a second long.
+/// A session of so many steps; executions scatter by `noise` (uniform, relative), which changes
+/// every second.
 inline SampledSession drawnSession(const std::string& name, const std::string& surface,
                                    const DrawnGround& ground, int steps, double noise,
                                    uint64_t seed) {
@@ -58,14 +59,14 @@ inline SampledSession drawnSession(const std::string& name, const std::string& s
   return session;
 }
 
-/// What was driven in a session of a folder.
+/// A session for a folder of drives.
 struct WrittenSession {
   std::string name;
   std::string surface;
   int steps = 16;
   double yaw = 0.5;       ///< [1] gain of the ground
   int bad_step = 0;       ///< is not ok
-  int operator_step = 0;  ///< the operator drove before it: the wheels turn otherwise
+  int operator_step = 0;  ///< the operator drove before it: wheel speeds differ
 };
 
 /// Writes sessions in steps format: wheels follow at once, poses every 0.1 s, 0.2 s late.

@@ -39,7 +39,7 @@ inline std::vector<TrialGround> groundsOfText(const std::string& text, uint64_t 
   return groundsOf(record(parseTransitionWorld(text, "small.yaml"), seed), notes);
 }
 
-/// Settings for the small world: left, left, right and the mirrored one.
+/// Settings for the small world: left, left, right and the reverse.
 inline ExperimentSettings smallSettings() {
   ExperimentSettings settings;
   settings.rules = {"off", "single", "collective", "telescoping", kOmniscient};

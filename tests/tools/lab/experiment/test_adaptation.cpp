@@ -11,7 +11,7 @@
 namespace tread::adaptation {
 namespace {
 
-/// Ground that differs by its yaw gain; the last session's is far from all others.
+/// Grounds that differ in yaw gain; the last session's is far from the others.
 std::vector<SampledSession> drawnSessions(double last_yaw) {
   std::vector<SampledSession> sessions;
   const double yaw[] = {0.46, 0.48, 0.5, 0.52, 0.54};
@@ -28,7 +28,7 @@ Settings few() {
   return settings;
 }
 
-/// Ratio of a rule's error to that of no learning in a session.
+/// Error of a rule relative to no learning in a session.
 double ratioOf(const AdaptationErrors& errors, const Settings& settings, HeldOut kind,
                const std::string& session, const std::string& rule, size_t k, size_t h, bool yaw) {
   const auto place = [&](const std::string& name) {
@@ -56,12 +56,13 @@ TEST_CASE("on ground of another yaw gain every rule becomes better, on known gro
     const auto far = [&](size_t k, size_t h) {
       return ratioOf(errors, settings, HeldOut::kSurface, "last", rule, k, h, true);
     };
-    // After ten executions; two and ten seconds ahead. The paper's rule scales by single ones.
+    // After ten executions; two and ten seconds ahead. The paper's rule scales by single
+    // executions.
     const double most = rule == "collective" ? 0.75 : 0.4;
     CHECK(far(3, 0) < most);
     CHECK(far(3, 2) < most);
     if (rule == "collective" || rule == "multi_model_home") continue;
-    // The middle of what was known: nothing is to be gained there.
+    // The mean of the known grounds: nothing can be gained there.
     CHECK(ratioOf(errors, settings, HeldOut::kSession, "s2", rule, 3, 0, true) < 1.15);
   }
   CHECK(ratioOf(errors, settings, HeldOut::kSurface, "last", kJudged, 0, 0, true) ==
@@ -85,7 +86,7 @@ TEST_CASE("the same sessions and settings give the same bytes, for any number of
 }
 
 TEST_CASE("longer predictions are pieces in a chain, and what was not measured is not scored") {
-  // Without noise and on ground that the reference knows exactly, the chain ends at the truth.
+  // Without noise, on ground that the reference knows exactly, the chain ends at the truth.
   std::vector<SampledSession> sessions;
   for (size_t i = 0; i < 4; ++i)
     sessions.push_back(drawnSession("s" + std::to_string(i), "grass", {}, 12, 0.0, i + 1));
@@ -104,10 +105,10 @@ TEST_CASE("longer predictions are pieces in a chain, and what was not measured i
       CHECK(session.cells[0][0][h].position < 0.05);
       CHECK(session.cells[0][0][h].yaw < 0.02);
     }
-  // 36 pieces: all begin a prediction of 2 s, but the last four none of 10 s.
+  // 36 pieces: all begin a prediction of 2 s, the last four none of 10 s.
   CHECK(errors.sessions[0].cells[0][0][0].starts == 36);
   CHECK(errors.sessions[0].cells[0][0][2].starts == 32);
-  // One piece is lost at the gap, and four before it reach no 10 s.
+  // One piece is lost at the gap, and four before it do not reach 10 s.
   CHECK(errors.sessions[3].cells[0][0][0].starts == 35);
   CHECK(errors.sessions[3].cells[0][0][2].starts == 27);
 }
@@ -132,7 +133,7 @@ TEST_CASE("intervals are over sessions") {
   const Interval same = intervalOf({1.5, 1.5, 1.5}, 1);
   CHECK(same.low == 1.5);
   CHECK(same.high == 1.5);
-  // Of two values a quarter of the resamples hold only the one, a quarter only the other.
+  // Of two values a quarter of the resamples contain only one, a quarter only the other.
   const Interval two = intervalOf({0.0, 1.0}, 1);
   CHECK(two.mean == 0.5);
   CHECK(two.low == 0.0);
@@ -168,7 +169,7 @@ TEST_CASE("better and worse are beyond one standard error over sessions, level i
   CHECK(better.standard_error == Approx(0.05));
   CHECK(standing({{1.0, 0.9}, {1.0, 1.1}}).judged == Verdict::kLevel);
   CHECK(standing({{1.0, 1.2}, {1.0, 1.1}}).judged == Verdict::kWorse);
-  CHECK(standing({{1.0, 0.5}}).judged == Verdict::kUnknown);  // one session says nothing
+  CHECK(standing({{1.0, 0.5}}).judged == Verdict::kUnknown);  // one session is not enough
   const auto lines = summaryOf(drawnErrors({{1.0, 0.8}, {2.0, 1.8}}), rules, 1);
   const SummaryLine& judged = *std::find_if(
       lines.begin(), lines.end(), [](const SummaryLine& line) { return line.rule == kJudged; });

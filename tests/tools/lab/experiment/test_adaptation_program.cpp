@@ -95,7 +95,7 @@ TEST_CASE("on real drives the default rule is better than no learning and holds 
       CHECK(line.yaw.ratio.mean < 1.03);
     }
     // Measured .00 to .08 better than slip regression in position; in yaw .00 to .13 better, but
-    // .03 worse 10 s ahead in a session that was left out.
+    // .03 worse 10 s ahead in a left-out session.
     if (line.rule == "slip" && line.executions == 3) {
       const bool known_worse = line.kind == HeldOut::kSession && line.horizon == 10;
       CHECK(line.position.difference < 0.01);

@@ -20,7 +20,7 @@ CalledProgram run(const std::string& arguments) {
   return called("tread-experiment crossings " + arguments);
 }
 
-/// Numbers of the row of crossings.csv that begins so.
+/// Numbers of the row of crossings.csv with this beginning.
 std::vector<double> rowOf(const std::string& csv, const std::string& begins) {
   const size_t at = csv.find("\n" + begins + ",");
   REQUIRE(at != std::string::npos);
@@ -47,12 +47,12 @@ TEST_CASE("a change inside a run is noticed, and the next pieces are predicted b
   const auto errorOf = [&](const std::string& rule, const std::string& phase) {
     return rowOf(csv, rule + "," + phase)[2];
   };
-  // Without learning half of the way is wrong behind the border, in all later pieces.
+  // Without learning all later pieces behind the border are off by half of the path.
   CHECK(errorOf("off", "later") == Approx(1.0).epsilon(0.1));
   CHECK(errorOf("multi_model", "later") < 0.15);
   CHECK(errorOf("multi_model", "second") < errorOf("single", "second"));
   CHECK(errorOf("multi_model", "third") < errorOf("single", "third"));
-  // runs, of them with a false alarm, changes, noticed within .5, .8 and 1.6 s
+  // runs, runs with a false alarm, changes, detected within .5, .8 and 1.6 s
   const std::vector<double> noticed = rowOf(folder.text("out/noticed.csv"), "multi_model");
   CHECK(noticed[0] == 12.0);
   CHECK(noticed[1] <= 1.0);

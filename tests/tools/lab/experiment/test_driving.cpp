@@ -34,7 +34,7 @@ TEST_CASE("poses are interpolated along the arc, and not across a long silence")
   const Pose2 arc = integrate(twist, 0.25);
   CHECK(segment.poses[5].x == Approx(arc.x));
   CHECK(segment.poses[5].y == Approx(arc.y));
-  CHECK(std::isnan(segment.poses[20].x));  // a second without a pose
+  CHECK(std::isnan(segment.poses[20].x));  // one second without a pose
   CHECK(std::isfinite(segment.poses[35].x));
 }
 
@@ -54,7 +54,7 @@ TEST_CASE("pieces follow one another until a pose is missing or jumps") {
   cutPieces(jump);
   CHECK_FALSE(jump.goesOn(3));
   CHECK(jump.pieces[4].begin == broken);
-  // Where the motion at the beginning is not known, two seconds are left out.
+  // If the initial motion is unknown, two seconds are left out.
   session.segments[0].entry_known = false;
   cutPieces(session);
   CHECK(session.pieces.front().begin == kPieceSamples);
@@ -68,7 +68,7 @@ TEST_CASE("steps that were recorded apart are joined where one went on into the 
   REQUIRE(found.sessions.size() == 2);
   const SampledSession& whole = found.sessions[0];
   REQUIRE(whole.segments.size() == 1);
-  // The truth over ten seconds, across a join: the same as of what was driven.
+  // The truth over ten seconds, across a join, equals the driven one.
   const auto commands = drawnCommands(6, 1);
   const size_t begin = 60;
   REQUIRE(std::isfinite(whole.segments[0].poses[begin].x));
@@ -79,7 +79,7 @@ TEST_CASE("steps that were recorded apart are joined where one went on into the 
   const Pose2 said = between(whole.segments[0].poses[begin], whole.segments[0].poses[begin + 200]);
   CHECK(distanceBetween(truth, said) < 0.02);
   CHECK(std::abs(truth.yaw - said.yaw) < 0.01);
-  // Step 3 is not fit for use, and before step 5 somebody else drove.
+  // Step 3 is unusable, and somebody else drove before step 5.
   const SampledSession& parts = found.sessions[1];
   REQUIRE(parts.segments.size() == 2);
   CHECK(parts.segments[0].commands.size() == 4 * 121);
@@ -108,7 +108,7 @@ TEST_CASE("a folder of LCM logs is read, too, each log a session") {
   CHECK(two.surface == "sand");
   CHECK(two.kind == CommandKind::kTrackSpeed);
   CHECK(two.baseline == Approx(1.0));
-  // Six steps apart from each other; the first two seconds of each are its lead-in.
+  // Six separate steps; the first two seconds of each are its lead-in.
   REQUIRE(two.pieces.size() == 6);
   const recordings::BodyCommand command = drawnCommands(6, 2)[two.pieces[3].segment];
   CHECK(two.pieces[3].mean_twist[0] == Approx(0.95 * command.v).margin(0.01));

@@ -54,7 +54,7 @@ TEST_CASE(
 TEST_CASE("every rule is what it was without a history, and has learned with one") {
   const std::vector<TrialGround> grounds = groundsOfText(kSmallWorld);
   for (const std::string& rule : learnerNames()) {
-    if (rule == "off" || rule == "basis") continue;  // one surface teaches no basis
+    if (rule == "off" || rule == "basis") continue;  // one surface is not enough for a basis
     const std::vector<std::string> names{rule, rule + "_home", rule + "_remembered"};
     const Methods methods(names, {}, grounds, 0, 1, {});
     const Pose2& shipped = grounds[0].averaged_ends[1];
@@ -62,8 +62,8 @@ TEST_CASE("every rule is what it was without a history, and has learned with one
     CHECK(methods.predictEnd(0, 1).yaw == shipped.yaw);
     CHECK(methods.predictEnd(1, 1).yaw != shipped.yaw);
     CHECK(methods.predictEnd(2, 1).yaw != methods.predictEnd(1, 1).yaw);
-    if (rule == "constant" || rule == "gp") continue;  // what they have met stays
-    // The last surface is the one that the transition starts from.
+    if (rule == "constant" || rule == "gp") continue;  // they keep old executions
+    // The last surface is the one from which the transition starts.
     const double away = grounds[1].averaged_ends[1].yaw;
     CHECK(std::abs(methods.predictEnd(2, 1).yaw - shipped.yaw) <
           0.3 * std::abs(away - shipped.yaw));
@@ -86,7 +86,7 @@ TEST_CASE("no recording that is tested was averaged or driven before") {
   }
   CHECK(known.count(odd.x) == 1);
   for (const double x : tested) CHECK(known.count(x) == 0);
-  // Another recording of the tests changes no average; the neighbours 2 and 3 are tests.
+  // A different test recording changes no average; the neighbours 2 and 3 are tests.
   for (size_t i : {2U, 3U})
     for (Pose2& pose : recorded.surfaces[0].executions[1][i]) pose.x *= 1.01;
   const std::vector<TrialGround> after = groundsOf(recorded, notes);

@@ -13,8 +13,8 @@ namespace {
 
 using tread::testing::effort;
 
-/// Paired trials: rule 0 errs by 0.2 of what is covered in the mean, rule 1 by 0.8 of rule 0. The
-/// repetitions of a run share part of their error.
+/// Paired trials: the mean error of rule 0 is 0.2 of the distance, that of rule 1 is 0.8 of rule
+/// 0's. Repetitions of a run share part of their error.
 RatioMoments trials(uint64_t seed, int runs, double shared = 0.3) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> standard;

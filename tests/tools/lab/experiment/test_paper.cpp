@@ -54,7 +54,7 @@ TEST_CASE("the printed tables agree with each other but in the cells that are ca
   REQUIRE(paperCells().size() == 24);
   for (const PaperCell& cell : paperCells()) {
     const double b = cell.errors[1], c = cell.errors[2];
-    // The range of (b - c) / b that roundings of half a unit in the last place leave.
+    // The range of (b - c) / b due to rounding in the last place.
     const double low = 100.0 * (1.0 - (c + 0.0005) / (b - 0.0005)) - 0.9;
     const double high = 100.0 * (1.0 - (c - 0.0005) / (b + 0.0005)) + 0.1;
     const bool agrees = low <= cell.reduction && cell.reduction <= high;

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace testing;
 
-/// A folder of this test's own, gone with it.
+/// A temporary folder.
 struct Folder {
   Folder() : path(fs::temp_directory_path() / ("tread-experiment-" + std::to_string(getpid()))) {
     fs::create_directories(path);
@@ -113,7 +113,7 @@ TEST_CASE("several sets of recordings give means with their spread, and the numb
   CHECK(printed.find("paper") == std::string::npos);
   const auto sets = linesOf(folder / "out/sets.csv");
   CHECK(sets[0] == "table,seed,from,to,quantity,rule,against,k,value");
-  // Table I, Table II, all patterns, first executions (unchanged ground, too), unchanged.
+  // Table I, Table II, all patterns, first executions (also on unchanged ground), unchanged.
   CHECK(sets.size() ==
         1 + 3 * (2 * 2 * 4 + 2 * 2 * 3 + 2 * 2 * 4 * 4 + 4 * 2 * 4 * 6 + 2 * (2 * 2 * 4)));
 }
@@ -176,7 +176,7 @@ TEST_CASE("a folder of recordings gives the same tables as the world that they c
   REQUIRE(run("--recordings " + (folder / "recorded") + kFour + " --out " + (folder / "b")).first ==
           0);
   CHECK(linesOf(folder / "a/table1.csv").size() == linesOf(folder / "b/table1.csv").size());
-  // Surfaces of a folder are in the order of their names.
+  // Surfaces of a folder are sorted by name.
   CHECK(contentOf(folder / "b/table1.csv").find("ice,road,position,off,") != std::string::npos);
 }
 

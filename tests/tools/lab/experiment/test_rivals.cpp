@@ -33,17 +33,17 @@ TEST_CASE("recursive least squares gives what a calculation by hand gives") {
   plain.learn(sampleAt(2.0, 0.0, {0.2, 0.0, 0.0}));
   CHECK(plain.offset({1.0, 0.0}) == Approx(0.05 + 0.1 / 6.0));
 
-  // Half of it forgotten before the first: P = 0.02, S = 0.12, x = 0.04 / 0.12 0.2.
+  // Forgetting by half before the first: P = 0.02, S = 0.12, x = 0.04 / 0.12 0.2.
   LinearRival forgetting(0, kForwardOnly, {Eigen::VectorXd::Constant(1, 0.1), 0.5});
   forgetting.learn(sampleAt(2.0, 0.0, {0.2, 0.0, 0.0}));
   CHECK(forgetting.offset({3.0, 0.0}) == Approx(3.0 * 0.2 / 3.0));
 
-  // A walk of the prior variance does the same to the first.
+  // A walk with the prior variance has the same effect on the first.
   LinearRival walking(0, kForwardOnly, {Eigen::VectorXd::Constant(1, 0.1), 1.0, 1.0});
   walking.learn(sampleAt(2.0, 0.0, {0.2, 0.0, 0.0}));
   CHECK(walking.offset({1.0, 0.0}) == Approx(0.2 / 3.0));
 
-  // An innovation of 10 standard deviations counts as 4 times less certain (10 / 2.5).
+  // An innovation of 10 standard deviations is weighted with 4 times the noise (10 / 2.5).
   LinearRival wild(0, kForwardOnly, {Eigen::VectorXd::Constant(1, 0.1)});
   const double jump = 10.0 * std::sqrt(0.08);
   wild.learn(sampleAt(2.0, 0.0, {jump, 0.0, 0.0}));
@@ -56,18 +56,19 @@ TEST_CASE("a Gaussian process of one sample gives what a calculation by hand giv
   tuning.length = {1.0, 2.0};
   GaussianProcess process(2, tuning);
   process.learn(sampleAt(1.0, 1.0, {9.0, 9.0, 0.1}));
-  // k = 0.04, R = 0.04: half of it there; at one length in each direction exp(-1) of that.
+  // k = 0.04, R = 0.04: half of it at that point; exp(-1) of that at one length scale in each
+  // direction.
   CHECK(process.offset({1.0, 1.0}) == Approx(0.05));
   CHECK(process.offset({2.0, 3.0}) == Approx(0.05 * std::exp(-1.0)));
   const Sample one = sampleAt(1.0, 1.0, {0.0, 0.0, 0.1});
   CHECK(GaussianProcess::logLikelihood(2, tuning, &one, 1) ==
         Approx(-0.5 * std::log(2.0 * kPi * 0.08) - 0.5 * 0.01 / 0.08));
-  // Two equal samples weigh as one with half the noise.
+  // Two equal samples weigh like one with half the noise.
   process.learn(sampleAt(1.0, 1.0, {9.0, 9.0, 0.1}));
   CHECK(process.offset({1.0, 1.0}) == Approx(0.1 * 0.04 / 0.06));
 }
 
-/// Samples of ground whose yaw gain is off by `gain`.
+/// Samples of ground with a yaw gain error of `gain`.
 std::vector<Sample> ground(double gain, size_t count, uint64_t seed) {
   samples::Draws draws(seed);
   std::vector<Sample> samples;
@@ -169,7 +170,7 @@ TEST_CASE("the noise of executions is what two under one steady command differ b
   samples::Draws draws(3);
   for (int i = 0; i < 4000; ++i) {
     const double v = i % 4 < 2 ? 1.0 : 2.0;
-    // A residual of the command's own, and an execution's: uniform, variance 0.3^2 v^2 / 3.
+    // A residual of the command and one of the execution: uniform, variance 0.3^2 v^2 / 3.
     Sample sample = sampleAt(v, 0.0, {0.5 * v + 0.3 * v * draws.next(), 0.0, 0.0});
     sample.repeats = i % 2 == 1;
     sessions[0].push_back(sample);

@@ -52,7 +52,7 @@ TEST_CASE("who must begin with the old set cannot beat (a + 2 d) / 3, and the ri
 }
 
 TEST_CASE("in the long run smoothing with w = 0.5 costs sqrt(1 + w / (2 - w)) = 1.155") {
-  // Errors are lengths: the factor is that of their deviation, when they have no bias.
+  // Errors are absolute values: without bias the factor is that of their standard deviation.
   for (const MethodErrors& errors : smallExperiment().unchanged) {
     CHECK(errors.orientation.ratio(kSingle, kBest).value ==
           Approx(std::sqrt(1.0 + 0.5 / 1.5)).epsilon(0.02));

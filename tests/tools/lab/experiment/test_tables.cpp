@@ -15,7 +15,7 @@ namespace {
 
 using namespace testing;
 
-/// Ten runs of 2 m in which each rule errs by these shares of it, alternately a bit more and less.
+/// Ten runs of 2 m in which each rule's error is alternately slightly above and below these shares.
 RatioMoments moments(const std::vector<double>& shares) {
   RatioMoments sums(shares.size());
   for (int i = 0; i < 10; ++i) {
@@ -102,14 +102,14 @@ TEST_CASE("a table has the error of each rule per metre and per radian") {
 
 TEST_CASE("a reduction is what a rule takes off another one's error, in per cent") {
   const Tables tables = knownTables();
-  // Collective against single; both against off; of two quantities.
+  // Collective relative to single; both relative to off; two quantities.
   CHECK(tables.reductions.size() == 2 * 3);
   const Row* row = find(tables.reductions, "ice", "road", kPosition, "collective", "single");
   REQUIRE(row != nullptr);
   CHECK(row->estimate.value == Approx(50.0));
   CHECK(row->estimate.low <= row->estimate.value);
   CHECK(row->estimate.high >= row->estimate.value);
-  // Errors of both go up and down together: paired, nothing is left to doubt.
+  // Both errors rise and fall together: paired, no uncertainty remains.
   CHECK(row->estimate.high - row->estimate.low < 1e-3);
   CHECK(find(tables.reductions, "ice", "road", kPosition, "collective", "off")->estimate.value ==
         Approx(75.0));
@@ -208,7 +208,7 @@ TEST_CASE("surfaces that the paper does not have are not compared with it") {
   CHECK_FALSE(agreementWithPaper(knownTables()));
   CHECK(paperCells().size() == 24);
   CHECK(paperCell("ice", "road", kPosition) == nullptr);
-  // A table that holds the paper's own numbers agrees with it.
+  // A table with the paper's own numbers agrees with it.
   Tables printed;
   for (const PaperCell& cell : paperCells()) {
     for (size_t column = 0; column < 4; ++column) {

@@ -32,7 +32,7 @@ struct Calibrated {
   double g_f, g_psi, slip, asym, del0;
 };
 
-/// The model of the calibration, written down once more: end of a pattern of 1 s.
+/// The calibration's model, implemented independently: end of a pattern of 1 s.
 Pose2 endByCalibration(const Calibrated& surface, const TrackCommand& power,
                        const ExecutionNoise& noise) {
   constexpr double kLag = 0.15, kFullSpeed = 1.10, kGauge = 0.60, kFine = 1e-4;

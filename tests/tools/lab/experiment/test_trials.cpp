@@ -16,7 +16,7 @@ namespace {
 using namespace testing;
 using tread::testing::effort;
 
-/// Everything that an experiment puts into files.
+/// The content of all files of an experiment.
 std::string filesOf(const std::vector<TrialGround>& grounds, const ExperimentSettings& settings) {
   const Tables tables = tablesOf(runExperiment(grounds, settings, {}), settings, grounds);
   std::string text;
@@ -24,7 +24,7 @@ std::string filesOf(const std::vector<TrialGround>& grounds, const ExperimentSet
   return text;
 }
 
-/// What learning off errs in truth: every recording is as likely as any other.
+/// Expected error without learning: every recording is equally likely.
 double expectedError(const TrialGround& from, const TrialGround& to,
                      const std::vector<Sequence>& sequences) {
   double error = 0.0, metres = 0.0;
@@ -110,11 +110,11 @@ TEST_CASE("the interval of a table covers the error that all recordings together
 
 TEST_CASE("cells of two seeds differ beyond their joint interval as seldom as it promises",
           "[study]") {
-  // What an excitation run teaches decides on all repetitions after it: here a short one that may
-  // leave out a pattern, so that repetitions of one run are alike.
+  // An excitation run influences all following repetitions: here a short one that may omit a
+  // pattern, so that the repetitions of a run are correlated.
   const std::vector<TrialGround> grounds = groundsOfText(kSmallWorld);
   ExperimentSettings settings = smallSettings();
-  // `multi_model_remembered` would double the time and shares all that is tested with `_home`.
+  // `multi_model_remembered` would double the time and shares the tested code with `_home`.
   settings.rules = {"single", "collective_home", "multi_model_home"};
   settings.repetitions = 200;
   settings.excitations = 20;

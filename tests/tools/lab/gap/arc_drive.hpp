@@ -13,8 +13,8 @@
 
 namespace tread::gap::samples {
 
-/// A log of a model that drives arcs at two speeds: track speeds at 20 Hz, INS with every so many
-/// of them.
+/// A log of a model that drives arcs at two speeds: track speeds at 20 Hz, INS at every n-th
+/// sample.
 inline void writeDrive(const std::string& path, double seconds, double yaw_gain = 0.49,
                        const std::string& note = "", int ins_every = 2) {
   VehicleModel truth = readModelFile(kModels + "warthog_asphalt.yaml");

@@ -11,7 +11,7 @@ namespace tread::gap::samples {
 using Run = tread::samples::CalledProgram;
 using Folder = tread::samples::OwnFolder;
 
-/// A program of the build, called as people call it.
+/// A program of the build, run by a command line.
 inline Run runProgram(const std::string& program, const std::string& arguments) {
   return tread::samples::called(program + " " + arguments);
 }

@@ -11,7 +11,7 @@
 #include "modules/identification/core/finding.hpp"
 #include "tools/lab/gap/report/report.hpp"
 
-/// Findings made by hand, to look at what is written of them.
+/// Hand-made findings for testing the reports.
 namespace tread::gap::samples {
 
 inline bool has(const std::string& text, const std::string& words) {
@@ -146,7 +146,7 @@ inline void addDetails(GapFinding& finding) {
   finding.adequacy.p_value = 0.41;
 }
 
-/// A finding of any verdict with everything that a report can show.
+/// A finding with any verdict and everything that a report can show.
 inline GapFinding finding(GapVerdict verdict) {
   GapFinding finding;
   finding.verdict = verdict;

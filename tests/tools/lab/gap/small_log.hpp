@@ -13,7 +13,7 @@
 #include "common/log/event_log.hpp"
 #include "common/pattern/pattern.hpp"
 
-// Logs of a made-up robot, message by message.
+// Synthetic logs, message by message.
 namespace tread::samples {
 
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -53,7 +53,7 @@ class SmallLog {
     add(kMotor, motor_);
   }
 
-  /// INS: pose, gyro and status beside "no attitude, no velocity".
+  /// INS: pose, gyro, and status in addition to "no attitude, no velocity".
   void ins(double time, const Pose2& T_map_body, double omega, int32_t status = 0) {
     ins_t message{};
     message.utime = at(time);

@@ -12,8 +12,7 @@ using namespace tread::gap::samples;
 
 namespace {
 
-/// Share of the pairs of drives of one vehicle on one ground of which compare says that they
-/// differ.
+/// Share of pairs of drives of one vehicle on one ground that compare reports as different.
 double falseAlarms(const ModelDocument& vehicle, double seconds, uint64_t drives) {
   std::vector<LogFit> fits;
   for (uint64_t seed = 1; seed <= drives; ++seed)

@@ -32,7 +32,7 @@ TEST_CASE("what find writes is the same to the byte with any number of threads, 
                            folder.path("drive.lcmlog") + " --out ";
   const Run first = run(find + folder.path("first") + " --threads 1");
   INFO(first.printed);
-  // With nothing found, half of the work would not be done.
+  // Without a finding half of the work would be skipped.
   REQUIRE(first.says("held-out gain"));
   const std::pair<std::string, std::string> kOthers[] = {
       {"again", " --threads 1"}, {"two", " --threads 2"}, {"three", " --threads 3"}};
@@ -42,7 +42,7 @@ TEST_CASE("what find writes is the same to the byte with any number of threads, 
       INFO(name << "/" << file);
       const std::string expected = folder.text(std::string("first/") + file);
       CHECK_FALSE(expected.empty());
-      // Not CHECK(a == b): a report of a megabyte helps nobody.
+      // Not CHECK(a == b), which would print a report of a megabyte.
       CHECK((folder.text(name + "/" + file) == expected));
     }
   }

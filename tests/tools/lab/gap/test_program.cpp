@@ -171,7 +171,7 @@ TEST_CASE("a term becomes an effect of a catalogue of one's own") {
   INFO(kept.printed);
   CHECK(kept.status == 0);
   CHECK(run("explain steering_hysteresis").status == 2);
-  // The model carries the effect with it; its folder is for other models.
+  // The model contains the effect; the folder is for other models.
   const Run what_if = run("what-if --model " + model + " --remove steering_hysteresis");
   INFO(what_if.printed);
   CHECK(what_if.status == 0);
@@ -186,7 +186,7 @@ TEST_CASE("a term becomes an effect of a catalogue of one's own") {
                         folder.path("own") + " --add steering_hysteresis");
   INFO(added.printed);
   CHECK(added.status == 0);
-  // Nothing is written over, and nothing of a refused name is left.
+  // Nothing is overwritten, and a refused name leaves no file.
   writeText(model, formatModelDocument(withTerm()));
   writeText(file, "mine");
   CHECK(run(name).says("is there already; choose another file"));

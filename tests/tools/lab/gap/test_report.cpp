@@ -29,7 +29,7 @@ std::string markdown(GapVerdict verdict) {
   return markdownOf(reportPage(samples::finding(verdict), samples::inputs()));
 }
 
-/// The first tag that is not closed in its turn; empty = well-formed.
+/// The first tag that is not closed in order; empty = well-formed.
 std::string unbalanced(const std::string& text) {
   const std::set<std::string> kEmpty = {"meta", "!DOCTYPE"};
   std::vector<std::string> open;

@@ -146,7 +146,7 @@ TEST_CASE("what got worse on unseen driving is named") {
   CHECK(has(worseOf(gap), "0.700 m now) and heading (median 20.5 deg before, 28.6 deg now)."));
   GapFinding finding = samples::finding(GapVerdict::kFound);
   finding.gap = gap;
-  // What chance moves a median by is no worsening.
+  // A change of a median within its uncertainty is no deterioration.
   gap.by_chance = {0.04, 0.01};
   CHECK(has(worseOf(gap), "held-out driving: heading (median"));
   gap.by_chance.yaw = 0.08;

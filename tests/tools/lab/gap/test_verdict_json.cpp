@@ -81,7 +81,7 @@ TEST_CASE("a limit stands in verdict.json as its reciprocal and as itself") {
 
 TEST_CASE("numbers in verdict.json that are not finite are null") {
   GapFinding finding = samples::finding(GapVerdict::kFound);
-  finding.identified.effects[0].parameters[0].low = 0.0;  // perhaps no limit at all
+  finding.identified.effects[0].parameters[0].low = 0.0;  // possibly no limit at all
   finding.identified.effects[1].parameters[0].high = std::numeric_limits<double>::infinity();
   const Json json = verdictJson(finding, samples::inputs());
   CHECK(json["effects"][0]["parameters"]["limit"]["high"].is_null());

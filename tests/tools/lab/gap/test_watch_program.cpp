@@ -23,8 +23,8 @@ using samples::Run;
 
 constexpr const char* kWatchedModel = "name: watched\nkind: track_speed\ngauge: 1.0\nlag: 0.2\n";
 
-/// Arcs of two seconds, of which the ground takes or adds a few per cent; from `from` on the left
-/// drive gives this share of what it is asked for.
+/// Arcs of two seconds, with a few per cent of ground noise; from `from` on the left drive has this
+/// share of its command.
 std::vector<LogEvent> driveWithLeft(double seconds, double from, double gain,
                                     double stands_until = 0.0) {
   const ModelDocument model = parseModelDocument(kWatchedModel, "model");

@@ -64,7 +64,7 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// An execution of a second that ends with this error.
+/// An execution of 1 s with this end error.
 ScoredExecution scored(double time, const std::string& surface, double error) {
   ScoredExecution execution;
   execution.time = time;
@@ -77,7 +77,8 @@ ScoredExecution scored(double time, const std::string& surface, double error) {
   return execution;
 }
 
-/// Errors of 1 m that fall to `later` after `needed` executions on grass; the best is known.
+/// Errors of 1 m that fall to `later` after `needed` executions on grass; the oracle's error is
+/// known.
 struct HandMade {
   std::vector<MissionResult> results;
   Omniscient omniscient;
@@ -90,7 +91,7 @@ HandMade handMade(int on_grass, int needed, double later = 0.1) {
     result.crossings = {{0.5, "tarmac", "grass"}};
     for (int i = 0; i < on_grass; ++i) {
       ScoredExecution execution = scored(1.0 + i, "grass", i < needed ? 1.0 : later);
-      // Ends alternate by 0.1 m and 0.1 rad about their mean: that is the omniscient one's error.
+      // Ends alternate by 0.1 m and 0.1 rad around their mean, which is the oracle's error.
       const double off = i % 2 == 0 ? 0.1 : -0.1;
       execution.measured_end = {1.0 + off, 0.0, off};
       result.executions.push_back(execution);
@@ -191,7 +192,7 @@ TEST_CASE("errors after changes are pooled by pair of surfaces, each execution o
   CHECK(errors[1].count == 4);
   CHECK(errors[2].to == "grass");
   CHECK(errors[2].count == 2);
-  // Of the text, the row of all changes leaves the start out.
+  // The row of all changes excludes the start.
   MissionBatch batch;
   batch.results = {one};
   CHECK(contains(summaryOf(batch), "  all changes            3        0.3333     0.3333\n"));
@@ -235,7 +236,7 @@ TEST_CASE("the pooled ratio is shown as far as ten changes have so many executio
   HandMade made = handMade(12, 0);
   for (size_t i = 0; i < 3; ++i) made.results[i].executions.resize(6);
   Settling settling = settlingOf(made.results, errorAsDriven(), made.omniscient);
-  // Windows begin after 0 and 1 executions in all twelve, later in nine: too few.
+  // Windows after 0 and 1 executions exist in all twelve, later ones in nine: too few.
   CHECK(settling.position_ratio.size() == 2);
   made.results.resize(9);
   settling = settlingOf(made.results, errorAsDriven(), made.omniscient);

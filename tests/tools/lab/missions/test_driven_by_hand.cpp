@@ -21,7 +21,7 @@ using namespace tread::missions;
 
 namespace {
 
-/// A person with a stick: full ahead most of the time, curves, turns, pauses.
+/// A person with a stick: mostly full ahead, with curves, turns and pauses.
 struct Person {
   Person(Bus& person_bus, uint64_t seed)
       : bus(person_bus), motor(person_bus, kMotor), random(seed) {
@@ -42,7 +42,7 @@ struct Person {
     until = utime + static_cast<int64_t>(draw(0.7, 5.0) * 1e6);
   }
   void step(int64_t utime, bool give_back) {
-    if (until == 0) until = utime + 300'000;  // the stick at rest
+    if (until == 0) until = utime + 300'000;  // stick at rest
     if (utime >= until) choose(utime);
     message.utime = utime;
     message.seen_utime = motor.message().utime;
@@ -66,7 +66,8 @@ struct HandDriven {
   std::string report;
 };
 
-/// Taken over from second 8 to 68 on a meadow, then given back. Without a command: as shipped.
+/// Manual driving from second 8 to 68 on a meadow, then given back. Without `max_command`: as
+/// shipped.
 HandDriven driveByHand(std::optional<double> max_command, uint64_t seed) {
   HandDriven result;
   RobotConfig robot = teodor();
@@ -127,7 +128,7 @@ TEST_CASE("at half power no pattern is driven by hand, and nothing is taught") {
 
 namespace {
 
-/// What the kernel tells before the first movement of a pad whose axes count 0 to 255.
+/// The kernel's values before the first movement of a pad with axes from 0 to 255.
 const std::string kUntouched =
     "A: 00 0 255 0 0 0\nA: 01 0 255 0 0 0\nE: 0.0 0003 0000 0\nE: 0.0 0003 0001 0\n";
 /// START, then the dead man's button, twice.
@@ -139,10 +140,10 @@ const std::string kEnds = "E: 8.000000 0000 0000 0\n";
 struct PadDriven {
   bool moved = false;
   bool armed = false;
-  std::string lines;  ///< what tread-drive said
+  std::string lines;  ///< output of tread-drive
 };
 
-/// The shipped robot on a meadow, with nobody but tread-drive and a recorded pad.
+/// The shipped robot on a meadow, with only tread-drive and a recorded pad.
 PadDriven driveWith(const std::string& events) {
   const std::string path = "test_driven_by_hand_" + std::to_string(getpid()) + ".evemu";
   std::ofstream(path) << events;

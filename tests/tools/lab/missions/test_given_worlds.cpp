@@ -77,7 +77,7 @@ TEST_CASE("packed worlds are the same worlds, and some can be chosen by name") {
   const std::vector<MissionWorld> worlds = readGivenWorlds(packed, {"slalom", "open"});
   CHECK(namesOf(worlds) == std::vector<std::string>{"slalom", "open"});
   CHECK(worlds[0].seed == 2);
-  CHECK(worlds[0].timed->path == Approx(10.0));  // no table beside: the straight line
+  CHECK(worlds[0].timed->path == Approx(10.0));  // no table: the straight line
   CHECK_THROWS_WITH(readGivenWorlds(packed, {"7"}),
                     Catch::Contains("--only 7") && Catch::Contains("open to slalom"));
 }

@@ -37,7 +37,7 @@ TEST_CASE("mission worlds are hard: far goals, blocked lines, changing ground, a
     REQUIRE(world.description.terrain.steepestSlope() <= 0.051);
     REQUIRE_FALSE(sim::worldFault(world.description));
     const sim::World real(world.description);
-    // Surfaces change on the straight line as often as the world says.
+    // The straight line crosses as many borders as the world states.
     int changes = 0;
     std::string under = real.surface(world.T_map_start.position()).name;
     for (double share = 0.0; share <= 1.0; share += 0.002) {
@@ -63,7 +63,7 @@ TEST_CASE("mission worlds are hard: far goals, blocked lines, changing ground, a
 }
 
 TEST_CASE("walls have gaps from the footprint plus 0.4 m up") {
-  // A wall is two collinear boxes; its gap is the distance between their nearest corners.
+  // A wall consists of two collinear boxes; its gap is the distance between their nearest corners.
   double narrowest = 1e9;
   for (uint64_t seed = 1; seed <= 80; ++seed) {
     const MissionWorld world = makeMissionWorld(seed, {0.65, 0.65, 0.34});
@@ -74,7 +74,7 @@ TEST_CASE("walls have gaps from the footprint plus 0.4 m up") {
         double gap = 1e9;
         for (const auto& a : obstacles[i].corners)
           for (const auto& b : obstacles[j].corners) gap = std::min(gap, (a - b).norm());
-        // Parts of a pocket overlap; everything else keeps its distance.
+        // Parts of a pocket overlap; all other obstacles keep their distance.
         if (gap > 0.5) narrowest = std::min(narrowest, gap);
       }
   }

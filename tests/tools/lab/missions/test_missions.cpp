@@ -23,7 +23,7 @@ using namespace tread::missions;
 
 namespace {
 
-/// A mission that the test moves on by itself, with the operator and the referee.
+/// A mission that the test advances itself, with operator and referee.
 struct Bench {
   explicit Bench(uint64_t seed, const FaultPlan& faults = {})
       : world(makeMissionWorld(seed, {0.65, 0.65, 0.34})),
@@ -39,7 +39,7 @@ struct Bench {
                                               [this](const motor_t& message) { motor = message; });
   }
 
-  /// Power that really reaches the motors now.
+  /// Whether the motors get power now.
   bool turning() {
     const auto power = system.devices().motor().output(system.bus().now());
     return power[0] != 0.0 || power[1] != 0.0;
@@ -62,7 +62,7 @@ struct Bench {
     }
     return false;
   }
-  /// Seconds until the motors are at zero; negative if they are not within the limit.
+  /// Seconds until the motors are at zero; negative if not within the limit.
   double secondsToZero(double limit) {
     const int64_t start = system.bus().now();
     while (turning()) {
@@ -128,7 +128,7 @@ TEST_CASE("robots with other instruments and controllers drive by their configur
   MissionOptions options;
   options.shortest_line = 8.0;
   const std::vector<std::pair<std::string, std::vector<std::string>>> robots{
-      {"skid4", {}},  // NovAtel; VESCs that hold track speeds
+      {"skid4", {}},  // NovAtel; VESCs with speed control
       {"skid4", {"ins_driver.source=vectornav", "ins_driver.geoid_separation=47"}},
       {"skid4", {"ins_driver.source=xsens", "ins_driver.geoid_separation=47"}},
       {"car", {}},  // throttle and steering, which cannot turn on the spot
@@ -187,7 +187,7 @@ TEST_CASE(
 TEST_CASE(
     "whichever node is killed while driving, the motors come to zero, and after a restart and "
     "arming it goes on") {
-  // Limits from the kill: the lease (200 ms) or the INS limit runs out first, then at most 250 ms.
+  // Limits from the kill: first the lease (200 ms) or the INS limit, then at most 250 ms.
   const std::map<std::string, double> limits{
       {"planner", 0.45}, {"ins_driver", 0.45}, {"motor_bridge", 0.27}};
   for (const std::string node :
@@ -294,7 +294,7 @@ TEST_CASE("a report says what happened, in text and in JSON") {
   batch.virtual_time = run.virtual_time;
   batch.cpu_time = batch.wall_time = run.cpu_time;
   batch.results.push_back(run.result);
-  // As a broken message may have left it: no UTF-8.
+  // As after a corrupted message: not UTF-8.
   batch.results.back().reason = "bro\xff\xc0ken";
   CHECK(run.result.set_versions == 0);
   std::ostringstream text;
@@ -324,7 +324,7 @@ TEST_CASE("a report says what happened, in text and in JSON") {
 TEST_CASE("faults of every receiver are the robot's: the referee hears all as it was said") {
   FaultPlan faults;
   MessageFault fault;
-  fault.channel = "LEARNING";  // nobody on the robot hears it
+  fault.channel = "LEARNING";  // no process of the robot subscribes to it
   fault.drop = 0.5;
   fault.corrupt = 0.5;
   faults.messages.push_back(fault);

@@ -13,7 +13,7 @@ namespace {
 
 const std::string kOmni = TREAD_SOURCE_DIR "/tests/data/robots/omni3";
 
-/// How often a mission's measured executions went which way.
+/// Directions of a mission's measured executions.
 struct Ways {
   int ahead = 0, aside = 0, turning = 0;
 

@@ -24,8 +24,8 @@ MissionWorld flatWorld(double goal_x) {
   return world;
 }
 
-/// Simulator and referee alone: every other process is killed, the test says what they would say
-/// and gives the motors their power.
+/// Simulator and referee only: every other process is killed; the test publishes their messages and
+/// sets the motors' power.
 struct Stage {
   explicit Stage(MissionWorld there)
       : world(std::move(there)),
@@ -35,7 +35,7 @@ struct Stage {
     system.connect("motor", false);
   }
 
-  /// Both motors with so much power [1] for a time [s].
+  /// Both motors with this power [1] for a time [s].
   void drive(double power, double seconds) {
     const sim::MotorWiring& wiring = system.robot().settings().wiring;
     const int right_channel = wiring.left_channel == 1 ? 2 : 1;
@@ -110,7 +110,7 @@ TEST_CASE("a collision is one contact with time, place and pattern, however long
   CHECK(first.contacts[0].T_map_body.x < 2.9);
   CHECK(first.contacts[0].penetration > 0.0);
   CHECK(first.contacts[0].time > 1.0);
-  // Back and against it once more is another one.
+  // Reversing and touching it again is another contact.
   stage.drive(-0.6, 3.0);
   stage.drive(0.6, 6.0);
   CHECK(stage.referee.result().collisions() == 2);
@@ -139,7 +139,7 @@ TEST_CASE("a surface counts once the robot has been on it for a second, from the
   CHECK_FALSE(tracker.step(1'000'000, "cinder"));
   CHECK_FALSE(tracker.step(1'950'000, "cinder"));
   CHECK(tracker.surface() == "grass");
-  // An execution that may have crossed the border is on no surface, even before it is confirmed.
+  // An execution that may have crossed the border has no surface, even before it is confirmed.
   CHECK(tracker.between(500'000, 900'000) == "grass");
   CHECK(tracker.between(500'000, 1'500'000).empty());
   CHECK(tracker.step(2'000'000, "cinder") == 1'000'000);
@@ -236,7 +236,7 @@ TEST_CASE("a scored execution carries its surface, and a refused one why it was 
   Bus& bus = stage.system.bus().outside();
   stage.wait(0.05);
   bus.publish(kLearning, learning);
-  learning.learned_execution_id = 2;  // of which no record came
+  learning.learned_execution_id = 2;  // without a record
   learning.accepted = false;
   learning.gate_reason = "too steep";
   bus.publish(kLearning, learning);

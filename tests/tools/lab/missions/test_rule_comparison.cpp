@@ -88,7 +88,7 @@ TEST_CASE("a shadow of the driving rule predicts what the drive predicted, other
   CHECK(off_differs >= measured - 5);
   CHECK(bank_differs >= measured - 5);
 
-  // They only listen: the drive is the same without them.
+  // Shadow rules do not influence the drive.
   options.shadows.clear();
   const MissionRun alone = runMission(teodor(), 22, options);
   REQUIRE(alone.result.executions.size() == run.result.executions.size());

@@ -16,9 +16,9 @@ using namespace tread::missions;
 
 namespace {
 
-/// Grass without obstacles. Between x = 10 m and 40 m the way runs along a hillside: a hill to the
-/// left, a hollow to the right, up to 0.52 rad across the way; level before and after.
-/// Plans of the shipped robot keep off so steep ground: here that rule is off.
+/// Grass without obstacles. Between x = 10 m and 40 m the path is on a hillside: a hill to the
+/// left, a hollow to the right, up to 0.52 rad across the path; level before and after. The shipped
+/// planner avoids such steep ground; here that rule is off.
 MissionWorld hillside(uint64_t seed) {
   MissionWorld world;
   world.seed = seed;
@@ -33,7 +33,7 @@ MissionWorld hillside(uint64_t seed) {
   return world;
 }
 
-/// The same executions, learned with the slope gate and without.
+/// The same executions, learned with and without the slope gate.
 struct HillsideDrive {
   MissionResult result;
   MissionResult without_gate;  ///< by_rule of the same executions, learned without the gate
@@ -54,7 +54,7 @@ HillsideDrive driveHillside(uint64_t seed) {
   robot.planner.max_slope.reset();
   RobotSystem system(robot, world.description, world.T_map_start, seed, "", {});
   learner::LearnerNodeConfig gated = system.learnerConfig();
-  // The gate alone: the default rule also takes off what it has learned that slopes do.
+  // The gate alone: the default rule also removes learned effects of slopes.
   gated.rule.ground.context_evidence = 1000.0;
   learner::LearnerNodeConfig ungated = gated;
   ungated.limits.max_slope = 1.6;
@@ -79,7 +79,7 @@ HillsideDrive driveHillside(uint64_t seed) {
   return drive;
 }
 
-/// Sums over the first executions on the level after the hillside.
+/// Sums over the first executions on level ground after the hillside.
 MeanError afterwards(const MissionResult& result, size_t rule, size_t count) {
   MeanError sum;
   size_t last_steep = 0;
@@ -101,8 +101,8 @@ void addTo(MeanError& sum, const MeanError& more) {
   sum.yaw += more.yaw;
 }
 
-/// Checks that the drive arrived and that nothing steep was measured; how often LEARNING says for
-/// which slope.
+/// Checks that the drive arrived and that nothing steep was measured; returns how often LEARNING
+/// names a slope.
 int refusedForSlope(const HillsideDrive& drive) {
   INFO(drive.result.reason << "; " << drive.result.executions.size() << " executions");
   CHECK(drive.result.outcome == MissionOutcome::kArrived);
@@ -123,7 +123,7 @@ TEST_CASE("what a slope did is not measured, and LEARNING says for which slope")
 
 TEST_CASE("what a slope did is not learned with the gate, and spoils level ground without it",
           "[study]") {
-  constexpr uint64_t kSeeds = 8;  // with 4 the yaw of the default rule is chance
+  constexpr uint64_t kSeeds = 8;  // with 4 the yaw of the default rule is random
   MeanError with[2], without[2];
   int refused = 0;
   for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
@@ -141,7 +141,7 @@ TEST_CASE("what a slope did is not learned with the gate, and spoils level groun
             without[rule].yaw);
     REQUIRE(with[rule].count == 5 * static_cast<int>(kSeeds));
     REQUIRE(without[rule].count == 5 * static_cast<int>(kSeeds));
-    // The default rule is spoiled little: measured 1.13.
+    // The default rule is affected little: measured 1.13.
     const bool little = kRules[rule] == "multi_model";
     CHECK(without[rule].position > (little ? 1.1 : 1.2) * with[rule].position);
     if (little) CHECK(without[rule].position < 1.3 * with[rule].position);

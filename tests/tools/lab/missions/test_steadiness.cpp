@@ -20,12 +20,12 @@ const PatternSet& teodorPatterns() {
   return set;
 }
 
-/// Plans as the planner would publish them, one after the other.
+/// Consecutive plans as published by the planner.
 class Published {
  public:
   Published() { watch_.take(teodorPatterns()); }
 
-  /// The pattern that runs under an execution id, and those after it.
+  /// The running pattern with its execution id, and the following patterns.
   std::optional<Flip> plan(int64_t execution, const std::vector<std::string>& names) {
     plan_t plan{};
     Pose2 pose{5.0, 1.0, 0.3};
@@ -40,7 +40,7 @@ class Published {
     return watch_.hear(plan);
   }
 
-  bool is_free = true;  ///< what is said of every plan that was left
+  bool is_free = true;  ///< result for every abandoned plan
   int asked = 0;
   Pose2 asked_from;
   std::vector<std::string> asked_for;
@@ -97,7 +97,7 @@ TEST_CASE("left, straight on, right is a flip: a side stays in mind until it is 
   CHECK_FALSE(bus.plan(1, {"start", "straight", "nudge_left", "straight"}));
   CHECK(bus.plan(1, {"start", "right", "straight"}));
   CHECK_FALSE(bus.plan(2, {"right", "straight", "straight"}));
-  // The bend to the right was driven: what comes now is new.
+  // The bend to the right was completed: the rest is new.
   CHECK_FALSE(bus.plan(2, {"right", "straight", "left"}));
 }
 

@@ -28,7 +28,7 @@ const TruePatterns& truePatterns() {
   return patterns;
 }
 
-/// Drives a mission on one level surface with a set that nobody corrects; its measured executions.
+/// Drives a mission on one level surface with a fixed set; returns its measured executions.
 std::vector<ScoredExecution> driveOn(const std::string& surface, const PatternSet& set) {
   RobotConfig robot = teodor();
   robot.learner.shipped = set;
@@ -135,7 +135,7 @@ TEST_CASE("the omniscient robot gets another set where the ground becomes anothe
   }
   CHECK(watch.result().outcome == MissionOutcome::kArrived);
   CHECK(watch.result().set_versions >= 2);
-  CHECK(watch.result().executions.empty());  // nobody learns
+  CHECK(watch.result().executions.empty());  // there is no learner
   CHECK(always_true);
   CHECK(always_planned);
 }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kRobot = TREAD_SOURCE_DIR "/config/robots/teodor_without_ins";
 
-/// The same with an INS, for which scan matching fills in.
+/// The same with an INS, whose gaps scan matching fills.
 RobotConfig filledIn() {
   return readRobot(kRobot, {"scan_matching.channel=SCAN_MATCHING"});
 }
@@ -59,8 +59,9 @@ struct Drive {
   int poses = 0;
   int filled_in = 0;
   double error = 0.0;  ///< [m] of the last pose
-  double told = 0.0;   ///< [m] its standard deviation
-  double worst = 0.0;  ///< [m] from the true pose, now: a pose is as old as its way here
+  double told = 0.0;   ///< [m] published standard deviation
+  /// [m] largest distance to the present true pose; a pose is as old as its transmission
+  double worst = 0.0;
   bool driving = false;
 };
 

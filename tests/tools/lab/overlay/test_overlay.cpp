@@ -27,10 +27,10 @@ ModelDocument modelWith(const std::string& rest) {
       "name: m\nkind: power\nfull_speed: 1.1\ngauge: 0.6\nlag: 0.15\ndelay: 0.03\n" + rest, "m");
 }
 
-/// A log of a drive that a model did: MOTOR at 20 Hz, INS at 50 Hz; gone with the test.
+/// A log of a model's drive: MOTOR at 20 Hz, INS at 50 Hz; temporary.
 class Log {
  public:
-  /// `silent` [s]: INS messages of a time since the first one that are left out.
+  /// `silent` [s]: omitted INS messages, by time since the first one.
   explicit Log(
       const ModelDocument& model, bool with_ins = true,
       const std::function<bool(double)>& silent = [](double) { return false; })
@@ -41,7 +41,7 @@ class Log {
     const std::vector<MotionSample> said = drive(model);
     LogWriter writer(path_);
     int commands = 0;
-    for (size_t i = 0; i < said.size(); ++i) {  // in order of time, as a recorder writes
+    for (size_t i = 0; i < said.size(); ++i) {  // ordered by time, as recorded
       for (; commands < 40 * 20 && 0.05 * commands <= 0.02 * static_cast<double>(i); ++commands)
         writer.write(kMotor, motor(commands));
       if (with_ins && !silent(0.02 * static_cast<double>(i)))
@@ -91,7 +91,7 @@ class Log {
     return message;
   }
 
-  inline static int count_ = 0;  ///< several may stand side by side
+  inline static int count_ = 0;  ///< several may exist at the same time
   std::string path_;
 };
 
@@ -147,7 +147,7 @@ TEST_CASE("a model's error is zero on its own track, and does not grow with the 
   const std::vector<ComparedPiece> pieces = replay(driveOf(log.path()), {exact}, 8.0);
   REQUIRE(pieces.size() == 4);
   for (size_t sample = 0; sample <= 80; sample += 20) {
-    // What is left is of the kernel's steps, of 10 ms in the drive and of 20 ms here.
+    // The rest is due to the kernel's steps: 10 ms in the drive, 20 ms here.
     CHECK(medianErrors(pieces, 0, sample).position < 0.01);
     CHECK(medianErrors(pieces, 0, sample).yaw < 0.01);
   }
@@ -176,7 +176,7 @@ TEST_CASE("pieces in which the INS was silent are left out, the others stay") {
   const std::vector<ComparedPiece> all = replay(driveOf(whole.path()), {plain}, 4.0);
   const Log gap(plain, true, [](double time) { return time > 17.0 && time < 17.5; });
   const std::vector<ComparedPiece> some = replay(driveOf(gap.path()), {plain}, 4.0);
-  // Pieces begin at 3, 7, 11, 15, 19 s; each needs the 3 s before, too.
+  // Pieces begin at 3, 7, 11, 15, 19 s; each also needs the preceding 3 s.
   REQUIRE(all.size() == 9);
   REQUIRE(some.size() == 7);
   for (const ComparedPiece& piece : some) {
@@ -222,7 +222,7 @@ TEST_CASE("tread-overlay prints each model's errors at two seconds and at the le
   CHECK(run.says(askew + ": after 4 s "));
   CHECK(run.says(exact + ": after 4 s 0.00"));
   CHECK(samples::isPng(folder.text("overlay.png")));
-  // With a length of 2 s both horizons are one line; a shorter one has its own alone.
+  // With a length of 2 s both horizons share a line; a shorter length has only its own.
   const samples::CalledProgram two =
       samples::called("tread-overlay " + log.path() + " --model " + exact + " --length 2");
   CHECK(std::count(two.printed.begin(), two.printed.end(), '\n') == 2);

@@ -13,8 +13,8 @@
 
 namespace tread::plan::samples {
 
-/// Least cost from start to goal over a whole map as SBPL counts it, by Dijkstra; -1 if there is no
-/// way.
+/// Least cost from start to goal on a whole map as counted by SBPL, by Dijkstra; -1 if there is no
+/// path.
 class LatticeOracle {
  public:
   LatticeOracle(const MapFile& map, const PrimitiveFile& file)

@@ -16,12 +16,12 @@ namespace tread::plan::samples {
 
 using Folder = tread::samples::OwnFolder;
 
-/// A file of the planning scenarios of others; empty where they are not.
+/// A file of the planning scenarios by others; empty if absent.
 inline std::string recorded(const std::string& name) {
   return tread::testing::recorded("planning/" + name);
 }
 
-/// A text with a few bytes changed, left out or put in, or its end cut off.
+/// A text with a few bytes changed, removed or inserted, or truncated.
 inline std::string damaged(std::string text, std::mt19937_64& random) {
   const std::string bytes(
       "0123456789-+.:# \n\0\xff"
@@ -67,8 +67,8 @@ inline const std::string kEnvironment =
     "0   0 128 255\n"
     "0   0   0   0\n";
 
-/// Four headings, cells of 0.5 m: from heading 0 one cell ahead and a quarter of a circle to the
-/// left, from heading 3 one cell back.
+/// Four headings, cells of 0.5 m: from heading 0 one cell ahead and a quarter circle to the left,
+/// from heading 3 one cell back.
 inline const std::string kPrimitives =
     "resolution_m: 0.500000\n"
     "numberofangles: 4\n"
@@ -98,7 +98,7 @@ inline const std::string kPrimitives =
     "0.0000 0.0000 -1.5708\n"
     "0.0000 0.5000 4.7124\n";
 
-/// The first two of them as nav2's generator of lattices writes them: without their start poses.
+/// The first two of them in the format of nav2's lattice generator: without their start poses.
 inline const std::string kLattice =
     "{\n\t\"version\": 1.0,\n\t\"date_generated\": \"2026-01-01\",\n\t\"lattice_metadata\": {\n"
     "\t\t\"motion_model\": \"diff\",\n\t\t\"turning_radius\": 0.5,\n\t\t\"grid_resolution\": 0.5,\n"

@@ -15,7 +15,7 @@ constexpr double kCell = 0.05;
 constexpr double kWall = 0.15;
 constexpr double kDoor = 1.0;
 
-/// Reproducible on every machine: the standard's distributions are not.
+/// Reproducible on every platform, unlike the standard's distributions.
 class Random {
  public:
   explicit Random(uint64_t seed) : engine_(seed) {}
@@ -37,7 +37,7 @@ struct Area {
   }
 };
 
-/// Free ground on which obstacles are put; x to the right, y up, from the lower left corner.
+/// Free ground for obstacles; x to the right, y up, from the lower left corner.
 class Drawing {
  public:
   Drawing() : pixels_(static_cast<size_t>(kColumns) * kRows, '\xfe') {}
@@ -92,7 +92,7 @@ std::string yamlOf(const std::string& name, const std::string& origin, const std
          "]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
 }
 
-/// Furniture stands where it overlaps nothing and keeps clear of doors.
+/// Places furniture without overlap and with clearance to doors.
 class Furniture {
  public:
   explicit Furniture(Drawing& drawing) : drawing_(drawing) {}
@@ -111,7 +111,7 @@ class Furniture {
   std::vector<Area> taken_;
 };
 
-/// A row of rooms between two heights, their doors in the wall at `corridor_wall`.
+/// A row of rooms between two heights, with doors in the wall at `corridor_wall`.
 void drawRooms(Drawing& drawing, Random& random, double low, double high, double corridor_wall) {
   Furniture furniture(drawing);
   double left = 0.0;
@@ -161,7 +161,7 @@ PlanningMap forest(uint64_t seed) {
   };
   Random random(seed + 1);
   Drawing drawing;
-  // Room to stand in at both ends of the task.
+  // Space at both ends of the task.
   std::vector<Trunk> trunks{{1.5, 1.5, 1.0}, {28.5, 18.5, 1.0}};
   for (int i = 0; i < 3000 && trunks.size() < 262; ++i) {
     const Trunk trunk{random.between(0.0, kWidth), random.between(0.0, kHeight),
@@ -184,16 +184,16 @@ PlanningMap deadEnd(uint64_t seed) {
   Random random(seed + 2);
   Drawing drawing;
   drawing.surround();
-  // Three cul-de-sacs side by side, a fourth above them; all end before the goal.
+  // Three adjacent cul-de-sacs, a fourth above them; all end before the goal.
   for (const double y : {7.0, 9.0, 11.0, 13.0}) drawing.block({6.0, y, 24.0, y + kWall});
   drawing.block({24.0, 7.0, 24.0 + kWall, kHeight});
-  // Below them a slalom leads round.
+  // Below them a slalom is the way around.
   for (int i = 0; i < 6; ++i) {
     const double x = 7.5 + 3.0 * i;
     const bool from_below = i % 2 == 0;
     drawing.block({x, from_below ? 0.0 : 1.5, x + kWall, from_below ? 5.5 : 7.0});
   }
-  // A stone here and there leaves a good metre beside it.
+  // A few stones leave at least 1 m of space.
   for (int i = 0; i < 8; ++i) {
     const double x = random.between(7.0, 22.0);
     const double y = 7.3 + 2.0 * (i % 4) + (random.happens(0.5) ? 0.0 : 1.4);

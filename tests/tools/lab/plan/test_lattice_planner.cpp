@@ -135,7 +135,7 @@ TEST_CASE("on a lattice with costs the plan is as cheap as brute force finds it"
     const CellIndex to{draw(kWidth), draw(kHeight)};
     const int from_bin = draw(kBins);
     const int to_bin = draw(kBins);
-    // Anywhere in the cell: the planner moves both to the middle.
+    // Anywhere in the cell: the planner moves both to the centre.
     const PathQuery query{{(from.x + 0.3) * kCell, (from.y + 0.8) * kCell, from_bin * kPi / 2.0},
                           {(to.x + 0.6) * kCell, (to.y + 0.1) * kCell, to_bin * kPi / 2.0}};
     LatticePlanner lattice(costs, kCell, kBins, primitives);

@@ -89,7 +89,7 @@ TEST_CASE("a picture may be text or bytes, with comments and another white than 
   const GreyImage text = parsePgm("P2\n# a\n2 # wide\n2\n15\n0 15\n# between\n7\n3", "a.pgm");
   CHECK(text.white == 15);
   CHECK(text.pixels == std::vector<uint8_t>{0, 15, 7, 3});
-  // A byte that is a blank or a hash is a pixel like others.
+  // A byte equal to a blank or hash is an ordinary pixel.
   const GreyImage bytes = parsePgm("P5 2 2 255\n# \n\x09", "a.pgm");
   CHECK(bytes.pixels == std::vector<uint8_t>{'#', ' ', '\n', 9});
 }

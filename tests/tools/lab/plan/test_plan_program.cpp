@@ -20,12 +20,12 @@ const std::string kTask = "--start -13.5,0.1,0 --goal 13.5,0.1,0 ";
 
 using Run = tread::samples::CalledProgram;
 
-/// tread-plan, called as people call it.
+/// Runs tread-plan with a command line.
 Run run(const std::string& arguments) {
   return tread::samples::called("tread-plan " + arguments);
 }
 
-/// Bad input: one line on stderr, 2.
+/// Bad input: one line on stderr, exit code 2.
 void checkRefused(const std::string& arguments, const std::string& tokens) {
   CAPTURE(arguments);
   const Run result = run(arguments);
@@ -91,8 +91,8 @@ TEST_CASE("tread-plan takes start, goal and pace from an SBPL environment") {
   const std::string arguments = "--map " + folder.write("a.cfg", environment) + " --patterns " +
                                 folder.write("a.mprim", kPrimitives) + " --mprim-exact --json " +
                                 folder.path("a.json");
-  // One cell ahead takes 0.625 s. The quarter of a circle counts thrice its turn of 6 s, and 129
-  // times as much because of a cell of cost 128.
+  // One cell ahead takes 0.625 s. The quarter circle costs three times its turn of 6 s, times 129
+  // because of a cell of cost 128.
   const Run result = run(arguments);
   CHECK(result.status == 0);
   CHECK_THAT(result.printed, Contains("cost 2322625"));

@@ -87,7 +87,7 @@ TEST_CASE("many answers are counted, with quantiles of nearest rank") {
   CHECK(json["first_ms"] == Json::parse(R"({"p50":50.0,"p95":95.0,"p99":99.0,"max":100.0})"));
   CHECK(json["total_ms"]["max"] == 5.0);
   CHECK(json["length_m"]["mean"] == 1.5);
-  // 100 x 1200 expansions in 100 x 3 ms of search and 1 ms for the one that is unreachable.
+  // 100 x 1200 expansions in 100 x 3 ms of search plus 1 ms for the unreachable one.
   CHECK(json["expansions_per_s"].get<double>() == Approx(120000 / 0.301));
   REQUIRE(json["answers"].size() == 102);
   CHECK(json["answers"][100]["status"] == "unreachable");

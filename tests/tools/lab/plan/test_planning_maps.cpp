@@ -18,7 +18,7 @@ namespace {
 
 const std::string kFolder = std::string(TREAD_SOURCE_DIR) + "/tests/data/planning/";
 
-/// Steps of one cell that a disc needs from a point to each cell of a map.
+/// Number of one-cell steps that a disc needs from a point to each cell.
 class Ways {
  public:
   Ways(const std::string& name, const Eigen::Vector2d& from, double radius)
@@ -28,11 +28,11 @@ class Ways {
     for (int step = 0; !front.empty(); ++step) front = onwards(front, step);
   }
 
-  /// -1 = there is no way.
+  /// -1 = unreachable.
   int stepsTo(const Eigen::Vector2d& p_map) const {
     return steps_[map_.grid.offset(cellAt(p_map))];
   }
-  /// Of the cells that the disc may be in, those that it can come to.
+  /// Share of the reachable cells among those where the disc fits.
   double share() const {
     size_t free = 0;
     size_t reached = 0;
@@ -68,7 +68,7 @@ class Ways {
   std::vector<int> steps_;
 };
 
-/// The same without any obstacle.
+/// The same without obstacles.
 int straightSteps(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   return static_cast<int>((to - from).lpNorm<1>() / 0.05);
 }

@@ -43,7 +43,7 @@ TEST_CASE("primitives are read with their headings, cells and poses") {
   CHECK(file.primitives[1].cost_multiplier == 3);
   CHECK(file.primitives[1].poses[2].y == 0.4);
   CHECK(file.primitives[2].start_bin == 3);
-  CHECK(file.primitives[2].end_bin == 3);  // stands as -1
+  CHECK(file.primitives[2].end_bin == 3);  // written as -1
 }
 
 TEST_CASE("primitives are read with a byte order mark and with lines of other systems") {
@@ -190,7 +190,7 @@ TEST_CASE("heading-free primitives are those of heading 0 with the slower of way
   CHECK(free[0].poses[0].x == 0.2);
   CHECK(free[0].duration == Approx(0.5 / 0.5));
   CHECK(free[0].cost == free[0].duration);
-  // A quarter turn takes 2 s, its way of 0.3 + 0.4 + 0.224 m 1.85 s.
+  // A quarter turn takes 2 s, its path of 0.3 + 0.4 + 0.224 m 1.85 s.
   CHECK(free[1].duration == Approx(2.0).epsilon(1e-4));
   CHECK(free[1].cost == Approx(3.0 * free[1].duration));
   CHECK(headingFree(parse(kPrimitives), {0.1, 1.0})[1].duration ==

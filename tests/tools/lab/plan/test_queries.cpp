@@ -14,7 +14,7 @@ using Catch::Contains;
 
 namespace {
 
-/// 8 x 6 m with a wall across that leaves a gap of 1 m.
+/// 8 x 6 m with a wall across and a gap of 1 m.
 Grid walledRoom() {
   Grid grid(0.1, {0, 0}, 80, 60);
   for (Cell& cell : grid.cells()) cell = kFree;

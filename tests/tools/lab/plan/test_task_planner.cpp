@@ -20,8 +20,8 @@ namespace {
 const std::string kMaps = std::string(TREAD_SOURCE_DIR) + "/tests/data/planning/";
 const std::string kSet = std::string(TREAD_SOURCE_DIR) + "/config/patterns/teodor.yaml";
 
-/// Eight headings on cells of 0.1 m: a cell ahead, one back for thrice the price, an eighth of a
-/// turn to each side, and from each heading a cell ahead with such a turn.
+/// Eight headings on cells of 0.1 m: a cell ahead, a cell back at three times the cost, an eighth
+/// of a turn to each side, and from each heading a cell ahead combined with such a turn.
 std::string eightHeadings() {
   constexpr std::array<std::array<int, 2>, 8> kAhead{
       {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
@@ -156,7 +156,7 @@ TEST_CASE("a map's origin shifts and turns a plan and changes nothing else") {
   const PlanAnswer other = there.answer(query);
   REQUIRE(plain.end == planner::PathEnd::kSolved);
   REQUIRE(other.end == planner::PathEnd::kSolved);
-  // Rounding may choose another of two plans that are as good.
+  // Rounding may select another of two equally good plans.
   CHECK(other.cost == Approx(plain.cost).epsilon(0.02));
   CHECK((other.poses.back().position() - query.T_map_goal.position()).norm() <= 0.25 + 1e-6);
 }

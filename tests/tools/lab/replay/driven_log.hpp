@@ -19,8 +19,8 @@
 
 namespace tread::samples {
 
-/// The first seconds of a mission, everything on its bus recorded in memory; `prepare` spoils its
-/// devices.
+/// The first seconds of a mission with its complete bus recorded in memory; `prepare` may disturb
+/// its devices.
 inline std::vector<LogEvent> drivenLog(
     double seconds, const FaultPlan& faults = {}, const char* rule = "collective",
     const std::function<void(missions::RobotSystem&)>& prepare = [](missions::RobotSystem&) {}) {
@@ -43,8 +43,9 @@ inline std::vector<LogEvent> drivenLog(
   return events;
 }
 
-/// The same, driven once for all processes of a test program: ctest starts each test case anew.
-/** Kept beside the program, until the program or the robot's configuration becomes newer. */
+/// The same, driven once for all processes of a test program, because ctest starts each test case
+/// separately.
+/** Stored next to the program, until the program or the robot's configuration is newer. */
 inline std::vector<LogEvent> keptDrivenLog(double seconds) {
   namespace fs = std::filesystem;
   const fs::path program = fs::read_symlink("/proc/self/exe");
@@ -70,7 +71,7 @@ inline std::vector<LogEvent> keptDrivenLog(double seconds) {
   return readEvents({kept}, problem);
 }
 
-/// Changes the messages of a channel for which `change` returns true.
+/// Modifies the messages of a channel for which `change` returns true.
 template <class Message>
 void rewrite(std::vector<LogEvent>& events, const Channel<Message>& channel,
              const std::function<bool(Message&)>& change) {

@@ -23,8 +23,7 @@ inline VehicleModel plainModel(double forward_gain, double yaw_gain) {
   return model;
 }
 
-/// Random turns of six seconds each, as a vehicle with these gains drives them, in the form of the
-/// recordings.
+/// Random turns of six seconds each for a vehicle with these gains, in the recordings' format.
 inline recordings::RecordedDrive syntheticRecording(const VehicleModel& truth, int steps,
                                                     uint64_t seed = 1) {
   recordings::RecordedDrive recording;

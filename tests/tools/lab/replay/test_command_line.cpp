@@ -29,7 +29,7 @@ TEST_CASE("from a recording to a report on the command line") {
              folder.file("sessions.csv", sessions(242)) + " " + csv + " -o " + log);
   INFO(import.printed);
   REQUIRE(import.status == 0);
-  // What was taken, and how speed and turn follow the commands.
+  // The used data, and the response of speed and turn to the commands.
   REQUIRE(lines(import.printed) == 3);
   const CalledProgram replay = called("tread-replay learner " + log + " --model " + kModel +
                                       " --rule collective --report " + report);
@@ -41,7 +41,7 @@ TEST_CASE("from a recording to a report on the command line") {
 }
 
 TEST_CASE("a log with left and right commands, of an older version, teaches the same sets today") {
-  // What it is, and how it was recorded: tests/common/log/test_older_types.cpp.
+  // For the content and its recording see tests/common/log/test_older_types.cpp.
   const CalledProgram replay = called("tread-replay learner " + std::string(TREAD_SOURCE_DIR) +
                                       "/tests/data/logs/two_tracks.lcmlog");
   INFO(replay.printed);

@@ -14,7 +14,7 @@ const std::string kCorpus = std::string(TREAD_SOURCE_DIR) + "/tests/data/corpus"
 
 TEST_CASE("the project's own corpus is planned and learned from as it was when it was recorded") {
   const CalledProgram replay = called("tread-replay corpus " + kCorpus);
-  // A change that is meant shows here what it changes; then tests/data/corpus/record.
+  // Shows the effect of an intended change; then run tests/data/corpus/record.
   CAPTURE(replay.printed);
   CHECK(replay.status == 0);
   CHECK(replay.says("2 logs: 2 equal, 0 different, 0 not compared"));

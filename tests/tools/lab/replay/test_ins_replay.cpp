@@ -42,7 +42,7 @@ std::unique_ptr<sim::InsEmulator> emulatorOf(const std::string& source) {
   return std::make_unique<sim::NmeaInsEmulator>(sim::NmeaInsSettings{}, 5);
 }
 
-/// What an instrument says in 10 s at 50 Hz while it drives 10 m to the north.
+/// Output of an instrument in 10 s at 50 Hz while it drives 10 m to the north.
 std::vector<std::pair<int64_t, std::string>> driveOf(const std::string& source) {
   const auto emulator = emulatorOf(source);
   std::vector<std::pair<int64_t, std::string>> said;
@@ -66,7 +66,7 @@ void checkDrive(const InsReplay& replay) {
   CHECK(replay.epochs.jumps == 0);
   REQUIRE(replay.last_pose);
   CHECK(replay.last_pose->position[1] - replay.first_pose->position[1] == Approx(9.96).margin(0.1));
-  // In its own time, not in that of the reading.
+  // In its own time, not the time of reading.
   CHECK(replay.last_pose->utime - replay.first_pose->utime == Approx(9.96e6).margin(1e5));
   CHECK(reportOf(replay).find("with position and heading") != std::string::npos);
 }
@@ -138,7 +138,7 @@ TEST_CASE("rst39.log through the real node: 152 sentences in, 152 decoded, 116 p
   CHECK(replay.tally.messages == 152);
   CHECK(decoded(replay) == 152);
   CHECK(replay.tally.refused.empty());
-  // 40 fixes at 10 Hz; attitudes at 25 Hz between them, with the position carried.
+  // 40 fixes at 10 Hz; attitudes at 25 Hz in between, with extrapolated positions.
   CHECK(replay.poses == 116);
   CHECK(replay.poses - replay.epochs.positions_carried == 40);
   REQUIRE(replay.track.size() == 117);

@@ -21,7 +21,7 @@ using namespace tread::samples;
 
 namespace {
 
-/// The ground halves every turn; the model that predicts does not know.
+/// The ground halves every turn; the predicting model does not know it.
 const VehicleModel kTruth = plainModel(0.9, 0.5);
 const VehicleModel kModel = plainModel(1.0, 1.0);
 
@@ -203,7 +203,7 @@ TEST_CASE("real grass goes through the learner") {
 
 namespace {
 
-/// The events of a drive, with its poses on SCAN_MATCHING, too, but for what `change` does to them.
+/// The events of a drive with its poses also on SCAN_MATCHING, modified by `change`.
 std::vector<LogEvent> withScanMatching(const DriveLog& log,
                                        const std::function<void(ins_t&)>& change) {
   std::vector<LogEvent> events = log.events;
@@ -240,7 +240,7 @@ TEST_CASE("the learner is compared with itself, fed by the poses of scan matchin
   CHECK(same.errors_with_other.position_mean ==
         Approx(same.errors_with_ins.position_mean).margin(1e-9));
 
-  // Scans that make each way a tenth too short.
+  // Scans that make each path 10 % too short.
   const PoseComparison shorter = compared([](ins_t& message) {
     message.position[0] *= 0.9;
     message.position[1] *= 0.9;

@@ -26,7 +26,7 @@ using namespace tread::testing;
 
 namespace {
 
-/// A folder with everything that a run needs and leaves, gone after the test.
+/// A temporary folder with everything that a run needs and produces.
 class Folder {
  public:
   explicit Folder(const std::string& name)
@@ -43,13 +43,13 @@ class Folder {
   std::filesystem::path path_;
 };
 
-/// A learner of this pattern file with the gates that fit a log without a learner.
+/// A learner with this pattern file and gates for a log without a learner.
 std::string learnerYaml(const std::string& patterns) {
   return "patterns: \"" + patterns +
          "\"\nstore: state/x\nrule: multi_model\ngates:\n  max_gap: 0.3\n  any_entry: true\n";
 }
 
-/// A running learner that hears a played log; all that it says is kept.
+/// A running learner that receives a played log; its messages are stored.
 class LiveLearner {
  public:
   LiveLearner(const std::string& name, std::vector<LogEvent> events, const VehicleModel& model,
@@ -76,7 +76,7 @@ class LiveLearner {
         std::vector<std::string>{"--config", folder_.file("learner.yaml"), "--set",
                                  "store=" + folder_.file("state"), "--lcm-url", url_},
         folder_.file("said"));
-    // What is under way when a HEALTH is sent is in the log before it, but not in its count.
+    // Messages in flight when HEALTH is sent are earlier in the log, but not in its count.
     REQUIRE(until(
         [this] {
           return std::any_of(heard_.begin(), heard_.end(),
@@ -89,7 +89,8 @@ class LiveLearner {
                                  folder_.file("played.lcmlog")});
   }
 
-  /// Listens until the log has been played and its executions are given up; replays what it heard.
+  /// Listens until the log has been played and its executions are given up; replays the received
+  /// messages.
   LearnerCheck finish(double seconds) {
     REQUIRE(until([this] { return player_->waitFor(0); }, seconds));
     until([] { return false; }, 4.0);
@@ -190,6 +191,6 @@ TEST_CASE("real grass and sand, played at the same time, lose nothing") {
   LiveLearner on_grass("grass", std::move(grass), model, "1");
   LiveLearner on_sand("sand", std::move(sand), model, "1");
   requireEqual(on_grass.finish(90.0));
-  // Nobody listened to this recorder for a minute: it dates all that came in it at once.
+  // This recorder was delayed for a minute: its messages of that time have the same recording time.
   requireEqual(on_sand.finish(30.0));
 }

@@ -16,7 +16,7 @@ using namespace tread;
 
 namespace {
 
-/// A file of a test's own, removed with it.
+/// A temporary file.
 class TestFile {
  public:
   TestFile(const std::string& name, const std::string& content)
@@ -33,7 +33,7 @@ class TestFile {
   std::string path_;
 };
 
-/// A scan of a wall across x, and the pose it is said to be taken at: wrong by `drift` [m].
+/// A scan of a wall across x, with a pose that is wrong by `drift` [m].
 std::string carmenLine(double wall, double x, double drift) {
   std::ostringstream log;
   log << "ODOM " << x << " 0 0 0 0 0 0 host 0\nFLASER 360";
@@ -46,7 +46,7 @@ std::string carmenLine(double wall, double x, double drift) {
   return log.str();
 }
 
-/// A CARMEN log of a drive along x towards a wall across the way.
+/// A CARMEN log of a drive along x towards a wall across the path.
 std::string carmenDrive(double wall, int lines) {
   std::string log =
       "# message formats defined: PARAM ODOM FLASER\nPARAM robot_length 0.47 1 host 1\n";
@@ -82,7 +82,7 @@ TEST_CASE("a CARMEN log becomes a map with its wall, and every scan is taken") {
 TEST_CASE(
     "a map closes where passes agree, and does not where the poses had drifted between them") {
   for (const double drift : {0.0, 0.2, 0.6}) {
-    // There and back and there again; the last way's poses are wrong by the drift.
+    // Forth, back and forth again; the poses of the last part are wrong by the drift.
     std::string log = carmenDrive(12.03, 10);
     for (int i = 9; i >= 0; --i) log += carmenLine(12.03, i, 0.0);
     for (int i = 0; i < 10; ++i) log += carmenLine(12.03, i, drift);
@@ -92,7 +92,7 @@ TEST_CASE(
     REQUIRE(overlap.again.pairs > 0);
     REQUIRE(overlap.again.cells > 100);
     CHECK(overlap.again.within_ten == overlap.again.cells);
-    // The ends of the wall are seen from nearby only.
+    // The ends of the wall are visible from nearby only.
     const double share =
         static_cast<double>(overlap.again.within_two) / static_cast<double>(overlap.again.cells);
     if (drift < 0.5)
@@ -190,7 +190,7 @@ TEST_CASE("the Freiburg campus goes through mapping: every scan taken, walls whe
   const auto obstacles = std::count(cells.begin(), cells.end(), kObstacle);
   CHECK(free > 200'000);  // 2000 m2
   CHECK(obstacles > 2'000);
-  // Where the robot drove it is free.
+  // The robot's path is free.
   for (const TimedPose& pose : replay.track) {
     if (pose.utime > campus.scans.back().utime) break;
     CHECK(at(replay, pose.T_map_body.x, pose.T_map_body.y) == kFree);

@@ -29,7 +29,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// A scan each metre or so, a second apart, with 80 m range: little is known between two of them.
+/// A scan about every metre, 1 s apart, with 80 m range: little is known in between.
 ScanMatchingConfig campusConfig() {
   ScanMatchingConfig config;
   config.matcher.points.range_max = 50.0;
@@ -43,7 +43,7 @@ sim::MotorPower ahead(double t) {
   return t < 1.0 ? sim::MotorPower{0.0, 0.0} : sim::MotorPower{0.8, 0.8};
 }
 
-/// Position error along x of the last pose that claims to know its position [m].
+/// Position error along x of the last pose with a published position [m].
 double lastKnownError(const SimulatedDrive& drive) {
   double error = 0.0;
   for (const MatchedPose& pose : drive.poses)
@@ -82,7 +82,7 @@ TEST_CASE(
   CHECK(std::abs(last.T_map_body.yaw - truth.yaw) < 0.02);
   CHECK(std::abs(last.T_map_body.y - truth.y) < 0.05);
   CHECK(last.covariance(0, 0) > 100.0 * last.covariance(1, 1));
-  // What it claimed before was within what it told.
+  // Earlier errors were within the published uncertainty.
   CHECK(lastKnownError(driven) < 0.6);
 }
 
@@ -129,7 +129,7 @@ TEST_CASE("an MBot that drives a square is measured back to its start") {
   const MatchingReplay replay = replayMatching(readMappingRecording(path), {});
   INFO(reportOf(replay));
   CHECK(replay.outcomes.at("matched") >= 123);
-  // The whole way, begun and ended at rest: 4.2 m and three quarters of a turn.
+  // The whole path, starting and ending at rest: 4.2 m and three quarters of a turn.
   CHECK(replay.comparison.end_position < 0.08);
   CHECK(replay.comparison.end_yaw < 0.03);
 }
@@ -149,7 +149,7 @@ TEST_CASE("on the Freiburg campus 300 scans a metre apart are matched to 3 cm an
   CHECK(median(replay.comparison.per_metre.position) < 0.03);
   CHECK(median(replay.comparison.per_metre.yaw) < 0.003);
   CHECK(replay.comparison.per_metre.within_two > 0.4);
-  // What the reference's own errors have no part in.
+  // Independent of the reference's own errors.
   CHECK(replay.closure.yaw.size() >= 200);
   CHECK(replay.closure.normalized_position < 1.5);
   CHECK(replay.closure.normalized_yaw < 1.5);

@@ -99,7 +99,7 @@ TEST_CASE("numbers within the tolerance are equal, and checksums count to the bi
   replay.trajectory = part().trajectory;
   CHECK(differenceOf(part(), replay, 0.0).find("checksum (another pattern differs)") !=
         std::string::npos);
-  // A number against an unknown one differs, whatever the tolerance.
+  // A number differs from an unknown one at any tolerance.
   replay.trajectory[0][0] = kNone;
   CHECK_FALSE(differenceOf(part(), replay, 1e6).empty());
 }
@@ -219,7 +219,7 @@ TEST_CASE("the robot's time follows its messages, goes on between them and never
   record(10'000, eventOf(kIns, insAt(5'000'000, 0)));
   record(15'000, {0, "NOISE", {}});
   record(30'000, eventOf(kIns, insAt(5'019'000, 1)));
-  record(50'000, eventOf(kIns, insAt(999'000'000, 2)));  // broken: far ahead
+  record(50'000, eventOf(kIns, insAt(999'000'000, 2)));  // corrupted: far ahead
   record(70'000, eventOf(kIns, insAt(5'060'000, 3)));
   const RobotLog log = toRobotLog("clock", events);
   CHECK_FALSE(log.virtual_time);

@@ -54,14 +54,14 @@ bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// The number at a place of an encoded message; each type begins with fingerprint, utime and seq.
+/// The number at an offset of an encoded message; each type begins with fingerprint, utime and seq.
 int64_t numberAt(const LogEvent& event, size_t place) {
   uint64_t number = 0;
   for (size_t i = place; i < place + 8; ++i) number = number << 8 | event.bytes.at(i);
   return static_cast<int64_t>(number);
 }
 
-/// The message that was the newest a planner had heard before a step; events.end() if none was.
+/// The newest message that a planner had received before a step; events.end() if none.
 std::vector<LogEvent>::iterator newestOf(std::vector<LogEvent>& events, const program_t& program) {
   return std::find_if(events.begin(), events.end(), [&program](const LogEvent& event) {
     return event.channel == program.newest_input &&
@@ -78,8 +78,7 @@ std::vector<program_t> programsOf(const std::vector<LogEvent>& events) {
   return programs;
 }
 
-/// Takes so many messages of a channel out of the middle of the log; their seq shows it, or does
-/// not.
+/// Removes messages of a channel from the middle of the log; their seq may or may not show it.
 template <class Message>
 void lose(std::vector<LogEvent>& events, const Channel<Message>& channel, int count, bool shown) {
   const std::string name = channel.name;
@@ -99,7 +98,7 @@ void lose(std::vector<LogEvent>& events, const Channel<Message>& channel, int co
     });
 }
 
-/// As lcm-logger would have written it on a host whose UTC is set forward in the drive.
+/// As written by lcm-logger on a host whose UTC is set forward during the drive.
 std::vector<LogEvent> recordedInUtc(std::vector<LogEvent> events) {
   rewrite<health_t>(events, kHealth, [](health_t& health) {
     health.utc = 1'700'000'000'000'000;
@@ -110,7 +109,7 @@ std::vector<LogEvent> recordedInUtc(std::vector<LogEvent> events) {
   return events;
 }
 
-/// As a recorder would have written it that nobody listened to in these seconds of the drive.
+/// As written by a recorder that was delayed during these seconds of the drive.
 std::vector<LogEvent> recordedAtOnce(std::vector<LogEvent> events, double from, double to) {
   const int64_t begin = events.front().utime + std::llround(from * 1e6);
   const int64_t end = events.front().utime + std::llround(to * 1e6);
@@ -185,7 +184,7 @@ TEST_CASE("a recorder that was not listened to for a while changes nothing") {
 }
 
 TEST_CASE("a log that begins in the middle is replayed from the first state that can be replayed") {
-  // Executions may name a set from before the cut: states that would need it are passed over.
+  // Executions may name a set from before the cut: states that need it are skipped.
   for (const size_t share : {2, 3, 4}) {
     std::vector<LogEvent> events = plainDrive();
     events.erase(events.begin(),
@@ -313,7 +312,8 @@ TEST_CASE("a robot's log through the planner gives the programs and plans of the
 }
 
 TEST_CASE("a planner that mapping's HEALTH stopped is stopped in the replay, too") {
-  // The range finder lies for six seconds: mapping says so, and the planner overhears it.
+  // The range finder lies for six seconds: mapping reports it in HEALTH, which the planner
+  // receives.
   const auto lies = [](missions::RobotSystem& system) {
     const int64_t start = system.bus().now();
     system.disturbScans([&system, start](lidar::RangeScan& scan) {
@@ -332,7 +332,7 @@ TEST_CASE("a planner that mapping's HEALTH stopped is stopped in the replay, too
   REQUIRE(check.programs.equal == check.steps);
   REQUIRE(check.plans.equal >= 100);
   REQUIRE(check.equal());
-  // Without HEALTH nothing tells the replay why the robot stopped.
+  // Without HEALTH the replay cannot know why the robot stopped.
   events.erase(std::remove_if(events.begin(), events.end(),
                               [](const LogEvent& event) {
                                 health_t health;
@@ -369,7 +369,7 @@ TEST_CASE(
   for (const program_t& program : programsOf(events)) {
     const auto newest = newestOf(events, program);
     if (newest == events.end()) continue;
-    // As if the recorder had got it just after the step began; or the next one just before.
+    // As if the recorder had received it just after the step began; or the next one just before.
     if (later <= earlier) {
       newest->utime = program.utime + 100;
       ++later;
