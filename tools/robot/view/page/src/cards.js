@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The cards beside the map, in words.
+// The cards next to the map: texts and numbers.
 import { number, known, motorWord, planWord, mayDrive } from "./state.js";
 import { surfaceName } from "./charts.js";
 
@@ -20,7 +20,7 @@ export function setAge(id, seconds, longest) {
   const card = document.getElementById(id);
   const stale = seconds === null || seconds > longest;
   card.classList.toggle("stale", stale);
-    const words = seconds === null ? "never heard" : seconds < 1 ? "" : `${seconds < 100 ? seconds.toFixed(1) : Math.round(seconds)} s old`;
+    const words = seconds === null ? "never received" : seconds < 1 ? "" : `${seconds < 100 ? seconds.toFixed(1) : Math.round(seconds)} s old`;
   const age = card.querySelector(".age");
   if (age.textContent !== words) age.textContent = words;
 }
@@ -90,13 +90,13 @@ export function showLearned(state, clock) {
   if (learning) {
     const l = learning.message;
     const result = l.accepted
-      ? `ended ${fixed(l.error_position, 2)} m and ${fixed(degrees(l.error_yaw), 1)}&deg; from its prediction; the set that came of it would have been ${fixed(l.error_position_after, 2)} m off`
+      ? `ended ${fixed(l.error_position, 2)} m and ${fixed(degrees(l.error_yaw), 1)}&deg; from its prediction; the new set would have been ${fixed(l.error_position_after, 2)} m off`
       : `not learned from: ${escape(l.gate_reason)}`;
     put("learned", `<div class="big">${escape(l.learned_pattern_name)}</div><div>${result}</div>` +
-      (l.change_reason ? `<div class="why">taken for: ${escape(l.change_reason)}</div>` : "") +
-      `<div class="why">pattern set ${l.result_version}; ground: ${surfaceName(l.surface)}${known(l.ground_changed) && l.ground_changed > 0.5 ? ", the ground became another" : ""}</div>`);
+      (l.change_reason ? `<div class="why">ground: ${escape(l.change_reason)}</div>` : "") +
+      `<div class="why">pattern set ${l.result_version}; ${surfaceName(l.surface)}${known(l.ground_changed) && l.ground_changed > 0.5 ? ", the ground changed" : ""}</div>`);
   } else put("learned", "<div class=\"why\">nothing yet</div>");
-  // It speaks when a pattern has ended: an old word is still true.
+  // LEARNING comes after each pattern, so an old message is still valid.
   setAge("learned", learning ? state.age(learning, clock) : null, 1e9);
 }
 
@@ -120,7 +120,7 @@ export function showEvents(state, begin) {
   const nearest = state.live ? -1 : shown.findIndex(([time]) => time <= now);
   put("events", shown.slice(0, 120 + Math.max(0, nearest)).map(([time, severity, source, words], i) =>
     `<div class="event s${severity}${i === nearest ? " now" : ""}" data-time="${time}"><time>${((time - begin) / 1e6).toFixed(1)} s</time><span><b>${escape(source)}</b> ${escape(words)}</span></div>`).join("") || "<div class=\"why\">nothing yet</div>");
-  // A log's list goes with its time.
+  // For a log the list follows the playback time.
   const row = document.querySelector("#events .event.now");
   const list = document.querySelector("#events .body");
   if (row && list.dataset.at !== row.dataset.time) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Prediction error over time, and the patterns as they are and as they were.
+// Prediction error over time; present and previous patterns.
 import { number } from "./state.js";
 
 const SURFACE = ["#1c2126", "#e69f00", "#56b4e9", "#009e73", "#cc79a7", "#0072b2", "#d55e00", "#8a949e"];
@@ -21,7 +21,7 @@ function prepare(canvas) {
   return { context, width, height };
 }
 
-// Not by colour alone: a surface has a shape, too.
+// A surface has a shape in addition to its colour, for people who cannot distinguish the colours.
 function mark(c, shape, x, y, r) {
   c.beginPath();
   if (shape === "circle") c.arc(x, y, r, 0, 7);
@@ -32,7 +32,7 @@ function mark(c, shape, x, y, r) {
 }
 
 export function surfaceName(surface) {
-  return surface === 0 ? "as shipped, or not known" : `ground ${surface}`;
+  return surface === 0 ? "shipped or unknown ground" : `ground ${surface}`;
 }
 
 export function drawErrors(canvas, state, span) {
@@ -45,8 +45,8 @@ export function drawErrors(canvas, state, span) {
   const y = (error) => bottom - (error / highest) * (bottom - top);
   c.fillStyle = "#6b7680";
   c.textAlign = "left";
-  c.fillText("how far each pattern ended from its prediction [m]; a bar: the ground was taken for another one", left, 10);
-  // Which ground a sign stands for.
+  c.fillText("distance of each pattern's end from its prediction [m]; bar: change of ground", left, 10);
+  // Legend: ground of each sign.
   const surfaces = [...new Set(patterns.map(([, , , , , surface]) => surface))].sort((a, b) => a - b);
   let at = left + 560;
   for (const surface of surfaces) {
@@ -72,7 +72,7 @@ export function drawErrors(canvas, state, span) {
   for (const [time, , , position, , surface, changed] of patterns) {
     if (changed !== null && changed > 0.5) { c.fillStyle = "#e69f0055"; c.fillRect(x(time) - 1.5, top, 3, bottom - top); }
         c.fillStyle = SURFACE[surface % SURFACE.length];
-    // What is still to come in a log is there, but faint.
+    // Later points of a log are faint.
     c.globalAlpha = !state.live && state.player && time > state.player.now ? 0.35 : 1;
     mark(c, MARKS[surface % MARKS.length], x(time), y(position), 3.2);
     c.globalAlpha = 1;
@@ -132,5 +132,5 @@ export function drawPatterns(canvas, state, learned) {
   c.textAlign = "left";
   c.fillText("1 m", 8, height - 26);
   c.textAlign = "center";
-  c.fillText("patterns now; dashed: the set before; thick: learned last", width / 2, height - 4);
+  c.fillText("patterns now; dashed: previous set; thick: learned last", width / 2, height - 4);
 }

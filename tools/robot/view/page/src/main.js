@@ -7,8 +7,8 @@ import { headline, showDrive, showEvents, showHealth, showLearned, showRobot } f
 import { Connection } from "./connection.js";
 
 const ALIVE = 200; // [ms] between signs of life to the operator console
-const FRESH = 500; // [ms] a picture, for the robot to be held
-const WORDS = 100; // [ms] between looks at the cards: nobody reads faster
+const FRESH = 500; // [ms] age limit of the picture for holding the robot
+const WORDS = 100; // [ms] between updates of the cards: nobody reads faster
 const element = (id) => document.getElementById(id);
 
 let state = new State();
@@ -16,15 +16,15 @@ const map = new MapView(element("map"), state);
 let connected = false;
 let mayCommand = false;
 let asked = 0; // number of the newest seek
-let seeking = null; // [us] where the slider was moved to
+let seeking = null; // [us] position of the slider
 let holds = false; // this page has taken the robot
 let tool = null; // "goal" or "fence": what a click on the map means
 let timeAt = null; // pixel of the chart -> time
-let drawn = 0; // [ms] when a picture was drawn last
-let shown = 0; // [us] when the newest MOTOR came that it shows, by the server's clock
+let drawn = 0; // [ms] time of the last picture
+let shown = 0; // [us] arrival of the newest MOTOR shown, by the server's clock
 
 
-// Beside the page, wherever a proxy has put it.
+// Relative to the page, for any proxy path.
 const beside = new URL(`./${location.search}`, location.href);
 beside.protocol = location.protocol === "https:" ? "wss:" : "ws:";
 const connection = new Connection(beside.href, {
@@ -35,7 +35,7 @@ const connection = new Connection(beside.href, {
   onOpen(allowed) {
     connected = true;
     mayCommand = allowed;
-    // Another server, or the same after a pause: what it says now counts.
+    // Another server, or the same one after a pause: discard the old data.
     state = new State();
     map.state = state;
     notice("");
@@ -61,7 +61,7 @@ function playerMoved() {
   }
 }
 
-// One request at a time: the slider is faster than any log.
+// One request at a time: the slider moves faster than a log can be read.
 function seek(time) {
   const { player } = state;
   if (!player || player.live) return;
@@ -88,10 +88,10 @@ element("events").addEventListener("click", (event) => {
 
 // Operating the robot.
 
-// The E-stop is never withheld, whatever the robot is said to be in: what is known of it may be old.
+// The E-stop is always available: the displayed state may be old.
 element("estop").addEventListener("click", () => connection.command({ op: "estop" }));
 element("clear").addEventListener("click", () => connection.command({ op: "clear_estop" }));
-// What moves the robot says what this page has shown of it last, and the operator console refuses a page that is behind.
+// A command that moves the robot carries the time of the newest displayed state; the operator console refuses an outdated page.
 const operate = (message) => connection.command({ ...message, seen: shown });
 element("arm").addEventListener("click", () => { holds = true; operate({ op: "arm" }); });
 element("disarm").addEventListener("click", () => { holds = false; connection.command({ op: "disarm" }); });
@@ -203,8 +203,8 @@ function frame(clock) {
     drawn = performance.now();
     shown = state.get("MOTOR")?.time ?? 0;
   } catch (error) {
-    // A picture that stands still is no sign of life: the robot is let go of.
-    notice(`this page cannot draw what came: ${error.message}`);
+    // A frozen picture sends no sign of life, which releases the robot.
+    notice(`this page cannot draw the data: ${error.message}`);
     console.error(error);
   }
 }
@@ -214,7 +214,7 @@ function words(clock) {
   const name = !connected ? "no connection" : state.player === null ? "connecting" : state.live ? "live" : "log";
   mode.textContent = name.toUpperCase();
   mode.className = `badge ${!connected ? "lost" : state.player === null ? "" : state.live ? "live" : "log"}`;
-  element("headline").textContent = connected ? headline(state) : "no connection to tread-view: what is shown is old";
+  element("headline").textContent = connected ? headline(state) : "no connection to tread-view: the data shown are old";
   document.body.classList.toggle("lost", !connected);
     const operates = connected && state.live && mayCommand;
   element("estop").hidden = !operates;

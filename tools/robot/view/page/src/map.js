@@ -3,13 +3,13 @@
 // The map from above: ground, obstacles and unknown, the robot, its plan and the tree, goal and fences.
 import { number, known } from "./state.js";
 
-// Okabe and Ito's colours, told apart also by people who do not see red and green.
+// Okabe and Ito's colours, distinguishable also with red-green colour blindness.
 export const COLOUR = { robot: "#0072b2", plan: "#e69f00", tree: "#56b4e9", goal: "#009e73", way: "#0072b2", scan: "#cc79a7",
   obstacle: "#1c2126", free: "#f7f8f8", unknown: "#c9ced3", fence: "#d55e00" };
 
 export const LEGEND = [["obstacle", "obstacle", "box"], ["free", "free ground", "box"], ["unknown", "not seen yet", "box"],
-  ["plan", "plan, with two standard deviations", "line"], ["tree", "looked at", "line"], ["goal", "goal", "box"],
-    ["way", "driven", "line"], ["scan", "seen by the range finder now", "dot"]];
+  ["plan", "plan, with two standard deviations", "line"], ["tree", "search tree", "line"], ["goal", "goal", "box"],
+    ["way", "driven path", "line"], ["scan", "newest scan", "dot"]];
 
 const compose = (a, b) => ({ x: a.x + Math.cos(a.yaw) * b.x - Math.sin(a.yaw) * b.y,
   y: a.y + Math.sin(a.yaw) * b.x + Math.cos(a.yaw) * b.y, yaw: a.yaw + b.yaw });
@@ -18,11 +18,11 @@ export class MapView {
   constructor(canvas, state) {
     this.canvas = canvas;
     this.state = state;
-    this.scale = 40; // pixels a metre
+    this.scale = 40; // pixels per metre
     this.centre = { x: 0, y: 0 };
     this.follow = true;
-    this.draft = []; // corners of a fence that is being drawn
-    this.wanted = null; // a goal that is being set: { x, y, yaw }
+    this.draft = []; // corners of a fence being drawn
+    this.wanted = null; // a goal being set: { x, y, yaw }
   }
 
   resize() {
@@ -73,7 +73,7 @@ export class MapView {
     if (pose) this.drawRobot(pose, ins ? this.state.age(ins, clock) > 0.5 : true);
   }
 
-  // What is older than thrice its channel's period, and a second, fades.
+  // Data older than three periods of their channel, and than 1 s, fade.
   faded(topic, clock, draw) {
     const entry = this.state.get(topic);
     if (!entry) return;
@@ -190,7 +190,7 @@ export class MapView {
       const [x, y, yaw] = plan.pose.slice(3 * i, 3 * i + 3).map(number);
       this.drawDoubt(x, y, plan.covariance.slice(6 * i, 6 * i + 6).map(number));
       const pattern = this.state.pattern(plan.pattern_id[i]);
-      // From its end back to its beginning: only the end of the running one is known.
+      // Drawn from its end backwards: only the end of the running one is known.
       if (pattern) points.push(...this.curve(pattern, { x, y, yaw }));
       else points.push([x, y]);
       
@@ -239,7 +239,7 @@ export class MapView {
     c.fill();
   }
 
-  // The pattern that is being executed, from where it began.
+  // The running pattern, from its start.
   drawRun() {
     const { run } = this.state;
     const pattern = run && run.time <= this.state.now() && this.state.pattern(run.pattern);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What the page knows: the newest message of each channel, with the time at which it was recorded and that at which it came.
+// State of the page: the newest message of each channel with its times of recording and arrival.
 
-// Numbers that JSON lacks come as texts.
+// Numbers that JSON lacks are sent as texts.
 export const number = (value) => (typeof value === "number" ? value : Number(value));
 export const known = (value) => Number.isFinite(number(value));
 
@@ -12,7 +12,7 @@ export const motorWord = (state) => MOTOR[state] ?? "unknown";
 export const planWord = (state) => PLAN[state] ?? "unknown";
 export const mayDrive = (state) => [1, 2, 3, 6].includes(state);
 
-// Names and places that whoever may send can make up without end: the oldest go.
+// A sender can invent any number of names and places, so the oldest are dropped.
 const MOST = { processes: 64, tiles: 8192, patterns: 2048, fences: 256, history: 20000 };
 function keep(map, key, value, most) {
   map.delete(key);
@@ -26,7 +26,7 @@ export class State {
     this.health = new Map(); // process -> the same
     this.tiles = new Map(); // "x,y" -> { time, tile, image }
     this.patterns = new Map(); // part -> pattern
-    this.before = new Map(); // part -> the pattern as it was before the newest change
+    this.before = new Map(); // part -> the pattern before the newest change
     this.history = { events: [], patterns: [], way: [], battery: [] };
     this.player = null;
     this.offered = {};
@@ -41,7 +41,7 @@ export class State {
     return this.player === null || this.player.live;
   }
 
-  // [us] the time of what is shown.
+  // [us] time of the displayed data.
   now() {
     return this.live ? Infinity : this.player.now + 1;
   }
@@ -69,7 +69,7 @@ export class State {
     return entry && entry.time <= this.now() ? entry : null;
   }
 
-  // [s] since the entry came, or since it was recorded where a log is shown.
+  // [s] age: since arrival, or for a log since recording.
   age(entry, clock) {
     return this.live ? (clock - entry.arrived) / 1000 : (this.player.now - entry.time) / 1e6;
   }
@@ -99,9 +99,9 @@ export class State {
     keep(this.fences, fence.fence_name, { ...fence, time }, MOST.fences);
   }
 
-  // Those that stand at the time of what is shown.
+  // The fences in force at the displayed time.
   standingFences() {
-    // What a process says that it keeps is newer than who asked for it.
+    // The FENCES of a process override requests.
     const kept = [...this.keepers.values()].filter((keeper) => keeper.time <= this.now()).flatMap((keeper) => keeper.fences);
     if (kept.length > 0 || this.keepers.size > 0) return [...new Map(kept.map((fence) => [JSON.stringify([fence.fence_name, fence.corners]), fence])).values()];
     return [...this.fences.values()].filter((fence) => fence.fence_kind !== 0 && fence.time <= this.now());
