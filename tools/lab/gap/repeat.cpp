@@ -58,7 +58,7 @@ RepeatedParameter repeatedParameter(const std::vector<LogFit>& fits, size_t para
 }
 
 std::string saidValue(const RepeatedParameter& parameter, size_t log) {
-  if (!parameter.seen[log]) return "not seen";
+  if (!parameter.seen[log]) return "not visible";
   return threeDigits(parameter.values[log]) + " \u00b1 " + threeDigits(parameter.errors[log]);
 }
 
