@@ -1,4 +1,4 @@
-# Shared by the scripts beside it, which source it from the checkout's top folder.
+# Shared by the scripts in this folder, which source it from the checkout's top folder.
 
 me=$(basename "$0")
 
@@ -7,14 +7,14 @@ print_usage() {
   sed -n '2,/^[^#]/s/^# \{0,1\}//p' "tools/$me"
 }
 
-# usage_error TEXT: one line, and the end.
+# usage_error TEXT: prints one line and exits.
 usage_error() {
   echo "$me: $1; see tools/$me --help" >&2
   exit 2
 }
 
-# find_apart [NAMESPACE...]: puts into `apart` the words before a command that give it a network of its own and these
-# further namespaces; none, and status 1, where that is not allowed (most containers).
+# find_apart [NAMESPACE...]: sets `apart` to a command prefix that starts a command in a new network namespace and the
+# given further namespaces; empty, with status 1, if that is not permitted (most containers).
 find_apart() {
   local root
   for root in '' '--user --map-root-user'; do
@@ -27,57 +27,57 @@ find_apart() {
   return 1
 }
 
-# Becomes the same command once more, with its arguments, apart: its processes and network are gone with the first of
-# them, and that one goes with whoever started it. Returns in the new command, or where nothing is allowed.
+# Replaces this process by the same command in new namespaces. Their processes and network end with their first process,
+# which ends with its parent. Returns in the new command, or if namespaces are not permitted.
 become_apart() {
   if [ -n "${TREAD_APART:-}" ]; then return 0; fi
   if ! find_apart --pid --fork --kill-child --mount-proc && ! find_apart; then
-    echo "$me: no network of its own is allowed here; driving in the host's"
+    echo "$me: network namespaces are not permitted here; driving in the host's network"
     return 0
   fi
   TREAD_APART=yes exec setpriv --pdeathsig KILL "${apart[@]}" "tools/$me" "$@"
 }
 
-# choose_lcm_url [PORT]: puts into `lcm_url` the bus of a simulated drive, multicast, or TCP through tread-launch where
-# there is none.
+# choose_lcm_url [PORT]: sets `lcm_url`, the bus of a simulated drive: multicast, or TCP through tread-launch without a
+# multicast route.
 choose_lcm_url() {
   lcm_port=${1:-7668}
   lcm_url="udpm://239.255.76.67:$lcm_port?ttl=0&recv_buf_size=2097152"
   if ! ip route get 239.255.76.67 >/dev/null 2>&1; then
     lcm_url=tcpq://127.0.0.1:$lcm_port
-    echo "$me: there is no multicast here, so messages go over $lcm_url"
+    echo "$me: no multicast route, so messages go over $lcm_url"
   fi
 }
 
-# start_launch FILE ARGUMENT...: tread-launch in the background, which goes with this script; its pid is in `launch`.
+# start_launch FILE ARGUMENT...: starts tread-launch in the background; it ends with this script. Its pid is in `launch`.
 start_launch() {
   setpriv --pdeathsig TERM "$bin/tread-launch" "$@" --lcm-url "$lcm_url" &
   launch=$!
-  # Whoever comes before the server of the bus is refused.
+  # Clients that connect before the bus server listens are refused.
   while [[ $lcm_url == tcpq* ]] && kill -0 $launch 2>/dev/null && ! true 2>/dev/null >"/dev/tcp/127.0.0.1/$lcm_port"; do
     sleep 0.1
   done
 }
 
-# lock_folder FOLDER: makes it, and ends here where another script works in it.
+# lock_folder FOLDER: creates and locks it; exits if another script uses it.
 lock_folder() {
   mkdir -p "$1"
   exec 9>"$1/lock"
   if ! flock --nonblock 9; then
-    echo "$me: another one runs in this checkout" >&2
+    echo "$me: another $me is running in this checkout" >&2
     exit 1
   fi
 }
 
-# remove_old PATH...: what an earlier run left, or ends here.
+# remove_old PATH...: removes files of an earlier run, or exits.
 remove_old() {
   if ! rm -rf "$@" 2>/dev/null; then
-    echo "$me: $* cannot be removed; it may be another user's" >&2
+    echo "$me: $* cannot be removed; it may belong to another user" >&2
     exit 1
   fi
 }
 
-# build_programs LOG TARGET...: only what these need, or ends here.
+# build_programs LOG TARGET...: builds only these targets, or exits.
 build_programs() {
   local log=$1
   shift
