@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What it costs the robot that 200 raw clients and a page of another origin ask for all they can get:
+// Load on the robot when 200 raw clients and a page of another origin request as much as possible:
 // node flood.mjs MODULES HTTP-URL SECONDS [NICE]
 import { createRequire } from "node:module";
 import { existsSync, readdirSync, readFileSync } from "node:fs";
@@ -14,11 +14,11 @@ const ws = url.href.replace("http", "ws");
 const milliseconds = 1000 * Number(process.argv[4]);
 let end = Infinity;
 const fail = (words) => { console.error(words); process.exit(1); };
-// The strangers' own computing is not what is measured: they would be on other machines. Their browser takes the same
-// priority, as long as it may not raise its own.
+// The clients would run on other machines, so their CPU time should not affect the measurement: low priority, which their
+// browser inherits as long as it may not raise it.
 os.setPriority(Number(process.argv[5] ?? 10));
 
-/// [s] that this process and those that it has started have computed so far.
+/// CPU time [s] of this process and its children so far.
 function computed() {
   const all = readdirSync("/proc").filter((name) => /^\d+$/.test(name)).flatMap((name) => {
     try {
@@ -30,7 +30,7 @@ function computed() {
   return process.cpuUsage().user / 1e6 + process.cpuUsage().system / 1e6 + of(process.pid);
 }
 
-// A page of another origin: it opens sockets as fast as it can, and counts what gets through.
+// A page of another origin opens sockets as fast as possible, and counts those that succeed.
 const stranger = http.createServer((_, answer) => answer.end(`<script>
   window.opened = 0; window.tried = 0;
   const knock = () => { ++window.tried; const socket = new WebSocket("${ws}", ["foxglove.websocket.v1"]);
@@ -56,12 +56,12 @@ function knock(kind) {
   socket.on("open", () => {
     ++opened;
     let first = 1;
-    // Some never read what they ask for.
+    // Some never read the replies.
     if (kind % 4 === 0) socket._socket.pause();
     timer = setInterval(() => {
       if (socket.readyState !== WebSocket.OPEN) return;
       ++requests;
-      // The same again; the same after letting go; a large one; and as fast as it goes.
+      // The same request again; the same after closing; a large one; all as fast as possible.
       if (kind % 4 === 2) socket.send(none(first));
       if (kind % 4 === 3 && requests % 50 === 0) socket.send("x".repeat(1 << 20));
       socket.send(all(first += 30));
@@ -70,7 +70,7 @@ function knock(kind) {
   socket.on("close", () => { ++closed; clearInterval(timer); setTimeout(() => knock(kind), 50); });
 }
 for (let kind = 0; kind < 200; ++kind) knock(kind);
-// From where all places are taken on.
+// From the moment when all connections are in use.
 const inTime = performance.now() + 30000;
 while (opened < 20 && performance.now() < inTime) await new Promise((done) => setTimeout(done, 50));
 end = performance.now() + milliseconds;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The protocol's own client against tread-view: node foxglove.mjs MODULES URL
+// The protocol's reference client with tread-view: node foxglove.mjs MODULES URL
 import { createRequire } from "node:module";
 const require = createRequire(`${process.argv[2]}/x.js`);
 const { FoxgloveClient } = require("@foxglove/ws-protocol");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The format's own readers over an MCAP file, every checksum looked at: node mcap.mjs MODULES FILE
+// Reads an MCAP file with the format's reference readers and checks every checksum: node mcap.mjs MODULES FILE
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 const require = createRequire(`${process.argv[2]}/x.js`);

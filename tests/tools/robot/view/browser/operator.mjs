@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// A page that drives the robot to and fro, without its pictures: node operator.mjs MODULES HTTP-URL SECONDS, or until
-// SIGTERM. Says "is armed", and at the end how often the robot was disarmed and how long it heard nothing at most.
+// A page, without pictures, that drives the robot to and fro: node operator.mjs MODULES HTTP-URL SECONDS, or until
+// SIGTERM. Prints "is armed", and at the end how often the robot was disarmed and the longest gap between messages.
 import { createRequire } from "node:module";
 const require = createRequire(`${process.argv[2]}/x.js`);
 const { FoxgloveClient } = require("@foxglove/ws-protocol");
@@ -30,7 +30,7 @@ client.on("message", ({ timestamp, data }) => {
   last = now;
   ++heard;
 });
-// What the console said last.
+// The last message of the console.
 let told = "";
 client.on("status", ({ message }) => { told = message; });
 client.on("serverInfo", () => {

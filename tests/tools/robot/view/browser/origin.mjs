@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// A stranger's page in the same browser, and a stranger's name for this machine: node origin.mjs MODULES HTTP-URL
+// Another site's page in the same browser, and a foreign host name for this machine: node origin.mjs MODULES HTTP-URL
 // URL-WITH-TOKEN
 import { createRequire } from "node:module";
 import http from "node:http";
@@ -17,7 +17,7 @@ const ours = await get({ Host: url.host });
 if (ours.statusCode !== 200 || ours.headers["x-frame-options"] !== "DENY") fail("the page may be framed");
 if (!ours.headers["content-security-policy"].includes("frame-ancestors 'none'")) fail("the page may be framed");
 if ((await get({ Host: "evil.example" })).statusCode !== 403) fail("another name for this machine is let in");
-// Whatever a proxy is said to have been asked for.
+// Whatever host the forwarded headers claim.
 if ((await get({ Host: "evil.example", "X-Forwarded-Host": url.host })).statusCode !== 403) fail("a forwarded name is believed");
 
 const open = (to, origin) => new Promise((done) => {
@@ -31,7 +31,7 @@ for (const origin of ["http://evil.example", "null", "file://", `http://${url.ho
   if (await open(url, origin)) fail(`a page from ${origin} may listen`);
 if (!(await open(url))) fail("a program may not listen");
 if (!(await open(url, url.origin)).heard[0].capabilities.includes("clientPublish")) fail("our own page may not publish");
-// Who knows the token may look from anywhere, but not operate.
+// With the token any origin may view, but not operate.
 const stranger = await open(asking, "http://evil.example");
 if (!stranger) fail("a page from elsewhere that knows the token may not look");
 if (stranger.heard[0].capabilities.includes("clientPublish")) fail("a stranger's page may publish");

@@ -26,7 +26,7 @@ const until = async (what, condition, seconds = 10) => {
 if (mode === "log") {
   await until("LOG is shown", async () => (await text("#mode")) === "LOG");
   await until("the log's time is known", () => page.evaluate(() => window.treadView.state().player !== null));
-  // The slider goes through the whole log, and the robot with it.
+  // The slider covers the whole log, and the robot's position follows it.
   const places = [];
   for (const share of [100, 500, 900]) {
     await page.evaluate((value) => {
@@ -44,7 +44,7 @@ if (mode === "log") {
   }
   await until("the map has tiles", () => page.evaluate(() => window.treadView.state().tiles.size > 3));
   if (Math.hypot(places[0].x - places[2].x, places[0].y - places[2].y) < 3) fail("the robot did not move with the slider");
-  // Scrubbing: how many places a second come back.
+  // Scrubbing: number of positions answered each second.
   const rate = await page.evaluate(async () => {
     const slider = document.getElementById("slider");
     let answered = 0, last = window.treadView.state().player.answered;
@@ -60,12 +60,12 @@ if (mode === "log") {
     return answered / 2;
   });
   console.log(`scrubs at ${rate} frames a second`);
-  // The newest stands first: what is left behind it may be over before a busy browser looks.
+  // The newest is first; later entries may expire before a slow browser reads them.
   await page.locator("#events .event").last().click();
   await page.locator("#play").click();
   await until("it plays", async () => (await text("#play")) === "pause");
   if (!(await page.locator("#estop").isHidden())) fail("a log has no E-stop");
-  // The server goes and comes back: the page says so, and goes on by itself.
+  // The server restarts: the page shows it and reconnects.
   console.log("restart");
   await until("the lost connection is told", async () => (await text("#mode")) === "NO CONNECTION", 20);
   await until("it is back", async () => (await text("#mode")) === "LOG", 20);
@@ -75,14 +75,14 @@ if (mode === "log") {
   await until("the robot is known", () => page.evaluate(() => window.treadView.state().pose() !== null));
   await until("the motors are known", async () => (await text("#robot")).includes("disarmed"));
   if (await page.locator("#estop").isHidden()) fail("the E-stop is hidden");
-  // A fence by three clicks, far from the way.
+  // A fence by three clicks, far from the path.
   await page.locator("#fence").click();
   const map = await page.locator("#map").boundingBox();
   for (const [x, y] of [[-300, -200], [-220, -200], [-220, -140]])
     await page.mouse.click(map.x + map.width / 2 + x, map.y + map.height / 2 + y);
   await page.locator("#finish").click();
   await until("the fence is there", () => page.evaluate(() => window.treadView.state().standingFences().length === 1));
-  // Arms, and goes where the map is clicked. A stall of a busy machine may refuse the arming or take it back, as it must.
+  // Arms, and drives to a click on the map. A stall of the machine correctly prevents arming or disarms.
   const drives = async () => (await text("#headline")).startsWith("driving");
   for (let i = 0; i < 12 && !(await drives()); ++i) {
     if (await page.locator("#arm").isEnabled()) await page.locator("#arm").click();
@@ -97,7 +97,7 @@ if (mode === "log") {
   await page.screenshot({ path: picture });
   await page.keyboard.press("Space");
   await until("the E-stop is shown", async () => (await text("#headline")).startsWith("E-STOP"), 5);
-  // What falls silent greys out.
+  // Values without updates turn grey.
   console.log("kill");
   await until("the robot greys out", () => page.evaluate(() => document.getElementById("robot").classList.contains("stale")), 30);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // The page in headless Chromium behind a proxy with TLS, under a path: node proxy.mjs MODULES URL PORT PEM keep|rewrite ours|foreign
-// keep: the proxy passes on the name that it was asked for, and the path; rewrite: neither, as nginx does by itself.
-// foreign: tread-view does not know of the proxy.
+// keep: the proxy forwards the requested host name and the path; rewrite: neither, like nginx by default.
+// foreign: tread-view is not configured for the proxy.
 import { createRequire } from "node:module";
 import { existsSync, readFileSync } from "node:fs";
 import http from "node:http";

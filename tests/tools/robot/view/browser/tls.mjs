@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What others on the network may read of a page that listens to them: node tls.mjs MODULES PORT TOKEN FINGERPRINT
+// Access from the network to a page that listens to it: node tls.mjs MODULES PORT TOKEN FINGERPRINT
 import { createRequire } from "node:module";
 import http from "node:http";
 import https from "node:https";
@@ -20,7 +20,7 @@ const peer = await new Promise((done) => {
   const line = tls.connect({ host: "127.0.0.1", port, rejectUnauthorized: false }, () => done(line.getPeerCertificate()));
 });
 if (peer.fingerprint256 !== fingerprint) fail(`the certificate is ${peer.fingerprint256}, told was ${fingerprint}`);
-// Who has the certificate's fingerprint trusts nobody else in its place.
+// A client with the certificate's fingerprint rejects any other certificate.
 const socket = new WebSocket(`wss://127.0.0.1:${port}/?token=${token}`, ["foxglove.websocket.v1"], { rejectUnauthorized: false,
   origin: `https://127.0.0.1:${port}` });
 const info = await new Promise((done) => socket.once("message", (data) => done(JSON.parse(data.toString()))));
