@@ -1,3 +1,3 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Carries the precompiled headers of the tests; it has nothing of its own.
+// Source of the tests' precompiled headers; otherwise empty.

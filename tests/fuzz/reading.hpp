@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What the targets share.
+// Helpers shared by the targets.
 #pragma once
 
 #include <cstdlib>

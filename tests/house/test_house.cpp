@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The rules of the house, read from the sources: who may include whom, and what a core may not
-// touch.
+// The rules of the house, checked on the sources: permitted includes, and what a core must not
+// use.
 #include <catch2/catch.hpp>
 
 #include <algorithm>

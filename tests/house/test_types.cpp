@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// A type that is defined twice in one namespace, with different members, is undefined behaviour in
-// every program that links both, and no compiler says so.
+// Two definitions of a type with different members in one namespace are undefined behaviour in a
+// program that links both, and no compiler reports it.
 #include <catch2/catch.hpp>
 
 #include <filesystem>

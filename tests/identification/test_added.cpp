@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Effects of files in the workflow. The catalogue is the program's: these tests are a program of
-// their own.
+// Effects from files in the workflow. A separate program, as they are added to the global
+// catalogue.
 #include <cmath>
 #include <string>
 #include <utility>

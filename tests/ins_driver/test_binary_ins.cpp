@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The drivers of binary messages against their emulated devices, written apart from each other.
+// Drivers of binary messages with emulated devices, written independently of each other.
 #include <catch2/catch.hpp>
 
 #include <algorithm>

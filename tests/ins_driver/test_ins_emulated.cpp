@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The driver against the emulated device: two readings of the same protocol, written apart.
+// The driver with the emulated device: two independent implementations of one protocol.
 #include <catch2/catch.hpp>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What a blank message says, against what the .lcm files say of each field.
+// Default values of messages, compared with the documentation of each field in the .lcm files.
 #include <cmath>
 #include <cstring>
 #include <fstream>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The bytes of each type as they were when it was last changed on purpose: a change of a .lcm file
-// that breaks old logs shows here. After a change on purpose, remake them with
+// The bytes of each type since its last intended change: a change of a .lcm file that breaks old
+// logs fails here. After an intended change remake them with
 //     TREAD_REMAKE_GOLDEN=1 build/release/tests/test_lcmtypes "golden*"
 #include <cstdlib>
 #include <filesystem>

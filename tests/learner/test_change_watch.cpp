@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Changes of ground that are noticed while a pattern runs.
+// Changes of ground detected while a pattern runs.
 #include <catch2/catch.hpp>
 
 #include <limits>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What a vehicle keeps of a velocity that was not the predicted one.
+// How much of a deviation from the predicted velocity a vehicle keeps.
 #include <catch2/catch.hpp>
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Effects of slope and battery are separated from those of the ground, and used where they predict
-// better.
+// Effects of slope and battery are separated from those of the ground, and used if they improve
+// predictions.
 #include <catch2/catch.hpp>
 
 #include <functional>

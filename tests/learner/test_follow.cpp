@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Learning from an execution before it has ended, and from one that was stopped.
+// Learning from an execution before its end, and from a stopped one.
 #include <catch2/catch.hpp>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What starts, stops and slides say of the ground, and what is believed afterwards.
+// Estimates of grip from starts, stops and slides.
 #include <catch2/catch.hpp>
 
 #include <cmath>

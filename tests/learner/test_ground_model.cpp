@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Patterns as body twists, their parts, and what is expected of grounds before anything is
-// measured.
+// Patterns as body twists, their parts, and the prior of grounds before any measurement.
 #include <catch2/catch.hpp>
 
 #include <Eigen/Cholesky>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The default rule on grounds that really differ: indifferent to how the frame is turned, quick
-// after a large change, as sure as it says.
+// The default rule with large changes of ground: invariant to rotations of the frame, fast after
+// a change, with consistent uncertainty.
 #include <catch2/catch.hpp>
 
 #include <map>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The remembered surfaces of the learner node: in LEARNING, in its states, across restarts.
+// The learner node's remembered surfaces: in LEARNING, in its states, and after restarts.
 #include <catch2/catch.hpp>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What rules write into the state and take back from there, to the bit or not at all.
+// Rules write their state and read it back bit by bit, or reject it.
 #include <catch2/catch.hpp>
 
 #include <algorithm>

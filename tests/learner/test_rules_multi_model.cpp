@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The multiple-model filter: what it remembers, recognises and forgets, what it says of changes and
-// of its own errors, and that it does no harm.
+// The multiple-model filter: what it remembers, recognises and forgets, its reports of changes
+// and of its own errors, and that it is never much worse than no learning.
 #include <catch2/catch.hpp>
 
 #include <algorithm>

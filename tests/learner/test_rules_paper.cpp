@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What the paper's rules do, and where they fail: plateau, drift, strong turns, bounds.
+// Behaviour of the paper's rules and their failures: plateau, drift, strong turns, bounds.
 #include <catch2/catch.hpp>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What holds for every rule, whatever is measured: finite, valid, mirrored, of no order,
+// Properties of every rule for any measurements: finite, valid, symmetric, independent of order,
 // repeatable.
 #include <catch2/catch.hpp>
 

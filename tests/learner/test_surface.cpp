@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What one surface knows from what was measured on it.
+// A surface's estimates from its measurements.
 #include <catch2/catch.hpp>
 
 #include <memory>

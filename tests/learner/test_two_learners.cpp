@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// A second learner that somebody started by mistake, on the same bus.
+// A second learner started by mistake on the same bus.
 #include <catch2/catch.hpp>
 
 #include "tests/learner/bench.hpp"

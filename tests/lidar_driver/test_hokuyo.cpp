@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The driver of Hokuyo's range finders against their emulator, written apart.
+// The driver of Hokuyo's range finders with their emulator, written independently.
 #include <catch2/catch.hpp>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The real process against the emulated range finder on a real socket.
+// The real process with the emulated range finder on a real socket.
 #include <catch2/catch.hpp>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Drivers of scanners on serial lines against their emulators, written apart.
+// Drivers of scanners on serial lines with their emulators, written independently.
 #include <catch2/catch.hpp>
 
 #include <cmath>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The driver of a Velodyne against its emulator, written apart, and against a recorded VLP-16.
+// The driver of a Velodyne with its emulator, written independently, and with data of a real
+// VLP-16.
 #include <catch2/catch.hpp>
 
 #include <unistd.h>

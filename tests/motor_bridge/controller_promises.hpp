@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What every kind of controller promises, whatever it speaks.
+// Promises that every kind of controller keeps, with any protocol.
 #pragma once
 
 #include <random>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Defects that motor bridges of other LCM projects really have. None is ours.
+// Defects of motor bridges in other LCM projects; ours has none of them.
 #include <catch2/catch.hpp>
 
 #include "tests/motor_bridge/node_world.hpp"

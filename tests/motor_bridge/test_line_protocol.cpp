@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Described controllers against emulated ones: Roboteq's own protocol as a description, and one
-// that nobody has.
+// Controllers from descriptions with emulated ones: Roboteq's own protocol as a description, and
+// an invented protocol.
 #include <cmath>
 
 #include <catch2/catch.hpp>

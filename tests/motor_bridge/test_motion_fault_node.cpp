@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The whole bridge while what the INS says does not fit what the motors were told.
+// The whole bridge when the motion in INS does not match the commands.
 #include <functional>
 
 #include <catch2/catch.hpp>

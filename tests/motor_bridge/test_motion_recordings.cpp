@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What the monitor says of real drives, and of the same drives with something wrong in them.
-// Limits were chosen on every other session ("tuned", up to 5 m/s), the rest is held out. -s shows
-// the figures; -c tuned those of one half.
+// The monitor on real drives, and on the same drives with simulated faults. Limits were tuned on
+// every second session ("tuned", up to 5 m/s), the others are held out. -s prints the figures; -c
+// tuned those of one half.
 #include <cstdlib>
 #include <functional>
 #include <optional>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The real process on a pseudo-terminal and real LCM: what happens to the motors when it is told to
-// end, killed, or held up.
+// The real process on a pseudo-terminal and real LCM: what the motors do when it is terminated,
+// killed or suspended.
 #include <fcntl.h>
 #include <signal.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// A holonomic base's wheels at the controllers that can drive them, each against its emulator.
+// Wheels of a holonomic base with the controllers that support it, each with its emulator.
 #include <cmath>
 
 #include <catch2/catch.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What the bridge watches of a base that can be commanded to the side.
+// The bridge's motion checks for a base with lateral commands.
 #include <cmath>
 #include <random>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Against the emulated controller, which was written from the protocol's documents by somebody
-// else.
+// With the emulated controller, which another author wrote from the protocol's documents.
 #include <cmath>
 #include <random>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The bridge of a robot with a key, and somebody on its bus who has none.
+// The bridge of a robot with a key, and a sender on its bus without the key.
 #include <catch2/catch.hpp>
 
 #include "tests/motor_bridge/node_world.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// VESC drivers against emulated controllers, which share no code with them.
+// VESC drivers with emulated controllers, which share no code with them.
 #include <cmath>
 #include <limits>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What Debian's packages hold (config/debian), and that an installed program finds its
-// configuration. tools/package makes them of the same components.
+// Contents of the Debian packages (config/debian), and that installed programs find their
+// configuration. tools/package uses the same components.
 #include <catch2/catch.hpp>
 
 #include <algorithm>

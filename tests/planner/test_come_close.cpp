@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Goals that cannot be reached, where the vehicle is to come as close as possible.
+// Unreachable goals, which the vehicle should approach as closely as possible.
 #include <catch2/catch.hpp>
 
 #include "modules/planner/core/search/path_planner.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// A replay knows of a step that its deadline cut only how many nodes were expanded in it.
+// Of a step cut by its deadline a replay knows only the number of expanded nodes.
 #include <catch2/catch.hpp>
 
 #include <vector>

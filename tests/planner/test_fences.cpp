@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Fences to stay in and to keep out of.
+// Fences to stay inside, and fences to stay outside.
 #include <random>
 
 #include <catch2/catch.hpp>

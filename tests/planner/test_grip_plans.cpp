@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Plans on ground that may not hold, and through places with little room.
+// Plans on slippery ground, and through narrow passages.
 #include <catch2/catch.hpp>
 
 #include "common/pattern/pattern_file.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Pattern sets that come while the robot drives, and what HEALTH tells of them.
+// Pattern sets that arrive while the robot drives, and their reports in HEALTH.
 #include <catch2/catch.hpp>
 
 #include <map>

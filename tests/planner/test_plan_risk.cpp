@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The probability of touching something that plans carry, against many drives with drawn errors.
+// The probability of contact in plans, compared with many drives with random errors.
 #include <catch2/catch.hpp>
 
 #include <cmath>

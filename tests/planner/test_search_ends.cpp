@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Where a search ends, where it may begin, and what is kept of the plan before.
+// Where a search ends, where it may start, and what it keeps of the previous plan.
 #include <catch2/catch.hpp>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// A newer pattern set while the old one is driven with.
+// A newer pattern set while the robot drives with the old one.
 #include <catch2/catch.hpp>
 
 #include <algorithm>

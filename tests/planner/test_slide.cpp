@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The first moment on ground that gives way.
+// The first moments of sliding on slippery ground.
 #include <cmath>
 
 #include <catch2/catch.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Ground that turns out to be steeper than plans may use.
+// Ground that proves steeper than permitted for plans.
 #include <cmath>
 
 #include <catch2/catch.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The calibration of the four surfaces: the dynamic vehicle against a first-order model of the
-// paper's robot, whose equations and numbers are written down here.
+// The calibration of the four surfaces: the dynamic vehicle compared with a first-order model of
+// the paper's robot, whose equations and parameters are below.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Drivers and emulators were written apart, each from the devices' documents: here they meet.
+// Drivers and emulators, written independently of each other from the devices' documents.
 #include <cmath>
 #include <map>
 #include <memory>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// A model file in the real simulator's process, heard through the real INS driver's process.
+// A model file in the real simulator process, measured by the real INS driver process.
 #include <fstream>
 #include <thread>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// A model file at the other end of the serial lines: the node on the virtual bus, its bytes read by
-// the driver's core, against simulate() and measure() of the same file.
+// A model file behind the serial lines: the node on the virtual bus, its bytes decoded by the
+// driver's core, compared with simulate() and measure() of the same file.
 #include <cmath>
 #include <map>
 #include <memory>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Preloaded into a process: its date is off by the seconds in the file that JUMPING_CLOCK names, as
-// if an operator or NTP had set it. CLOCK_MONOTONIC goes on, as it does on a real host.
+// Preloaded into a process: shifts its date by the seconds in the file JUMPING_CLOCK, as if an
+// operator or NTP had set it. CLOCK_MONOTONIC is not changed, as on a real host.
 #include <cstdlib>
 #include <ctime>
 

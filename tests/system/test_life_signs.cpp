@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What each real program tells systemd, or whoever else started it.
+// The signs of life that each real program sends to systemd or another parent.
 #include <algorithm>
 #include <csignal>
 #include <functional>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Somebody starts a process that runs already, with the same device or the same state.
+// A second process is started with the same device or the same state.
 #include <filesystem>
 #include <fstream>
 #include <iterator>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The operator at a host of his own, and what another host can do to the robot.
+// The operator on another host, and what a third host can do to the robot.
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Whatever a program is given in the place of a file: it says what is wrong in words of its own.
+// Wrong inputs in place of a file: each program explains the error in its own message.
 #include <catch2/catch.hpp>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What holds for all programs that people type, whichever parser they use.
+// Common properties of all command-line programs, with any parser.
 #include <catch2/catch.hpp>
 
 #include <algorithm>

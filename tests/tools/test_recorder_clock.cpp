@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The same drive under recorders whose clocks go wrong in many ways: every tool says the same of
-// it, and tells in one line what is wrong.
+// One drive, logged by recorders with various clock faults: every tool gives the same results,
+// and reports the fault in one line.
 #include <catch2/catch.hpp>
 
 #include <algorithm>

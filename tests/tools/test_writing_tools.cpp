@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Every command that writes a file, against what may go wrong with that file.
+// Every command that writes a file, with each failure that the file can cause.
 
 #include <algorithm>
 #include <csignal>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Hours of driving in virtual time with a healthy range finder: how often is it called a liar?
+// Counts false alarms about a healthy range finder in hours of driving in virtual time.
 #include <cstdio>
 #include <map>
 

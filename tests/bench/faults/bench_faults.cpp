@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Missions of the whole robot in virtual time under seeded faults; the rules are looked at from
+// Missions of the whole robot in virtual time with seeded faults; the rules are checked from
 // outside.
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The whole robot in virtual time under seeded faults, and that the rules can fail.
+// The whole robot in virtual time with seeded faults, and checks that the rules can fail.
 #include <algorithm>
 #include <limits>
 #include <set>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Missions of the whole robot in virtual time among fences, or between hills and pits.
+// Missions of the whole robot in virtual time, with fences, or with hills and pits.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

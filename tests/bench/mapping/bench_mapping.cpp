@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// How long a scan takes to go into the tree, in turn with OctoMap's own insertion of the same scan:
-// each from another place, and after each both trees are compared byte by byte.
+// Time to insert a scan into the tree, alternating with OctoMap's own insertion of the same scan:
+// each from another place, with a comparison of both trees byte by byte after each scan.
 #include <benchmark/benchmark.h>
 #include <time.h>
 

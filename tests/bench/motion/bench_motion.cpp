@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Hours of driving in virtual time with nothing wrong: how often does the motor bridge find that
-// the motion does not fit?
+// Counts the motor bridge's false alarms about the motion in hours of faultless driving in
+// virtual time.
 #include <cmath>
 #include <cstdio>
 #include <map>

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-//
-// Plans on whole maps: other planners' scenarios (in the folder that TREAD_RECORDINGS names;
-// skipped where it is absent) and our own. Times are wall time; `over_transform` is their ratio to
-// the median of the clearance transform of the same map, timed in the same run.
+// Plans on whole maps: other planners' scenarios (in the folder TREAD_RECORDINGS; skipped if
+// absent) and our own. Times are wall time; `over_transform` is their ratio to the median of the
+// clearance transform of the same map, timed in the same run.
 #include <cstdlib>
 #include <filesystem>
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-//
-// One cycle of the planner when everything has changed at once: the local map of 40 x 40 m at 10
-// cm, and the pattern set. As a ratio to the clearance transform of that map, timed between the
-// cycles.
+// One cycle of the planner after a change of everything: the local map of 40 x 40 m at 10 cm, and
+// the pattern set. As a ratio to the clearance transform of that map, timed between the cycles.
 #include "modules/planner/core/execution/motion_planner.hpp"
 #include "modules/planner/core/execution/supervisor.hpp"
 #include "modules/planner/core/search/pattern_search.hpp"

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-//
 // Drives random missions in a closed loop (kinematic vehicle, toy mapping and bridge, the real
-// supervisor) and prints how near it came, how long it took and what the planner cost:
+// supervisor) and prints the final distance, the duration and the planner's computing time:
 //   bench-planner-drive [FIRST_SEED [COUNT [TURN_BIAS [PATTERN_FILE]]]]
 #include <algorithm>
 #include <cstdio>

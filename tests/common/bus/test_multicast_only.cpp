@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Datagrams as LCM sends them, put onto the wire by hand: who reaches a process, and who does not.
+// Datagrams in LCM's format, sent by hand: which of them reach a process.
 #include <catch2/catch.hpp>
 
 #include <arpa/inet.h>

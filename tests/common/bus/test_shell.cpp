@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The main function that all processes share, seen from outside with tread-mapping as the program.
+// The common main function of all processes, tested from outside with tread-mapping.
 #include <catch2/catch.hpp>
 
 #include <poll.h>

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// data/logs/two_tracks.lcmlog was recorded while each command was left and right, by that version's
+// data/logs/two_tracks.lcmlog was recorded when commands still were left and right, by that
+// version's
 //     tread-missions --missions 1 --seed 1 --length 25 --rule collective --log two_tracks.lcmlog
 //       --robot tests/data/robots/skid4 --set learner.patterns=FEW
-// FEW: straight, left, right, start and stop of skid4's patterns. Of it the first 8 s of CONFIG of
-// the learner, MOTOR, EXECUTION, INS, each tenth PROGRAM, PATTERN_SET, LEARNER_STATE, LEARNING,
-// ARM.
+// FEW: straight, left, right, start and stop of skid4's patterns. The file has the first 8 s of
+// CONFIG of the learner, MOTOR, EXECUTION, INS, every tenth PROGRAM, PATTERN_SET, LEARNER_STATE,
+// LEARNING, ARM.
 #include <cmath>
 #include <fstream>
 #include <iterator>

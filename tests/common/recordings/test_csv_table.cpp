@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Tables as spreadsheets and other people's programs write them.
+// Tables as written by spreadsheets and other programs.
 #include <catch2/catch.hpp>
 
 #include <clocale>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Effects that files describe. The catalogue is the program's: these tests are a program of their
-// own.
+// Effects from files. A separate program, as they are added to the global catalogue.
 #include <cmath>
 #include <filesystem>
 #include <fstream>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The catalogue as a whole: what is promised of every entry.
+// Properties of every entry of the catalogue.
 #include <set>
 #include <string>
 #include <vector>

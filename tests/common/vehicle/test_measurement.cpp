@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What the INS makes of a motion, and which vehicle effects it cannot be told from.
+// The INS's measurement of a motion, and vehicle effects that it cannot be distinguished from.
 #include <cmath>
 #include <vector>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What each effect leaves in the residuals: channel, dependence, sign.
+// The residuals that each effect causes: channel, dependence, sign.
 #include <cmath>
 #include <string>
 #include <vector>

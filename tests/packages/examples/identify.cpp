@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// A vehicle has a dead band that its model lacks: which effect explains its drive, and how large?
+// A vehicle has a dead band that its model lacks. Which effect explains its drive, and how large
+// is it?
 #include <cstdio>
 #include <random>
 

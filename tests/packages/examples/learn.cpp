@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// One pattern is driven on slippery ground: the learner corrects the other one, too.
+// After one pattern on slippery ground the learner corrects the other pattern, too.
 #include <cstdio>
 
 #include "modules/learner/core/learner.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The effects of config/effects: each by other means than its formula says.
+// The effects of config/effects, implemented without their formulas.
 #include <algorithm>
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Effects on the body's motion along and across: load, slope, drag, ground.
+// Longitudinal and lateral effects on the body: load, slope, drag, ground.
 #include <algorithm>
 #include <cmath>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Effects of battery, power stage, motor and gear: they change the power on its way to the motor.
+// Effects of battery, power stage, motor and gear, which change the power on its way to the
+// motor.
 #include <algorithm>
 #include <cmath>
 #include <deque>

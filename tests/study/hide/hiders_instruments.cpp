@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Effects that are not in the vehicle but in what the INS says of it.
+// Effects of the INS, not of the vehicle.
 #include "tests/study/hide/effect_list.hpp"
 
 namespace tread::blind {

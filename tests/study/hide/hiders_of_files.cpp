@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Effects that files describe (common/vehicle/README.md): their formulas, put on the motion of the
-// ground truth. They are read and computed here anew: what hides shares nothing with what finds.
+// Effects from files (common/vehicle/README.md): their formulas, applied to the ground truth's
+// motion. The formulas are parsed and computed independently, as generator and search share no
+// code.
 #include <algorithm>
 #include <cmath>
 #include <map>

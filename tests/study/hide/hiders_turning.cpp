@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Effects on turning: ground that resists, moments on the body, inertia.
+// Effects on turning: resistance of the ground, moments on the body, inertia.
 #include <algorithm>
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Effects that no catalogue lists.
+// Effects that are not in any catalogue.
 #include <algorithm>
 #include <cmath>
 #include <deque>

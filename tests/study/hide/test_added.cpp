@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Effects that files describe are hidden by their formulas.
+// Effects from files are hidden by their formulas.
 #include <fstream>
 #include <string>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What is hidden is there, as large as the truth says and in the direction that the field expects.
+// Hidden effects have the size in the truth file and the sign of the field's conventions.
 #include <catch2/catch.hpp>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What the INS says: its noise as a fit sees it, and its faults with the field's signs.
+// The INS: its noise in a fit, and its faults with the field's signs.
 #include <catch2/catch.hpp>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Which cases a study has.
+// The cases of a study.
 #include <catch2/catch.hpp>
 
 #include <map>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The effects of config/effects from the generator to the name, by the programs as people call
-// them.
+// The effects of config/effects from the generator to the verdict, with the command-line
+// programs.
 #include <unistd.h>
 
 #include <cmath>

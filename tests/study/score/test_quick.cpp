@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Twelve logs from the generator to the scores, by the programs as people call them.
+// Twelve logs from the generator to the scores, with the command-line programs.
 #include <unistd.h>
 
 #include <algorithm>

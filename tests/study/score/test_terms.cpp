@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The terms of the truth are those of the catalogue: names, signs, parameters, what is alike.
+// The truth uses the catalogue's terms: names, signs, parameters, similar effects.
 #include <algorithm>
 #include <set>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// In the place of rawlog_objects.cpp where MRPT was not there when this was built.
+// Replaces rawlog_objects.cpp in a build without MRPT.
 #include "tools/robot/import/rawlog_objects.hpp"
 
 namespace tread::import {

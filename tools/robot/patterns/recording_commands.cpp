@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// record and average: what is done with recordings.
+// record and average: commands for recordings.
 #include <atomic>
 #include <iostream>
 #include <memory>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// make, show, check and mirror: what is done with pattern files.
+// make, show, check and mirror: commands for pattern files.
 #include <filesystem>
 #include <iostream>
 #include <memory>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// In a file of its own: where the compiler sees both, it takes free() for a mismatch.
+// A separate file, as the compiler would warn of a mismatched free() if it saw both.
 #include "tests/tools/lab/experiment/counted_new.hpp"
 
 #include <atomic>

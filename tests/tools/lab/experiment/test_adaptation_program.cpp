@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The command as people call it, and the default rule on recordings of real vehicles.
+// The command-line program, and the default rule on recordings of real vehicles.
 #include <filesystem>
 
 #include <catch2/catch.hpp>

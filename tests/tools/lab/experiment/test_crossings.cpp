@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Changes of ground inside a run, as people ask for them.
+// Changes of ground inside a run, with the command-line program.
 #include <sstream>
 
 #include <catch2/catch.hpp>

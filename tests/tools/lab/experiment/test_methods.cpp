@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What methods are, what they drive before a transition, and what it is good for afterwards.
+// Methods, their driving before a transition, and its benefit afterwards.
 #include <algorithm>
 #include <set>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The default learning rule on recordings of a real vehicle, on ground that it has not met.
+// The default learning rule on recordings of a real vehicle, on unknown ground.
 #include <catch2/catch.hpp>
 
 #include "modules/learner/core/rules/learning_rule.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What the paper's own definitions force upon Table I, whatever the surfaces.
+// Properties of Table I that follow from the paper's definitions on any surfaces.
 #include <cmath>
 
 #include <catch2/catch.hpp>

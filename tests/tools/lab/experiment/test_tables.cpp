@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Tables, CSV and texts of an experiment whose numbers are known.
+// Tables, CSV and texts of an experiment with known numbers.
 #include <algorithm>
 #include <cmath>
 #include <sstream>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Counts, tables and JSON of missions that were invented, so that every number is known.
+// Counts, tables and JSON of invented missions with known numbers.
 #include <catch2/catch.hpp>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The whole robot in virtual time, driven by a person in between.
+// The whole robot in virtual time, with phases of manual control.
 #include <catch2/catch.hpp>
 
 #include <cstdio>

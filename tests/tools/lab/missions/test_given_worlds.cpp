@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Worlds from a file, driven against the clock: reading, judging, comparing.
+// Timed missions in worlds from a file: reading, metric, comparison.
 #include <catch2/catch.hpp>
 
 #include <cmath>

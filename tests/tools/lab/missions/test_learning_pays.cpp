@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The promises of the default learning rule in the closed loop, in small; tests/bench/RESULTS.md
-// has them over a hundred missions.
+// The promises of the default learning rule in the closed loop, with few missions;
+// tests/bench/RESULTS.md has the figures of a hundred missions.
 #include <catch2/catch.hpp>
 
 #include "tests/tools/lab/missions/shipped_robot.hpp"

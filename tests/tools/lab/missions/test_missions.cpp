@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Whole missions in virtual time: everything real but time and ground.
+// Whole missions in virtual time; only time and ground are simulated.
 #include <catch2/catch.hpp>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What the referee decides, on tracks and messages that the test writes by itself.
+// The referee's decisions on tracks and messages from the test.
 #include <catch2/catch.hpp>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Rules side by side: shadows of a drive, errors around changes, and when a rule has settled.
+// Comparison of rules: replay on a drive, errors around changes, and when a rule has converged.
 #include <catch2/catch.hpp>
 
 #include <cmath>

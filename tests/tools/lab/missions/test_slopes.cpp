@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The paper's stated failure: what a slope does to a vehicle is learned as if it were the ground.
+// The failure described in the paper: learning takes the effect of a slope for the ground's.
 #include <catch2/catch.hpp>
 
 #include <cmath>

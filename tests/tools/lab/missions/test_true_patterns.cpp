@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The omniscient robot: what it knows, how it is told, and how others are measured by it.
+// The omniscient robot: how it gets the true patterns, and how others are compared with it.
 #include <catch2/catch.hpp>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Missions of a robot without an INS, and of one whose INS falls silent.
+// Missions of a robot without an INS, and of one that loses its INS.
 #include <catch2/catch.hpp>
 
 #include <cmath>

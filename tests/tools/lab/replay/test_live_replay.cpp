@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// lcm-logplayer, a process that we did not write, plays imported logs to the real tread-learner.
+// lcm-logplayer, an external program, plays imported logs to the real tread-learner.
 #include <catch2/catch.hpp>
 
 #include <algorithm>

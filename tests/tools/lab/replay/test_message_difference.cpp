@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What a comparison of messages says, and how a log's time and gaps are found.
+// The report of differences between messages, and how time and gaps of a log are found.
 #include <catch2/catch.hpp>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The program itself in a terminal, and with a device of the kernel where there is uinput.
+// The program in a terminal, and with an input device of the kernel if there is uinput.
 #include <array>
 #include <cerrno>
 #include <cmath>

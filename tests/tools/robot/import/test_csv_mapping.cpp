@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Drives in CSV of other robots, by a mapping file. No recording of FoMo lies here: its session is
-// written by the test, in the files and columns of the data set's own examples.
+// CSV drives of other robots, imported with a mapping file. No recording of FoMo is included: the
+// test writes a session with the files and columns of the data set's examples.
 #include <catch2/catch.hpp>
 
 #include <algorithm>

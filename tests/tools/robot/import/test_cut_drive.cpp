@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Drives under commands that stay for a while become executions of patterns.
+// Drives with piecewise constant commands become executions of patterns.
 #include <catch2/catch.hpp>
 
 #include <cmath>

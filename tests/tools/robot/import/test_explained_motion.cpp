@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Drives in CSV whose columns are not what the mapping says: each is named as what it is, by the
-// checks that tread-import and tread-gap share.
+// CSV drives with columns that differ from the mapping: each mistake is named by the checks that
+// tread-import and tread-gap share.
 #include <catch2/catch.hpp>
 
 #include <cmath>

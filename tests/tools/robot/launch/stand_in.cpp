@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Stands in for a process of the robot: takes the same options, does nothing, and ends as told.
-// With a configuration of one word: "good", "wrong" (its --check fails), "deaf" (never ends by
+// Replaces a process of the robot: accepts the same options, does nothing, and ends on request.
+// Its configuration is one word: "good", "wrong" (its --check fails), "deaf" (never ends by
 // itself), "brief" (ends at once), "mute" (gives no sign of life), "hangs" (gives none after 1.5
-// s), "stubborn" (the same, and no signal but SIGKILL ends it), "slow" (takes 1.5 s to end).
+// s), "stubborn" (the same, and only SIGKILL ends it), "slow" (takes 1.5 s to end).
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>

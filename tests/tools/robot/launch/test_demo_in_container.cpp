@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The demo's launch where a newcomer may try it: in a container that lets nobody make a network.
+// The demo's launch in a container that does not permit network namespaces.
 #include <catch2/catch.hpp>
 
 #include "tests/tools/robot/launch/launched.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Processes that run, but do nothing.
+// Processes that run but hang.
 #include <catch2/catch.hpp>
 
 #include "tests/tools/robot/launch/launched.hpp"

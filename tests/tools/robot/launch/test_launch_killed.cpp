@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// SIGKILL where nothing can be tidied up: no process may be left.
+// After SIGKILL, which prevents any cleanup, no process may remain.
 #include <catch2/catch.hpp>
 
 #include "tests/tools/robot/launch/launched.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The checks of multicast against real hosts: network namespaces of this test alone.
+// The multicast checks with real hosts: network namespaces of this test.
 #include <catch2/catch.hpp>
 
 #include "tests/tools/robot/launch/launched.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The launch files that are shipped, with the real processes.
+// The shipped launch files with the real processes.
 #include <catch2/catch.hpp>
 
 #include "common/link/link.hpp"

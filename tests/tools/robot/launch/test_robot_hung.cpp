@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The simulated robot under tread-launch, of which one process after another hangs while it drives.
+// The simulated robot under tread-launch; its processes hang one after another while it drives.
 #include <catch2/catch.hpp>
 
 #include <cstdio>

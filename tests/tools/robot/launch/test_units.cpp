@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// systemd's units as cmake --install makes them. systemd-analyze verify only warns of a key that it
-// does not know, so nothing but empty output counts as good.
+// systemd's units as installed by cmake --install. systemd-analyze verify only warns of unknown
+// keys, so only empty output passes.
 #include <catch2/catch.hpp>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The robot on its own bus, tread-link beside it, the operator on another host.
+// The robot on its own bus with tread-link, the operator on another host.
 #include <catch2/catch.hpp>
 
 #include <filesystem>

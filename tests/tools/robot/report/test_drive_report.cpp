@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What the report says of a drive, from logs that are written by hand.
+// The report of a drive, from logs with known contents.
 #include <catch2/catch.hpp>
 
 #include <limits>

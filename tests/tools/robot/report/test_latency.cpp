@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// How long messages wait for each other, on logs whose times are known.
+// Queueing delays of messages, from logs with known times.
 #include <catch2/catch.hpp>
 
 #include <cmath>

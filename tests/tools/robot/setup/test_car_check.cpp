@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What the short drive of a car says of throttle, steering and INS, over simulated cars and grounds
-// that nothing was tuned to.
+// The short drive of a car: conclusions about throttle, steering and INS, over simulated cars and
+// grounds that were not used for tuning.
 #include <catch2/catch.hpp>
 
 #include <random>

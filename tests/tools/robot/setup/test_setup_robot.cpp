@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Five machines nobody has described: from their ports to the first goal, by a file of answers.
+// Five machines without descriptions: from finding their ports to the first goal, with a file of
+// answers.
 #include <catch2/catch.hpp>
 
 #include <algorithm>

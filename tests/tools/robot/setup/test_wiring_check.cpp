@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What the short drive says of wiring, INS and motion, over many simulated machines and grounds
-// that nothing was tuned to.
+// The short drive: conclusions about wiring, INS and motion, over many simulated machines and
+// grounds that were not used for tuning.
 #include <catch2/catch.hpp>
 
 #include <random>

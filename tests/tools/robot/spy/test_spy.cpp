@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// lcm-spy as tread-spy starts it, on a display in memory, with a publisher on a bus of its own.
+// lcm-spy as started by tread-spy, on a virtual display, with a publisher on its own bus.
 #include <catch2/catch.hpp>
 
 #include <atomic>

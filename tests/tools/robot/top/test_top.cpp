@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// tread-top in a terminal of its own, with a robot that only says that it is there.
+// tread-top in a terminal, with a robot that only publishes its presence.
 #include <catch2/catch.hpp>
 
 #include <pty.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// tread-view as people and programs meet it: the protocol's own client, a browser without a screen,
-// the format's checker.
+// tread-view with its real clients: the protocol's reference client, a headless browser, the
+// format's checker.
 #include <catch2/catch.hpp>
 
 #include <cstdio>

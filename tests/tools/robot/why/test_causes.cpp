@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Missions whose cause only the test knows.
+// Missions with causes that only the test knows.
 #include <catch2/catch.hpp>
 
 #include <chrono>

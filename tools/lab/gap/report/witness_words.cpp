@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What wheel speeds, motor currents and battery voltage say of an effect.
+// What wheel speeds, motor currents and battery voltage show about an effect.
 #include <algorithm>
 #include <string>
 #include <vector>

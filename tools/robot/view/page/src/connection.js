@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// The WebSocket to tread-view, with the Foxglove protocol's own client; it reconnects by itself.
+// The WebSocket to tread-view, with the Foxglove protocol's client library; reconnects by itself.
 import { FoxgloveClient } from "@foxglove/ws-protocol";
 
 const TOPICS = ["INS", "MOTOR", "PLAN", "PLAN_TREE", "MAP", "SCAN", "LEARNING", "HEALTH", "PATTERN_SET", "GOAL", "PROGRAM",
