@@ -32,7 +32,7 @@ TEST_CASE("25 Hz of attitudes with 10 Hz of positions are 25 poses a second, car
       if (i % 2 == 0) burst += pashr(kNoon + t, 90.0);
       if (!burst.empty()) bench.at(i * 20'000, burst);
     }
-    // Of 60 times 20 have a position; the attitudes in between extrapolate it.
+    // 20 of 60 times have a position; the attitudes in between extrapolate it.
     CHECK(bench.out.size() == (wanted ? 60 : 20));
     for (const InsEstimate& ins : bench.out) {
       CHECK(ins.p_map_body.x() == Approx(2.0 * static_cast<double>(ins.utime) * 1e-6).margin(0.01));

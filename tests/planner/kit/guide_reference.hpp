@@ -92,7 +92,7 @@ class GuideReference {
                cost + static_cast<double>(rate.cost(way, std::abs(turn) * kBin)));
     }
   }
-  /// A long step passes two squares, of which one must be passable.
+  /// A long step passes two squares, and one of them must be passable.
   bool between(int column, int row, int dx, int dy) const {
     if (std::abs(dx) + std::abs(dy) <= 2) return true;
     const int straight_x = std::abs(dx) == 2 ? dx / 2 : 0;

@@ -71,7 +71,7 @@ std::vector<std::string> linesOf(const std::string& path, std::string& problem) 
     text.append(buffer, static_cast<size_t>(got));
   if (got < 0)
     throw std::runtime_error(path + ": is damaged: its compressed bytes cannot be unpacked");
-  // Of a truncated file the existing part is returned, with this error.
+  // For a truncated file the existing part is returned, with this error.
   int error = Z_OK;
   gzerror(file.get(), &error);
   if (error == Z_BUF_ERROR)

@@ -75,7 +75,7 @@ void compare(const Grid& pass, const Grid& other, PassPairs& pairs) {
   for (int y = from.y; y < top; ++y)
     for (int x = from.x; x < right; ++x) {
       if (pass.at({x, y}) != kObstacle) continue;
-      // Behind the other pass's wall it knows nothing, but the wall itself is known.
+      // Cells behind the other pass's wall are unknown, but the wall itself is known.
       const bool far = obstacleWithin(other, {x, y}, kFar);
       if (!far && other.at({x, y}) == kUnknown) continue;
       ++pairs.cells;

@@ -93,8 +93,8 @@ std::string differenceOf(const plan_t& log, const plan_t& replay);
 /// The processes that run from a played log: those without a device.
 std::vector<std::string> playableProcesses();
 
-/// The channels to play to a process: what it hears, without what it publishes itself and without
-/// what every process publishes, so that it never hears its own past.
+/// The channels to play to a process: its inputs, without the channels that it or every process
+/// publishes, as it must not receive its own old messages.
 std::vector<std::string> playedChannels(const std::string& process);
 
 /// Expression for `lcm-logplayer -e`, anchored: LCM would find INS in INSIDE, too.

@@ -16,7 +16,7 @@ struct MatchedSweep {
 };
 
 /// Checks scans for mutual consistency, without another reference.
-/** Of three consecutive scans each pair is matched separately: first to second to third must agree
+/** Each pair of three consecutive scans is matched separately: first to second to third must agree
  * with first to third. The pairs share scans, so their errors are not quite independent, as is
  * assumed. */
 struct ScanClosure {

@@ -18,7 +18,7 @@ namespace tread::setup {
  */
 std::string recipeFor(const RobotFindings& findings);
 
-/// What came of driving the patterns.
+/// Results of driving the patterns.
 struct RecordedPatterns {
   PatternSet patterns;  ///< as they were driven
   recordings::SurfaceRecordings recordings;

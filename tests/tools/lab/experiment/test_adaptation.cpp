@@ -133,7 +133,7 @@ TEST_CASE("intervals are over sessions") {
   const Interval same = intervalOf({1.5, 1.5, 1.5}, 1);
   CHECK(same.low == 1.5);
   CHECK(same.high == 1.5);
-  // Of two values a quarter of the resamples contain only one, a quarter only the other.
+  // With two values a quarter of the resamples contain only one, a quarter only the other.
   const Interval two = intervalOf({0.0, 1.0}, 1);
   CHECK(two.mean == 0.5);
   CHECK(two.low == 0.0);

@@ -29,13 +29,13 @@ struct Interval {
   bool holds(double truth) const { return low <= truth && truth <= high; }
 };
 
-/// What moves if one side is commanded forward.
+/// The sides that move if one side is commanded forward.
 struct SideMotion {
   Side side = Side::kLeft;
   bool forward = true;
 };
 
-/// What is known of the vehicle before the drive; unknown values are only measured.
+/// Known properties of the vehicle before the drive; unknown values are only measured.
 struct WiringExpectation {
   double gauge = 0.0;  ///< [m] effective; 0 = unknown
   /// What a person saw when only the configured left side was commanded forward. The INS alone
@@ -73,7 +73,7 @@ struct WiringFault {
 /// Results of the drive.
 struct WiringReport {
   std::string unsure;  ///< why there is no result, one line; empty = the rest is valid
-  /// What the configured left and right side really move.
+  /// The sides that the configured left and right side really move.
   std::array<SideMotion, 2> moves{SideMotion{Side::kLeft, true}, SideMotion{Side::kRight, true}};
   std::array<bool, 2> dead{false, false};  ///< configured left and right side
   Interval full_left;          ///< [m/s] of the real left track at full command, on this ground

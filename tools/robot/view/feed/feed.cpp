@@ -16,7 +16,7 @@ using Json = nlohmann::json;
 
 constexpr double kNewsPeriod = 0.5;    // [s]
 constexpr double kPlayerPeriod = 0.5;  // [s]
-/// Who subscribes again and again does not have it drawn anew each time.
+/// A drawn scene is reused for this time, so repeated subscriptions do not draw it each time.
 constexpr double kSceneLife = 10.0;  // [s]
 
 /// Memory for each channel [bytes]: enough for thousands of map tiles, and ample for the others.

@@ -18,7 +18,7 @@ class History {
   void take(const LogEvent& event);
   /// All of it as JSON.
   std::string whole() const;
-  /// What came since the last call, as JSON; empty if nothing did.
+  /// Entries since the last call, as JSON; empty if there are none.
   std::string news();
 
  private:
