@@ -24,18 +24,19 @@ struct Receipt {
   int64_t seq = -1;
 };
 
-/// What a bus endpoint counted since its start. Every refusal is here; none is silent.
+/// What a bus endpoint has counted since its start. Every refusal is counted; none is silent.
 struct BusStatistics {
-  int64_t received = 0;        ///< messages that reached a handler
-  Receipt newest;              ///< the newest of them, in the order of receipt
-  int64_t undecodable = 0;     ///< of another or broken type
-  int64_t lost = 0;            ///< missing by seq
-  int64_t late = 0;            ///< older than their channel's maximum age on receipt
-  int64_t jumps = 0;           ///< their utime was too far ahead to be followed
-  int64_t failed = 0;          ///< handler threw
-  int64_t oversized = 0;       ///< own messages above the channel's max_bytes: not sent
-  bool sealed_unread = false;  ///< without a key: others have one, and refuse what comes from here
-  /// messages that were not taken, by why: "too large", and with a key "unsealed", "replayed"
+  int64_t received = 0;     ///< messages that reached a handler
+  Receipt newest;           ///< the newest of them, in the order of receipt
+  int64_t undecodable = 0;  ///< of another or broken type
+  int64_t lost = 0;         ///< missing by seq
+  int64_t late = 0;         ///< older on receipt than their channel's maximum age
+  int64_t jumps = 0;        ///< with a utime too far ahead for the followed time
+  int64_t failed = 0;       ///< handler threw
+  int64_t oversized = 0;    ///< own messages above the channel's max_bytes: not sent
+  bool sealed_unread =
+      false;  ///< this process has no key, but others have: they refuse its messages
+  /// messages refused, by reason: "too large", and with a key "unsealed", "replayed"
   std::map<std::string, int64_t> refused;
   std::string last_refusal;  ///< the newest refusal in one line: channel, what, size
 };
@@ -48,8 +49,8 @@ struct CycleTimes {
 
 /// A node's end of the message bus. Two kinds: LcmBus (real LCM) and the endpoints of a VirtualBus.
 /** All calls come from one thread. Handlers run between steps, never inside publish(). With a key
- * each message is sealed, and only sealed ones are taken, except those that stop (stops()); without
- * one a seal is left out unread. */
+ * each message is sealed, and only sealed ones are accepted, except those that stop the robot
+ * (stops()); without a key seals are stripped unverified. */
 class Bus {
  public:
   virtual ~Bus() = default;
@@ -60,8 +61,8 @@ class Bus {
   /// Present time of the robot [us], monotonic. Only processes with a device take it from the
   /// host.
   virtual int64_t now() const = 0;
-  /// Differs for each start of a process on this robot [us]; the run id of a planner, the boot id
-  /// in HEALTH.
+  /// Differs for each start of a process on this robot [us]; serves as the planner's run id and as
+  /// the boot id in HEALTH.
   virtual int64_t bootId() const = 0;
   /// Differs for each call, and between processes: the id of an operator program.
   int64_t newStation() { return bootId() + stations_++; }
@@ -69,7 +70,7 @@ class Bus {
   virtual int64_t utc() const { return -1; }
   /// How long the node's steps took since the last call; zero in virtual time.
   virtual CycleTimes takeCycleTimes() { return {}; }
-  /// How the process is, in one line, for who started it.
+  /// Reports the process's state, in one line, to the program that started it.
   virtual void tellStarter(const std::string& /*line*/) {}
 
   /// Encodes and sends. Returns false if it could not be sent (oversized, no network).
@@ -83,7 +84,7 @@ class Bus {
     return send(channel.name, buffer_.data(), buffer_.size());
   }
 
-  /// Calls the handler for each good message. Decoding must consume every byte; what fails is
+  /// Calls the handler for each good message. Decoding must consume every byte; failures are
   /// counted.
   template <class Message>
   void subscribe(const Channel<Message>& channel, std::function<void(const Message&)> handler) {
@@ -104,8 +105,8 @@ class Bus {
   }
   bool hears(const std::string& channel) const { return subscribed_.count(channel) > 0; }
 
-  /// The same, but no input of this node: not counted, no measure of time; what is not good is
-  /// passed over.
+  /// The same, for a channel that is not an input of this node: not counted, not used as a source
+  /// of time; bad messages are skipped.
   template <class Message>
   void overhear(const Channel<Message>& channel, std::function<void(const Message&)> handler) {
     const bool first = !hears(channel.name) && !overhears(channel.name);
@@ -118,29 +119,30 @@ class Bus {
     if (first) listen(channel.name);
   }
   bool overhears(const std::string& channel) const { return overheard_.count(channel) > 0; }
-  /// The channels subscribed to, sorted.
+  /// The subscribed channels, sorted.
   std::vector<std::string> heard() const;
-  /// A bus with a key of another host hears the robot in two sessions: one of them is a recording,
-  /// and it cannot tell which. Nothing that it hears is proof then.
+  /// With a key but on another host, a bus may receive the robot's messages in two sessions. One of
+  /// them is a recording, and the bus cannot distinguish them, so no message is proof of anything
+  /// then.
   bool hearsTwoSessions() const;
 
   const BusStatistics& statistics() const { return statistics_; }
 
  protected:
   virtual bool send(const char* channel, const uint8_t* bytes, size_t size) = 0;
-  /// Somebody subscribes to this channel for the first time.
+  /// Called at the first subscription to a channel.
   virtual void listen(const char* channel) = 0;
-  /// What seals say of when they were made [us]: one clock for all who share a key.
+  /// The clock that stamps seals [us]: one clock for all who share a key.
   virtual int64_t sealClock() const { return now(); }
-  /// A good message with this utime came in, on a channel that promises to be fresh. False if it
-  /// cannot be of the present.
+  /// Called for each good message, with its utime, on a channel that has a maximum age. False if
+  /// the utime cannot be of the present.
   virtual bool onReceipt(int64_t /*utime*/) { return true; }
-  /// False where a log is played back to the node: nobody is beside it to be overheard.
+  /// False where a log is replayed to the node: there are no other processes to listen to.
   virtual bool hasCompany() const { return true; }
 
   /// Seals and opens messages from now on; call it before anything is published or received.
   void setSealer(std::optional<Sealer> sealer);
-  /// A message came in: opens its seal once, then calls the channel's handlers.
+  /// Handles a received message: opens its seal once, then calls the channel's handlers.
   void receive(const std::string& channel, const uint8_t* bytes, size_t size);
 
  private:
@@ -151,24 +153,25 @@ class Bus {
   template <class Message>
   struct MayStop<Message, std::void_t<decltype(stops(std::declval<const Message&>()))>>
       : std::true_type {};
-  /// Whether these bytes are a message that stops.
+  /// Whether these bytes are a message that stops the robot.
   template <class Message>
   static bool isStop(const uint8_t* bytes, size_t size) {
     Message message{};
     return decodes(bytes, size, message) && stops(message);
   }
   struct Subscribed {
-    std::deque<RawHandler> handlers;  ///< not moved when one subscribes while it runs
+    std::deque<RawHandler> handlers;  ///< not moved by a subscription made while a handler runs
     bool (*stops)(const uint8_t* bytes, size_t size) = nullptr;  ///< null: nothing here stops
     size_t most = 0;  ///< [bytes] of the channel's largest message and its seal
   };
 
   void receiveBeside(const std::string& channel, const uint8_t* bytes, size_t size);
   void refuse(const std::string& channel, const std::string& why, const std::string& remedy);
-  /// The message's size without its seal, or nothing if it is not taken.
+  /// The message's size without its seal; nullopt if the message is refused.
   std::optional<size_t> unseal(const std::string& channel, const Subscribed& subscribed,
                                const uint8_t* bytes, size_t size);
-  /// Runs a raw handler behind the exception firewall: nothing may pass through LCM's C frames.
+  /// Runs a raw handler behind the exception firewall: no exception may pass through LCM's C
+  /// frames.
   void deliver(const RawHandler& handler, const std::string& channel, const uint8_t* bytes,
                size_t size);
 
@@ -196,10 +199,10 @@ class Bus {
   std::map<std::string, Subscribed> subscribed_;
   std::map<std::string, Subscribed> overheard_;
   std::optional<BusSealer> sealer_;
-  bool trusted_ = true;  ///< whether the message that is handled was sealed, where it must be
+  bool trusted_ = true;  ///< whether the message being handled was sealed, where seals are required
   BusStatistics statistics_;
   int64_t stations_ = 0;
-  /// The newest message of a channel, to count what is missing.
+  /// The newest message of a channel, for counting missing ones.
   struct Newest {
     int64_t seq;
     int64_t utime;
@@ -208,7 +211,7 @@ class Bus {
   std::vector<uint8_t> buffer_;
 };
 
-/// The newest message of a channel: a mailbox, so that a node reads instead of being called.
+/// The newest message of a channel: a mailbox, so that a node polls instead of being called.
 template <class Message>
 class Latest {
  public:
@@ -225,7 +228,7 @@ class Latest {
   bool any() const { return count_ > 0; }
   int64_t count() const { return count_; }
   const Message& message() const { return message_; }
-  /// Time since receipt [us]; the largest value if there was none.
+  /// Time since receipt [us]; INT64_MAX if no message was received.
   int64_t age(int64_t now) const { return any() ? now - received_ : INT64_MAX; }
 
  private:
@@ -245,14 +248,14 @@ class Node {
 
   /// Time between steps [us], constant over the node's life.
   virtual int64_t period() const = 0;
-  /// Takes the latest messages, checks age and sense, calls the core, publishes.
+  /// Takes the latest messages, checks their age and plausibility, calls the core, publishes.
   virtual void step(int64_t utime) = 0;
   /// Makes outputs safe before the process ends (SIGINT, SIGTERM, a step that threw). Not called
   /// when it is killed.
   virtual void shutdown(int64_t /*utime*/) {}
 };
 
-/// Another process of the same name, by its HEALTH.
+/// Another process of the same name, known from its HEALTH.
 struct Namesake {
   int64_t boot_id = 0;
   int64_t heard = 0;  ///< [us] when last
@@ -270,18 +273,18 @@ class HealthReporter {
   HealthReporter(const HealthReporter&) = delete;  // the bus may call it back
   HealthReporter& operator=(const HealthReporter&) = delete;
 
-  /// From now on HEALTH is degraded while another process of this name lives: for those of which a
-  /// robot has one.
+  /// From now on HEALTH is DEGRADED while another process of this name lives: for processes that
+  /// must be unique on a robot.
   void watchNamesakes();
-  /// One message may be a broken one of our own.
+  /// A single message may be a corrupted one of our own.
   static constexpr int kSureAfter = 2;
-  /// The earliest started other process of this name that was heard at least so often and not long
-  /// ago; nothing if there is none.
+  /// The other process of this name that started first, if at least `heard_at_least` of its
+  /// messages were received and the newest is recent; else nullopt.
   std::optional<Namesake> namesake(int64_t now, int heard_at_least = kSureAfter) const;
 
   /// One clear line: what, where, what to do. Empty reason with kOk.
   void setState(int16_t state, const std::string& reason);
-  /// HEALTH_FAILED, of which others hear in the next step, not up to a second later.
+  /// Sets HEALTH_FAILED; published in the next step, not up to a second later.
   void fail(const std::string& reason);
   /// Sets a named counter, for instance {"refused: wrong checksum", 3}.
   void setCounter(const std::string& name, int64_t value);
@@ -293,7 +296,7 @@ class HealthReporter {
 
  private:
   void publishHealth(int64_t utime);
-  /// What is wrong: our own state, and that there is another of our name.
+  /// What is wrong: this process's state, and whether another process has its name.
   std::string describe(int64_t utime) const;
   void publishConfig(int64_t utime);
 

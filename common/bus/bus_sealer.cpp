@@ -5,7 +5,7 @@
 namespace tread {
 namespace {
 
-/// [us] after which a session that is silent is given up for another one.
+/// [us] of silence after which another session may replace one
 constexpr int64_t kSessionSilence = 1'000'000;
 
 }  // namespace
@@ -22,14 +22,14 @@ OpenedSeal BusSealer::open(const std::string& channel, const uint8_t* bytes, siz
   if (opened.verdict == SealVerdict::kOtherSession) {
     other_heard_ = now;
     if (now - session_heard_ < kSessionSilence) return opened;
-    // The robot was started again, or what was heard first was a recording that is over.
+    // The robot was restarted, or the first messages were a recording that has ended.
     sealer_.forgetSession();
     clock_ = RobotClock();
     other_heard_.reset();
     opened = sealer_.open(channel, bytes, size, now);
   }
   session_heard_ = now;
-  // Whoever repeats old seals of a session cannot move its clock: the newest time counts.
+  // Repeated old seals of a session cannot move its clock: the newest time counts.
   clock_.observe(opened.sent, now);
   return opened;
 }

@@ -12,12 +12,12 @@
 
 namespace tread {
 
-/// The sealer of one end of a bus. Where it came without a session, from another host perhaps, it
-/// follows the robot's session and clock.
+/// The sealer of one end of a bus. If it was made without a session, as on another host, it follows
+/// the robot's session and clock.
 /** All times are those of this host [us]. */
 class BusSealer {
  public:
-  /// What was sent before `now` is refused.
+  /// Messages sent before `now` are refused.
   BusSealer(Sealer sealer, int64_t now);
 
   bool seal(const std::string& channel, std::vector<uint8_t>& message, int64_t now) {
@@ -25,19 +25,19 @@ class BusSealer {
   }
   OpenedSeal open(const std::string& channel, const uint8_t* bytes, size_t size, int64_t now);
 
-  /// Without a session of its own it hears the robot in two: one of them is a recording, and it
-  /// cannot tell which.
+  /// Without a session of its own it may receive two sessions: one of them is a recording, and it
+  /// cannot distinguish them.
   bool hearsTwoSessions(int64_t now) const;
 
  private:
-  /// What the others' seals say now.
+  /// The present time on the clock of the others' seals.
   int64_t sealTime(int64_t now) const { return now + clock_.offset().value_or(0); }
 
   Sealer sealer_;
-  bool foreign_;                        ///< the sealer came without a session
-  RobotClock clock_;                    ///< how far their seals are ahead of ours, where foreign
-  int64_t session_heard_ = 0;           ///< where foreign
-  std::optional<int64_t> other_heard_;  ///< where foreign: of another session
+  bool foreign_;               ///< made without a session
+  RobotClock clock_;           ///< how far the others' seals are ahead of our clock, if foreign
+  int64_t session_heard_ = 0;  ///< where foreign
+  std::optional<int64_t> other_heard_;  ///< if foreign: last receipt from another session
 };
 
 }  // namespace tread

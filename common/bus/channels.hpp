@@ -31,7 +31,7 @@
 
 namespace tread {
 
-/// One line of the channel table: what everybody must know about a channel.
+/// One line of the channel table: the properties that every user of a channel must agree on.
 struct ChannelSpec {
   const char* name;  ///< LCM channel; [A-Z_] only, because LCM reads it as a regular expression
   const char* type;  ///< message type
@@ -49,7 +49,7 @@ inline constexpr Channel<ins_t> kIns{{"INS", "ins_t", "ins_driver", 50, 100, 400
 inline constexpr Channel<ins_t> kScanMatching{
     {"SCAN_MATCHING", "ins_t", "scan_matching", 10, 300, 400}};
 inline constexpr Channel<scan_t> kScan{{"SCAN", "scan_t", "lidar_driver", 10, 250, 60000}};
-// A tile of what is out of sight is old and still true: no limit.
+// No maximum age: a tile out of sight is old and still valid.
 inline constexpr Channel<map_tile_t> kMap{{"MAP", "map_tile_t", "mapping", 5, 0, 20000}};
 inline constexpr Channel<goal_t> kGoal{{"GOAL", "goal_t", "tread-goal", 1, 3000, 200}};
 inline constexpr Channel<plan_t> kPlan{{"PLAN", "plan_t", "planner", 5, 1000, 20000}};
@@ -80,8 +80,8 @@ inline constexpr Channel<fences_t> kFences{
 inline constexpr Channel<mark_t> kMark{{"MARK", "mark_t", "anyone", 0, 0, 1000}};
 inline constexpr Channel<config_t> kConfig{{"CONFIG", "config_t", "every process", 0.1, 0, 60000}};
 
-/// Whether a message can only stop the robot. Stopping is always open: such a message is taken from
-/// everybody, also where messages must be sealed.
+/// Whether a message can only stop the robot. Stopping is always allowed: such a message is
+/// accepted from everybody, even unsealed where seals are required.
 inline bool stops(const estop_t& message) {
   return message.engaged != 0;
 }
@@ -91,15 +91,15 @@ inline bool stops(const arm_t& message) {
 inline bool stops(const goal_t& message) {
   return message.goal_id == 0;
 }
-/// One more fence only narrows.
+/// Another fence only restricts the robot.
 inline bool stops(const fence_t& message) {
   return message.fence_kind != fence_t::FENCE_REMOVED;
 }
 
-/// What a message that is taken without its seal claims about its sender counts for nothing.
+/// Removes what an unsealed message claims about its sender.
 template <class Message>
 void forgetSender(Message& /*message*/) {}
-/// Else a stranger's fences would be kept as those of the operator whose name they bear.
+/// Otherwise a stranger's fences would be stored as those of the operator whose name they carry.
 inline void forgetSender(fence_t& message) {
   message.fence_by.clear();
 }

@@ -7,7 +7,8 @@
 
 namespace tread {
 
-/// Present CLOCK_MONOTONIC of this host [us], the robot's clock; for buses and what stamps devices.
+/// Present CLOCK_MONOTONIC of this host [us], the robot's clock; for buses and for stamping device
+/// data.
 inline int64_t hostNow() {
   using std::chrono::duration_cast;
   using std::chrono::microseconds;

@@ -16,7 +16,7 @@ void addKeyOption(CLI::App& app, std::string& path, EmptyKey empty) {
             return given.empty() ? std::string("--key: a file is missing") : std::string();
           });
   if (empty == EmptyKey::kIsNone) return;
-  // CLI11 takes an empty variable for none: a script that lost its path would start unsealed.
+  // CLI11 treats an empty variable as unset: a script that lost its path would start unsealed.
   app.parse_complete_callback([option] {
     const char* const named = std::getenv("TREAD_KEY");
     if (option->count() == 0 && named != nullptr && *named == '\0')

@@ -8,10 +8,10 @@
 
 namespace tread {
 
-/// What a TREAD_KEY that is set but empty means.
+/// Meaning of a TREAD_KEY that is set but empty.
 enum class EmptyKey {
   kIsRefused,
-  kIsNone,  ///< only for what must work without a key, as stopping does
+  kIsNone,  ///< only for programs that must work without a key, such as tread-stop
 };
 
 /// Adds --key FILE, with the environment variable TREAD_KEY as its default, for hostSealer().

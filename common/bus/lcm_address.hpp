@@ -17,10 +17,10 @@ struct LcmAddress {
   int64_t receive_buffer = 0;  ///< byte; 0 = the kernel's default
 };
 
-/// Takes an LCM URL apart; nothing if it cannot be read.
+/// Takes an LCM URL apart; nullopt if it is malformed.
 std::optional<LcmAddress> parseLcmUrl(const std::string& url);
 
-/// The URL that LCM takes for this one: where it is empty, LCM_DEFAULT_URL or LCM's own default.
+/// The URL that LCM uses for this one: LCM_DEFAULT_URL or LCM's own default if it is empty.
 std::string effectiveLcmUrl(const std::string& url);
 
 }  // namespace tread

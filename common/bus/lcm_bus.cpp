@@ -17,7 +17,7 @@
 namespace tread {
 namespace {
 
-/// No clock runs that long (126 years): sums of times cannot overflow.
+/// No clock runs that long (126 years), and sums of times cannot overflow.
 constexpr int64_t kLargestUtime = 4'000'000'000'000'000;
 constexpr int kEnoughAgreeing = 3;
 constexpr int64_t kAgreementUs = 1'000'000;
@@ -25,7 +25,7 @@ constexpr int64_t kUnopposedUs = 200'000;
 
 constexpr int kQueueCapacity = 1000;
 
-/// For LCM, devices and files. With fewer LCM may neither start nor say so.
+/// For LCM, devices and files. With fewer, LCM may fail to start without an error.
 constexpr size_t kDescriptors = 24;
 
 const std::string& requireDescriptors(const std::string& url) {
@@ -47,7 +47,7 @@ bool FollowedTime::observe(int64_t utime, int64_t host) {
   if (utime < 0 || utime > kLargestUtime) return false;
   const int64_t ahead = utime - now(host);
   if (!started_ || ahead > max_jump_us_) return observeCandidate(utime, host);
-  // An old message says nothing about the present, neither for nor against it.
+  // An old message neither confirms nor contradicts the present time.
   if (ahead >= -kAgreementUs) agreeing_ = 0;
   if (ahead > 0) set(utime, host);
   return true;
@@ -61,7 +61,7 @@ bool FollowedTime::observeCandidate(int64_t utime, int64_t host) {
     candidate_ = utime;
     candidate_host_ = host;
   } else if (utime > candidate_) {
-    // The same message once more, or one that was under way for longer, confirms nothing.
+    // A duplicate, or a message with a longer delay, confirms nothing.
     ++agreeing_;
     candidate_ = utime;
     candidate_host_ = host;
@@ -85,7 +85,7 @@ struct LcmBus::Subscription {
 
   static void receive(const lcm::ReceiveBuffer* buffer, const std::string& channel,
                       Subscription* self) {
-    // LCM reads a channel name as a regular expression; ours have no special characters, others
+    // LCM treats a channel name as a regular expression; ours have no special characters, others
     // may.
     if (channel != self->channel) return;
     self->bus->receive(channel, static_cast<const uint8_t*>(buffer->data), buffer->data_size);
@@ -142,8 +142,8 @@ void LcmBus::listen(const char* channel) {
 
 void LcmBus::handle(int timeout_ms) {
   if (lcm_->handleTimeout(timeout_ms) <= 0) return;
-  // A channel's queue at a time: messages that come faster than they are handled must not keep a
-  // node from its step.
+  // At most one queue length per channel: messages that arrive faster than they are handled must
+  // not delay the node's step.
   for (int i = 0; i < kQueueCapacity && lcm_->handleTimeout(0) > 0; ++i) {
   }
 }
@@ -165,14 +165,14 @@ void LcmBus::runSteps(Node& node, const std::atomic<bool>& stop) {
   int64_t next_step = hostNow();
   while (!stop) {
     const int64_t wait = next_step - hostNow();
-    // Rounded up: a rest below a millisecond would be waited for without sleeping.
+    // Rounded up: a remainder below a millisecond would be waited for without sleeping.
     handle(static_cast<int>(std::max<int64_t>(0, (wait + 999) / 1000)));
     const int64_t started = hostNow();
     if (started < next_step) continue;
     node.step(now());
     noteCycle(hostNow() - started);
     life_.beat(hostNow());
-    // A step that came too late is not made up for: stay on the grid.
+    // A late step is not made up for: stay on the grid.
     next_step += period * std::max<int64_t>(1, (hostNow() - next_step) / period + 1);
   }
 }

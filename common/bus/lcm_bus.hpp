@@ -15,20 +15,20 @@ class LCM;
 namespace tread {
 
 /// The time of a process without a device: the newest utime received plus the steady time since.
-/** One wrong utime must not move it for ever. A message that is further ahead than the largest jump
- *  is refused, unless no other message contradicts it: time jumps (another log, a hole in it) when
- * three such messages, each newer than the last, agree within a second and none of the present time
- * came for 0.2 s. At the start three that agree are enough. */
+/** One wrong utime must not move it forever. A message that is further ahead than the largest jump
+ * is refused, unless no other message contradicts it: time jumps (another log, a gap in it) when
+ * three such messages, each newer than the last, agree within a second and none of the present
+ * time came for 0.2 s. At the start three agreeing messages are enough. */
 class FollowedTime {
  public:
   /// `host` is the steady clock's time [us] of this and all later calls.
   FollowedTime(int64_t host, int64_t max_jump_us) : max_jump_us_(max_jump_us), host_(host) {}
 
-  /// Present time [us]; before the first time is believed, the time since construction.
+  /// Present time [us]; before the first accepted time, the time since construction.
   int64_t now(int64_t host) const { return utime_ + (host - host_); }
-  /// Whether a time is believed yet.
+  /// Whether a time has been accepted yet.
   bool started() const { return started_; }
-  /// A message of this utime came in. False if it was refused.
+  /// A message with this utime was received. False if it was refused.
   bool observe(int64_t utime, int64_t host);
 
  private:
@@ -39,7 +39,7 @@ class FollowedTime {
   int64_t utime_ = 0;
   int64_t host_;
   bool started_ = false;
-  int agreeing_ = 0;       ///< messages in a row that agree about another time
+  int agreeing_ = 0;       ///< consecutive messages that agree on another time
   int64_t candidate_ = 0;  ///< the newest of their times, received at candidate_host_
   int64_t candidate_host_ = 0;
   int64_t first_agreeing_ = 0;  ///< host time of the first of them
@@ -47,24 +47,24 @@ class FollowedTime {
 
 /// Where a process takes its time from.
 enum class TimeSource {
-  kHost,   ///< CLOCK_MONOTONIC: processes with a device, which stamp what they measure
-  kFollow  ///< newest utime received plus steady time since: all others, so that replay works; see
-           ///< FollowedTime
+  kHost,   ///< CLOCK_MONOTONIC: for processes with a device, which stamp their own measurements
+  kFollow  ///< newest utime received plus steady time since, so that replay works: for all others;
+           ///< see FollowedTime
 };
 
-/// How a process reaches the others.
+/// How a process reaches the bus.
 struct BusAccess {
   std::string url;               ///< LCM provider; empty = LCM_DEFAULT_URL or LCM's own default
   std::optional<Sealer> sealer;  ///< see hostSealer() and stationSealer()
 };
 
 /// Bus over real LCM.
-/** Fails at once, with the commands to type, where there is no multicast route. UBSan: g++ 12 with
- *  -fsanitize=vptr crashes in lcm-cpp, so the sanitizer preset switches that check off. */
+/** Fails at once, with the commands to type, if there is no multicast route. UBSan: g++ 12 with
+ * -fsanitize=vptr crashes in lcm-cpp, so the sanitizer preset disables that check. */
 class LcmBus : public Bus {
  public:
-  /// A message whose utime is further ahead does not move the followed time by itself [us]: as much
-  /// as nodes let a message be ahead.
+  /// A message whose utime is further ahead does not move the followed time by itself [us]; nodes
+  /// accept messages up to this far ahead.
   static constexpr int64_t kMaxJump = 100'000;
 
   /// Throws std::runtime_error with one clear line if LCM cannot be used.
@@ -79,18 +79,20 @@ class LcmBus : public Bus {
   CycleTimes takeCycleTimes() override;
   void tellStarter(const std::string& line) override { life_.tell(line); }
 
-  /// Runs the node until `stop` becomes true: messages as they come, step() at its period; then
-  /// shutdown(), also where a step throws, which then goes on to the caller.
+  /// Runs the node until `stop` becomes true: handles messages as they arrive, calls step() at its
+  /// period, then shutdown(). If a step throws, shutdown() is called and the exception is rethrown.
   void run(Node& node, const std::atomic<bool>& stop);
-  /// Waits for a message up to the timeout [ms] and handles it and those behind it; for tools.
+  /// Waits up to the timeout [ms] for a message and handles it and those queued behind it; for
+  /// tools.
   void handle(int timeout_ms);
-  /// run() uses it by itself; for a process with a loop of its own.
+  /// Used by run(); for processes with a loop of their own.
   LifeSign& lifeSign() { return life_; }
 
  protected:
   bool send(const char* channel, const uint8_t* bytes, size_t size) override;
   void listen(const char* channel) override;
-  /// The host's, also where now() follows the messages: whoever plays an old log has no old clock.
+  /// The host's clock, even where now() follows the messages: a replayed log does not change the
+  /// seals' clock.
   int64_t sealClock() const override;
   bool onReceipt(int64_t utime) override;
 

@@ -17,8 +17,8 @@ struct ReceiveBuffer;
 
 namespace tread {
 
-/// Hears every message of an LCM bus, without its seal: for programs that only look. With a key it
-/// passes on only what is sealed by it, and counts the rest.
+/// Receives every message of an LCM bus, without its seal: for programs that only observe. With a
+/// key it passes on only messages sealed with it, and counts the others.
 class LcmListener {
  public:
   /// `now`: CLOCK_MONOTONIC of this host at the receipt [us].
@@ -31,12 +31,12 @@ class LcmListener {
   LcmListener(const LcmListener&) = delete;
   LcmListener& operator=(const LcmListener&) = delete;
 
-  /// Waits for a message up to the timeout [ms] and takes it and those behind it.
+  /// Waits up to the timeout [ms] for a message and takes it and those queued behind it.
   void handle(int timeout_ms);
 
-  /// Messages that were not passed on, by why: "unsealed", "replayed", "too large".
+  /// Messages refused, by reason: "unsealed", "replayed", "too large".
   const std::map<std::string, int64_t>& refused() const { return refused_; }
-  /// What a person must know of how far to trust what is shown, in one line; empty = nothing.
+  /// A one-line warning if the received data cannot be trusted; else empty.
   std::string doubt() const;
 
  private:
@@ -46,7 +46,7 @@ class LcmListener {
   Take take_;
   std::unique_ptr<lcm::LCM> lcm_;
   std::optional<BusSealer> sealer_;
-  bool sealed_unread_ = false;  ///< without a key: others have one
+  bool sealed_unread_ = false;  ///< this process has no key, but others have
   std::map<std::string, int64_t> refused_;
 };
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int64_t kPeriod = 250'000;  // [us]
 
-/// A socket's address in the form of the system calls, which want its size, too.
+/// A socket's address as the system calls need it, with its size.
 struct Address {
   explicit Address(const std::string& place) {
     parts.sun_family = AF_UNIX;
@@ -60,7 +60,7 @@ bool LifeSign::send(const std::string& lines) const {
 void LifeSign::beat(int64_t host) {
   if (host < next_) return;
   next_ = host + kPeriod;
-  // A full queue takes nothing: READY=1 must come through once, of the others the next will do.
+  // A full queue accepts nothing: READY=1 must arrive once, the others are repeated anyway.
   ready_ |= send(ready_ ? "WATCHDOG=1" : "READY=1\nWATCHDOG=1");
 }
 

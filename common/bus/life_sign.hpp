@@ -8,9 +8,9 @@
 
 namespace tread {
 
-/// Tells who started this process how it is: systemd's notifications (see sd_notify(3)), which
-/// tread-launch reads, too. Without $NOTIFY_SOCKET it says nothing.
-/** Not libsystemd's: that waits for a reader who has stopped reading, and the motors must not. */
+/// Reports this process's state to its parent by systemd's notifications (see sd_notify(3)), which
+/// tread-launch reads, too. Without $NOTIFY_SOCKET it does nothing.
+/** Does not use libsystemd, which blocks while the reader is stuck: motor control must not wait. */
 class LifeSign {
  public:
   LifeSign();
@@ -18,25 +18,25 @@ class LifeSign {
   LifeSign(const LifeSign&) = delete;
   LifeSign& operator=(const LifeSign&) = delete;
 
-  /// The loop that does the work has done a round. The first one ends the start (READY=1); each
-  /// tells that the process lives (WATCHDOG=1), at most every 0.25 s. `host` as hostNow().
+  /// Call in each round of the working loop. The first call ends the start-up (READY=1); each
+  /// reports that the process lives (WATCHDOG=1), at most every 0.25 s. `host` as hostNow().
   void beat(int64_t host);
-  /// How it is, in one line (STATUS=).
+  /// Reports the state in one line (STATUS=).
   void tell(const std::string& line);
-  /// From now on it ends (STOPPING=1).
+  /// The process is ending (STOPPING=1).
   void stopping() { send("STOPPING=1"); }
 
  private:
   bool send(const std::string& lines) const;
 
-  std::string place_;  ///< of the socket; empty = nobody listens
+  std::string place_;  ///< of the socket; empty = no listener
   int descriptor_ = -1;
   bool ready_ = false;
   int64_t next_ = INT64_MIN;  ///< [us]
   std::string told_;
 };
 
-/// The other end: hears the processes whose $NOTIFY_SOCKET is its path.
+/// The other end: receives from the processes whose $NOTIFY_SOCKET is its path.
 class LifeSignListener {
  public:
   /// Makes the socket, for this user alone; throws std::runtime_error with one line.
@@ -46,10 +46,10 @@ class LifeSignListener {
   LifeSignListener& operator=(const LifeSignListener&) = delete;
 
   struct Word {
-    int pid;            ///< who said it, as the kernel knows
-    std::string lines;  ///< without a line end after the last
+    int pid;            ///< of the sender, as reported by the kernel
+    std::string lines;  ///< no line end after the last one
   };
-  /// The oldest that was not taken yet, without waiting.
+  /// The oldest message not taken yet, without waiting.
   std::optional<Word> take();
   const std::string& path() const { return path_; }
 

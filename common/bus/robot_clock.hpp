@@ -8,13 +8,14 @@
 namespace tread {
 
 /// By how much the robot's clock is ahead of this machine's.
-/** From the times of the robot's messages and of their receipt: the message that was on its way for
- * the shortest time tells it best. The newest 5 to 10 s count, so that clocks may drift. */
+/** Estimated from the times of the robot's messages and of their receipt: the message with the
+ * shortest delay gives the best estimate. Only the newest 5 to 10 s are used, so that clocks may
+ * drift. */
 class RobotClock {
  public:
   /// A message of this utime was received at `host`, both [us].
   void observe(int64_t utime, int64_t host);
-  /// [us]; nothing before the first message.
+  /// [us]; nullopt before the first message
   std::optional<int64_t> offset() const;
 
  private:

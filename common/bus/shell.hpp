@@ -23,12 +23,12 @@ struct ShellBody {
       : run(std::move(body)), trial(std::move(attempt)) {}
 
   Run run;
-  /// With --check: one line each, of what is allowed and has no effect.
+  /// With --check: warnings, one line each, for settings that are allowed but have no effect.
   std::vector<std::string> warnings;
-  /// With --check: tries what must be free, a port for instance; throws with one clear line.
+  /// With --check: tests that resources are free, for instance a port; throws with one clear line.
   std::function<void()> trial;
 };
-/// Reads the configuration, all of it, without opening anything; throws ConfigError.
+/// Reads the whole configuration without opening anything; throws ConfigError.
 using ShellPreparation = std::function<ShellBody(ConfigReader& reader)>;
 
 /// Becomes true by SIGINT, SIGTERM or SIGHUP (a closed terminal; not under nohup), and, where
@@ -36,12 +36,12 @@ using ShellPreparation = std::function<ShellBody(ConfigReader& reader)>;
 const std::atomic<bool>& stopRequest(pid_t parent);
 
 /// The main function of a process.
-/** Command line: --config FILE, --set KEY=VALUE (again and again), --lcm-url URL, --key FILE (only
- * sealed messages), --check (only reads the configuration and the key, tries what must be
- * free, and prints what holds, defaults included, below warnings as comments), --with-parent (ends
- * as by SIGINT when the process that started it is gone: a supervisor that is killed leaves nothing
- * driving), --help. stopRequest() becomes `stop`. Where something throws, one clear line and code
- * 1; usage errors end with code 2. */
+/** Command line: --config FILE, --set KEY=VALUE (repeatable), --lcm-url URL, --key FILE (only
+ * sealed messages), --check (only reads configuration and key, tests that resources are free, and
+ * prints the effective configuration below its warnings as comments), --with-parent (ends as by
+ * SIGINT when the parent process is gone: a killed supervisor leaves nothing driving), --help.
+ * stopRequest() becomes `stop`. After an exception, one clear line and code 1; usage errors end
+ * with code 2. */
 int runShell(int argc, char** argv, const std::string& name, const std::string& description,
              const ShellPreparation& prepare);
 

@@ -35,14 +35,14 @@ constexpr uint32_t kUnsubscribe = 3;
 constexpr size_t kLongestField = 1'000'000;  // [bytes]; our messages have at most 60 000
 constexpr size_t kLongestChannel = 63;       // [bytes], as in LCM
 constexpr size_t kLongestPattern = 250;      // [bytes] of a subscription
-constexpr size_t kMostUnsent = 4'000'000;    // [bytes] that wait for one receiver
+constexpr size_t kMostUnsent = 4'000'000;    // [bytes] queued for one receiver
 
 std::string bytesOf(uint32_t number) {
   const uint32_t big_endian = htonl(number);
   return {reinterpret_cast<const char*>(&big_endian), sizeof big_endian};
 }
 
-/// Takes fields off the front of a buffer; what is not there yet leaves it as it was.
+/// Extracts fields from the front of a buffer; leaves it unchanged if a field is incomplete.
 class Fields {
  public:
   explicit Fields(const std::string& buffer) : buffer_(buffer) {}
@@ -53,7 +53,7 @@ class Fields {
     used_ += 4;
     return ntohl(value);
   }
-  /// Throws std::runtime_error for a length that no message of ours has.
+  /// Throws std::runtime_error for a length beyond that of any message.
   std::optional<std::string> text(size_t longest) {
     const auto size = number();
     if (size && *size > longest) throw std::runtime_error("a field is too long");
@@ -88,7 +88,7 @@ struct Client {
   std::string received;
   std::string unsent = bytesOf(kServerMagic) + bytesOf(kVersion);
   std::vector<std::string> subscriptions;
-  std::map<std::string, bool> wanted;  ///< by channel, as far as asked
+  std::map<std::string, bool> wanted;  ///< by channel, for channels seen so far
 };
 
 class Relay {
@@ -120,7 +120,7 @@ class Relay {
     clients_.push_back(std::make_unique<Client>(socket));
   }
 
-  /// False if the client has gone or sends what it may not.
+  /// False if the client has gone or violates the protocol.
   bool serve(Client& client) {
     char piece[65536];
     const ssize_t size = recv(client.socket, piece, sizeof piece, 0);
@@ -174,7 +174,7 @@ class Relay {
 
   static void subscribe(Client& client, uint32_t type, const std::string& channel) {
     if (type != kSubscribe && type != kUnsubscribe) throw std::runtime_error("unknown message");
-    static_cast<void>(std::regex(channel));  // an invalid one ends this client, not a publisher
+    static_cast<void>(std::regex(channel));  // an invalid one ends this client, not its publisher
     auto& all = client.subscriptions;
     const auto found = std::find(all.begin(), all.end(), channel);
     if (type == kSubscribe)
@@ -190,7 +190,7 @@ class Relay {
     for (const auto& client : clients_) {
       if (!client || client->unsent.size() > kMostUnsent || !client->wants(channel)) continue;
       client->unsent += message;
-      flush(*client);  // one that has gone is noticed when it is served
+      flush(*client);  // a client that has gone is detected when it is served
     }
   }
 
@@ -220,7 +220,7 @@ TcpRelay::TcpRelay(uint16_t port)
                              why + "); choose another with --lcm-url tcpq://127.0.0.1:PORT");
   }
   port_ = ntohs(address.sin_port);
-  // Signals are for the threads of the program.
+  // Signals are handled by the program's other threads.
   sigset_t all;
   sigset_t before;
   sigfillset(&all);

@@ -8,9 +8,9 @@
 
 namespace tread {
 
-/// Server of LCM's transport tcpq, for hosts without multicast: passes each message on to everybody
-/// who has subscribed to its channel.
-/** Runs in a thread of its own and listens on 127.0.0.1 only. LCM's Java server does the same, but
+/// Server of LCM's transport tcpq, for hosts without multicast: passes each message on to all
+/// subscribers of its channel.
+/** Runs in its own thread and listens on 127.0.0.1 only. LCM's Java server does the same, but
  * leaves Nagle's algorithm on (up to 40 ms a hop) and waits for the slowest receiver; here a
  * receiver that does not read loses messages, as with UDP. */
 class TcpRelay {

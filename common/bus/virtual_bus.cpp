@@ -9,13 +9,13 @@
 namespace tread {
 namespace {
 
-/// [us] from process to process: about what LCM needs on one host (measured: 6 to 11 us, one in a
+/// [us] between processes: about as long as LCM needs on one host (measured: 6 to 11 us, one in a
 /// hundred 11 to 29 us).
 constexpr int64_t kTransportUs = 20;
 
 }  // namespace
 
-/// A message on its way; all receivers share its bytes.
+/// A message in transit; all receivers share its bytes.
 struct VirtualBus::Packet {
   std::string channel;
   std::shared_ptr<const std::vector<uint8_t>> bytes;
@@ -52,19 +52,19 @@ class VirtualBus::Endpoint : public Bus {
   int64_t boot_id_;
 };
 
-/// A node with its endpoint and its model of time.
+/// A node with its endpoint and its timing model.
 struct VirtualBus::Participant {
   std::string name;
   Factory factory;
   NodeTiming timing;
   std::unique_ptr<Endpoint> endpoint;  // outlives the node, which refers to it
   std::unique_ptr<Node> node;
-  uint64_t life = 0;       ///< counts kills: events of a former life are void
+  uint64_t life = 0;       ///< counts kills, to discard events of an earlier life
   int64_t busy_until = 0;  ///< [us]
   BusStatistics last_statistics;
 };
 
-/// Draws what happens to each message on its way to one receiver.
+/// Draws the faults of each message for each receiver.
 class VirtualBus::MessageFaults {
  public:
   struct Passage {
@@ -220,7 +220,7 @@ void VirtualBus::step(Participant& participant, uint64_t life, int64_t planned) 
   if (participant.busy_until <= now_) {
     participant.busy_until = now_ + participant.timing.compute_us;
     participant.node->step(now_);
-    // Steps stay on their grid; one that a busy node missed is not made up for.
+    // Steps stay on their grid; a step missed by a busy node is not made up for.
     const int64_t period = participant.node->period();
     const int64_t origin = planned - (planned - start_ - participant.timing.phase_us) % period;
     next = std::max(origin + period, now_ + 1);

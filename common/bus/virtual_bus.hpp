@@ -41,23 +41,23 @@ struct FaultPlan {
   std::vector<NodeFault> nodes;
 };
 
-/// How long a node takes, as a model: what a step or handler publishes leaves this much later.
+/// Simulated duration of a node's steps and handlers: their messages leave this much later.
 struct NodeTiming {
   /// [us] from the start of a step to its messages' departure; the node is busy meanwhile
   int64_t compute_us = 0;
   int64_t phase_us = 0;  ///< [us] of the first step after the start
 };
 
-/// All nodes in one process and in virtual time; every message really encoded and decoded, with
+/// All nodes in one process and in virtual time; every message is really encoded and decoded, with
 /// seeded faults.
-/** Same nodes, same seed, same faults: same messages in the same order. */
+/** Same nodes, seed and faults give the same messages in the same order. */
 class VirtualBus {
  public:
   using Factory = std::function<std::unique_ptr<Node>(Bus&)>;
-  /// Hears each message when it leaves its publisher: a recorder.
+  /// Called with each message when it leaves its publisher: a recorder.
   using Tap =
       std::function<void(int64_t utime, const char* channel, const uint8_t* bytes, size_t size)>;
-  /// Hears each message when it is handed to a node, as the node gets it.
+  /// Called with each message when it reaches a node, as the node receives it.
   using ArrivalTap = std::function<void(int64_t utime, const std::string& receiver,
                                         const char* channel, const uint8_t* bytes, size_t size)>;
 
@@ -68,19 +68,19 @@ class VirtualBus {
 
   /// Adds and starts a node; the factory builds it again after each kill-and-restart.
   void addNode(const std::string& name, Factory factory, NodeTiming timing = {});
-  /// Ends a node as SIGKILL does: no shutdown, its subscriptions and unsent messages are gone.
+  /// Ends a node as SIGKILL does: no shutdown; its subscriptions and unsent messages are lost.
   void kill(const std::string& name);
   void restart(const std::string& name);
-  /// A node does nothing for a while [us]; what is sent to it waits meanwhile.
+  /// A node stops stepping for a while [us]; messages to it wait meanwhile.
   void hang(const std::string& name, int64_t duration);
   /// The running node of that name or nullptr; for tests that look inside.
   Node* node(const std::string& name);
   const BusStatistics& statistics(const std::string& name) const;
 
-  /// All who are on this bus, and outside(), seal and open their messages; inject() does not.
+  /// All endpoints, outside() included, seal and open their messages; inject() does not.
   void useKey(const SealKey& key);
 
-  /// An endpoint for the tool or test itself: hears and says without delay and without faults.
+  /// An endpoint for the tool or test itself: receives and publishes without delay or faults.
   Bus& outside();
   void setTap(Tap tap) { tap_ = std::move(tap); }
   void setArrivalTap(ArrivalTap tap) { arrival_tap_ = std::move(tap); }
@@ -115,10 +115,10 @@ class VirtualBus {
   Tap tap_;
   ArrivalTap arrival_tap_;
   std::unique_ptr<MessageFaults> faults_;
-  /// For what is overheard: it draws apart, so that seeds keep their missions.
+  /// For overheard messages: its own random stream, so that a seed still gives the same mission.
   std::unique_ptr<MessageFaults> faults_beside_;
   std::vector<std::unique_ptr<Participant>> participants_;  ///< the first is outside()
-  /// What happens, by time; what is due at the same time in the order in which it was scheduled.
+  /// Scheduled events by time; events of the same time in the order of scheduling.
   std::multimap<int64_t, std::function<void()>> events_;
 };
 

@@ -11,7 +11,7 @@
 
 namespace tread {
 
-/// What a captured packet carried: a UDP datagram, or the next bytes of a TCP stream.
+/// The payload of a captured packet: a UDP datagram, or the next bytes of a TCP stream.
 struct CapturedPayload {
   int64_t time = 0;  ///< [us] of the capture
   bool tcp = false;
@@ -20,29 +20,28 @@ struct CapturedPayload {
   std::string bytes;
 };
 
-/// Takes a capture file (libpcap's classic format or pcapng, either byte order) apart while its
-/// bytes come.
-/** Sources: draft-ietf-opsawg-pcap, draft-ietf-opsawg-pcapng, tcpdump.org's link-layer types.
- * Frames of Ethernet and Linux cooked captures (both versions), with any number of VLAN tags, of
- * loopback and bare IPv4. What else there is is counted and left out; so are bytes of TCP that were
- * here before. */
+/// Parses a capture file (libpcap's classic format or pcapng, either byte order) incrementally.
+/** Sources: draft-ietf-opsawg-pcap, draft-ietf-opsawg-pcapng, tcpdump.org's link-layer types. Reads
+ * frames of Ethernet and Linux cooked captures (both versions), with any number of VLAN tags, of
+ * loopback and of bare IPv4. Everything else is counted and left out, and so are retransmitted TCP
+ * bytes. */
 class PcapStream {
  public:
-  /// True if a file begins like a capture, also like a gzipped file, which is refused.
+  /// Whether a file begins like a capture, or like a gzipped file, which is refused.
   static bool begins(std::string_view bytes);
 
   void push(std::string_view bytes) {
     if (problem_.empty()) buffer_.append(bytes);
   }
-  /// The next payload; nothing while its bytes are missing, and for good after problem().
+  /// The next payload; nullopt while its bytes are incomplete, and permanently after problem().
   std::optional<CapturedPayload> next();
-  /// Why nothing more comes of this file, in one line; empty if something may.
+  /// Why the file yields no more payloads, in one line; empty if it may.
   const std::string& problem() const { return problem_; }
-  /// What was left out since the last call, by its name in words.
+  /// What was left out since the last call: counts by kind, in words.
   std::map<std::string, int64_t> takeLeftOut();
 
  private:
-  /// What describes the frames of one interface.
+  /// Describes the frames of one interface.
   struct Interface {
     uint32_t link_type = 0;
     uint32_t longest = 0;       ///< bytes of a frame that were kept; 0: all

@@ -11,7 +11,7 @@
 namespace tread {
 namespace {
 
-/// Hears where documents begin and nothing else.
+/// Records where YAML documents begin.
 class DocumentStarts : public YAML::EventHandler {
  public:
   void OnDocumentStart(const YAML::Mark& mark) override { last = mark; }
@@ -30,7 +30,7 @@ class DocumentStarts : public YAML::EventHandler {
   YAML::Mark last = YAML::Mark::null_mark();
 };
 
-/// "a.b=value" as a YAML document, one line a word.
+/// "a.b=value" as a YAML document, one line per word.
 std::string documentOf(const std::string& words) {
   const size_t equals = words.find('=');
   const bool printable = std::none_of(words.begin(), words.end(),
@@ -71,8 +71,8 @@ void merge(YAML::Node into, const YAML::Node& from) {
 
 }  // namespace
 
-// Not YAML::LoadAll: after some broken texts it finds empty documents until memory is full. And
-// YAML::Load alone passes over what follows the first document.
+// Not YAML::LoadAll: after some malformed texts it returns empty documents until memory is full.
+// And YAML::Load alone ignores everything after the first document.
 YAML::Node loadOneDocument(const std::string& text, const std::string& name) {
   const auto refuse = [&](const YAML::Mark& mark, const std::string& problem) {
     const std::string where = mark.is_null() ? "" : ":" + std::to_string(mark.line + 1);
@@ -117,7 +117,7 @@ std::string ConfigSource::place(int line) const {
 void applyOverride(ConfigSource& source, const std::string& words, YAML::Node& root) {
   const std::string document = documentOf(words);
   const int first = source.append(document, words);
-  // In front of it as many lines as the source has: so the marks of both agree.
+  // Preceded by as many lines as the source has, so that the marks of both agree.
   const std::string padding(static_cast<size_t>(first) - 1, '\n');
   YAML::Node added;
   try {

@@ -6,9 +6,9 @@
 
 namespace tread {
 
-/// The folder of robots, patterns, models and launch files that came with this program.
-/** Beside the folder of the program, in a build as after cmake --install; of Debian's packages
- * /etc/tread. Where neither exists it is the first: opening a file in it fails and names it. */
+/// The folder of robots, patterns, models and launch files that are shipped with this program.
+/** Next to the program's folder, both in a build and after cmake --install; /etc/tread for Debian
+ * packages. If neither exists, the first is returned: opening a file in it fails with its name. */
 std::string shippedConfig();
 
 }  // namespace tread

@@ -17,7 +17,7 @@ int lineFrom(const YAML::Mark& mark, int otherwise) {
   return mark.is_null() ? otherwise : mark.line + 1;
 }
 
-/// A scalar as it is quoted in a message: one short line.
+/// A scalar as quoted in a message: one short line.
 std::string shown(const std::string& text) {
   constexpr size_t kLongest = 40;
   const std::string quoted = formatText(text.substr(0, kLongest));
@@ -40,8 +40,7 @@ bool isClosed(const std::string& text, size_t open) {
   return false;
 }
 
-/// The number of an item that has nothing wrong with it; the way of nearly all, without texts for
-/// messages.
+/// The number of a valid item: the fast path, without texts for messages.
 std::optional<double> goodNumber(const YAML::Node& node, Range range) {
   if (!node.IsScalar() || node.Tag() != "?") return std::nullopt;
   const auto value = parseNumber(node.Scalar());
@@ -77,7 +76,7 @@ std::string formatRange(Range range, const std::string& unit) {
 
 std::shared_ptr<ConfigReader::Level> ConfigReader::Level::parse(
     std::string text, const std::string& name, const std::vector<std::string>& overrides) {
-  // yaml-cpp takes a byte order mark off; without it, offsets in this copy agree with its marks.
+  // yaml-cpp strips a byte order mark; without it, offsets in this copy match its marks.
   if (const std::string problem = takeByteOrderMark(text); !problem.empty())
     throw ConfigError(name + ": " + problem);
   const auto source = std::make_shared<ConfigSource>(name, std::move(text));
@@ -161,7 +160,7 @@ ConfigReader::Level::Answer& ConfigReader::Level::answer(const std::string& key,
 }
 
 std::string ConfigReader::Level::path(const std::string& key) const {
-  // A key may come from the file, with anything in it; a message stays one line.
+  // A key may come from the file, with any content; a message stays one line.
   return prefix + formatText(key);
 }
 
@@ -206,8 +205,8 @@ std::string ConfigReader::Level::scalar(const Found& found, const std::string& w
 }
 
 void ConfigReader::Level::refuseOpenQuote(const Found& found) const {
-  // yaml-cpp takes a quote that is never closed as text up to the end of the file, with all keys
-  // that follow.
+  // yaml-cpp reads an unclosed quote as text up to the end of the file, including all keys after
+  // it.
   const std::string& text = source->text;
   const size_t open = source->offsetOf(found.value.Mark());
   if (open >= text.size() || (text[open] != '"' && text[open] != '\'')) return;

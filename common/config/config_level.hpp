@@ -20,9 +20,9 @@ struct ConfigSource {
   ConfigSource(std::string file_name, std::string file_text);
   /// Offset of a mark in the text; columns count bytes.
   size_t offsetOf(const YAML::Mark& mark) const;
-  /// Takes in lines that stand for one override; the number (1-based) of the first of them.
+  /// Appends the lines of one override; returns the number (1-based) of the first.
   int append(const std::string& lines, const std::string& override_words);
-  /// Where a line is, for messages: file:line, or the override that brought it.
+  /// Where a line is, for messages: file:line, or the override that it came from.
   std::string place(int line) const;
   /// Whether a line (1-based) came from an override, not from the file.
   bool isOverride(int line) const { return file_lines > 0 && line > file_lines; }
@@ -38,10 +38,10 @@ struct ConfigSource {
 /** Throws ConfigError with name:line for bad syntax and for a second document. */
 YAML::Node loadOneDocument(const std::string& text, const std::string& name);
 
-/// Puts "key=value" or "section.key=value" into the tree of a file; throws ConfigError.
+/// Applies "key=value" or "section.key=value" to the tree of a file; throws ConfigError.
 void applyOverride(ConfigSource& source, const std::string& words, YAML::Node& root);
 
-/// One map of the file with what was asked of it.
+/// One map of the file with the keys that were asked for.
 struct ConfigReader::Level {
   /// A key that is in the file.
   struct Entry {
@@ -53,19 +53,20 @@ struct ConfigReader::Level {
   /// A key that the program knows.
   struct Answer {
     std::string key;
-    std::string value;  ///< effective value as YAML; empty = none, or in children
+    std::string value;  ///< effective value as YAML; empty = none, or held in children
     bool is_list = false;
     std::vector<std::shared_ptr<Level>> children;
   };
 
-  /// What stands under a key, or an item of a list there.
+  /// The value of a key, or an item of its list.
   struct Found {
     YAML::Node value;
-    std::string name;  ///< with its sections, for messages
-    int line = 0;  ///< 1-based: its own for scalars, that of its key for lists, maps and nothing
+    std::string name;  ///< including its sections, for messages
+    int line =
+        0;  ///< 1-based: its own for scalars, that of its key for lists, maps and empty values
   };
 
-  /// Parses a whole text: one document, a map (or nothing at all).
+  /// Parses a whole text: one document, a map (or empty).
   static std::shared_ptr<Level> parse(std::string text, const std::string& name,
                                       const std::vector<std::string>& overrides);
   /// The level of a map node; null counts as an empty map.
@@ -73,12 +74,12 @@ struct ConfigReader::Level {
                                    const std::string& prefix, const YAML::Node& map, int line);
 
   Entry* find(const std::string& key);
-  /// The value of a key, which counts as asked for from now on; nothing if it is absent.
+  /// The value of a key, which counts as asked for from now on; nullopt if it is absent.
   /** Throws if it is required and absent. */
   std::optional<Found> ask(const std::string& key, bool required);
-  /// The items of a list; `wanted` names what is needed in the error.
+  /// The items of a list; `wanted` describes what is expected, for the error message.
   std::vector<Found> items(const Found& list, const std::string& wanted) const;
-  /// What the program will use for a key; replaces an earlier answer.
+  /// Sets the value that the program uses for a key; replaces an earlier one.
   Answer& answer(const std::string& key, const std::string& value);
   const Answer* answered(const std::string& key) const;
   void know(const std::string& key);

@@ -17,7 +17,7 @@
 namespace tread {
 namespace {
 
-/// A value that was never set (NaN) has no YAML that could be read back: it is left out.
+/// An unset value (NaN) has no YAML that could be read back: it is left out.
 std::string numberAnswer(double value) {
   return std::isfinite(value) ? formatNumber(value) : "";
 }

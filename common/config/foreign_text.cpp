@@ -10,7 +10,7 @@ std::optional<double> parseForeignNumber(std::string_view text) {
   const bool signed_already = text.substr(0, 1) == "+";
   if (signed_already) text.remove_prefix(1);
   const size_t first = !signed_already && text.substr(0, 1) == "-" ? 1 : 0;
-  // from_chars takes inf and nan, too.
+  // from_chars also accepts inf and nan.
   if (text.find_first_of("0123456789.", first) != first) return std::nullopt;
   double value = 0.0;
   const auto result = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -8,11 +8,12 @@
 
 namespace tread {
 
-/// A number as other people's programs write it: also .5, +1.5 and 007; inf and nan are none.
-/** Whatever the locale is: the decimal sign is a point. */
+/// A number as third-party programs write it: also .5, +1.5 and 007; not inf or nan.
+/** Independent of the locale: the decimal sign is a point. */
 std::optional<double> parseForeignNumber(std::string_view text);
 
-/// Takes the byte order mark of UTF-8 off a text; tells what makes it another encoding, or nothing.
+/// Removes a UTF-8 byte order mark from a text. Returns the name of another encoding that the text
+/// begins with; else empty.
 std::string takeByteOrderMark(std::string& text);
 
 }  // namespace tread

@@ -11,10 +11,10 @@
 
 namespace tread {
 
-/// The files that a command writes: an option each, and --force for all of them.
-/** Once the command line is read, before anything is opened, checkOutputs() looks at them; every
- * other argument that names a file or a folder counts as an input. What is refused ends the program
- * with one line and kBadInput. It takes the command's parse_complete_callback. */
+/// The files that a command writes: one option each, and --force for all of them.
+/** checkOutputs() checks them once the command line is read, before anything is opened; every other
+ * argument that names a file or folder counts as an input. A refusal ends the program with one
+ * line and kBadInput. Uses the command's parse_complete_callback. */
 class Outputs {
  public:
   explicit Outputs(CLI::App& command);
@@ -24,7 +24,7 @@ class Outputs {
   /// A folder that is made if needed.
   CLI::Option* folder(const std::string& names, std::string& path, const std::string& what);
   CLI::Option* fileOrFolder(const std::string& names, std::string& path, const std::string& what);
-  /// Files that other options name together; asked once all options are known.
+  /// Files whose names follow from other options; evaluated once all options are known.
   void derived(std::function<std::vector<std::string>()> paths);
 
  private:

@@ -7,8 +7,9 @@
 
 namespace tread {
 
-/// What a caught exception says to a user. Our own words stay as they are; those of the language's
-/// library and of others ("std::bad_cast", "stoi", "filesystem error: ...") become a sentence.
+/// Message of a caught exception for users. Our own messages are kept; those of the standard
+/// library and other libraries ("std::bad_cast", "stoi", "filesystem error: ...") become a
+/// sentence.
 std::string wordsOf(const std::exception& problem);
 
 }  // namespace tread

@@ -16,14 +16,14 @@ bool isDigit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// Moves past digits; false if there are none.
+/// Skips digits; false if there are none.
 bool skipDigits(const std::string& text, size_t& at) {
   const size_t first = at;
   while (at < text.size() && isDigit(text[at])) ++at;
   return at > first;
 }
 
-/// Moves past a whole part without leading zeros: YAML 1.1 reads 010 as eight, people as ten.
+/// Skips an integer part without leading zeros: YAML 1.1 reads 010 as eight, people as ten.
 bool skipWhole(const std::string& text, size_t& at) {
   if (at < text.size() && text[at] == '-') ++at;
   const size_t first = at;
@@ -33,7 +33,7 @@ bool skipWhole(const std::string& text, size_t& at) {
 bool isDecimal(const std::string& text) {
   size_t at = 0;
   const bool whole = skipWhole(text, at);
-  const bool begun = at > 0 && isDigit(text[at - 1]);  // 01, which is no whole part
+  const bool begun = at > 0 && isDigit(text[at - 1]);  // 01, which is not an integer part
   if (!whole && (begun || at == text.size() || text[at] != '.')) return false;
   if (at < text.size() && text[at] == '.') {
     ++at;
@@ -47,7 +47,7 @@ bool isDecimal(const std::string& text) {
   return at == text.size();
 }
 
-/// Words that a YAML reader may take for something else than text.
+/// Words that a YAML reader may not read as text.
 bool isReserved(std::string word) {
   std::transform(word.begin(), word.end(), word.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -76,7 +76,7 @@ std::string escaped(char c) {
   return hex.data();
 }
 
-/// Letters to insert, delete, replace or swap with the neighbour to make b of a.
+/// Number of letters to insert, delete, replace or swap with a neighbour to turn a into b.
 size_t spellingDistance(const std::string& a, const std::string& b) {
   std::vector<std::vector<size_t>> cost(a.size() + 1, std::vector<size_t>(b.size() + 1));
   for (size_t i = 0; i <= a.size(); ++i) cost[i][0] = i;

@@ -7,8 +7,8 @@ namespace tread {
 /// "0.1.0", as in the top CMakeLists.txt.
 const char* version();
 
-/// The commit that this was built from, "59f8ce72a1b2", with "-dirty" where files were changed
-/// since; empty where neither git nor the archive says it.
+/// The commit that this was built from, "59f8ce72a1b2", with "-dirty" for modified files; empty if
+/// neither git nor the archive provides it.
 const char* commit();
 
 }  // namespace tread

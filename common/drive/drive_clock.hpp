@@ -10,33 +10,33 @@
 
 namespace tread {
 
-/// Finds the robot's time of each event of a log, as its processes find it: the newest utime heard
-/// and the time passed since (FollowedTime).
-/** A recorder dates events with its own clock: that of the robot in virtual time, UTC with
- * lcm-logger, and either may be set while it runs. A stamp is an event that tells the robot's time
- * of its sending. What the recorder's clock is ahead of the stamps, at least, is taken off its
- * times. An event whose time fits neither the last one nor this difference waits for the stamps
- * behind it: where most of them agree with it a clock was set, or nothing was sent for a while;
- * else its time is wrong, and it happened between its neighbours. Where the robot's own clock began
- * anew (its host was started again) times go on. */
+/// Estimates the robot's time of each event of a log the same way as its processes do: the newest
+/// utime received plus the time passed since (FollowedTime).
+/** A recorder dates events with its own clock: in virtual time that of the robot, with lcm-logger
+ * UTC; either may be set while it runs. A stamp is an event that contains the robot's time of
+ * sending. The least lead of the recorder's clock over the stamps is subtracted from its times. An
+ * event whose time fits neither the previous one nor this lead waits for the stamps after it: if
+ * most of them agree with it, a clock was set or nothing was sent for a while; otherwise its time
+ * is wrong, and it happened between its neighbours. If the robot's own clock restarted (with its
+ * host), times continue. */
 class DriveClock {
  public:
   /// When an event took place.
   struct Dated {
     int64_t utime = 0;    ///< [us] of the robot's clock; never decreases, never negative
-    bool wrong = false;   ///< what the event says of its time cannot be
-    size_t restarts = 0;  ///< times that the robot's clock began anew before it
+    bool wrong = false;   ///< the time in the event is impossible
+    size_t restarts = 0;  ///< how often the robot's clock had restarted before it
   };
 
-  /// The next event: when it was recorded, and what time of the robot it tells, if any [us].
+  /// Adds the next event: when it was recorded, and the robot time in it, if any [us].
   void add(int64_t recorded, std::optional<int64_t> utime);
   /// No event follows.
   void close() { closed_ = true; }
-  /// The time of the first event that was not asked for yet; nothing if more events are needed, or
-  /// there is none.
+  /// The time of the oldest event not yet returned; nullopt if more events are needed or none is
+  /// left.
   std::optional<Dated> next();
 
-  /// What is wrong with the clocks, a line each; complete after the last event.
+  /// Problems of the clocks, one line each; complete after the last event.
   std::vector<std::string> notes() const;
 
  private:
@@ -44,7 +44,8 @@ class DriveClock {
     int64_t recorded = 0;
     std::optional<int64_t> utime;
   };
-  /// The recorder's clock was set, so it seems: until more is heard it may have been held up.
+  /// The recorder's clock seems to have been set. Until more stamps come, the recorder may just
+  /// have been delayed.
   struct Step {
     int64_t at = 0;      ///< [us] robot's time
     int64_t before = 0;  ///< [us] offset
@@ -82,13 +83,13 @@ class DriveClock {
   bool begun_ = false;
   bool stamped_ = false;    ///< a stamp was believed
   bool slow_ = false;       ///< stamps are many seconds apart
-  int64_t scale_ = 1;       ///< of the recorder's unit in a microsecond
+  int64_t scale_ = 1;       ///< recorder units per microsecond
   int64_t first_ = 0;       ///< [us] time of the first event
   int64_t last_ = 0;        ///< [us] of the last event
-  int64_t last_stamp_ = 0;  ///< [us] of the last stamp that was believed
-  int64_t offset_ = 0;      ///< [us] recorder's clock ahead of the robot's, at least
+  int64_t last_stamp_ = 0;  ///< [us] of the last accepted stamp
+  int64_t offset_ = 0;      ///< [us] least lead of the recorder's clock over the robot's
   bool one_clock_ = false;  ///< the recorder's clock is the robot's
-  int64_t shift_ = 0;       ///< [us] that the robot's clock lost when it began anew
+  int64_t shift_ = 0;       ///< [us] that the robot's clock lost at its restarts
   int64_t earliest_ = 0;    ///< [us] offset of the first one of the last stamps
   int64_t least_ = 0;       ///< [us] and of the fastest one
   int counted_ = 0;         ///< stamps of these

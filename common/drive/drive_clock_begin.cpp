@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// How DriveClock begins: what the first events of a log say of both clocks.
+// Start of DriveClock: both clocks as shown by the first events of a log.
 #include <algorithm>
 
 #include "common/drive/drive_clock.hpp"
@@ -12,7 +12,7 @@ using namespace drive_clock;
 
 namespace {
 
-/// The least of those on which most agree; of several such groups that of the first one.
+/// The least of the offsets on which most agree; of several such groups, of the first one.
 int64_t offsetOfMost(std::vector<int64_t> offsets) {
   const int64_t heard_first = offsets.front();
   std::sort(offsets.begin(), offsets.end());
@@ -29,7 +29,7 @@ int64_t offsetOfMost(std::vector<int64_t> offsets) {
 
 }  // namespace
 
-/// Begins with the difference of the clocks on which most of the first stamps agree.
+/// Starts with the clock difference on which most of the first stamps agree.
 void DriveClock::begin() {
   begun_ = true;
   convertNanoseconds();
@@ -45,7 +45,7 @@ void DriveClock::begin() {
   const bool burst = beginWithBurst(agreeing);
   one_clock_ = !burst && isOneClock();
   stamped_ = true;
-  // The first event of all may have a wrong time, too: it counts where another one follows soon.
+  // The very first event may have a wrong time, too: it counts if another one follows soon.
   const auto first =
       std::adjacent_find(ticks_.begin(), ticks_.end(), [&](const Tick& tick, const Tick& next) {
         const int64_t gap = next.recorded - tick.recorded;
@@ -55,9 +55,9 @@ void DriveClock::begin() {
   last_ = last_stamp_ = first_;
 }
 
-/// Where a recorder that was not listened to wrote the first stamps at once, each is as old as it
-/// says: begins with the first one. True if so.
-/** The events before it were recorded until nobody listened any more: right before it. */
+/// Handles a backlog at the start: if a stalled recorder wrote the first stamps at once, each is as
+/// old as it states, so the time begins with the first one. True if so.
+/** The events before it were recorded until the recorder stalled: right before it. */
 bool DriveClock::beginWithBurst(const std::vector<const Tick*>& agreeing) {
   int64_t from = agreeing.front()->recorded, to = from;
   int64_t oldest = *agreeing.front()->utime, newest = oldest;
@@ -102,8 +102,8 @@ bool DriveClock::isThousandfold(int64_t recorded, int64_t passed) {
   return pace > 200.0 && pace < 5000.0;
 }
 
-/// The same without the recorder's longest pause: a recorder that was not listened to for a minute
-/// has no pace of a thousand.
+/// The same without the recorder's longest pause: a recorder that stalled for a minute does not
+/// run a thousand times too fast.
 bool DriveClock::isThousandfoldWithoutLargestStep(const std::vector<const Tick*>& stamps) {
   int64_t largest = 0, passed_then = 0;
   for (size_t i = 1; i < stamps.size(); ++i) {
@@ -116,7 +116,8 @@ bool DriveClock::isThousandfoldWithoutLargestStep(const std::vector<const Tick*>
                         *stamps.back()->utime - *stamps.front()->utime - passed_then);
 }
 
-/// Recorders of other projects count nanoseconds: their seconds last a thousand of the robot's.
+/// Recorders of other projects count nanoseconds: their seconds appear as a thousand of the
+/// robot's.
 void DriveClock::convertNanoseconds() {
   std::vector<const Tick*> stamps;
   for (const Tick& tick : ticks_)
@@ -132,7 +133,7 @@ void DriveClock::convertNanoseconds() {
   const bool too_large =
       stamps.empty() && std::all_of(ticks_.begin(), ticks_.end(),
                                     [](const Tick& tick) { return tick.recorded > kLargestUtime; });
-  // Where the robot's times are nanoseconds, too, only its rates tell it.
+  // Where the robot's times are nanoseconds, too, only its message rates show it.
   slow_ = paces >= kFollowers && isMost(slow, paces);
   const bool one_step = !stamps.empty() && !isThousandfoldWithoutLargestStep(stamps);
   if (!too_large && (paces == 0 || !isMost(thousandfold, paces) || one_step)) return;

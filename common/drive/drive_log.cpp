@@ -16,7 +16,7 @@ namespace {
 
 constexpr size_t kRepeated = 8;  // executions in an EXECUTION message
 
-/// Sorts the events of a log by their meaning.
+/// Sorts the events of a log by type.
 class Reader {
  public:
   explicit Reader(DriveLog& log) : log_(log) {}
@@ -56,7 +56,7 @@ class Reader {
 }  // namespace
 
 bool isPossibleTile(const map_tile_t& tile) {
-  constexpr int32_t kMostCells = 1024, kFarthest = 1'000'000;  // a side; tiles from the origin
+  constexpr int32_t kMostCells = 1024, kFarthest = 1'000'000;  // per side; tiles from the origin
   return tile.tile_cells > 0 && tile.tile_cells <= kMostCells && tile.cell_size >= 0.01 &&
          tile.cell_size <= 10.0 && std::abs(tile.tile_x) < kFarthest &&
          std::abs(tile.tile_y) < kFarthest &&

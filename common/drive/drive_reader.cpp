@@ -15,8 +15,8 @@ namespace {
 struct Heading {
   int64_t fingerprint = 0;
   bool is_stamp =
-      false;  ///< one process publishes it, with the time of sending or of a measurement
-              ///< just made; not PROGRAM: a planner that has just started knows no time
+      false;  ///< published by one process, with the time of sending or of a fresh measurement; not
+              ///< PROGRAM: a planner that has just started does not know the time
   bool (*decodes)(const LogEvent&) = nullptr;  ///< null: too large to try
 };
 
@@ -78,7 +78,7 @@ bool DriveReader::next(DriveEvent& event) {
   while (!ended_ && pending_.empty()) {
     if (!readOn(event)) break;
     if (date(event)) return true;
-    // Its time is in doubt until more is known.
+    // Its time is uncertain until more events are read.
     pending_.push_back(std::move(event));
     event = {};
   }
@@ -94,7 +94,7 @@ bool DriveReader::next(DriveEvent& event) {
   return false;
 }
 
-/// Gives the first event that has no time yet its time, if it is known.
+/// Assigns a time to the first event without one, if it is known.
 bool DriveReader::date(DriveEvent& event) {
   const auto dated = clock_.next();
   if (!dated) return false;
@@ -105,7 +105,7 @@ bool DriveReader::date(DriveEvent& event) {
   return true;
 }
 
-/// Reads the next event and tells the clock what it says of its time.
+/// Reads the next event and passes its times to the clock.
 bool DriveReader::readOn(DriveEvent& event) {
   if (!read(event)) {
     ended_ = true;
@@ -117,7 +117,7 @@ bool DriveReader::readOn(DriveEvent& event) {
   return true;
 }
 
-/// The robot's time that a stamp tells; counts messages that cannot be read.
+/// The robot's time in a stamp; counts messages that cannot be read.
 std::optional<int64_t> DriveReader::stampOf(const LogEvent& event) {
   const auto found = headings().find(event.channel);
   if (found == headings().end()) return std::nullopt;

@@ -23,43 +23,43 @@ struct EventPlace {
   uint32_t file = 0;      ///< of the recording's files
 };
 
-/// An event of a drive: its `utime` is the robot's, at which its processes received it; from event
-/// to event it never decreases.
+/// An event of a drive: `utime` is the robot's time at which its processes received it; it never
+/// decreases.
 struct DriveEvent : LogEvent {
-  int64_t recorded = 0;   ///< [us] by the recorder's clock: any number
+  int64_t recorded = 0;   ///< [us] by the recorder's clock: any value
   uint64_t position = 0;  ///< see EventPlace
   uint32_t file = 0;
-  bool wrong_time = false;  ///< what it says of its time cannot be
-  size_t restarts = 0;      ///< times that the robot's clock began anew before it
+  bool wrong_time = false;  ///< its own time is impossible
+  size_t restarts = 0;      ///< how often the robot's clock had restarted before it
 
   DriveEvent() = default;
-  /// Of a log in memory, as it was recorded.
+  /// From an in-memory log, as recorded.
   DriveEvent(LogEvent event) : LogEvent(std::move(event)), recorded(utime) {}
 
   EventPlace place() const { return {utime, position, file}; }
 };
 
-/// Reads the events of a drive from front to back, in the robot's time (see DriveClock).
-/** Every event is given, whatever its time; what is wrong with the log is counted and told. */
+/// Reads the events of a drive from front to back, in robot time (see DriveClock).
+/** Every event is returned, whatever its time; problems of the log are counted and reported. */
 class DriveReader {
  public:
-  /// The files are parts of one recording, in order. Throws std::runtime_error with one clear line
-  /// if one cannot be read, when it is its turn.
+  /// The files are the parts of one recording, in order. Each is opened in its turn; throws
+  /// std::runtime_error with one clear line if it cannot be read.
   explicit DriveReader(std::vector<std::string> files);
   /// Events in memory, whose utime is the recorder's.
   explicit DriveReader(std::vector<LogEvent> events);
 
   /// The next event; false at the end.
   bool next(DriveEvent& event);
-  /// Reads an event of a file once more, after the last one.
+  /// Reads an event of a file again; call it only after the last event.
   bool again(const EventPlace& place, LogEvent& event);
 
   /// One clear line if a file is damaged; empty if all are whole.
   const std::string& damage() const { return damage_; }
-  /// What else is wrong, a line each: clocks that were set, times that cannot be, messages that
-  /// are none of Tread's although their channel is. Complete after the last event.
+  /// Other problems, one line each: clocks that were set, impossible times, foreign messages on
+  /// Tread's channels. Complete after the last event.
   std::vector<std::string> notes() const;
-  /// All of this in one line; empty if nothing is wrong.
+  /// All problems in one line; empty if there are none.
   std::string problem() const;
 
  private:
@@ -82,8 +82,8 @@ class DriveReader {
 };
 
 /// All events of a recording, in order; throws as DriveReader does.
-/** `problem` tells what is wrong with it. `keep` chooses events: a robot's log with all its scans
- * may not fit into memory. */
+/** `problem` receives the problems of the log. `keep` selects events: a robot's log with all its
+ * scans may not fit into memory. */
 std::vector<LogEvent> readEvents(
     const std::vector<std::string>& paths, std::string& problem,
     const std::function<bool(const LogEvent&)>& keep = [](const LogEvent&) { return true; });

@@ -18,9 +18,9 @@ constexpr double kCellReach = 8.0;    // [m] from the robot
 constexpr double kDead = 2.5;         // [s] without HEALTH, which comes every second
 constexpr double kGhostSize = 0.7;    // [m]
 constexpr double kGhostLife = 12.0;   // [s]
-constexpr double kFlickers = 0.4;     // [m] flickering beside a wall is no ghost
+constexpr double kFlickers = 0.4;     // [m] flickering next to a wall is no ghost
 
-/// Fills a timeline from the events of a log, in their order.
+/// Fills a timeline from the events of a log, in order.
 class TimelineReader {
  public:
   TimelineReader(DriveTimeline& drive, double ins_step) : drive_(drive), ins_step_(ins_step) {}
@@ -93,7 +93,7 @@ class TimelineReader {
                   0};
     if (!drive_.plans.empty()) {
       const PlanNote& before = drive_.plans.back();
-      // While it drives the reason tells of a stop that is planned.
+      // While driving, the reason describes a planned stop.
       note.news = before.state != note.state ||
                   (note.state != plan_t::PLAN_DRIVING && before.reason != note.reason);
     }
@@ -138,7 +138,7 @@ class TimelineReader {
     drive_.map->put({message.tile_x, message.tile_y, message.utime, message.cells});
   }
 
-  /// What came and went since the tile before; unknown ground that turns out blocked is no news.
+  /// Changes since the previous tile; unknown ground that turns out to be blocked is not noted.
   void compare(const map_tile_t& message) {
     const auto known = drive_.map->tiles().find({message.tile_x, message.tile_y});
     if (known == drive_.map->tiles().end() || !last_) return;
@@ -167,7 +167,7 @@ class TimelineReader {
   DriveTimeline& drive_;
   double ins_step_;
   Note now_;
-  const DriveEvent* event_ = nullptr;  // that is taken
+  const DriveEvent* event_ = nullptr;  // being processed
   EventTeller teller_;
   Odometer odometer_;
   std::optional<Pose2> last_;
@@ -179,7 +179,7 @@ class TimelineReader {
 
 namespace {
 
-/// The first note at this time or later: a day's log is looked at by its moments.
+/// The first note at this time or later: a day's log is accessed by time.
 template <class Note>
 auto firstFrom(const std::vector<Note>& notes, double time) {
   return std::lower_bound(notes.begin(), notes.end(), time,

@@ -22,7 +22,7 @@
 
 namespace tread {
 
-/// A message that says something new, as it was received.
+/// A message with new content, as received.
 template <class Message>
 struct Said : Note {
   Message message;
@@ -30,15 +30,15 @@ struct Said : Note {
 
 /// What motor_bridge did, until its state, its reason or the command changed.
 struct MotorNote : Note {
-  int64_t utime = 0, until = 0;  ///< [us] of the first and the last message that says so
+  int64_t utime = 0, until = 0;  ///< [us] of the first and the last message with it
   int16_t state = 0;             ///< motor_t::STATE_*
   Reason reason;
   Command command;
 };
 
-/// A permission to drive that was lost, a fault that took it, or an emergency stop.
+/// The loss of a permission to drive with its fault, or an emergency stop.
 struct PermissionLoss : Note {
-  int16_t state = 0;  ///< motor_t::STATE_* that it was lost to
+  int16_t state = 0;  ///< motor_t::STATE_* after the loss
   Reason reason;
   bool had_it = true;  ///< false: an emergency stop without a permission
 };
@@ -46,10 +46,10 @@ struct PermissionLoss : Note {
 struct PlanNote : Note {
   int64_t utime = 0;  ///< [us]
   int16_t state = 0;  ///< plan_t::PLAN_*
-  Reason reason;      ///< while it drives: of a stop that is planned
+  Reason reason;      ///< while it drives: of a planned stop
   int64_t goal_id = 0;
-  bool news = false;                ///< it does not drive as before, or stands for another reason
-  std::optional<Pose2> T_map_next;  ///< end of its first pattern; none: it has no way
+  bool news = false;                ///< it no longer drives as before, or stands for another reason
+  std::optional<Pose2> T_map_next;  ///< end of its first pattern; nullopt: no plan
   int64_t duration = 0;             ///< [us] of that pattern; 0 before its set is known
 };
 
@@ -57,22 +57,22 @@ struct EventNote : Note {
   Event said;
 };
 
-/// How the vehicle differs from its model from then on.
+/// Difference of the vehicle from its model from then on.
 struct GapNote : Note {
   std::string words;
-  bool holds = true;  ///< else the vehicle is as its model again
+  bool holds = true;  ///< false: the vehicle agrees with its model again
 };
 
-/// An obstacle cell that came or went near the robot.
+/// An obstacle cell that appeared or disappeared near the robot.
 struct CellNote : Note {
   Eigen::Vector2d p_map;
   bool came = false;
 };
 
-/// What a log holds of a drive, in the robot's time. All times are [s] since the log began.
+/// The drive in a log, in robot time. All times are [s] since the log began.
 struct DriveTimeline {
   std::string name;
-  std::string problem;  ///< one clear line of what is wrong with the log; empty if nothing is
+  std::string problem;  ///< the log's problems in one line; empty if there are none
   int64_t begun = -1;   ///< [us] of the robot's clock
   double duration = 0.0;
   size_t messages = 0;
@@ -81,57 +81,57 @@ struct DriveTimeline {
   std::vector<MotorNote> motors;
   std::vector<PermissionLoss> losses;
   std::vector<PlanNote> plans;                       ///< each
-  std::vector<Said<execution_record_t>> executions;  ///< those that ended, each once
-  std::vector<Said<learning_t>> patterns;            ///< how each ended, as the learner scored it
+  std::vector<Said<execution_record_t>> executions;  ///< the completed ones, each once
+  std::vector<Said<learning_t>> patterns;            ///< their results, as scored by the learner
   std::vector<InsNote> ins;
   std::vector<Said<goal_t>> goals;
-  std::vector<EventNote> events;  ///< changes and what people did, in words
-  std::vector<GapNote> gaps;      ///< what tread-gap watch found new
+  std::vector<EventNote> events;  ///< changes and actions of people, in words
+  std::vector<GapNote> gaps;      ///< changes reported by tread-gap watch
   std::vector<CellNote> cells;
   std::vector<std::pair<double, double>> battery;  ///< [s], [V] once a second
 
-  std::map<std::string, std::string> configs;  ///< by process, the last
+  std::map<std::string, std::string> configs;  ///< by process, the latest
   std::unique_ptr<TileMap> map;                ///< at the end
   double distance = 0.0;                       ///< [m] driven
 
-  /// How many executions ended so (execution_record_t::OUTCOME_*).
+  /// Number of executions with this outcome (execution_record_t::OUTCOME_*).
   int ended(int16_t outcome) const;
-  /// Silence of a channel that overlaps a time: [from, to]; nothing if it spoke at least every
+  /// Silence of a channel that overlaps a time: [from, to]; nullopt if it was heard at least every
   /// `longest` seconds around it.
   struct Silence {
     double from = 0.0, to = 0.0;
     double length() const { return to - from; }
   };
   std::optional<Silence> silenceOf(const std::string& channel, double time, double longest) const;
-  /// When a process was started again within these times; nothing if it was not.
+  /// When a process was restarted within these times; nullopt if it was not.
   std::optional<double> restartOf(const std::string& process, double from, double to) const;
-  /// When it was heard last, if that is long before the log's end.
+  /// Its last HEALTH, if that is long before the log's end.
   std::optional<double> deathOf(const std::string& process) const;
   /// Its newest HEALTH at a time; nullptr before the first.
   const Said<health_t>* healthAt(const std::string& process, double time) const;
-  /// Its first HEALTH within these times that says that something is wrong; nullptr if none does.
+  /// Its first HEALTH within these times that reports a fault; nullptr if none does.
   const Said<health_t>* complaintOf(const std::string& process, double from, double to) const;
-  /// Of the cells near a place that became obstacles within these times, how many, and how many of
-  /// these places were free again later.
+  /// Of the cells near a place that became obstacles within these times: their number, and how many
+  /// of them were free again later.
   struct Ghost {
     int came = 0, went = 0;
-    double gone = 0.0;  ///< [s] when the last of them went
+    double gone = 0.0;  ///< [s] when the last of them disappeared
     bool alone = true;  ///< no obstacle is there at the end of the log
   };
   Ghost ghostAt(const Eigen::Vector2d& p_map, double from, double to) const;
-  /// Where the robot was; nothing before the INS knew.
+  /// Pose of the robot; nullopt before the INS's first.
   std::optional<Pose2> poseAt(double time) const;
 };
 
 inline bool isOk(const health_t& health) {
   return health.health_state == health_t::HEALTH_OK;
 }
-/// Why the learner refused a pattern, or what its rule took it for.
+/// Why the learner refused a pattern, or its rule's interpretation.
 inline const std::string& wordsOf(const learning_t& learning) {
   return learning.accepted ? learning.change_reason : learning.gate_reason;
 }
 
-/// The notes of the events from one (inclusive) to another one (exclusive): [begin, end).
+/// The notes of the events from one (inclusive) to another (exclusive): [begin, end).
 template <class Kind>
 auto notesBetween(const std::vector<Kind>& notes, size_t from, size_t to) {
   const auto at = [&](size_t number) {
@@ -141,14 +141,14 @@ auto notesBetween(const std::vector<Kind>& notes, size_t from, size_t to) {
   return std::pair(at(from), at(to));
 }
 
-/// Called behind each event with what the timeline holds so far.
+/// Called after each event with the timeline so far.
 using EachEvent = std::function<void(const DriveEvent&, const DriveTimeline&)>;
 
-/// Reads a log to its end. `ins_step` [s]: of INS messages that come faster only those with another
-/// status are noted.
+/// Reads a log to its end. `ins_step` [s]: INS messages at a higher rate are noted only if their
+/// status differs.
 DriveTimeline timelineOf(DriveReader reader, double ins_step = 0.0, const EachEvent& each = {});
-/// The same of files (parts of one recording, in order); throws std::runtime_error with one clear
-/// line if one cannot be read or holds no message of Tread.
+/// The same for files (parts of one recording, in order). Throws std::runtime_error with one clear
+/// line if a file cannot be read or contains no message of Tread.
 DriveTimeline readTimeline(const std::vector<std::string>& logs, double ins_step = 0.0);
 
 }  // namespace tread

@@ -19,14 +19,14 @@ enum class Severity { kInfo, kWarning, kError };
 struct Event {
   int64_t utime = 0;  ///< [us] when it was recorded
   Severity severity = Severity::kInfo;
-  std::string channel;  ///< of the message that says so
+  std::string channel;  ///< of the message that reports it
   std::string source;   ///< the process or person
   std::string words;    ///< "disarmed: the operator's lease has run out"
 };
 
-/// Finds what happened among the messages: changes of state with their reasons, what people did,
-/// what was learned.
-/** Messages repeat complete state; an event is told once, when it is seen first. */
+/// Detects events in the messages: changes of state with their reasons, actions of people,
+/// learning.
+/** Messages repeat complete state; an event is reported once, when it is first seen. */
 class EventTeller {
  public:
   std::vector<Event> take(const LogEvent& event);
@@ -44,7 +44,7 @@ class EventTeller {
   void hear(const mark_t& mark);
   void hear(const ins_t& ins);
   void tell(Severity severity, const std::string& source, const std::string& words);
-  /// Whether this is new for a source; remembers it.
+  /// Whether this state is new for a source; remembers it.
   bool changes(const std::string& source, const std::string& state);
 
   int64_t now_ = 0;

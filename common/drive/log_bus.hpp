@@ -11,9 +11,9 @@
 
 namespace tread {
 
-/// The bus of one node that receives a log: the replay sets the time, and nothing is lost.
-/** The node's own messages are kept and delivered to nobody, so that it never receives its own
- * past. */
+/// The bus of one node that receives a log: the replay sets the time, and no message is lost.
+/** The node's own messages are collected and not delivered, so that it never receives its own past.
+ */
 class LogBus : public Bus {
  public:
   explicit LogBus(int64_t boot_id) : now_(boot_id), boot_id_(boot_id) {}
@@ -30,7 +30,7 @@ class LogBus : public Bus {
   void hear(const LogEvent& event) {
     receive(event.channel, event.bytes.data(), event.bytes.size());
   }
-  /// The same where the node overhears the event, which is no input of it.
+  /// The same for a message that the node overhears and that is not its input.
   void overhear(const LogEvent& event) {
     overhearing_ = true;
     hear(event);

@@ -7,8 +7,8 @@
 namespace tread {
 namespace {
 
-/// Below this an INS that stands wanders: with .02 its noise of 1 cm lengthened a drive by 2 %,
-/// with .05 the length agrees with the measured speeds [m].
+/// Below this, the INS position wanders at standstill: with .02 its noise of 1 cm lengthened a
+/// drive by 2 %, with .05 the length agrees with the measured speeds [m].
 constexpr double kLeastMotion = 0.05;
 
 }  // namespace

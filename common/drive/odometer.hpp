@@ -28,25 +28,24 @@ struct InsNote : Note {
   size_t restarts = 0;       ///< the same
 };
 
-/// Farther from the origin of map a position is a broken number [m].
+/// A position farther from the origin of map is a corrupt number [m].
 inline constexpr double kFarthestPlace = 1e6;
 
-/// Whether a ground vehicle may have come from one measured position to the other in so many
-/// seconds.
+/// Whether a ground vehicle could have moved between two measured positions in this time [s].
 inline bool isWithinReach(const Eigen::Vector2d& from, const Eigen::Vector2d& to, double seconds) {
   constexpr double kFastest = 30.0;  // [m/s]
-  constexpr double kNoise = 1.0;     // [m] of poses that are near each other in time
+  constexpr double kNoise = 1.0;     // [m] between poses that are close in time
   return (to - from).norm() <= kNoise + kFastest * std::abs(seconds);
 }
 
-/// Adds up the metres that a robot drove, from the INS messages of a log.
-/** Only what lies between poses that follow each other was driven: not over a jump that the INS
- * tells, a new beginning of the robot's clock, or a distance that no ground vehicle goes in that
- * time. Messages out of order, or in events whose time cannot be, are left out. */
+/// Sums the distance that a robot drove, from the INS messages of a log.
+/** Counts only distances between consecutive poses: not across a jump reported by the INS, a
+ * restart of the robot's clock, or a distance that no ground vehicle covers in that time. Messages
+ * out of order, or in events with an impossible time, are left out. */
 class Odometer {
  public:
   void add(const InsNote& ins);
-  /// What comes next does not follow what came before.
+  /// The next pose is not connected with the previous one.
   void interrupt() { newest_.reset(); }
   double distance() const { return distance_; }  ///< [m]
 
@@ -54,7 +53,7 @@ class Odometer {
   bool follows(const InsNote& place) const;
 
   std::optional<InsNote> newest_;
-  Pose2 counted_;  ///< up to where the distance is counted
+  Pose2 counted_;  ///< up to here the distance is counted
   double distance_ = 0.0;
 };
 

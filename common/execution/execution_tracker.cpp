@@ -8,9 +8,9 @@ namespace tread {
 namespace {
 
 constexpr size_t kReplacedKept = 4;
-/// MOTOR may be this old when it does not know yet what was handed over [us].
+/// MOTOR may be this old while it does not show the last handover yet [us].
 constexpr int64_t kSettle = 300'000;
-/// A pattern that the bridge has not begun after this long will not be begun [us].
+/// A pattern that the bridge has not started after this long will not start [us].
 constexpr int64_t kStartLimit = 1'000'000;
 
 /// Why the set cannot provide the pattern of the slot; empty if it can.
@@ -39,7 +39,7 @@ std::string conflictOf(const PatternSet& set, const PlannedExecution& slot) {
 std::string ExecutionTracker::conflictWith(const PatternSet& set) const {
   std::string why = conflictOf(set, running_);
   if (why.empty()) why = conflictOf(set, next_);
-  // The bridge may have begun one of these before it was replaced.
+  // The bridge may have started one of these before it was replaced.
   for (const PlannedExecution& slot : replaced_)
     if (why.empty()) why = conflictOf(set, slot);
   return why;
@@ -55,7 +55,7 @@ void ExecutionTracker::begin(const PatternSet& set, int pattern_id, int64_t now)
 }
 
 void ExecutionTracker::setNext(const PatternSet& set, int pattern_id) {
-  // A plan with a newer set is a newer decision: its prediction is what counts.
+  // A plan with a newer set is a newer decision: its prediction counts.
   const bool same_set = !next_.empty() && next_.set->version() == set.version();
   if (same_set && next_.pattern_id == pattern_id) return;
   clearNext();
@@ -114,7 +114,7 @@ ExecutionTracker::Event ExecutionTracker::follow(const RobotReadings& readings) 
 ExecutionTracker::Event ExecutionTracker::followExecutions(const RobotReadings& readings) {
   Event event = Event::kNone;
   bool begun = false;
-  bool completed = false;  // the newest of ours that the bridge knows
+  bool completed = false;  // our newest execution that the bridge knows
   for (const ExecutionReading& record : readings.executions) {
     if (record.run_id != run_id_) continue;
     if (record.execution_id > running_.execution_id && adopt(record.execution_id, record.started))
@@ -130,8 +130,8 @@ ExecutionTracker::Event ExecutionTracker::followExecutions(const RobotReadings& 
     started_ = record.started;
   }
   confirmed_ = confirmed_ || begun;
-  // The bridge ended a pattern and began none of ours at once: it stands, whatever was handed over
-  // as next.
+  // The bridge ended a pattern without starting another one of ours: it stands, whatever was handed
+  // over as next.
   return completed ? finish(Event::kEnded, {}) : event;
 }
 

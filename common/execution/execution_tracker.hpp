@@ -15,19 +15,20 @@
 
 namespace tread {
 
-/// (run id, execution id): names one execution for ever.
+/// (run id, execution id): a permanent name of one execution.
 using ExecutionKey = std::pair<int64_t, int64_t>;
 
-/// Where the vehicle was measured to be.
+/// A measured pose of the vehicle.
 struct PoseReading {
   int64_t utime = 0;  ///< [us] of the measurement
   Pose2 T_map_body;
   std::optional<Twist2> twist;                                     ///< v_body, if it is measured
   double position_std = std::numeric_limits<double>::quiet_NaN();  ///< [m] of an axis
-  double slope = std::numeric_limits<double>::quiet_NaN();  ///< [rad] of the ground, by attitude
+  double slope =
+      std::numeric_limits<double>::quiet_NaN();  ///< [rad] of the ground, from the attitude
 };
 
-/// What the motor bridge says it does.
+/// State reported by the motor bridge.
 struct BridgeReading {
   enum class State { kDisarmed, kArmed, kDriving, kStopping, kFault, kEstopped, kByHand };
   int64_t utime = 0;  ///< [us] when it gave its last command
@@ -37,14 +38,14 @@ struct BridgeReading {
   int64_t execution_id = 0;  ///< being played; 0 = none
   int command_index = -1;
 
-  /// It may drive without being armed anew.
+  /// Whether it may drive without being armed again.
   bool armed() const {
     return state == State::kArmed || state == State::kDriving || state == State::kStopping ||
            state == State::kByHand;
   }
 };
 
-/// One execution as the motor bridge records it.
+/// One execution as recorded by the motor bridge.
 struct ExecutionReading {
   enum class State { kRunning, kCompleted, kAborted };
   int64_t run_id = 0;
@@ -54,22 +55,22 @@ struct ExecutionReading {
   Reason reason;  ///< why aborted
 };
 
-/// What whoever drives the robot knows about it at one moment.
+/// What the driving process knows about the robot at one instant.
 struct RobotReadings {
   int64_t now = 0;  ///< [us]
   std::optional<PoseReading> pose;
   std::optional<BridgeReading> bridge;
   std::vector<ExecutionReading> executions;  ///< the last ones, oldest first
-  bool armed_by_operator = false;            ///< ARM came since the start and since the last stop
-  int64_t armed_since = 0;                   ///< [us] when it came
+  bool armed_by_operator = false;  ///< an ARM was received since the start and since the last stop
+  int64_t armed_since = 0;         ///< [us] when it came
   bool estopped = false;
 };
 
-/// A pattern handed over to the motor bridge, with the set that its prediction was made with.
+/// A pattern handed over to the motor bridge, with the set that predicted it.
 struct PlannedExecution {
   int64_t execution_id = 0;  ///< counts up within a run; 0 = empty
   int pattern_id = 0;
-  std::optional<PatternSet> set;  ///< keeps its version even when a newer one has come
+  std::optional<PatternSet> set;  ///< keeps its version even after a newer one has arrived
 
   bool empty() const { return execution_id == 0; }
   const MotionPattern& pattern() const { return *set->find(pattern_id); }
@@ -79,13 +80,13 @@ struct PlannedExecution {
 };
 
 /// Tracks which patterns were handed over to the motor bridge and which of them it executes.
-/** The bridge joins `next` to `running` by itself. The tracker advances when MOTOR or EXECUTION
- * says so or, should they be late, when the running pattern must have ended. */
+/** The bridge continues with `next` after `running` by itself. The tracker advances when MOTOR or
+ * EXECUTION reports it or, if they are late, when the running pattern must have ended. */
 class ExecutionTracker {
  public:
   explicit ExecutionTracker(int64_t run_id) : run_id_(run_id) {}
 
-  /// What became of the running pattern.
+  /// What happened to the running pattern.
   enum class Event { kNone, kSwitched, kEnded, kAborted, kNeverStarted };
 
   /// Hands over a pattern to a standing vehicle.
@@ -95,7 +96,7 @@ class ExecutionTracker {
   void clearNext();
   /// Empties both slots: stop now.
   void stop();
-  /// Updates the tracker from MOTOR and EXECUTION. Call first in a step.
+  /// Updates the tracker from MOTOR and EXECUTION. Call it first in each step.
   Event follow(const RobotReadings& readings);
 
   /// Why a set cannot replace the one in use: it lacks a pattern that was handed over, or has other
@@ -106,7 +107,7 @@ class ExecutionTracker {
   const PlannedExecution& next() const { return next_; }
   /// The bridge has begun the running pattern.
   bool confirmed() const { return confirmed_; }
-  /// [us] when the running pattern began, as well as is known.
+  /// [us] best estimate of the start of the running pattern.
   int64_t started() const { return started_; }
   int64_t ends() const { return started_ + running_.durationUs(); }
   int64_t runId() const { return run_id_; }
@@ -125,7 +126,8 @@ class ExecutionTracker {
   int64_t last_id_ = 0;
   PlannedExecution running_;
   PlannedExecution next_;
-  std::deque<PlannedExecution> replaced_;  ///< former next ones; the bridge may have begun one
+  std::deque<PlannedExecution>
+      replaced_;  ///< former next ones; the bridge may have started one of them
   int64_t previous_id_ = 0;
   int64_t handed_over_ = 0;
   int64_t started_ = 0;

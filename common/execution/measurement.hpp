@@ -11,11 +11,11 @@
 #include "common/pattern/pattern.hpp"
 
 // How an execution becomes a measured trajectory M:
-//   1. the record is checked (completed, times that fit the pattern, the pattern's own commands);
+//   1. the record is checked (completed, times consistent with the pattern, the pattern's own
+//      commands);
 //   2. the track is cut at the execution's start and interpolated at the pattern's sample times;
-//   3. what cannot be a fair measurement is refused, with its reason. There is no test for unusual
-//   motion: it would
-//      swallow ice. Only the physically impossible and the not comparable are refused.
+//   3. invalid measurements are refused, with a reason. There is no test for unusual motion,
+//      because it would reject ice: only physically impossible and incomparable motion is refused.
 namespace tread {
 
 /// Why an execution is not learned from.
@@ -23,29 +23,29 @@ enum class Gate {
   kNone,            ///< it is a fair measurement
   kAborted,         ///< did not run to its end
   kUnknownPattern,  ///< not in the set
-  kRecord,          ///< times that make no sense
-  kCommands,        ///< what the motors got is not what the pattern says
-  kNoTrack,         ///< the INS has nothing at its start
+  kRecord,          ///< contradictory times
+  kCommands,        ///< the motors received other commands than the pattern's
+  kNoTrack,         ///< no INS data at its start
   kInsGap,          ///< INS silent for too long
-  kCoveredTime,     ///< too little of it is covered by the INS
+  kCoveredTime,     ///< the INS covers too little of it
   kNotFinite,       ///< lost poses
   kSpeed,           ///< faster than the vehicle can be
-  kNoMotion,        ///< should have moved, did not
-  kEntryTwist,      ///< neither commands nor twist before it were those of its entry class
+  kNoMotion,        ///< should have moved but did not
+  kEntryTwist,      ///< it began neither with the commands nor with the twist of its entry class
   kSlope,           ///< the ground was too steep
 };
 
-/// Every gate in a few words, for counters and reports.
+/// Short name of a gate, for counters and reports.
 const char* gateName(Gate gate);
 
-/// What is still a fair measurement.
+/// Limits of a valid measurement.
 struct MeasurementLimits {
   int64_t max_gap_us = 300'000;   ///< [us] between two INS poses
   double min_covered = 0.80;      ///< [1] share of the samples that the INS must cover
   int64_t shortest_us = 400'000;  ///< [us] of a beginning: shorter ones are mostly INS noise
   double max_speed = 0.0;         ///< [m/s] of the vehicle; 0 = the largest in the shipped set
   double speed_margin = 1.5;      ///< [1] poses faster than this times max_speed are jumps
-  double min_motion = 0.03;       ///< [m] box below which nothing moved
+  double min_motion = 0.03;       ///< [m] size of the box below which the robot did not move
   double min_turn = 0.03;         ///< [rad] the same for yaw
   int64_t entry_window_us =
       200'000;  ///< [us] before the start over which the entry twist is measured
@@ -55,39 +55,39 @@ struct MeasurementLimits {
   double max_slope = 0.20;       ///< [rad] mean inclination during the execution
 };
 
-/// An execution as its record tells of it.
+/// An execution as described by its record.
 struct ExecutionCut {
   int64_t started = 0;  ///< [us] when the first command took effect
   int64_t ended = 0;    ///< [us] end of the last command's period
   bool completed = false;
-  /// Only its beginning, up to `ended`: it still runs, or was stopped before its end.
+  /// Only its beginning, up to `ended`: it is still running, or was stopped early.
   bool beginning = false;
-  /// The entry class's command was given before it for so long that the entry is the class's,
-  /// whatever twist that makes on this ground.
+  /// The entry class's command was held for long enough before it: the entry is the class's,
+  /// whatever twist that gives on this ground.
   bool steady_before = false;
   Reason outcome;  ///< why it was aborted
-  /// A command that differed from the pattern's, in words; empty = none seen.
+  /// A command that differed from the pattern's, in words; empty = none.
   std::string unexpected_command;
 };
 
-/// What may change the motion beside the ground; NaN = unknown.
+/// Conditions that may change the motion besides the ground; NaN = unknown.
 struct Context {
   Tilt tilt;                        ///< mean
   double voltage = Tilt::kUnknown;  ///< [V] mean, of the battery
   /// v_body before the start.
   Twist2 entry{Tilt::kUnknown, Tilt::kUnknown, Tilt::kUnknown};
-  /// Periods after its start since which the ground is another one; negative: nothing was noticed.
+  /// Periods after its start at which the ground changed; negative: no change detected.
   int changed_after = -1;
 };
 
-/// M and what was measured beside it. Numbers that were not measured are NaN.
+/// M and the quantities measured with it. NaN = not measured.
 struct Measurement {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
   Gate gate = Gate::kNone;
-  std::string reason;             ///< of the gate: what, how much, what is allowed
+  std::string reason;             ///< of the gate: quantity, value, limit
   std::vector<Pose2> trajectory;  ///< M at the pattern's sample times; empty if there is none
-  size_t covered = 0;  ///< leading samples that are measured; the rest moves on as predicted
+  size_t covered = 0;  ///< leading samples that are measured; the rest continues as predicted
   Context context;
   double path_length = kUnknown;  ///< [m] driven over the covered samples
 

@@ -9,10 +9,10 @@ namespace tread {
 
 OperatorLease::Receipt OperatorLease::receive(const OperatorNotice& notice, int64_t now) {
   if (notice.seen_utime > now + kMaxFuture) return Receipt::kFromFuture;
-  // Compared with a time near now: the difference to any number could overflow.
+  // Compared with a time near now, because the difference to an arbitrary number could overflow.
   if (notice.seen_utime < now - lease_us_) return Receipt::kStale;
   const auto known = programs_.find(notice.station);
-  // Overtaken on its way, or played a second time.
+  // Out of order, or repeated.
   if (known != programs_.end() && notice.seen_utime < known->second.seen_utime)
     return Receipt::kStale;
   if (!notice.drives) {
@@ -38,7 +38,7 @@ void OperatorLease::holdBy(const std::string& signature, int64_t now) {
 }
 
 void OperatorLease::update(int64_t now, bool armed) {
-  // One of two programs of the holder may fall silent: the other one still holds the lease.
+  // One of two programs of the holder may fall silent: the other one keeps the lease.
   if (anyFresh(holder_, now)) dropStale(now);
   if (armed || valid(now)) return;
   dropStale(now);

@@ -9,52 +9,54 @@
 
 namespace tread {
 
-/// One OPERATOR message, as far as the lease depends on it.
+/// The fields of an OPERATOR message that the lease uses.
 struct OperatorNotice {
   int64_t station = 0;       ///< one start of an operator program
-  std::string name;          ///< who; programs of one name share the lease
-  bool drives = true;        ///< false: the program lets go
-  int64_t seen_utime = 0;    ///< [us] of the newest MOTOR that the operator's program has heard
-  int64_t goal_id = 0;       ///< that the program stands for; 0 = none
+  std::string name;          ///< operator's name; programs of one name share the lease
+  bool drives = true;        ///< false: the program releases the lease
+  int64_t seen_utime = 0;    ///< [us] of the newest MOTOR that the operator's program has received
+  int64_t goal_id = 0;       ///< goal that the program vouches for; 0 = none
   std::string hand_over_to;  ///< empty = nobody
 };
 
-/// Whether an operator is there, and which one.
-/** It counts from the newest state of the robot that the operator has demonstrably seen: who is
- * gone, frozen or cut off in either direction loses it, and so does a message played from a log. No
- * clock of another machine is compared. The first operator holds it; another one gets it when the
- * holder hands it over, or lets go and nothing is armed. Pure: time is an argument. */
+/// Whether an operator is present, and which one.
+/** The lease depends on the newest state of the robot that the operator has demonstrably seen: an
+ * operator who is gone, frozen or cut off in either direction loses it, and so does a message
+ * replayed from a log. Clocks of other machines are never compared. The first operator gets it;
+ * another one gets it when the holder hands it over, or releases it while the robot is not armed.
+ * Pure: time is an argument. */
 class OperatorLease {
  public:
-  /// How the holder's programs are.
+  /// State of the holder's programs.
   enum class State {
-    kNone,   ///< nobody holds it, or the holder has let go
+    kNone,   ///< no holder, or the holder has released it
     kValid,  ///< the holder has seen the robot within the lease
-    kLost    ///< the holder is silent, and has not let go
+    kLost    ///< the holder is silent and has not released it
   };
   enum class Receipt { kTaken, kOfAnother, kStale, kFromFuture, kTooMany };
 
-  /// `lease_us` [us] for which what was seen counts.
+  /// `lease_us` [us]: how long a sighting of the robot counts.
   explicit OperatorLease(int64_t lease_us) : lease_us_(lease_us) {}
 
   /// A message received at now [us].
   Receipt receive(const OperatorNotice& notice, int64_t now);
-  /// Whoever signed this holds the robot from now on, if a program of his is there.
+  /// Gives the lease to the operator with this signature, if one of their programs is running.
   void holdBy(const std::string& signature, int64_t now);
-  /// Call in each step. A holder who let go or was lost keeps others out only while `armed`.
+  /// Call in each step. A holder who has released it or was lost excludes others only while
+  /// `armed`.
   void update(int64_t now, bool armed);
 
   State state(int64_t now) const;
   bool valid(int64_t now) const { return state(now) == State::kValid; }
-  /// [us] the newest that a program of the holder has seen of the robot; nothing if there is none.
+  /// [us] newest robot state that a program of the holder has seen; nullopt if there is none.
   std::optional<int64_t> newestSeen() const;
-  /// Whether a live program of the holder stands for this goal.
+  /// Whether a live program of the holder vouches for this goal.
   bool standsFor(int64_t goal_id, int64_t now) const;
   /// Whether a request was signed by the holder: "ada@station" or "ADA (ada@station)".
   bool isHolder(const std::string& signature) const { return isOf(signature, holder_); }
   /// Empty = nobody.
   const std::string& holder() const { return holder_; }
-  /// [us] when the holder was last seen to be there; 0 = never.
+  /// [us] when the holder was last confirmed present; 0 = never.
   int64_t lastValid() const { return last_valid_; }
   int64_t leaseUs() const { return lease_us_; }
 
@@ -64,7 +66,8 @@ class OperatorLease {
     int64_t seen_utime = 0;
     int64_t goal_id = 0;
   };
-  static constexpr int64_t kMaxFuture = 100'000;  ///< [us] clocks of processes of this robot differ
+  static constexpr int64_t kMaxFuture =
+      100'000;  ///< [us] of clock difference between processes of this robot
   static constexpr size_t kMaxPrograms = 16;
 
   bool fresh(const Program& program, int64_t now) const {

@@ -8,16 +8,16 @@
 
 namespace tread {
 
-/// Why the robot stops, stands or ends a pattern early: every reason that motor_bridge and the
-/// planner know. sentenceOf() says each in words.
-/** The order is the rank: of reasons that come together the first one is nearest to the cause. The
- * numbers travel in MOTOR, PLAN and EXECUTION: a new reason takes a free one between its
- * neighbours, and none is used twice. */
+/// Why the robot stops, stands or ends a pattern early: every reason known to motor_bridge and the
+/// planner. sentenceOf() gives each in words.
+/** The order is the rank: of several simultaneous reasons the first one is closest to the cause.
+ * The numbers travel in MOTOR, PLAN and EXECUTION: a new reason takes a free one between its
+ * neighbours, and no number is reused. */
 enum class StopReason : int16_t {
-  kUnsaid = -1,  ///< a message that is older than the codes, whose words say more
+  kUnsaid = -1,  ///< message older than the codes; its words give the reason
   kNone = 0,     ///< there is no reason
 
-  // A person, and mapping, which disarms the robot where a range finder lies.
+  // A person, or mapping, which disarms the robot if a range finder is wrong.
   kEstopEngaged = 10,
   kRangeFinder = 20,
   kDisarmed = 30,
@@ -40,9 +40,9 @@ enum class StopReason : int16_t {
   kOperatorLost = 60,
   kNoOperator = 61,
   kOperatorLetGo = 62,
-  kGoalAbandoned = 63,  ///< nobody stands for the goal any more
+  kGoalAbandoned = 63,  ///< no program vouches for the goal any more
 
-  // The planner's orders do not come, or too late.
+  // The planner's orders are missing or late.
   kNoProgram = 70,
   kProgramLate = 71,
   kSeriesEnded = 72,
@@ -63,19 +63,19 @@ enum class StopReason : int16_t {
   kFenceBlind = 111,
   kFencesLost = 112,
 
-  // The motion is not what the commands explain.
+  // The commands do not explain the motion.
   kInsJump = 120,
   kInsFrozen = 121,
-  kTrackDead = 122,  ///< or blocked, or driven the wrong way
+  kTrackDead = 122,  ///< or blocked, or driven in the wrong direction
   kStuck = 123,      ///< or the pose is frozen
   kInsDisagrees = 124,
   kUnexplainedMotion = 125,
 
-  // What the planner plans with.
+  // The planner's inputs.
   kNoMap = 130,
   kMapStale = 131,
   kLearnerLost = 140,
-  kBadPatterns = 141,  ///< none yet, or nobody can drive with them
+  kBadPatterns = 141,  ///< none yet, or unusable
   kPatternGone = 142,
 
   // The way.
@@ -87,7 +87,7 @@ enum class StopReason : int16_t {
   kGoalUnreachable = 170,
   kGoalEnded = 171,
 
-  // Nothing is wrong: states at the start, and stops that were planned (isOrdinary()).
+  // No fault: states at the start, and planned stops (isOrdinary()).
   kNotArmedYet = 1000,
   kArmed = 1001,
   kPlaying = 1002,
@@ -107,22 +107,22 @@ enum class StopReason : int16_t {
   kReturns = 1016,
 };
 
-/// The sentence for people. A message may add details to it, or have a more exact one.
+/// The sentence for people. A message may add details to it or replace it by a more exact one.
 const char* sentenceOf(StopReason reason);
 
 /// The reason with a number from a message; kUnsaid for one that this version does not know.
 StopReason stopReasonFrom(int16_t number);
 
-/// The reason whose sentence these words are; kNone without words, kUnsaid for any others.
-/** For messages that are older than the codes: nothing else decides by words. */
+/// The reason with exactly this sentence; kNone for an empty text, kUnsaid for any other.
+/** Only for messages that are older than the codes. */
 StopReason stopReasonOf(const std::string& words);
 
-/// Whether nothing is wrong: a stop that was planned, a state at the start.
+/// Whether it is no fault: a planned stop, or a state at the start.
 inline bool isOrdinary(StopReason reason) {
   return reason == StopReason::kNone || reason >= StopReason::kNotArmedYet;
 }
 
-/// A reason, and its words for people: a code decides, words are read.
+/// A reason, and its words for people: programs decide by the code, people read the words.
 struct Reason {
   StopReason code = StopReason::kNone;
   std::string words;

@@ -8,10 +8,10 @@
 namespace tread {
 namespace {
 
-constexpr double kFast = 0.3;          // [m/s] from which on a stop tells something
+constexpr double kFast = 0.3;          // [m/s] least initial speed of an informative stop
 constexpr double kStands = 0.03;       // [m/s]
 constexpr size_t kSamples = 5;         // stops that count
-constexpr double kCaution = 1.3;       // [1] of the longest of them: speed and ground vary
+constexpr double kCaution = 1.3;       // [1] times the longest of them: speed and ground vary
 constexpr double kLeast = 0.5;         // [1] of what is configured
 constexpr double kMost = 3.0;          // [s]
 constexpr int64_t kMostGap = 200'000;  // [us] between measurements
@@ -25,12 +25,12 @@ void StoppingTime::command(bool zero, int64_t now) {
   if (zero)
     zero_since_ = now;
   else if (stop_)
-    end();  // cut short, it may still be longer than what was known
+    end();  // cut short, it may still be longer than the known ones
 }
 
 void StoppingTime::measure(int64_t utime, const Pose2& T_map_body, double speed) {
   if (utime <= newest_ || !std::isfinite(speed)) return;
-  // Before the first measurement there is none to be far from.
+  // Before the first measurement there is no previous one.
   if (newest_ == INT64_MIN) newest_ = utime - kMostGap - 1;
   const double before = speed_;
   const Pose2 pose_before = pose_;
@@ -47,7 +47,7 @@ void StoppingTime::measure(int64_t utime, const Pose2& T_map_body, double speed)
     if (speed_ < kStands) end();
   } else if (zero_since_ && utime >= *zero_since_) {
     const double begin = std::max(before, speed_);
-    // The command fell between these two measurements: the whole way counts.
+    // The command came between these two measurements: the whole distance counts.
     if (begin >= kFast) stop_ = Stop{begin, distanceBetween(pose_before, T_map_body), T_map_body};
     zero_since_.reset();
   }
@@ -55,7 +55,7 @@ void StoppingTime::measure(int64_t utime, const Pose2& T_map_body, double speed)
 
 void StoppingTime::end() {
   const double time = std::min(kMost, stop_->way / stop_->speed);
-  // What was cut short is no proof of less.
+  // A stop cut short does not prove a shorter one.
   const bool whole = speed_ < kStands;
   stop_.reset();
   if (!whole && kCaution * time <= seconds()) return;

@@ -10,19 +10,19 @@
 
 namespace tread {
 
-/// How long the robot goes on at its speed after a zero command, learned from its own stops.
+/// How long the robot keeps its speed after a zero command, learned from its own stops.
 /** A stop that begins at 0.3 m/s or more is measured from its first zero command to standstill, as
- * way over speed at its begin: delay of the motors, their brake and the ground are all in it. One
- * longer stop counts at once; shorter ones only when the last five say so, and never less than
- * half of what the robot's file says. So new ground that holds worse is known after its first stop,
- * and ground that holds better after five. */
+ * distance over initial speed: this includes the delay of the motors, their brake and the ground.
+ * One longer stop counts at once; shorter ones count only after five in a row, and never below
+ * half of the value in the robot's file. So ground with less grip is known after its first stop,
+ * and ground with more grip after five. */
 class StoppingTime {
  public:
   explicit StoppingTime(double configured) : configured_(configured) {}
 
-  /// Whether the command that holds from now [us] on is zero.
+  /// Whether the command that acts from now [us] on is zero.
   void command(bool zero, int64_t now);
-  /// A measured pose and speed [m/s]; NaN = unmeasured, which tells nothing.
+  /// A measured pose and speed [m/s]; NaN = not measured, ignored.
   void measure(int64_t utime, const Pose2& T_map_body, double speed);
 
   double seconds() const;
@@ -39,7 +39,7 @@ class StoppingTime {
 
   double configured_;
   bool zero_ = true;
-  std::optional<int64_t> zero_since_;  ///< [us]; until the stop has begun to be measured
+  std::optional<int64_t> zero_since_;  ///< [us]; set until the measurement of the stop has begun
   int64_t newest_ = INT64_MIN;         ///< [us]
   double speed_ = 0.0;                 ///< [m/s] measured last
   Pose2 pose_;                         ///< measured last

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kTouch = 1e-9;  // [m] less is rounding: what only touches crosses nothing
+constexpr double kTouch = 1e-9;  // [m] less is rounding: touching is not crossing
 
 double cross(const Vector2d& a, const Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
@@ -78,11 +78,11 @@ double gapBetween(const Fence& fence, const std::array<Vector2d, 4>& box) {
 struct Piece {
   Vector2d a, b;
   double depth = 0.0;  ///< [m] of its deepest point in the outline
-  int ends = 0;        ///< of it that lie on the outline's border
+  int ends = 0;        ///< how many of its ends lie on the outline's border
 };
 
-/// How deep an edge that runs from `a` to `b` lies in the outline between two shares of its way:
-/// the least of four straight lines is the largest where two of them meet, or at an end.
+/// Largest depth in the outline of an edge from `a` to `b` between two shares of its length: the
+/// minimum of four straight lines has its maximum where two of them meet, or at an end.
 double deepestBetween(const std::array<double, 4>& a, const std::array<double, 4>& b, double from,
                       double until) {
   const auto depthAt = [&](double share) {
@@ -99,7 +99,7 @@ double deepestBetween(const std::array<double, 4>& a, const std::array<double, 4
   return deepest;
 }
 
-/// The part of an edge that lies under the outline; depth 0 if none does.
+/// The part of an edge under the outline; depth 0 if there is none.
 Piece pieceUnder(const FootprintSize& outline, const Vector2d& a, const Vector2d& b) {
   const auto depths = [&](const Vector2d& p) -> std::array<double, 4> {
     return {outline.front - p.x(), p.x() + outline.rear, outline.half_width - p.y(),
@@ -119,7 +119,7 @@ Piece pieceUnder(const FootprintSize& outline, const Vector2d& a, const Vector2d
           (from > 0.0 ? 1 : 0) + (until < 1.0 ? 1 : 0)};
 }
 
-/// All of the border that lies under an outline.
+/// All parts of the border under an outline.
 std::vector<Piece> borderUnder(const Fence& fence, const Pose2& T_map_body,
                                const FootprintSize& outline) {
   const Eigen::Rotation2Dd R_body_map(-T_map_body.yaw);
@@ -148,7 +148,7 @@ bool isPrintable(const std::string& name) {
 
 std::string faultOf(const Fence& fence) {
   const size_t count = fence.corners.size();
-  // It reaches terminals and the words of a stop.
+  // It is shown in terminals and in stop reasons.
   if (fence.name.empty() || fence.name.size() > 32 || !isPrintable(fence.name))
     return "its name needs 1 to 32 printable ASCII characters";
   if (count < 3 || count > Fence::kMostCorners) return "a fence needs 3 to 64 corners";
@@ -188,7 +188,7 @@ double depthOver(const Fence& fence, const Pose2& T_map_body, const FootprintSiz
   const std::vector<Piece> pieces = borderUnder(fence, T_map_body, outline);
   if (pieces.empty())
     return forbids(fence, origin) ? reachOf(outline) + distanceToBorder(fence, origin) : 0.0;
-  // No part of the outline is deeper: the border is as far as the origin says, or nearer.
+  // Upper bound of the depth: the border is at most as far from the origin as roomAt() returns.
   const double most = reachOf(outline) - roomAt(fence, origin);
   double deepest = 0.0;
   int ends = 0;

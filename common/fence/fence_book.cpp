@@ -103,14 +103,14 @@ FenceReceipt FenceBook::add(const Fence& fence, bool holds) {
   const bool is_known = known != fences.end();
   const bool lasts = is_known && static_cast<size_t>(known - fences.begin()) < lasting_;
   if (lasts || (is_known && !holds)) return FenceReceipt::kKnown;
-  // What a stranger added is the holder's from now on.
+  // A fence added by a stranger becomes the holder's.
   if (is_known) fences.erase(known);
   const auto place = static_cast<std::ptrdiff_t>(holds ? lasting_ : fences.size());
   fences.insert(fences.begin() + place, fence);
   const auto strangers = place + 1;
   while (!fit(fences) && strangers < static_cast<std::ptrdiff_t>(fences.size()))
     fences.erase(fences.begin() + strangers);
-  // A full book, too, may have lost some.
+  // A full book may also have lost some.
   if (!fit(fences) && !(fence == lostFences())) return FenceReceipt::kFull;
   fences_ = std::move(fences);
   if (holds) ++lasting_;

@@ -10,14 +10,14 @@
 
 namespace tread {
 
-/// A request about fences, as sent: one more fence, or all of a name gone.
+/// A request about fences, as sent: add one fence, or remove all of a name.
 struct FenceRequest {
   std::string by;
   bool removes = false;
-  Fence fence;  ///< without corners if it removes
+  Fence fence;  ///< without corners to remove
 };
 
-/// What came of a request.
+/// Result of a request.
 enum class FenceReceipt {
   kAdded,
   kKnown,  ///< is in force already
@@ -30,25 +30,25 @@ enum class FenceReceipt {
 /// In words, for counters: "of another operator than the one who holds the robot".
 const char* describe(FenceReceipt receipt);
 
-/// Stands in a book for fences that are not known any more: nothing drives while one of its name is
-/// there. Keeps out of everywhere.
+/// Placeholder in a book for fences that were lost: nothing drives while it is there. It forbids
+/// all ground.
 Fence lostFences();
 
-/// The fences in force: the robot's own, and what operators have added.
-/** One more fence only narrows, and is taken from everybody, as a stop is: fences of one name are
- * kept side by side. Removing widens: only the operator who holds the robot may do it, and the
- * robot's own fences stay. When the book is full, strangers' fences make room for one of the
- * operator who holds the robot, the oldest first. */
+/// The fences in force: the robot's own, and those added by operators.
+/** An additional fence only restricts the robot and is accepted from everybody, like a stop:
+ * several fences may have the same name. Only the operator who holds the robot may remove fences,
+ * and the robot's own stay. In a full book, strangers' fences, the oldest first, give way to
+ * fences of the operator who holds the robot. */
 class FenceBook {
  public:
   static constexpr size_t kMost = 32;
-  /// Of all fences: the motor bridge looks at all of them in each of its steps.
+  /// Of all fences together: the motor bridge checks every one in each step.
   static constexpr size_t kMostCorners = 512;
 
   explicit FenceBook(std::vector<Fence> own = {})
       : fences_(std::move(own)), own_(fences_.size()), lasting_(own_) {}
 
-  /// Whether a robot can look after so many fences and corners.
+  /// Whether a robot can monitor this many fences and corners.
   static bool fit(const std::vector<Fence>& fences);
 
   /// `holds`: the sender holds the robot.
@@ -57,11 +57,11 @@ class FenceBook {
   /// The robot's own first.
   const std::vector<Fence>& fences() const { return fences_; }
   size_t own() const { return own_; }
-  /// Why nothing may drive, and what to do; empty = the fences are known.
+  /// Why nothing may drive, and what to do; empty = all fences are known.
   std::string bar() const;
-  /// The robot's own and those of who held it: how many come before strangers'.
+  /// How many fences precede the strangers': the robot's own and the holders'.
   size_t lasting() const { return lasting_; }
-  /// Counts up with each change.
+  /// Increases with each change.
   int64_t revision() const { return revision_; }
 
  private:
@@ -70,13 +70,13 @@ class FenceBook {
 
   std::vector<Fence> fences_;  ///< the robot's own, then holders', then strangers', oldest first
   size_t own_;
-  size_t lasting_;  ///< how many are not strangers'
+  size_t lasting_;  ///< how many fences are not strangers'
   int64_t revision_ = 0;
 };
 
 /// One line each: kind, number of corners, all x and y [m], name.
 std::string toText(const std::vector<Fence>& fences);
-/// The fences of such lines, as far as they can be read; `broken` counts the others.
+/// Parses such lines; `broken` counts those that cannot be read.
 std::vector<Fence> fencesFrom(const std::string& text, int& broken);
 
 }  // namespace tread

@@ -62,7 +62,7 @@ KeptFences readFences(const Store& store) {
 
 std::optional<std::string> writeFences(Store& store, const KeptFences& fences) {
   const std::string holders = toText(fences.holders), others = toText(fences.others);
-  // The marker last: entries that were never written are not lost.
+  // The marker last: entries that were never written do not count as lost.
   for (const auto& [name, text] :
        {std::pair(kOthers, headOf(others) + others), std::pair(kHolders, headOf(holders) + holders),
         std::pair(kMarker, std::string("both are here\n"))})

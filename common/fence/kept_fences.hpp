@@ -11,15 +11,15 @@
 
 namespace tread {
 
-/// Operators' fences, as they outlive a process.
+/// Operators' fences, as stored across restarts.
 struct KeptFences {
-  std::vector<Fence> holders;  ///< of those who held the robot
+  std::vector<Fence> holders;  ///< of operators who held the robot
   std::vector<Fence> others;
-  bool lost = false;  ///< there were some that cannot be read any more
+  bool lost = false;  ///< some were stored but cannot be read
 };
 
-/// Of the store. Each entry has a checksum, and a third one says that the two must be there: what
-/// is missing, empty or damaged is lost, and nothing of it is believed.
+/// Reads them from the store. Each of the two entries has a checksum, and a third entry states that
+/// both must exist: if one is missing, empty or damaged, it counts as lost and none of it is used.
 KeptFences readFences(const Store& store);
 /// Returns one clear line if they could not be written.
 std::optional<std::string> writeFences(Store& store, const KeptFences& fences);

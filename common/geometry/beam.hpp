@@ -10,7 +10,7 @@ namespace tread {
 struct Beam {
   Eigen::Vector3d end = Eigen::Vector3d::Zero();  ///< p_sensor of its return, or of its reach [m]
   double share = 0.0;  ///< 0 = at the time of the first beam, 1 = of the last
-  bool hit = false;    ///< something was there; otherwise nothing up to `end`
+  bool hit = false;    ///< an object was hit; otherwise the beam is free up to `end`
 };
 
 }  // namespace tread

@@ -6,7 +6,7 @@
 
 namespace tread {
 
-/// For people, who think of angles in degrees; all else is in radians.
+/// For people, who use degrees; everything else is in radians.
 constexpr double toDegrees(double angle) {
   return angle * 180.0 / kPi;
 }

@@ -19,8 +19,7 @@ inline double wrapAngle(double angle) {
 
 /// A pose in the plane, or the transform that it stands for: T_a_b holds the pose of frame b in
 /// frame a.
-/** Yaw is kept as it is given: it is never wrapped here, so that a trajectory may turn more than
- * half a turn. */
+/** Yaw is never wrapped, so that a trajectory may turn by more than half a turn. */
 struct Pose2 {
   double x = 0.0;    ///< [m]
   double y = 0.0;    ///< [m]

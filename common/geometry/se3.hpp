@@ -16,7 +16,7 @@ struct YawPitchRoll {
   double roll = 0.0;
 };
 
-/// Where and how an instrument sits in the body.
+/// Position and orientation of an instrument in the body frame.
 struct Mounting {
   Eigen::Vector3d p_body = Eigen::Vector3d::Zero();  ///< [m]
   YawPitchRoll angles;                               ///< of its forward-left-up axes [rad]

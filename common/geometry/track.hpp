@@ -17,29 +17,29 @@ struct TimedPose {
   Pose2 T_map_body;   ///< yaw unwrapped along the track
 };
 
-/// The recent track of a body: timed poses in order, yaw made continuous, interpolated between,
-/// never extrapolated.
-/** Own code instead of CPose2DInterpolator, which turns the short way round and accepts any gap. */
+/// The recent track of a body: timed poses in order, yaw made continuous, interpolated between
+/// poses, never extrapolated.
+/** Replaces CPose2DInterpolator, which turns the short way round and accepts any gap. */
 class PoseTrack {
  public:
   /// Keeps poses that are at most `span_us` older than the newest.
   explicit PoseTrack(int64_t span_us) : span_us_(span_us) {}
 
-  /// Appends a pose; yaw may be wrapped, the nearest turn to the predecessor is taken.
+  /// Appends a pose; yaw may be wrapped and is unwrapped to the turn nearest to its predecessor.
   /** Returns false (and keeps the track) if it is not newer than the last pose, its time negative
    * or the pose not finite. */
   bool push(int64_t utime, const Pose2& T_map_body);
 
   /// Pose at a time between two kept poses at most `max_gap_us` apart (SE(2) interpolation); else
-  /// nothing.
+  /// nullopt.
   std::optional<Pose2> at(int64_t utime, int64_t max_gap_us) const;
 
-  /// Longest time between neighbours of the kept poses that cover [from, to]; nothing if they do
-  /// not cover it.
+  /// Longest time between neighbouring kept poses that cover [from, to]; nullopt if they do not
+  /// cover it.
   std::optional<int64_t> longestGap(int64_t from, int64_t to) const;
 
-  /// Mean body twist over [utime - window, utime] from the interpolated end poses; nothing where
-  /// at() has nothing.
+  /// Mean body twist over [utime - window, utime] from the interpolated end poses; nullopt where
+  /// at() gives none.
   std::optional<Twist2> twistBefore(int64_t utime, int64_t window_us, int64_t max_gap_us) const;
 
   const std::deque<TimedPose>& poses() const { return poses_; }
@@ -50,7 +50,7 @@ class PoseTrack {
   std::deque<TimedPose> poses_;
 };
 
-/// How the ground under a robot lies; NaN = unknown.
+/// Slope of the ground under the robot; NaN = unknown.
 struct Tilt {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   double inclination = kUnknown;  ///< [rad] against level ground
@@ -58,7 +58,7 @@ struct Tilt {
   double left = kUnknown;         ///< [1] rise per metre along body y
 };
 
-/// What the INS said lately: tracks of poses, broken where the INS jumped, and the tilt along them.
+/// Recent INS poses as tracks, split where the INS jumped, and the tilt along them.
 class TrackHistory {
  public:
   /// Keeps what is at most `span_us` older than the newest pose.

@@ -12,20 +12,20 @@
 namespace tread {
 namespace {
 
-// All lengths in this file are half cells: centres of cells lie on even, their borders on odd
-// numbers, and every squared distance is an integer that a float holds exactly.
+// All lengths in this file are half cells: centres of cells have even, their borders odd
+// coordinates, and every squared distance is an integer that a float represents exactly.
 constexpr float kFar = 1e12f;
 
 /// Distance along y from each cell's centre to the nearest blocked cell's area in its column.
-/** Row by row over the whole width, so that the compiler can work on many columns at once; `cap`
- * and more [half cells] is kFar. */
+/** Row by row over the whole width, so that the compiler can vectorize over columns; `cap` and more
+ * [half cells] is kFar. */
 std::vector<float> columnDistances(const std::vector<uint8_t>& blocked, int width, int height,
                                    bool outside_blocks, float cap) {
   const auto w = static_cast<size_t>(width);
   const auto h = static_cast<size_t>(height);
   constexpr float kNone = 1e6f;
   std::vector<float> distance(w * h);
-  std::vector<float> steps(w, outside_blocks ? 0.0f : kNone);  // rows to the last blocked one
+  std::vector<float> steps(w, outside_blocks ? 0.0f : kNone);  // rows since the last blocked one
   for (size_t y = 0; y < h; ++y)
     for (size_t x = 0; x < w; ++x) {
       steps[x] = blocked[y * w + x] ? 0.0f : steps[x] + 1.0f;
@@ -42,7 +42,7 @@ std::vector<float> columnDistances(const std::vector<uint8_t>& blocked, int widt
   return distance;
 }
 
-/// For each cell how many cells of its row, from it on to the right, are not blocked.
+/// For each cell the number of free cells of its row, from it to the right.
 std::vector<uint16_t> freeRuns(const std::vector<uint8_t>& blocked, int width, int height) {
   const auto w = static_cast<size_t>(width);
   std::vector<uint16_t> runs(blocked.size());
@@ -58,8 +58,8 @@ std::vector<uint16_t> freeRuns(const std::vector<uint8_t>& blocked, int width, i
 }
 
 /// Lower envelope of parabolas (Felzenszwalb and Huttenlocher 2012, section 2) along one row.
-/** The parabolas stand on the borders between cells: the distance along x to the area of a cell is
- *  that to the nearer one of its two borders. */
+/** The parabolas are placed on the borders between cells: the distance along x to the area of a
+ * cell is that to its nearer border. */
 class RowEnvelope {
  public:
   explicit RowEnvelope(int width) : vertex_(size_t(width) + 1), from_(size_t(width) + 2) {}
@@ -112,14 +112,13 @@ class RowEnvelope {
   size_t count_ = 0;
 };
 
-/// Squared distances from cells' centres to the blocked areas, in half cells, where those below a
-/// small cap are all that matters.
-/** Looks at every column within the cap, which the compiler does for many cells at once: quicker
- * than the envelope up to some thirty cells. Exact below cap * cap; what is farther is at least
- * that. */
+/// Squared distances from cells' centres to the blocked areas, in half cells, where only those
+/// below a small cap matter.
+/** Checks every column within the cap, which the compiler vectorizes: faster than the envelope up
+ * to some thirty cells. Exact below cap * cap; larger distances are at least that. */
 class NearSquares {
  public:
-  /// The widest cap that sums of two squares leave room for [half cells].
+  /// The widest cap for which the sum of two squares fits [half cells].
   static constexpr int kWidest = 64;
 
   NearSquares(const std::vector<uint8_t>& blocked, int width, int height, bool outside_blocks,
@@ -149,10 +148,10 @@ class NearSquares {
   }
 
  private:
-  static constexpr int16_t kNone = 20'000;  // with a square of the reach added it fits as well
+  static constexpr int16_t kNone = 20'000;  // fits even with the square of the cap added
 
-  /// Squared distances along y, with as much of the outside as is looked at on both sides.
-  /** Not inlined into its only caller: that is slower. */
+  /// Squared distances along y, including the outside within the cap on both sides.
+  /** Not inlined into its only caller, because that is slower. */
   [[gnu::noinline]] void workOutColumns() {
     along_y_.assign(padded_ * h_, outside_);
     const auto far = static_cast<int16_t>(cap_);
@@ -226,12 +225,12 @@ void ClearanceField::lookNearby(const std::vector<uint8_t>& blocked, int cap_ste
   clearance_.resize(blocked.size());
   const auto w = static_cast<size_t>(width_);
   const auto half_cell = static_cast<float>(0.5 * cell_size_);
-  // A square is a whole number: its root is looked up.
+  // A square is an integer: its root is looked up.
   const int farthest = cap_steps * cap_steps;
   std::vector<float> roots(static_cast<size_t>(farthest) + 1);
   for (size_t i = 0; i < roots.size(); ++i)
     roots[i] = std::min(cap_, std::sqrt(static_cast<float>(i)) * half_cell);
-  roots.back() = cap_;  // rounding must not make it less: from there on nothing is told apart
+  roots.back() = cap_;  // rounding must not reduce it: larger clearances are not distinguished
   NearSquares near(blocked, width_, height_, unknown_blocks_, cap_steps);
   near.forEachRow([&](size_t y, const int16_t* squares) {
     float* const values = clearance_.data() + y * w;
@@ -240,7 +239,7 @@ void ClearanceField::lookNearby(const std::vector<uint8_t>& blocked, int cap_ste
   });
 }
 
-/// `cap_steps` [half cells] is far more than the largest number of rows where there is no cap.
+/// Without a cap `cap_steps` [half cells] exceeds the number of rows.
 void ClearanceField::lookEverywhere(const std::vector<uint8_t>& blocked, float cap_steps) {
   clearance_ = columnDistances(blocked, width_, height_, unknown_blocks_, cap_steps);
   for (float& value : clearance_) value = value >= kFar ? kFar : value * value;
@@ -281,7 +280,7 @@ ClearanceField::Verdict ClearanceField::compareOutside(double x, double y, float
 }
 
 bool ClearanceField::squareFree(double column, double row, float reach) const {
-  // No farther than the window, lest numbers get too great; what lies outside blocks or not.
+  // No farther than the window, to avoid overflow; everything outside either blocks or not.
   const double cells = std::min(static_cast<double>(reach) * per_cell_, 1.0 + width_ + height_);
   const int first = lower_.x + static_cast<int>(std::floor(column - cells));
   const int last = lower_.x + static_cast<int>(std::floor(column + cells));
@@ -303,7 +302,7 @@ bool ClearanceField::anyBlockedBeyond(int y, int x, int end) const {
 double ClearanceField::outside(const Eigen::Vector2d& p_map) const {
   const bool finite = std::isfinite(p_map.x()) && std::isfinite(p_map.y());
   if (unknown_blocks_ || width_ == 0 || height_ == 0 || !finite) return 0.0;
-  // The window is convex: the nearest point of it is nearer to everything inside.
+  // The window is convex: its nearest point is closer to everything inside.
   const auto clamp = [&](double value, int lower, int size) {
     const double inset = 0.5 * cell_size_;
     return std::min(std::max(value, lower * cell_size_ + inset),

@@ -12,7 +12,7 @@ namespace {
 /// Less than this share of a cell is rounding, not overlap.
 constexpr double kTouch = 1e-8;
 
-/// Quicker than the library's, for numbers of cells: less than 2^31.
+/// Faster than the library's, for cell numbers below 2^31.
 int floorOf(double value) {
   const int whole = static_cast<int>(value);
   return whole - static_cast<int>(value < whole);
@@ -30,8 +30,8 @@ struct Extent {
 };
 
 /// The rows of cells that an oriented rectangle overlaps, each with its span of columns.
-/** A row's band cuts a convex piece out of the rectangle, so the cells between the ends of that
- *  piece, and only they, overlap the rectangle. Lengths are cells, relative to the cell `base`. */
+/** A row's band cuts a convex piece out of the rectangle: the cells between the ends of that piece
+ * are exactly those that overlap the rectangle. Lengths are cells, relative to the cell `base`. */
 class RowSpans {
  public:
   RowSpans(const Extent& extent, const TurnedPose& T_map_body, double cell_size)
@@ -46,7 +46,7 @@ class RowSpans {
     const double y = T_map_body.y / cell_size - base_.y;
     y_min_ = y + s * (s > 0.0 ? rear : front) - std::abs(c) * w;
     y_max_ = y + s * (s > 0.0 ? front : rear) + std::abs(c) * w;
-    const double side = s > 0.0 ? w : -w;  // of the corner farthest to the left
+    const double side = s > 0.0 ? w : -w;  // of the leftmost corner
     y_leftmost_ = y + s * (c > 0.0 ? rear : front) + c * side;
     y_rightmost_ = y + s * (c > 0.0 ? front : rear) - c * side;
     // Front and rear: rear <= c dx + s dy <= front. Sides: -w <= c dy - s dx <= w.
@@ -74,7 +74,7 @@ class RowSpans {
   }
 
  private:
-  /// Borders closer to level than this bound the rows only, not the columns.
+  /// Borders closer to horizontal than this bound only the rows, not the columns.
   static constexpr double kLevel = 1e-9;
 
   /// Two parallel borders: left + slope y <= x <= right + slope y.
@@ -97,13 +97,13 @@ class RowSpans {
   double y_rightmost_;
 };
 
-/// Poses whose cells have no int number overlap nothing that could be asked for.
+/// Poses whose cell numbers exceed int overlap no cell of any grid.
 bool isUsable(const TurnedPose& pose, double cell_size) {
   const double reach = 1e9 * cell_size;
   return std::abs(pose.x) < reach && std::abs(pose.y) < reach && std::isfinite(pose.cos_yaw);
 }
 
-/// The float next above a length: what is at least as far as that is as far as the length.
+/// The next float above a length, for conservative comparisons.
 float roundedUp(double length) {
   return std::nextafter(static_cast<float>(length), std::numeric_limits<float>::infinity());
 }
@@ -131,7 +131,7 @@ Footprint::Footprint(const FootprintSize& size, double margin) : size_(size.wide
   if (!(length > 0.0) || !(half_width > 0.0) || !std::isfinite(length + half_width))
     throw std::invalid_argument("footprint: length and width must be positive and finite");
   circumscribed_ = std::hypot(std::max(std::abs(front), std::abs(rear)), half_width);
-  // With one disc per half width the discs reach out by 12 % of it; more would hardly help.
+  // With one disc per half width the discs protrude by 12 % of it; more would hardly help.
   const double count = std::min(8.0, std::max(1.0, std::ceil(length / half_width)));
   const double step = length / count;
   for (double i = 0.5; i < count; ++i) disc_x_.push_back(-rear + i * step);

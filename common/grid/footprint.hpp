@@ -10,7 +10,7 @@
 
 namespace tread {
 
-/// A pose whose turn has been worked out.
+/// A pose with the sine and cosine of its yaw precomputed.
 struct TurnedPose {
   double x = 0.0;  ///< [m]
   double y = 0.0;  ///< [m]
@@ -37,8 +37,8 @@ class Footprint {
   /// Whether the footprint at a pose overlaps no blocked cell: discs on the clearance field first,
   /// exact cells last.
   /** Exact: a cell is blocked over its whole area, and touching its border is no overlap; unknown
-   *  cells and all outside the grid block as they do in the field. False for a pose that is not
-   *  finite. */
+   * cells and everything outside the grid block as in the field. False for a pose that is not
+   * finite. */
   bool isFree(const ClearanceField& clearance, const TurnedPose& T_map_body) const;
   /// Cells (of the grid's lattice, also outside its window) that the footprint at a pose overlaps,
   /// row by row.
@@ -49,9 +49,9 @@ class Footprint {
  private:
   using Verdict = ClearanceField::Verdict;
 
-  /// What the discs leave to be found out.
+  /// What the disc test leaves undecided.
   struct Unsure {
-    bool blocked = false;  // it is certain that something is overlapped
+    bool blocked = false;  // certainly overlaps something
     double rear = 1e9;     // else the part along x that may overlap something [m], empty if none
     double front = -1e9;
   };
@@ -62,10 +62,10 @@ class Footprint {
   double circumscribed_;
   std::vector<double> disc_x_;  // centres of the covering discs along the body's x axis
   double half_step_;            // [m] half the distance between them
-  float circumscribed_up_;      // around the body origin, rounded to the safe side as the others
+  float circumscribed_up_;  // around the body origin, rounded up to be conservative, as the others
   float inscribed_;
   float disc_radius_;
-  float inscribed_radius_;  // discs of this radius around the same centres lie inside
+  float inscribed_radius_;  // discs of this radius around the same centres lie inside the footprint
 };
 
 }  // namespace tread

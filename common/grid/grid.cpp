@@ -8,7 +8,7 @@
 namespace tread {
 namespace {
 
-/// Cell number along one axis; far away (and for NaN) a number no window contains, never an
+/// Cell number along one axis; far away (and for NaN) a number outside of every window, never an
 /// overflow.
 int cellNumber(double coordinate, double cell_size) {
   constexpr double kFarthest = 1e9;
@@ -17,7 +17,7 @@ int cellNumber(double coordinate, double cell_size) {
   return static_cast<int>(std::min(number, kFarthest));
 }
 
-/// Copies what a tile and a window share.
+/// Copies the overlap of a tile and a window.
 void copyOverlap(const Tile& tile, int tile_cells, Grid& window) {
   const CellIndex lower{tile.tile_x * tile_cells, tile.tile_y * tile_cells};
   const int x_from = std::max(lower.x, window.lower().x);

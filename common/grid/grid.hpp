@@ -19,7 +19,7 @@ inline constexpr Cell kFree = 0;
 inline constexpr Cell kCostMax = 100;
 inline constexpr Cell kObstacle = 254;
 inline constexpr Cell kUnknown = 255;
-/// Sides of a cell that a robot's map may have [m]; finer ones cost the planner minutes.
+/// Cell sizes that a robot's map may have [m]; finer ones cost the planner minutes.
 inline constexpr double kFinestCell = 0.02, kCoarsestCell = 0.5;
 
 inline bool isFree(Cell cell) {
@@ -29,12 +29,12 @@ inline bool isFree(Cell cell) {
 constexpr double roughnessOf(Cell cost) {
   return 0.001 * cost;
 }
-/// The cost of such a height; rougher than 10 cm counts as that.
+/// The cost of such a height; clamped at 10 cm.
 constexpr Cell costOf(double roughness) {
   return static_cast<Cell>(std::clamp(1000.0 * roughness + 0.5, 1.0, double{kCostMax}));
 }
 
-/// The whole part of a / b, rounded down; b > 0.
+/// a / b rounded down to an integer; b > 0.
 inline int floorDivide(int a, int b) {
   return a >= 0 ? a / b : -((b - 1 - a) / b);
 }
@@ -90,7 +90,7 @@ class Grid {
   std::vector<Cell> cells_;
 };
 
-/// Whether a cell may not be driven over: obstacles always, unknown cells where the caller says so.
+/// Whether a cell may not be driven over: obstacles always, unknown cells if the caller demands it.
 inline bool isBlocked(Cell cell, bool unknown_blocks) {
   return !isFree(cell) && (cell != kUnknown || unknown_blocks);
 }
@@ -108,17 +108,17 @@ class ClearanceField {
   };
 
   ClearanceField() = default;
-  /// `cap` [m]: clearances from there on are not told apart, which is quicker; no upper bound is
-  /// known there.
+  /// `cap` [m]: larger clearances are not distinguished, which is faster; they have no upper bound.
   ClearanceField(const Grid& grid, bool unknown_blocks,
                  double cap = std::numeric_limits<double>::infinity());
 
   /// Clearance at a point of map [m]: a lower bound of the distance to the nearest blocked cell's
-  /// area, at most 0.71 cells too low; 0 in a blocked cell; infinite if nothing blocks. Outside the
+  /// area, at most 0.71 cells too low; 0 in a blocked cell; infinite if no cell blocks. Outside the
   /// window 0 if unknown blocks, else the value of the window's nearest point; 0 for NaN.
   double at(const Eigen::Vector2d& p_map) const { return bounds(p_map).lower; }
 
-  /// Clearance at the centre of the cell that a point lies in, for where a cell is near enough [m].
+  /// Clearance at the centre of the cell that contains a point [m], where one cell is accurate
+  /// enough.
   double quick(double x, double y) const {
     const double column = x * per_cell_ - lower_.x;
     const double row = y * per_cell_ - lower_.y;
@@ -133,8 +133,9 @@ class ClearanceField {
   }
   /// What is certain about the clearance compared with a distance.
   enum class Verdict { kLess, kAtLeast, kUnsure };
-  /// Compares at() and the upper bound with a distance [m]; most of the time from one number.
-  /** As at(p) >= distance and bounds(p).upper < distance tell, but for rounding. */
+  /// Compares the lower bound at() and the upper bound with a distance [m]; usually needs one
+  /// lookup.
+  /** Equals at(p) >= distance and bounds(p).upper < distance, except for rounding. */
   Verdict compare(double x, double y, float distance) const {
     return compare(x, y, distance, distance);
   }
@@ -155,8 +156,8 @@ class ClearanceField {
     return compareOutside(x, y, near, far);
   }
 
-  /// Whether a disc meets no blocked cell: from one number, or from the cells of the square around
-  /// it, of which none may be blocked. False around a point outside the window.
+  /// Whether a disc overlaps no blocked cell: by one lookup, or by requiring every cell of the
+  /// square around it to be free. False around a point outside the window.
   bool discFree(double x, double y, float radius) const {
     const double column = x * per_cell_ - lower_.x;
     const double row = y * per_cell_ - lower_.y;
@@ -185,7 +186,7 @@ class ClearanceField {
   }
 
  private:
-  /// A float may be off by half its last digit: both bounds stay bounds.
+  /// Rounding error of a float: both bounds remain bounds.
   static constexpr double kRounding = 6e-8;
 
   void lookNearby(const std::vector<uint8_t>& blocked, int cap_steps);
@@ -194,7 +195,7 @@ class ClearanceField {
   bool squareFree(double column, double row, float reach) const;
   bool anyBlockedBeyond(int y, int x, int end) const;
   Verdict compareOutside(double x, double y, float near, float far) const;
-  /// As bounds() would, without its root: at (dx, dy) [cells] from the centre of a cell.
+  /// As bounds(), without the square root: at (dx, dy) [cells] from the centre of a cell.
   Verdict compareClosely(double dx, double dy, float clearance, float near, float far) const {
     const auto value = static_cast<double>(clearance);
     if (far <= 0.0F) return Verdict::kAtLeast;
@@ -209,12 +210,12 @@ class ClearanceField {
   double cell_size_ = 0.1;
   double per_cell_ = 10.0;                              // [1/m]
   float cap_ = std::numeric_limits<float>::infinity();  // [m]
-  float half_diagonal_ = 0.08F;                         // [m] of a cell, a little more
+  float half_diagonal_ = 0.08F;                         // [m] of a cell, rounded up
   CellIndex lower_;
   int width_ = 0;
   int height_ = 0;
   std::vector<float> clearance_;  // from each cell's centre [m], row by row
-  std::vector<uint16_t> runs_;    // cells to the right, from each on, that are not blocked
+  std::vector<uint16_t> runs_;    // number of free cells to the right of each cell, itself included
   bool unknown_blocks_ = true;
 };
 
@@ -226,17 +227,17 @@ struct Tile {
   std::vector<Cell> cells;  ///< tile_cells x tile_cells, row by row, x fastest
 };
 
-/// The tiles that were received, put together. Tiles stay until they are forgotten by distance.
+/// The received tiles, combined. A tile stays until it is dropped for its distance.
 class TileMap {
  public:
   TileMap(double cell_size, int tile_cells) : cell_size_(cell_size), tile_cells_(tile_cells) {}
 
-  /// Takes a tile if it is not older than the one that is there and has the right number of cells.
-  /// Returns whether any cell changed; where no tile was, all cells were unknown.
+  /// Takes a tile if it is not older than the present one and has the right number of cells.
+  /// Returns whether any cell changed (a missing tile counts as all unknown).
   bool put(Tile tile);
   /// Drops tiles whose centre is farther than `radius` from a point [m].
   void forgetBeyond(const Eigen::Vector2d& p_map, double radius);
-  /// A window of the map; what no tile covers is unknown.
+  /// A window of the map; cells without a tile are unknown.
   Grid window(CellIndex lower, int width, int height) const;
   double cellSize() const { return cell_size_; }
   int tileCells() const { return tile_cells_; }

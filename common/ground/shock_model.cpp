@@ -14,9 +14,9 @@ namespace {
 constexpr double kUnit = 0.01;                          // roughness whose logarithm is 0 [m]
 constexpr double kSmoothest = 0.0005, kRoughest = 0.2;  // [m]
 constexpr double kSlowest = 0.05, kFastest = 20.0;      // [m/s]
-/// The prior of the variance is worth so many pairs.
+/// Weight of the variance's prior, in pairs.
 constexpr double kPriorPairs = 6.0;
-/// Not more uncertain than that: else one wild guess would forbid all ground [1].
+/// Upper limit of the uncertainty, because otherwise one wild estimate would forbid all ground [1].
 constexpr double kMostVariance = 0.6;
 
 Eigen::Vector3d inputOf(double roughness, double speed) {

@@ -50,10 +50,10 @@ class CanLink final : public DescriptorLink {
            ::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
   }
 
-  /// One frame a call; the caller comes back for the next ones.
+  /// One frame per call; the caller repeats the call.
   ssize_t writeSome(const uint8_t* bytes, size_t size) override {
     const ssize_t count = ::write(descriptor(), bytes, std::min(size, sizeof(can_frame)));
-    // The interface's queue is full: nothing else is wrong with it.
+    // The interface's queue is full, which is no failure.
     if (count < 0 && errno == ENOBUFS) errno = EAGAIN;
     return count;
   }

@@ -12,14 +12,14 @@
 namespace tread {
 namespace {
 
-/// How long the rest of a half taken command may wait for room.
+/// How long the rest of a partly written command may wait for room.
 constexpr std::chrono::milliseconds kWriteDeadline{20};
 
 bool isBusy(int error) {
   return error == EAGAIN || error == EWOULDBLOCK;
 }
 
-/// Events of a descriptor within a time; 0 at its end.
+/// Poll events of a descriptor within a time; 0 at its end.
 short pollFor(int fd, short events, int timeout_ms) {
   pollfd entry{fd, events, 0};
   return ::poll(&entry, 1, timeout_ms) > 0 ? entry.revents : static_cast<short>(0);
@@ -51,7 +51,7 @@ std::optional<size_t> DescriptorLink::read(uint8_t* buffer, size_t capacity) {
     count = readSome(buffer, capacity);
   } while (count < 0 && errno == EINTR);
   if (count > 0) return static_cast<size_t>(count);
-  // Nothing read, EIO and POLLHUP are three ways of different devices to say the same: gone.
+  // A zero read, EIO and POLLHUP all mean that a device is gone.
   const bool busy = count < 0 && isBusy(errno);
   if (busy && (pollFor(fd_, POLLIN, 0) & (POLLHUP | POLLERR | POLLNVAL)) == 0) return 0;
   hangUp(count < 0 && !busy ? systemReason(errno) : "the other end hung up");
@@ -66,7 +66,7 @@ bool DescriptorLink::write(const uint8_t* bytes, size_t size) {
     count = writeSome(bytes, size);
   } while (count < 0 && errno == EINTR);
   if (count < 0) {
-    // A full line drops this command: by the time there is room it would be stale.
+    // A full line drops this command: it would be stale by the time there is room.
     if (!isBusy(errno)) hangUp(systemReason(errno));
     return false;
   }
@@ -91,10 +91,10 @@ bool DescriptorLink::writeRest(const uint8_t* bytes, size_t size) {
     size -= static_cast<size_t>(count);
     if (size == 0) return true;
   }
-  // Half a command is under way and cannot be taken back alone. What came next would be glued to
-  // it and could mean anything, so the line is given up and what is still queued is dropped. The
-  // device's start-up, run when the link opens again, must begin with an end of line for the half
-  // that it may have heard.
+  // Half a command is in transit and cannot be recalled. The next command would be appended to it
+  // and could mean anything, so the line is closed and the queued rest discarded. The device's
+  // start-up after reopening must begin with an end of line, to terminate the half that it may have
+  // received.
   hangUp("the line took only part of a command and had no room for the rest");
   return false;
 }

@@ -16,19 +16,19 @@
 
 namespace tread {
 
-/// Why a device is closed that another program has.
+/// Reason while another program uses the device.
 inline constexpr const char* kInUse = "in use by another program";
-/// It listens, but has no peer yet.
+/// Reason while it listens without a peer.
 inline constexpr const char* kNobody = "nobody has connected";
 
 /// Spaces attempts to open a link: 100 ms, doubling with each failure up to 1 s.
-/** The first spacing also follows a success, so that a peer that accepts and hangs up at once is
- *  not called without end. */
+/** The first spacing also applies after a success, so that a peer that accepts and hangs up at once
+ * is not called endlessly. */
 class BackOff {
  public:
   /// Whether an attempt may be made now; if so, it counts as made.
   bool attempt(int64_t utime) {
-    // A clock that went back belongs to another run: do not wait for it to come round.
+    // A clock that went back belongs to another run: do not wait for it to catch up.
     const bool waiting = last_ && utime >= *last_ && utime < *last_ + spacing_;
     if (!waiting) last_ = utime;
     return !waiting;
@@ -51,8 +51,8 @@ class BackOff {
   bool failed_before_ = false;
 };
 
-/// What links over a file descriptor have in common: reading, writing all or none, hanging up,
-/// coming back.
+/// Common part of links over a file descriptor: reading, writing all or none, hanging up,
+/// reopening.
 class DescriptorLink : public Link {
  public:
   ~DescriptorLink() override;
@@ -71,20 +71,20 @@ class DescriptorLink : public Link {
 
   /// Opens the device without blocking and returns its descriptor, or -1 and the reason.
   virtual int openDevice(std::string& reason) = 0;
-  /// As ::read; 0 means that the line has ended.
+  /// As ::read; 0 means that the line was closed.
   virtual ssize_t readSome(uint8_t* buffer, size_t capacity);
   /// As ::write.
   virtual ssize_t writeSome(const uint8_t* bytes, size_t size);
-  /// Takes what is queued for sending off the line, just before it is closed for a failure.
+  /// Discards bytes queued for sending, just before the line is closed for a failure.
   virtual void dropQueued() {}
 
-  /// One attempt to open; the constructors of the kinds make the first.
+  /// One attempt to open; the derived constructors make the first.
   bool attempt();
-  /// The line is up with this descriptor.
+  /// The line is open with this descriptor.
   void adopt(int fd);
-  /// The line is down for this reason.
+  /// Closes the line for this reason.
   void hangUp(const std::string& reason);
-  /// The line is still down, for this reason.
+  /// The line stays closed, for this reason.
   void noteProblem(const std::string& reason);
 
  private:
@@ -96,29 +96,29 @@ class DescriptorLink : public Link {
   int fd_ = -1;
 };
 
-/// The system's words for an errno value.
+/// The system's message for an errno value.
 std::string systemReason(int error);
 
 /// A serial line or pseudo-terminal, raw, 8 data bits, no parity, one stop bit, no flow control.
 std::unique_ptr<Link> makeTtyLink(const LinkAddress& address);
-/// A new pseudo-terminal whose other side is found behind a symlink: an emulated serial device.
-/** The symlink (and its folder) is made here and taken away with the link. Bytes that nobody reads
- * stay until the line is full, then are lost; who opens the other side drops them. */
+/// A new pseudo-terminal whose other side is reachable by a symlink: an emulated serial device.
+/** The symlink (and its folder) is created here and removed with the link. Unread bytes stay until
+ * the line is full, then are lost; opening the other side discards them. */
 std::unique_ptr<Link> makePtyLink(const LinkAddress& address);
 /// A TCP server with one client at a time: an emulated device. Open while a client is connected.
 std::unique_ptr<Link> makeTcpServerLink(const LinkAddress& address);
-/// A client of a TCP server. Connecting goes on over several reopen() calls and is given up after
+/// A client of a TCP server. Connecting continues over several reopen() calls and is given up after
 /// one second.
-/** A host's name is looked up once, which may block: on a robot write its number. */
+/** A host name is resolved once, which may block: use a numeric address on a robot. */
 std::unique_ptr<Link> makeTcpLink(const LinkAddress& address);
-/// Listens on a UDP port (IPv4); datagrams follow each other in one stream. It never writes.
+/// Listens on a UDP port (IPv4); datagrams are concatenated into one stream. It never writes.
 std::unique_ptr<Link> makeUdpLink(const LinkAddress& address);
-/// A CAN interface (SocketCAN): frames as struct can_frame, one behind the other, whole ones only.
+/// A CAN interface (SocketCAN): a sequence of whole struct can_frame.
 std::unique_ptr<Link> makeCanLink(const LinkAddress& address);
-/// Reads a file once, from front to end; then it stays closed. It never writes.
+/// Reads a file once, from start to end, and then stays closed. It never writes.
 std::unique_ptr<Link> makeFileLink(const LinkAddress& address);
 
-/// The termios constant of a line rate [1/s]; nothing if serial lines do not have it.
+/// The termios constant of a baud rate [1/s]; nullopt if serial lines do not support it.
 inline std::optional<speed_t> speedOf(int baud) {
   static constexpr std::pair<int, speed_t> kRates[] = {
       {1200, B1200},       {2400, B2400},       {4800, B4800},       {9600, B9600},

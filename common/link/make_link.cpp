@@ -61,7 +61,7 @@ void parseTcp(LinkAddress& address, const std::string& rest) {
   address.port = portOf(address, rest.substr(colon + 1));
 }
 
-/// A port, or a number to listen on and a port.
+/// A port, or an address and a port.
 void parseListener(LinkAddress& address, const std::string& rest) {
   const size_t colon = rest.rfind(':');
   if (colon != std::string::npos) address.host = rest.substr(0, colon);
@@ -85,7 +85,7 @@ class FileLink final : public DescriptorLink {
     return std::nullopt;
   }
   bool write(const uint8_t* /*bytes*/, size_t /*size*/) override { return false; }
-  /// A file that was read to its end does not begin again: a recording is played once.
+  /// A file that was read to its end does not restart: a recording is played once.
   bool reopen(int64_t utime) override { return !ended_ && DescriptorLink::reopen(utime); }
 
  private:
@@ -106,14 +106,14 @@ class FileLink final : public DescriptorLink {
   bool ended_ = false;
 };
 
-/// What both ends share: the bytes under way and the state of the plug.
+/// Shared by both ends: the bytes in transit and the state of the plug.
 struct Cable {
   explicit Cable(size_t capacity_bytes) : capacity(capacity_bytes) {}
 
   const size_t capacity;
-  std::deque<uint8_t> toward[2];  // bytes that end 0 and end 1 have not yet read
+  std::deque<uint8_t> toward[2];  // bytes that end 0 and end 1 have not read yet
   bool connected = true;
-  int64_t connections = 1;  // how often the plug was put in
+  int64_t connections = 1;  // how often the plug was connected
 };
 
 class PipeEnd final : public Link {
@@ -139,14 +139,14 @@ class PipeEnd final : public Link {
     return true;
   }
 
-  /// An end that was cut stays closed until it is reopened, as a device file does.
+  /// A disconnected end stays closed until it is reopened, like a device file.
   bool isOpen() const override { return cable_->connected && seen_ == cable_->connections; }
   bool reopen(int64_t /*utime*/) override {
-    // No back-off: looking at a plug in memory costs nothing, and an emulator must not be slow.
+    // No back-off: checking a plug in memory costs nothing, and an emulator must be fast.
     if (cable_->connected) seen_ = cable_->connections;
     return isOpen();
   }
-  /// Both ends are closed, as those of a connection, and bytes under way are gone.
+  /// Closes both ends, as of a connection; bytes in transit are lost.
   void close() override {
     if (!isOpen()) return;
     setConnected(false);

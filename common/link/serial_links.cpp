@@ -17,14 +17,14 @@
 namespace tread {
 namespace {
 
-/// Raw, 8N1, without flow control, at this rate; false with errno where the device refuses.
+/// Raw, 8N1, without flow control, at this rate; false with errno if the device refuses.
 bool configure(int fd, speed_t speed) {
   termios line{};
   if (::tcgetattr(fd, &line) != 0) return false;
   ::cfmakeraw(&line);
   line.c_cflag |= CLOCAL | CREAD;
   line.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
-  // With VMIN 0 a silent line would read as 0 bytes, which is how a line that is gone reads.
+  // With VMIN 0 a silent line would return 0 bytes, like a line that is gone.
   line.c_cc[VMIN] = 1;
   line.c_cc[VTIME] = 0;
   return ::cfsetispeed(&line, speed) == 0 && ::cfsetospeed(&line, speed) == 0 &&
@@ -39,11 +39,10 @@ bool isPseudoTerminal(int fd) {
   return major(entry.st_rdev) >= kFirstMajor && major(entry.st_rdev) <= kLastMajor;
 }
 
-/// Keeps other programs off the line.
+/// Reserves the line for this process.
 bool claim(int fd) {
-  // The lock goes with the process, even a killed one. TIOCEXCL goes with the last descriptor; an
-  // emulator keeps one open on its pseudo-terminal, where the mark would outlive us and lock us
-  // out.
+  // The lock ends with the process, even if killed. TIOCEXCL ends with the last descriptor; an
+  // emulator keeps one open on its pseudo-terminal, so the mark would outlive us and lock us out.
   if (::flock(fd, LOCK_EX | LOCK_NB) != 0) return false;
   return isPseudoTerminal(fd) || ::ioctl(fd, TIOCEXCL) == 0;
 }
@@ -58,7 +57,7 @@ class TtyLink final : public DescriptorLink {
 
  private:
   int openDevice(std::string& reason) override {
-    // By name each time: a device that comes back may have another number behind its symlink.
+    // By name each time: a device that returns may have another number behind its symlink.
     const int fd = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     if (fd >= 0 && ::isatty(fd) == 0) {
       reason = "not a terminal; name a serial device";
@@ -66,17 +65,17 @@ class TtyLink final : public DescriptorLink {
       ::tcflush(fd, TCIOFLUSH);
       return fd;
     } else {
-      // By our lock, or by the mark of exclusive use.
+      // By our lock, or by TIOCEXCL.
       reason = errno == EWOULDBLOCK || errno == EBUSY ? kInUse : systemReason(errno);
     }
     if (fd >= 0) ::close(fd);
     return -1;
   }
 
-  // Closing a serial line waits for its queue, up to half a minute where nobody takes it.
+  // Closing a serial line waits for its queue, up to half a minute if the other end does not read.
   void dropQueued() override { ::tcflush(descriptor(), TCIOFLUSH); }
 
-  /// Lets a last command (the motors' zero) out at a proper end, but not for long.
+  /// Sends a last command (zero to the motors) at an orderly end, but not for long.
   void drain() {
     constexpr int kSteps = 20;
     constexpr useconds_t kStep = 1000;  // [us]
@@ -101,12 +100,12 @@ class PtyLink final : public DescriptorLink {
   }
   ~PtyLink() override {
     std::error_code none;
-    // A later emulator may have taken the name over.
+    // A later emulator may own the name now.
     if (!device_.empty() && fs::read_symlink(name_, none) == device_) fs::remove(name_, none);
     if (other_side_ >= 0) ::close(other_side_);
   }
 
-  /// What does not fit is lost, as on a line whose reader does not keep up.
+  /// Bytes that do not fit are lost, as on a line with a slow reader.
   bool write(const uint8_t* bytes, size_t size) override {
     return isOpen() && ::write(descriptor(), bytes, size) == static_cast<ssize_t>(size);
   }
@@ -122,8 +121,8 @@ class PtyLink final : public DescriptorLink {
     return -1;
   }
 
-  /// Held open, so that a robot that comes and goes is no hang-up; raw, so that nothing is echoed
-  /// before it comes.
+  /// Held open, so that reconnecting robots cause no hang-up; raw, so that nothing is echoed before
+  /// one connects.
   bool openOtherSide(int fd) {
     char device[128];
     if (::ptsname_r(fd, device, sizeof device) != 0) return false;
@@ -136,7 +135,7 @@ class PtyLink final : public DescriptorLink {
     return ::tcsetattr(other_side_, TCSANOW, &line) == 0;
   }
 
-  /// The symlink, put in place in one step: nobody ever finds the name gone.
+  /// Replaces the symlink atomically: the name always exists.
   bool publish(std::string& reason) {
     std::error_code error;
     const fs::path parent = fs::path(name_).parent_path();

@@ -52,7 +52,7 @@ std::vector<Endpoint> lookUp(const std::string& host, uint16_t port, std::string
   return endpoints;
 }
 
-/// Commands leave at once, and a peer that is gone without a word is noticed within seconds.
+/// Commands leave at once, and a peer that vanishes silently is detected within seconds.
 void tune(int fd) {
   const auto set = [fd](int level, int option, int value) {
     ::setsockopt(fd, level, option, &value, sizeof value);
@@ -65,7 +65,7 @@ void tune(int fd) {
   set(IPPROTO_TCP, TCP_USER_TIMEOUT, 5000);  // [ms]
 }
 
-/// A line to or at a port.
+/// A connection to or at a port.
 class SocketLink : public DescriptorLink {
  protected:
   explicit SocketLink(const LinkAddress& address)
@@ -106,7 +106,7 @@ class TcpLink final : public SocketLink {
  private:
   int openDevice(std::string& reason) override {
     if (endpoints_.empty()) endpoints_ = lookUp(host_, port_, reason);
-    // An address that refuses at once gives way to the host's next.
+    // After an address that refuses at once, try the host's next one.
     for (size_t tried = 0; tried < endpoints_.size(); ++tried) {
       begin(reason);
       if (connecting_ < 0) continue;
@@ -137,7 +137,7 @@ class TcpLink final : public SocketLink {
     abandon();
   }
 
-  /// Whether the connection stands; a reason if it never will.
+  /// Whether the connection is established; a reason if it never will be.
   bool isConnected(std::string& reason) const {
     pollfd entry{connecting_, POLLOUT, 0};
     if (::poll(&entry, 1, 0) <= 0) return false;
@@ -153,7 +153,7 @@ class TcpLink final : public SocketLink {
     connecting_ = -1;
   }
 
-  // A plain close would still send what is queued: half a command.
+  // A plain close would still send the queue: half a command.
   void dropQueued() override {
     const linger at_once{1, 0};
     ::setsockopt(descriptor(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
@@ -162,11 +162,11 @@ class TcpLink final : public SocketLink {
   std::vector<Endpoint> endpoints_;
   size_t next_ = 0;
   int connecting_ = -1;
-  std::optional<int64_t> since_;  // utime at which connecting began, where known
+  std::optional<int64_t> since_;  // utime at which connecting began, if known
 };
 
-/// A socket at a port of this host; an empty `host` means all of its addresses. -1 and the reason
-/// if it cannot be had.
+/// A socket bound to a port of this host; an empty `host` means all of its addresses. -1 and the
+/// reason on failure.
 int boundSocket(int type, const std::string& host, uint16_t port, const std::string& example,
                 std::string& reason) {
   sockaddr_in local{};
@@ -178,7 +178,7 @@ int boundSocket(int type, const std::string& host, uint16_t port, const std::str
     return -1;
   }
   const int fd = ::socket(AF_INET, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  // Else the port of an emulator that has just ended stays taken for a minute.
+  // Otherwise the port of an emulator that has just ended stays taken for a minute.
   const int again = 1;
   if (type == SOCK_STREAM && fd >= 0)
     ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &again, sizeof again);
@@ -235,7 +235,7 @@ class UdpLink final : public SocketLink {
     return fd;
   }
 
-  /// What is left of the last datagram, else the next one: a short buffer must not cut it off.
+  /// The rest of the last datagram, else the next one: a short buffer must not truncate it.
   ssize_t readSome(uint8_t* buffer, size_t capacity) override {
     constexpr size_t kLargestDatagram = 65536;
     while (taken_ == datagram_.size()) {

@@ -16,21 +16,20 @@ namespace tread {
 
 /// One event of an LCM log.
 struct LogEvent {
-  int64_t utime = 0;  ///< [us] when it was recorded, by the recorder's clock: any number; of a
+  int64_t utime = 0;  ///< [us] time of recording by the recorder's clock: any value; from a
                       ///< DriveReader the robot's time
   std::string channel;
   std::vector<uint8_t> bytes;
-  bool sealed =
-      false;  ///< in the log a seal stood behind the bytes; whether a good one, nobody asks
+  bool sealed = false;  ///< the logged message carried a seal; it was not verified
 };
 
-/// A time that a clock can show; others are broken bytes.
+/// Whether a clock can show this time; other values are corrupt bytes.
 constexpr bool isPossibleTime(int64_t utime) {
   constexpr int64_t kThreeCenturies = 10'000'000'000'000'000;  // [us]
   return utime > -kThreeCenturies && utime < kThreeCenturies;
 }
 
-/// A message as it goes over the bus.
+/// A message as encoded for the bus.
 template <class Message>
 std::vector<uint8_t> encoded(const Message& message) {
   std::vector<uint8_t> bytes(static_cast<size_t>(message.getEncodedSize()));
@@ -54,10 +53,10 @@ class LogWriter {
 
   /// Appends an event; throws WriteError when the disk is full.
   void write(int64_t utime, const std::string& channel, const uint8_t* bytes, size_t size);
-  /// Hands over what is buffered.
+  /// Flushes the buffer to the file.
   void flush();
-  /// Puts the log in its place. The destructor does so, too, unless an exception is on its way, but
-  /// cannot complain.
+  /// Moves the log to its final name. The destructor does so too, unless an exception is in flight,
+  /// but cannot report errors.
   void close();
 
   /// Encodes and appends a message at its own utime.
@@ -72,8 +71,8 @@ class LogWriter {
   std::unique_ptr<File> file_;
 };
 
-/// Reads LCM event logs from front to back; a damaged or truncated log gives what is whole, and
-/// says so.
+/// Reads LCM event logs from front to back; reads the intact part of a damaged or truncated log and
+/// reports the damage.
 class LogReader {
  public:
   explicit LogReader(const std::string& path);
@@ -81,12 +80,12 @@ class LogReader {
   LogReader(const LogReader&) = delete;
   LogReader& operator=(const LogReader&) = delete;
 
-  /// The next event, without the seal that a robot with a key puts behind each message, and as its
-  /// type is today (see older_types.hpp); false at the end.
+  /// The next event, without its seal, and converted to today's type (see older_types.hpp); false
+  /// at the end.
   bool next(LogEvent& event);
-  /// Where the next event begins [bytes]: a place to come back to.
+  /// Where the next event begins [bytes], for seek().
   uint64_t position() const;
-  /// Goes to a place that position() told.
+  /// Goes to a position that position() returned.
   void seek(uint64_t position);
   /// One clear line if the log ends in the middle of an event or holds damaged bytes; empty if it
   /// is whole.

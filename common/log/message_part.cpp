@@ -7,7 +7,7 @@
 namespace tread {
 namespace {
 
-/// Whether the event is on the channel; what its message says of its part.
+/// Whether the event is on the channel; sets the part from its message.
 template <class Message, class Part>
 bool isOn(const LogEvent& event, const Channel<Message>& channel, const Part& part,
           uint64_t& result) {

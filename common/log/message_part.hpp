@@ -8,8 +8,9 @@
 
 namespace tread {
 
-/// What of a channel a message replaces: of MAP the same tile, of HEALTH and CONFIG the same
-/// process, of PATTERN_SET the same part, of FENCE the same name, of the others the message before.
+/// Identifies what a message replaces on its channel: for MAP the same tile, for HEALTH and CONFIG
+/// the same process, for PATTERN_SET the same part, for FENCE the same name, otherwise the previous
+/// message.
 uint64_t partOf(const LogEvent& event);
 
 }  // namespace tread

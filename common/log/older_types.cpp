@@ -68,7 +68,7 @@ program_t renewed(const tread_before::program_t& old) {
   return message;
 }
 
-/// The two tracks and their ranges, in which every older set was.
+/// The two tracks and their ranges, implied in every older set.
 void addTracks(int16_t kind, pattern_set_part_t& message) {
   message.num_channels = 2;
   for (const CommandChannel& channel : trackChannels(static_cast<CommandKind>(kind))) {

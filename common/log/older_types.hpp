@@ -6,9 +6,9 @@
 
 namespace tread {
 
-/// Writes the bytes of a message anew that was logged while its type had other fields
-/// (lcmtypes/before): by the names of its fields (common/types/renewal.hpp), and MOTOR, PROGRAM and
-/// PATTERN_SET with a left and a right command. What cannot be decoded stays as it is.
+/// Converts a message that was logged with an older type (lcmtypes/before): by field names
+/// (common/types/renewal.hpp), and MOTOR, PROGRAM and PATTERN_SET with a left and a right command.
+/// What cannot be decoded stays unchanged.
 void renew(LogEvent& event);
 
 }  // namespace tread

@@ -8,21 +8,21 @@
 
 namespace tread {
 
-/// A file to be read that may be packed by gzip: it is then unpacked to a temporary file without a
-/// name, which goes with this object.
-/** Files that xz, bzip2, zstd or zip packed are refused by name, in one line with the command that
- * unpacks them (std::runtime_error). A file that cannot be opened is left to its reader. */
+/// An input file that may be packed by gzip: it is then unpacked to an unnamed temporary file,
+/// which is removed with this object.
+/** Files packed by xz, bzip2, zstd or zip are refused with one line that gives the command to
+ * unpack them (std::runtime_error). A file that cannot be opened is left to its reader. */
 class UnpackedFile {
  public:
   explicit UnpackedFile(const std::string& name);
 
   /// What can be read.
   const std::string& path() const { return path_; }
-  /// One clear line if the packed file is damaged or cut off; what stands before that was unpacked.
+  /// One clear line if the packed file is damaged or cut off; the intact part was unpacked.
   const std::string& problem() const { return problem_; }
-  /// A message about the unpacked file, with the name of the packed one.
+  /// A message about the unpacked file, naming the packed one instead.
   std::string named(std::string message) const;
-  /// The same where reading failed: damage of the packed file comes before what follows from it.
+  /// Reason of a failed read: damage of the packed file takes precedence over its consequences.
   std::string reasonOf(const std::string& failure) const;
 
  private:
@@ -35,7 +35,8 @@ class UnpackedFile {
   std::unique_ptr<std::FILE, Close> file_;
 };
 
-/// What packed a file, by its first bytes: "gzip", "xz", "bzip2", "zstd", "zip"; empty = nothing.
+/// How a file is packed, by its first bytes: "gzip", "xz", "bzip2", "zstd", "zip"; empty = not
+/// packed.
 std::string packingOf(const std::string& path);
 
 }  // namespace tread

@@ -10,12 +10,12 @@
 namespace tread::mcap {
 namespace {
 
-/// Whether a number is a date of this century in us.
+/// Whether a number is a date of this century [us].
 bool isDate(uint64_t us) {
   return us > 1'200'000'000'000'000 && us < 2'200'000'000'000'000;
 }
 
-/// MCAP counts log times in ns, Tread its messages' own in us; each as the other is named.
+/// MCAP log times are in ns, Tread's own times in us; rejects files that mix them up.
 void requireTimeUnits(const std::string& path, const Message& message,
                       const std::vector<uint8_t>& bytes) {
   constexpr size_t kUtime = 8;  // [bytes] behind the type's fingerprint

@@ -52,7 +52,7 @@ class FieldWriter {
 /// A whole record.
 std::string recordOf(Op op, const std::string& content);
 
-/// Takes a record's fields; ok() turns false where they end too early.
+/// Reads a record's fields; ok() becomes false if they end too early.
 class FieldReader {
  public:
   FieldReader(const char* begin, size_t size) : at_(begin), end_(begin + size) {}
@@ -73,7 +73,7 @@ class FieldReader {
   bool ok_ = true;
 };
 
-/// IEEE CRC-32 of the bytes, going on from `crc`.
+/// IEEE CRC-32 of the bytes, continued from `crc`.
 uint32_t crc32Of(const std::string& bytes, uint32_t crc = 0);
 
 }  // namespace tread::mcap

@@ -93,7 +93,7 @@ void Writer::close() {
   group(Op::kStatistics, recordOf(Op::kStatistics, statistics.bytes));
   const uint64_t offsets_at = summary + parts.size();
   parts += offsets.bytes;
-  // The summary's checksum goes up to the footer's own field of it.
+  // The summary's checksum covers everything up to its own field in the footer.
   FieldWriter footer;
   footer.u8(static_cast<uint8_t>(Op::kFooter)).u64(20).u64(summary).u64(offsets_at);
   const uint32_t crc = crc32Of(parts + footer.bytes);

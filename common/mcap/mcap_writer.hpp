@@ -27,7 +27,7 @@ class Writer {
   uint16_t addChannel(uint16_t schema, const std::string& topic, const std::string& encoding);
   /// Times [ns]: when it was recorded, and when it was published.
   void write(uint16_t channel, uint64_t log_time, uint64_t publish_time, const std::string& data);
-  /// Writes what is left and the summary, and puts the file in its place.
+  /// Writes the remaining data and the summary, and moves the file to its final name.
   void close();
 
  private:
@@ -43,7 +43,7 @@ class Writer {
   OutputFile file_;
   uint64_t at_ = 0;                                 ///< bytes written
   uint32_t data_crc_ = 0;                           ///< of all bytes so far
-  std::string schemas_, channels_, chunk_indexes_;  ///< records that the summary repeats
+  std::string schemas_, channels_, chunk_indexes_;  ///< records repeated in the summary
   uint16_t schema_count_ = 0;
   uint16_t channel_count_ = 0;
   uint32_t chunk_count_ = 0;

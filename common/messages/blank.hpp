@@ -27,8 +27,8 @@ void setAllUnknown(Fields&... fields) {
   (setUnknown(fields), ...);
 }
 
-// What each type's .lcm file says of a field that nobody has measured or set, where that is not 0,
-// false or empty.
+// Values of "not measured" and "not set", from each type's .lcm file, where they are not 0, false
+// or empty.
 template <class Message>
 void markUnknown(Message& /*m*/) {}
 inline void markUnknown(execution_record_t& m) {
@@ -88,8 +88,8 @@ inline void markUnknown(scan_t& m) {
 
 }  // namespace detail
 
-/// A message in which every field says "unknown" or "none", as its .lcm file defines it. Whoever
-/// publishes begins with it, so that a new field is never a 0 that looks measured.
+/// A message in which every field is "unknown" or "none", as its .lcm file defines it. Publishers
+/// begin with it, so that a new field is never a 0 that looks measured.
 template <class Message>
 Message blank() {
   Message message{};

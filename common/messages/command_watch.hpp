@@ -13,17 +13,16 @@
 
 namespace tread {
 
-/// Remembers what the motors were given lately, so that R is compared with what its own commands
-/// did and no other.
+/// Remembers recent motor commands, so that R is compared only with executions of its own commands.
 class CommandWatch {
  public:
   void add(const motor_t& motor);
 
-  /// The first command of an execution that differs from the pattern's, in words; empty if none was
-  /// seen.
+  /// The first command of an execution that differs from the pattern's, in words; empty if none
+  /// did.
   std::string unexpectedCommand(const ExecutionKey& execution, const MotionPattern& pattern,
                                 const CommandChannels& channels) const;
-  /// Mean battery voltage in (from, to] [V]; NaN if none was told.
+  /// Mean battery voltage in (from, to] [V]; NaN if none was reported.
   double meanVoltage(int64_t from, int64_t to) const;
 
  private:

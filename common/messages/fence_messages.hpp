@@ -11,30 +11,30 @@
 
 namespace tread {
 
-/// A request from a message. What is no fence keeps too few corners: a FenceBook refuses it.
+/// A request from a message. An invalid fence gets too few corners, so that a FenceBook refuses it.
 FenceRequest requestFrom(const fence_t& message);
 
 /// Without utime and seq.
 fence_t toMessage(const FenceRequest& request);
 
-/// The fences of a keeper, its own first.
+/// The fences of a FENCES message, the process's own first.
 std::vector<Fence> fencesFrom(const fences_t& message);
 
-/// Publishes the fences that a process keeps, and takes over what operators have given to the other
-/// keeper: whoever was started again has lost them.
+/// Publishes the fences that a process stores, and copies operators' fences from the other process
+/// that stores them: a restarted one has lost its own.
 class FenceExchange {
  public:
   using Taker = std::function<void(const FenceRequest&)>;
 
-  /// Process names as in HEALTH; `take` is called with each fence that the other keeper has from an
-  /// operator. The bus must outlive this.
+  /// Process names as in HEALTH; `take` is called with each operator's fence of the other process.
+  /// The bus must outlive this.
   FenceExchange(Bus& bus, std::string process, const std::string& other, Taker take);
 
   /// Call it at least twice a second.
   void step(const FenceBook& book);
 
  private:
-  /// [us] after a removal the other may not have heard of it yet.
+  /// [us] after a removal in which the other may not know of it yet
   static constexpr int64_t kForget = 1'000'000;
 
   Bus& bus_;

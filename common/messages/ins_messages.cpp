@@ -19,14 +19,14 @@ std::optional<Eigen::Quaterniond> orientation(const ins_t& ins) {
                              ins.orientation[3]);
   const double norm = q.norm();
   const bool known = (ins.ins_status & ins_t::STATUS_NO_HEADING) == 0;
-  // A quaternion far from unit length is not a rounding error but another field's bytes.
+  // A quaternion far from unit length is no rounding error but another field's bytes.
   if (!known || !std::isfinite(norm) || std::abs(norm - 1.0) > 1e-3) return std::nullopt;
   return q.normalized();
 }
 
-/// Ten seconds at 100 Hz; more than that cannot be waiting for its turn.
+/// Ten seconds at 100 Hz; more cannot be waiting.
 constexpr size_t kMaxWaitingPoses = 1000;
-/// No clock of the robot is this far ahead of another [us].
+/// Clocks of the robot differ by less than this [us].
 constexpr int64_t kMaxPoseAheadUs = 1'000'000;
 
 }  // namespace
@@ -91,9 +91,9 @@ void InsQueue::settle(int64_t horizon) {
 }
 
 void InsQueue::append(const ins_t& ins) {
-  // A jump counts even if its own message has no pose: what follows is a new track.
+  // A jump counts even if its own message has no pose: a new track follows.
   jumped_ = jumped_ || (ins.ins_status & ins_t::STATUS_JUMP) != 0;
-  // Where the device and scan matching take turns the pose makes a step, which nobody drove.
+  // Where device and scan matching alternate, the pose makes a step that the robot did not drive.
   const bool filled_in = (ins.ins_status & ins_t::STATUS_FILLED_IN) != 0;
   jumped_ = jumped_ || filled_in != filled_in_;
   filled_in_ = filled_in;

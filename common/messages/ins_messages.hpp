@@ -14,40 +14,39 @@
 
 namespace tread {
 
-/// The pose of a plausible INS message in the plane; nothing if position or heading is missing or
-/// not finite.
+/// The planar pose of a valid INS message; nullopt if position or heading is missing or not finite.
 std::optional<Pose2> planarPose(const ins_t& ins);
 
-/// T_map_body of a plausible INS message; nothing as above, or if the height is missing (a device
-/// that speaks RMC only).
+/// T_map_body of a valid INS message; nullopt as above, or if the height is missing (a device that
+/// sends RMC only).
 std::optional<Eigen::Isometry3d> spatialPose(const ins_t& ins);
 
-/// Body twist in the plane, or nothing if the device does not measure it.
+/// Planar body twist; nullopt if the device does not measure it.
 std::optional<Twist2> planarTwist(const ins_t& ins);
 
 /// Standard deviation of the horizontal position [m], the larger of both axes; NaN if either is
 /// not known.
 double horizontalStd(const ins_t& ins);
 
-/// How the ground under the robot lies, from roll and pitch; unknown if attitude is missing.
+/// Slope of the ground under the robot, from roll and pitch; unknown without attitude.
 Tilt tilt(const ins_t& ins);
 
-/// Brings INS messages, which may come late, twice or overtaken, into the order of (utime, seq)
-/// before they become a track.
+/// Sorts INS messages, which may be late, duplicated or out of order, by (utime, seq) before they
+/// become a track.
 class InsQueue {
  public:
   explicit InsQueue(int64_t span_us) : history_(span_us) {}
 
-  /// `now` [us]: a time far from it is that of a broken message.
+  /// `now` [us]: a message whose time is far from it is corrupt.
   void add(const ins_t& ins, int64_t now);
   /// Moves everything up to `horizon` [us] into the track.
   void settle(int64_t horizon);
 
-  /// Time of the first INS message that was heard [us]; INT64_MIN before it.
+  /// Time of the first INS message received [us]; INT64_MIN before it.
   int64_t begin() const { return begin_; }
   const TrackHistory& history() const { return history_; }
-  int64_t invalid() const { return invalid_; }           ///< its time cannot be
-  int64_t tooLate() const { return too_late_; }          ///< came after its time had been settled
+  int64_t invalid() const { return invalid_; }   ///< its time cannot be
+  int64_t tooLate() const { return too_late_; }  ///< arrived after their time had been settled
   int64_t withoutPose() const { return without_pose_; }  ///< no position or no heading
 
  private:

@@ -16,7 +16,7 @@ constexpr size_t kLongestName = 64;
 constexpr int64_t kLeaves = 1'000'000;      // [us] of silence
 constexpr int64_t kWorthTelling = 100'000;  // [us]
 
-/// Names stand in lines on terminals.
+/// Names appear in terminal output.
 bool canBeShown(const std::string& name) {
   return name.size() <= kLongestName && std::none_of(name.begin(), name.end(), [](char c) {
            return static_cast<unsigned char>(c) < ' ' || c == '\x7f';
@@ -61,7 +61,7 @@ void OperatorBeacon::step(int64_t utime) {
 }
 
 void OperatorBeacon::letGo(int64_t utime) {
-  // Repeated: one lost message would look like a lost operator.
+  // Repeated, because one lost message would look like a lost operator.
   for (int i = 0; i < 3 && hearsRobot(); ++i) send(utime, operator_t::ALLOW_NOTHING);
 }
 

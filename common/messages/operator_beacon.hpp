@@ -14,17 +14,17 @@
 
 namespace tread {
 
-/// Nothing for a message without a name, or with one that cannot be shown in a line.
+/// nullopt for a message without a name, or with a name that does not fit in a line.
 std::optional<OperatorNotice> noticeFrom(const operator_t& message);
 
-/// Who holds the robot, by MOTOR.
+/// Who holds the robot, according to MOTOR.
 class HolderWatch {
  public:
   explicit HolderWatch(Bus& bus);
   HolderWatch(const HolderWatch&) = delete;  // the bus calls it back
   HolderWatch& operator=(const HolderWatch&) = delete;
 
-  /// Empty = nobody; nothing: not told since `utime` [us] of the robot's time.
+  /// Empty = nobody; nullopt: not reported since `utime` [us] of the robot's time.
   std::optional<std::string> since(int64_t utime) const {
     return told_ > utime ? std::optional(name_) : std::nullopt;
   }
@@ -34,36 +34,37 @@ class HolderWatch {
   std::string name_;
 };
 
-/// An operator program's sign of life: OPERATOR at 5 Hz, once MOTOR has told the robot's time.
+/// An operator program's sign of life: OPERATOR at 5 Hz, as soon as MOTOR has given the robot's
+/// time.
 class OperatorBeacon {
  public:
-  /// `name`: who operates; programs of one name share the lease.
+  /// `name`: the operator; programs of one name share the lease.
   OperatorBeacon(Bus& bus, std::string name);
   OperatorBeacon(const OperatorBeacon&) = delete;  // the bus calls it back
   OperatorBeacon& operator=(const OperatorBeacon&) = delete;
 
-  /// Call each 20 ms or so with the bus's time [us].
+  /// Call about every 20 ms with the bus's time [us].
   void step(int64_t utime);
-  /// Goal that this program stands for; 0 = none.
+  /// Goal that this program vouches for; 0 = none.
   void standFor(int64_t goal_id) {
     goal_id_ = goal_id;
     next_ = 0;
   }
   void handOverTo(const std::string& name) { hand_over_to_ = name; }
-  /// This program ends in good order: the robot needs no failsafe to notice.
+  /// Releases the lease at an orderly end, so that no failsafe has to detect it.
   void letGo(int64_t utime);
 
   const std::string& name() const { return name_; }
   int64_t station() const { return station_; }
-  /// utime of the newest MOTOR heard [us]; 0 = none.
+  /// utime of the newest MOTOR received [us]; 0 = none.
   int64_t seenUtime() const { return seen_utime_; }
   bool hearsRobot() const { return clock_.offset().has_value(); }
-  /// The robot's time [us] at the bus's time; the same before the robot was heard.
+  /// The robot's time [us] at the bus's time; equal to it before the first message of the robot.
   int64_t robotTime(int64_t utime) const { return utime + clock_.offset().value_or(0); }
-  /// "; clocks differ by 1.2 s, which is taken into account", or empty if they hardly do.
+  /// "; clocks differ by 1.2 s, which is taken into account", or empty if they hardly differ.
   std::string clockWords() const;
-  /// That a program of the same operator is heard, which may be another person's of the same
-  /// account; else empty.
+  /// A warning that another program of the same operator is running, perhaps started by another
+  /// person with the same account; else empty.
   std::string namesakeWords(int64_t utime) const;
 
  private:
@@ -76,7 +77,7 @@ class OperatorBeacon {
   std::string hand_over_to_;
   RobotClock clock_;
   int64_t seen_utime_ = 0;
-  std::optional<int64_t> namesake_;  ///< [us] heard last
+  std::optional<int64_t> namesake_;  ///< [us] last received
   int64_t goal_id_ = 0;
   int64_t next_ = 0;
   int64_t seq_ = 0;

@@ -24,25 +24,26 @@ namespace tread {
 /// The parts of a set as messages, without utime of sending and seq (the publisher sets seq).
 std::vector<pattern_set_part_t> toMessages(const PatternSet& set);
 
-/// Puts sets together from their parts, which may come in any order, twice, or not at all.
-/** Every field is checked before use, the parts of a version among each other, the checksum over
- * the whole, and PatternSet::make as the last gate. Parts of versions that are not newer than the
- * last returned are passed over without a word: sets are repeated. A broken part costs no more than
- * its version's present round of parts. */
+/// Assembles sets from their parts, which may arrive in any order, twice, or not at all.
+/** Checks every field before use, the parts of a version against each other, the checksum over the
+ * whole, and finally PatternSet::make. Parts of versions not newer than the last returned are
+ * skipped silently, because sets are repeated. A broken part costs at most its version's current
+ * round of parts. */
 class PatternSetAssembler {
  public:
-  /// Takes a part. Returns a set when it completes a valid one that is newer than the last
+  /// Takes a part. Returns a set if the part completes a valid one that is newer than the last
   /// returned.
   std::optional<PatternSet> add(const pattern_set_part_t& part);
 
-  /// Why the last part or set was refused, in one line; empty if it was not.
+  /// Why the last part or set was refused, in one line; empty if it was accepted.
   const std::string& refusal() const { return refusal_; }
   int64_t refused() const { return refused_; }
-  /// Parts of versions before the one in use: a second learner, or one that has lost its state.
+  /// Parts of versions before the one in use: from a second learner, or from one that lost its
+  /// state.
   int64_t older() const { return older_; }
 
  private:
-  /// A version that is not complete yet.
+  /// A version whose parts are incomplete.
   struct Pending {
     int64_t version = 0;
     std::map<int32_t, pattern_set_part_t> parts;
@@ -52,7 +53,8 @@ class PatternSetAssembler {
   Pending& pendingOf(int64_t version);
   std::optional<PatternSet> complete(Pending& pending);
 
-  /// Newest touched last: a part with a broken version number must not displace the true one.
+  /// Most recently touched last: a part with a corrupt version number must not displace the true
+  /// one.
   std::list<Pending> pending_;
   int64_t last_version_ = 0;
   std::string refusal_;
@@ -61,36 +63,36 @@ class PatternSetAssembler {
 };
 
 BridgeReading readingFrom(const motor_t& message);
-/// Whether the permission to drive is there in this state of the motor bridge (motor_t::STATE_*).
+/// Whether the motor bridge may drive in this state (motor_t::STATE_*).
 bool mayDrive(int16_t bridge_state);
 std::vector<ExecutionReading> readingsFrom(const execution_t& message);
 /// The command of a MOTOR message; 0 for channels that the robot does not have.
 Command commandFrom(const motor_t& message);
-/// The kinds of the channels that are played; none while nothing is.
+/// The kinds of the channels being played; empty while nothing is played.
 std::vector<CommandKind> kindsFrom(const motor_t& message);
 program_slot_t toMessage(const PlannedExecution& slot);
 
-/// The executions that are over and not yet learned from, in the order in which they ended.
-/** EXECUTION repeats the last eight, late, twice or in another order; each is given out exactly
+/// Completed executions that were not learned from yet, in the order in which they ended.
+/** EXECUTION repeats the last eight, late, twice or in another order; each is returned exactly
  * once. */
 class ExecutionQueue {
  public:
-  /// Takes a message; executions that still run are left for a later one.
-  /** `now` [us]: what ends far behind it is a broken record. */
+  /// Takes a message; executions that still run are left for a later message.
+  /** `now` [us]: a record that ends far after it is broken. */
   void add(const execution_t& message, int64_t now);
 
-  /// The one that ended first if it ended by `horizon` [us]; it counts as handled from now on.
+  /// The earliest-ended execution if it ended by `horizon` [us]; it counts as handled from now on.
   std::optional<execution_record_t> takeEndedBy(int64_t horizon);
 
-  /// End of the one that would be next [us]; nothing if none waits.
+  /// End of the next one [us]; nullopt if none waits.
   std::optional<int64_t> nextEnd() const;
 
-  /// Keys of the executions handled last, oldest first.
+  /// Keys of the most recently handled executions, oldest first.
   std::vector<ExecutionKey> handled() const { return {order_.begin(), order_.end()}; }
-  /// Forgets nothing that a former life of this process has handled.
+  /// Restores the keys that this process handled before its restart.
   void remember(const std::vector<ExecutionKey>& handled);
 
-  /// Records that were dropped because nobody can tell what they mean.
+  /// Invalid records that were dropped.
   int64_t invalid() const { return invalid_; }
 
  private:

@@ -29,7 +29,7 @@ void DrivingPermission::take(const arm_t& message, int64_t now) {
 }
 
 void DrivingPermission::take(const estop_t& message, int64_t now) {
-  // A stop counts whatever its time says; only clearing must be newer than what it clears.
+  // A stop counts whatever its time; only clearing must be newer than the stop.
   const int64_t utime = std::min(message.utime, now);
   if (!message.engaged && utime < estop_utime_) return;
   estop_utime_ = std::max(estop_utime_, utime);
@@ -55,7 +55,7 @@ RobotInputs::RobotInputs(Bus& bus, HealthReporter& health, int64_t operator_leas
 }
 
 bool RobotInputs::timeJumped(int64_t utime) {
-  // A process that only hears the time does not know it at first, and may be frozen later.
+  // A process without a clock of its own does not know the time at first, and may be frozen later.
   const bool jumped = stepped_ && std::abs(utime - *stepped_) > kTimeJump;
   stepped_ = utime;
   operator_.update(utime, permission_.armed());
@@ -93,8 +93,9 @@ void RobotInputs::take(const arm_t& message) {
   takeHolder(before);
 }
 
-/// The motor bridge arms for the holder alone: whom it has armed holds the robot, whatever was
-/// heard here. Two processes that start at different times may have heard another operator first.
+/// The motor bridge arms only for the holder, so whoever it has armed for holds the robot, whatever
+/// was received here. Processes that start at different times may have received another operator
+/// first.
 void RobotInputs::takeHolder(bool granted_before) {
   if (!granted_before && permission_.granted()) operator_.holdBy(permission_.armedBy(), bus_.now());
 }

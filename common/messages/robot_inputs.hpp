@@ -19,8 +19,8 @@
 namespace tread {
 
 /// Whether the operator allows this run of a process to drive.
-/** A permission counts if it was given after its start and after the last stop that took
- * it away: an order to disarm, an emergency stop, or a motor bridge that is not armed any more. */
+/** A permission counts if it was given after the process started and after the last event that
+ * revoked it: an order to disarm, an emergency stop, or a motor bridge that is no longer armed. */
 class DrivingPermission {
  public:
   explicit DrivingPermission(int64_t start) : revoked_(start) {}
@@ -32,12 +32,12 @@ class DrivingPermission {
   void take(const BridgeReading& bridge, int64_t now);
 
   bool armed() const { return armed_; }
-  /// [us] since when the permission holds, and the motor bridge has taken it: an ARM that it
-  /// refuses begins nothing.
+  /// [us] since when the permission has held and the motor bridge has accepted it; an ARM that it
+  /// refuses does not count.
   int64_t armedSince() const { return armed_since_; }
-  /// Whether the motor bridge has taken the permission.
+  /// Whether the motor bridge has accepted the permission.
   bool granted() const { return armed_ && bridge_armed_; }
-  /// Who sent the ARM that it has taken.
+  /// The sender of the accepted ARM.
   const std::string& armedBy() const { return armed_by_; }
   bool estopped() const { return estopped_; }
 
@@ -46,7 +46,7 @@ class DrivingPermission {
   static constexpr int64_t kMaxFuture = 50'000;  ///< [us]
   void revoke(int64_t utime);
 
-  int64_t revoked_;  ///< [us] permissions given before count for nothing
+  int64_t revoked_;  ///< [us] permissions given earlier do not count
   bool armed_ = false;
   int64_t armed_since_ = 0;
   std::string armed_by_;
@@ -57,24 +57,25 @@ class DrivingPermission {
 
 /// Receives INS, MOTOR, EXECUTION, OPERATOR, ARM and ESTOP for a node that drives the robot.
 /** Messages with an impossible time, out of order or without a pose are refused and counted in
- * HEALTH. Comes up without permission: ARM must be seen after the start. */
+ * HEALTH. Starts without permission: ARM must be received after the start. */
 class RobotInputs {
  public:
   RobotInputs(Bus& bus, HealthReporter& health, int64_t operator_lease_us);
   RobotInputs(const RobotInputs&) = delete;  // the bus calls it back
   RobotInputs& operator=(const RobotInputs&) = delete;
 
-  /// Call first in each step. True if the time jumped: what was noted before has no age any more,
-  /// and the permission is revoked, because whoever armed then did not arm this run.
+  /// Call first in each step. True if the time jumped: earlier notes have no age any more, and the
+  /// permission is revoked, because it was given to another run.
   bool timeJumped(int64_t utime);
   RobotReadings readings(int64_t utime) const;
   DrivingPermission& permission() { return permission_; }
   const OperatorLease& operatorLease() const { return operator_; }
 
-  /// Whether a time is impossible: not positive, or so far ahead that it would look fresh for ever.
+  /// Whether a time is impossible: not positive, or so far ahead that the message would look fresh
+  /// forever.
   /** Counted in HEALTH as refused on that channel. */
   bool invalidTime(int64_t utime, const char* channel);
-  /// The same for what must be of the present, like a permission.
+  /// The same for messages that must be recent, like a permission.
   bool untimely(int64_t utime, const char* channel);
 
   // Called with each message whose time is possible, before it is used.
@@ -85,7 +86,7 @@ class RobotInputs {
  private:
   static constexpr int64_t kTimeJump = 1'000'000;  ///< [us] between two steps
   static constexpr int64_t kMaxFuture = 100'000;   ///< [us] by which a utime may be ahead
-  static constexpr int64_t kMaxAge = 1'500'000;    ///< [us] of what must be of the present
+  static constexpr int64_t kMaxAge = 1'500'000;    ///< [us] of messages that must be recent
 
   void take(const operator_t& message);
   void take(const arm_t& message);

@@ -14,18 +14,19 @@
 
 namespace tread {
 
-/// A good scan, as its beams.
+/// A valid scan, as beams.
 struct ReceivedScan {
   int64_t first = 0;  ///< [us] time of the first beam
   int64_t last = 0;   ///< [us] time of the last
   Eigen::Isometry3d T_body_sensor;
   std::vector<Beam> beams;
-  uint64_t fingerprint = 0;  ///< of all that was measured, bit for bit
+  uint64_t fingerprint = 0;  ///< of all measured values, bit for bit
 };
 
-/// Checks a SCAN message field by field and takes its beams; else nothing and the reason.
-/** NaN and ranges below range_min are no measurement; +inf and ranges above range_max saw nothing
- *  up to range_max. */
+/// Checks a SCAN message field by field and converts it to beams; nullopt and the reason if it is
+/// invalid.
+/** NaN and ranges below range_min are no measurement; for +inf and ranges above range_max the beam
+ * is free up to range_max. */
 std::optional<ReceivedScan> readScan(const scan_t& message, std::string& refusal);
 
 }  // namespace tread

@@ -31,7 +31,7 @@ ParallelFor onThreads(int threads) {
     try {
       for (size_t i = 1; i < workers; ++i) helpers.emplace_back(work);
     } catch (const std::system_error&) {
-      // Where no more threads are allowed, those that run do all the work.
+      // If no more threads can be created, the running ones do all the work.
     }
     work();
     for (std::thread& helper : helpers) helper.join();

@@ -16,9 +16,9 @@ inline void serialFor(size_t count, const std::function<void(size_t)>& body) {
   for (size_t i = 0; i < count; ++i) body(i);
 }
 
-/// On so many threads, the caller's included, or fewer where no more are allowed.
-/** After a call throws, no further one is handed out; once those under way have ended, the caller
- * gets what the first one threw. */
+/// On this many threads, including the caller's, or fewer if the system does not allow more.
+/** After a call throws, no further call starts; once the running ones have ended, the first
+ * exception is rethrown to the caller. */
 ParallelFor onThreads(int threads);
 
 }  // namespace tread

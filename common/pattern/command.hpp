@@ -17,14 +17,14 @@ namespace tread {
 enum class CommandKind : int16_t {
   kPower = 1,         ///< share of a motor's power, -1..1 [1], + forward
   kTrackSpeed = 2,    ///< of a track or wheel [m/s], + forward
-  kSteeringAngle = 3  ///< of the steered axle in its middle [rad], + left
+  kSteeringAngle = 3  ///< mean angle of the steered axle [rad], + left
 };
 
-/// "power", "track_speed" or "steering_angle"; empty for a kind that nobody knows.
+/// "power", "track_speed" or "steering_angle"; empty for an unknown kind.
 const char* nameOf(CommandKind kind);
-/// The kind with this name; nothing if there is none.
+/// The kind with this name; nullopt if there is none.
 std::optional<CommandKind> kindNamed(const std::string& name);
-/// " m/s", " rad" or nothing, to be written behind a number.
+/// " m/s", " rad" or empty, to be appended to a number.
 const char* unitOf(CommandKind kind);
 /// Largest magnitude of a command of a kind: 1 for power, 20 m/s, 1.2 rad.
 double commandLimit(CommandKind kind);
@@ -42,7 +42,7 @@ inline bool operator!=(const CommandChannel& a, const CommandChannel& b) {
   return !(a == b);
 }
 
-/// The channels of a vehicle's commands, in their order: 1 to Command::kMaxChannels.
+/// A vehicle's command channels, in order: 1 to Command::kMaxChannels.
 using CommandChannels = std::vector<CommandChannel>;
 
 /// The kinds of channels, in their order.
@@ -51,7 +51,7 @@ std::vector<CommandKind> kindsOf(const CommandChannels& channels);
 CommandChannels trackChannels(CommandKind kind);
 /// Channels of a car, in the whole range of each: throttle (power) or speed, then steering.
 CommandChannels carChannels(CommandKind kind);
-/// The kind if these are trackChannels(); nothing for another vehicle.
+/// The kind if these are trackChannels(); nullopt for another vehicle.
 std::optional<CommandKind> kindOfTracks(const CommandChannels& channels);
 /// "left [m/s], right [m/s]".
 std::string describe(const CommandChannels& channels);
@@ -69,8 +69,8 @@ inline bool operator!=(const TrackCommand& a, const TrackCommand& b) {
   return !(a == b);
 }
 
-/// One command u_t: a value for each channel, in their order; beyond the last channel all are 0.
-/** No channel commanded to anything but 0 is the command that stops, of whatever vehicle. */
+/// One command u_t: a value for each channel, in order; values beyond the last channel are 0.
+/** A command whose channels are all 0 stops any vehicle. */
 class Command {
  public:
   static constexpr size_t kMaxChannels = 8;
@@ -91,26 +91,26 @@ class Command {
   std::array<double, kMaxChannels> values_{};
 };
 
-/// What moves a vehicle, and so what its commands are.
+/// The drive of a vehicle, which determines the meaning of its commands.
 enum class VehicleLayout {
   kTracks = 1,  ///< left and right
   kCar = 2,     ///< throttle or speed, and a steering angle
-  kOmni = 4     ///< each wheel of a holonomic base
+  kOmni = 4     ///< one channel for each wheel of a holonomic base
 };
 
 /// "two tracks", "a car", "a holonomic base".
 const char* nameOf(VehicleLayout layout);
 /// The layout whose commands have channels of these kinds.
 VehicleLayout layoutOf(const std::vector<CommandKind>& kinds);
-/// The largest channel that moves the vehicle, without its sign; 0 = it is told to stand.
+/// The largest magnitude among the channels that move the vehicle; 0 = the command is to stand.
 double driveOf(VehicleLayout layout, const Command& command);
 
-/// The two rear wheels of a car that moves by Ackermann's law: `speed` in the middle of the rear
-/// axle (in any unit), steering angle [rad] in the middle of the front axle, wheelbase and gauge
+/// Speeds of the two rear wheels of a car by Ackermann's law: `speed` at the middle of the rear
+/// axle (in any unit), steering angle [rad] at the middle of the front axle, wheelbase and gauge
 /// [m].
 TrackCommand rearWheels(double speed, double angle, double wheelbase, double gauge);
 
-/// A series for two tracks as the patterns hold it, and back; of a car, the first two values.
+/// Conversion of two-track series to pattern commands and back; of a car, the first two values.
 std::vector<Command> commandsOf(const std::vector<TrackCommand>& tracks);
 std::vector<TrackCommand> tracksOf(const std::vector<Command>& commands);
 

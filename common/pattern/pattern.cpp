@@ -12,9 +12,9 @@
 namespace tread {
 namespace {
 
-// After Fowler-Noll-Vo 1a, 64 bit (offset basis and prime as published by its authors), but word by
-// word: an eighth of the time. Folding lets high bits reach low ones, which the product alone does
-// not.
+// Based on Fowler-Noll-Vo 1a, 64 bit (offset basis and prime as published by its authors), but word
+// by word: an eighth of the time. Folding mixes high bits into low ones, which the product alone
+// does not.
 class Hash {
  public:
   void add(uint64_t value) {
@@ -37,7 +37,7 @@ class Hash {
   uint64_t value_ = 0xcbf29ce484222325U;
 };
 
-/// Two tracks are told by their kind alone, as always: sets of old logs keep their checksums.
+/// Two tracks are identified by their kind alone, so that sets in old logs keep their checksums.
 void addChannels(Hash& hash, const CommandChannels& channels) {
   const auto kind = kindOfTracks(channels);
   hash.add(kind ? static_cast<int64_t>(*kind) : 0);
@@ -81,8 +81,8 @@ void addPattern(Hash& hash, const MotionPattern& pattern, size_t channels) {
 
 /// FNV-1a (64 bit), word by word and folded, over a canonical form of the content, cut to 63 bits
 /// so that it is never negative.
-/** In it: name, version, parent, channels, period, classes by name, patterns in their order;
- * numbers by their bit patterns, little end first, every NaN the same. Not in it: utime, which is a
+/** Includes name, version, parent, channels, period, classes by name, patterns in their order;
+ * numbers by their bit patterns, little-endian, every NaN the same. Excludes utime, which is a
  * time stamp of the content. */
 int64_t checksumOf(const PatternSetContent& content) {
   Hash hash;

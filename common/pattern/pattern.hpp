@@ -18,14 +18,14 @@
 
 namespace tread {
 
-/// A steady motion in which patterns begin and end (a trim): what came before decides what a
-/// pattern does.
+/// A steady motion in which patterns begin and end (a trim): the effect of a pattern depends on the
+/// motion before it.
 struct MotionClass {
   std::string name;  ///< for instance rest, cruise, reverse
   Twist2 twist;      ///< v_body of the steady motion
-  Command steady;    ///< the command that keeps it
+  Command steady;    ///< the command that maintains it
 
-  /// Whether the vehicle stands in it: less than 0.02 m/s and 0.02 rad/s.
+  /// Whether the vehicle is at rest in it: less than 0.02 m/s and 0.02 rad/s.
   bool standing() const {
     return std::hypot(twist.v_x, twist.v_y) < 0.02 && std::abs(twist.omega) < 0.02;
   }
@@ -35,7 +35,7 @@ struct MotionClass {
 /// unknown.
 using PoseCovariance = std::array<double, 6>;
 
-/// A covariance that nobody has stated yet.
+/// A covariance that has not been determined.
 inline constexpr PoseCovariance kUnknownCovariance = {
     std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
     std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
@@ -46,35 +46,34 @@ struct MotionPattern {
   int id = 0;  ///< unique within its set
   std::string name;
   std::string entry_class;        ///< name of the class in which it must begin
-  std::string exit_class;         ///< and of the one in which it ends
+  std::string exit_class;         ///< name of the class in which it ends
   std::vector<Command> commands;  ///< U = (u_1..u_T); never changes
   std::vector<Pose2> trajectory;  ///< R = (r_1..r_T): T_start_body after u_t, yaw unwrapped
   /// Of the prediction r_T: all six finite, or all six NaN = unknown.
   PoseCovariance end_covariance = kUnknownCovariance;
-  int times_learned = 0;  ///< executions of this very pattern that changed R
+  int times_learned = 0;  ///< executions of this pattern that changed R
 
   const Pose2& end() const { return trajectory.back(); }
   /// Length of the path through the origin and all r_t [m].
   double pathLength() const { return lengthOfPath(trajectory); }
 };
 
-/// Everything in a pattern set, not yet checked.
+/// Contents of a pattern set, not yet checked.
 struct PatternSetContent {
   std::string name;
-  int64_t version = 1;         ///< counts up for ever; >= 1
+  int64_t version = 1;         ///< increases forever; >= 1
   int64_t parent_version = 0;  ///< 0 = none
-  int64_t utime = 0;           ///< [us] of the newest measurement that is in it; 0 = shipped
+  int64_t utime = 0;           ///< [us] of the newest measurement in it; 0 = shipped
   CommandChannels channels = trackChannels(CommandKind::kPower);
   int64_t period_us = 50'000;  ///< each command is held this long
   std::vector<MotionClass> classes;
   std::vector<MotionPattern> patterns;
 };
 
-/// A checked, immutable pattern set; copies share their content, so that handing over a set costs
-/// nothing.
+/// A checked, immutable pattern set; copies share their content, so that passing a set is cheap.
 class PatternSet {
  public:
-  /// Checks and freezes. On failure returns nothing and one clear line in `why`: pattern, what,
+  /// Checks and freezes. On failure returns nullopt and one clear line in `why`: pattern, what,
   /// what is allowed.
   /** Checked: names and ids unique; T >= 1 and |U| = |R|; all numbers finite; one to eight
    * channels, their ranges within commandLimit() of their kinds; commands within the ranges and 0
@@ -83,7 +82,7 @@ class PatternSet {
    * classes only with patterns); version >= 1; period 5 ms..1 s; at most 1000 patterns of at most
    * 1000 samples, and 2000 numbers in their commands. */
   static std::optional<PatternSet> make(PatternSetContent content, std::string& why);
-  /// No learner gives a higher version: more than the robot's life in milliseconds.
+  /// Upper limit for versions: more than the robot's life in milliseconds.
   static constexpr int64_t kHighestVersion = 1'000'000'000'000;
 
   const PatternSetContent& content() const { return *content_; }
@@ -95,11 +94,12 @@ class PatternSet {
   const MotionPattern* findByName(const std::string& name) const;
   /// The class with this name; throws std::out_of_range for a name that no pattern of the set has.
   const MotionClass& classNamed(const std::string& name) const;
-  /// Whether `next` may follow `previous` without a harsh change: same class, at the join.
+  /// Whether `next` may follow `previous` smoothly: its entry class is the exit class of
+  /// `previous`.
   bool joinable(const MotionPattern& previous, const MotionPattern& next) const;
   /// Patterns that begin in a class, in the order of the set.
   std::vector<const MotionPattern*> startingIn(const std::string& entry_class) const;
-  /// Over everything but utime; equal content has an equal checksum on every machine, never
+  /// Over everything but utime; equal content has an equal checksum on every machine; never
   /// negative.
   int64_t checksum() const { return checksum_; }
 
@@ -111,16 +111,16 @@ class PatternSet {
   int64_t checksum_ = 0;
 };
 
-/// The classes `found` and all that chains of patterns reach from them; where `backwards`, all from
-/// which such chains reach them.
+/// `found` and all classes that can be reached from them by chains of patterns; if `backwards`, all
+/// classes from which they can be reached.
 std::set<std::string> connectedClasses(const PatternSet& set, std::set<std::string> found,
                                        bool backwards);
 
-/// For each pattern, in the order of the set: the shortest way from standstill through it to
-/// standstill [m]; infinite where no chain leads there.
+/// For each pattern, in the order of the set: the shortest path from standstill through it to
+/// standstill [m]; infinite if no chain leads there.
 std::vector<double> restToRestLengths(const PatternSet& set);
 
-/// What PatternSet::make allows; the file reader tells people the same limits.
+/// Limits of PatternSet::make; the file reader reports the same limits.
 struct PatternLimits {
   static constexpr double kMaxSpeed = 20.0;           ///< [m/s], twists and steps of R
   static constexpr double kMaxYawRate = 20.0;         ///< [rad/s]
@@ -128,23 +128,23 @@ struct PatternLimits {
   static constexpr int64_t kMaxPeriodUs = 1'000'000;  ///< [us]
   static constexpr size_t kMaxPatterns = 1000;
   static constexpr size_t kMaxSamples = 1000;
-  static constexpr size_t kMaxNumbers = 2000;  ///< samples x channels: a PROGRAM holds no more
+  static constexpr size_t kMaxNumbers = 2000;  ///< samples x channels: capacity of a PROGRAM
   static constexpr size_t kMaxNameLength = 64;
 };
 
-/// One thing that is wrong in a set, and where, so that a file reader can point at the line.
+/// One error in a set, with its place, so that a file reader can point at the line.
 struct PatternProblem {
   enum class Place { kSet, kClass, kPattern };
   Place place = Place::kSet;
   size_t index = 0;     ///< of the class or pattern in the content
-  std::string key;      ///< what is wrong in the words of the pattern file, for instance "commands"
+  std::string key;      ///< the key in the pattern file, for instance "commands"
   std::string problem;  ///< "what is wrong; what is allowed", without the place
 
   /// One line with the place in words: "pattern 'left': ...".
   std::string line(const PatternSetContent& content) const;
 };
 
-/// The first thing that is wrong in a set; nothing if all is well.
+/// The first error in a set; nullopt if there is none.
 std::optional<PatternProblem> firstProblem(const PatternSetContent& content);
 
 }  // namespace tread

@@ -24,7 +24,7 @@ std::string upTo(double limit, const char* unit) {
   return "; allowed is up to " + number(limit) + unit;
 }
 
-// A name that was refused may hold anything; the message stays one line.
+// A refused name may contain anything; the message stays one line.
 std::string quoted(std::string name) {
   for (char& c : name) {
     if (c < ' ' || c > '~') c = '?';
@@ -129,7 +129,7 @@ Finding classProblem(const MotionClass& motion, const PatternSetContent& content
   const auto uses = [&](const MotionPattern& pattern) {
     return pattern.entry_class == motion.name || pattern.exit_class == motion.name;
   };
-  // The bus transports classes only with patterns: an unused one would be lost on the way.
+  // The bus transports classes only with patterns: an unused one would be lost.
   if (std::none_of(content.patterns.begin(), content.patterns.end(), uses))
     return {{"name", "no pattern begins or ends in this class; remove it or use it"}};
   return {};
@@ -159,7 +159,7 @@ Finding lengthProblem(const MotionPattern& pattern, size_t channels) {
   return {};
 }
 
-/// Whether a sample is right beyond doubt; most are, and need no words. NaN is in doubt.
+/// Quick check whether a sample is certainly valid, as most are; false for NaN.
 bool surelyRight(const Command& command, const CommandChannels& channels, const Pose2& from,
                  const Pose2& to, double period) {
   for (size_t i = 0; i < channels.size(); ++i)

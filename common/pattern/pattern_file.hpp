@@ -10,7 +10,7 @@ namespace tread {
 
 /// Reads a pattern file (YAML that people read and edit; see config/patterns).
 /** Throws ConfigError with one line "file:line: what is wrong; what is allowed" for bad YAML,
- * unknown keys, unequal lengths of commands and trajectory, NaN and everything that
+ * unknown keys, commands and trajectory of different lengths, NaN and everything that
  * PatternSet::make refuses. */
 PatternSet readPatternFile(const std::string& path);
 

@@ -13,9 +13,10 @@
 namespace tread::recordings {
 namespace {
 
-constexpr double kSpeedSpan = 0.1;      // [s]: shorter steps are mostly noise
-constexpr double kMedianMargin = 1.5;   // [1] on the median's largest speed
-constexpr double kLeastMaxSpeed = 0.3;  // [m/s]: a set that only turns on the spot has noise alone
+constexpr double kSpeedSpan = 0.1;     // [s]: shorter steps are mostly noise
+constexpr double kMedianMargin = 1.5;  // [1] on the median's largest speed
+constexpr double kLeastMaxSpeed =
+    0.3;  // [m/s]: speeds of a set that only turns on the spot are noise
 
 bool finite(const Pose2& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.yaw);
@@ -46,7 +47,7 @@ double fastestTurn(const Execution& poses, double period) {
 }
 
 /// kMedianMargin times the largest speed of a pattern's median execution, over all patterns: spins
-/// and starts have only noise to judge by.
+/// and starts alone have only noise.
 double usualMaxSpeed(const PatternSet& set, const SurfaceRecordings& recordings) {
   double largest = 0.0;
   for (size_t p = 0; p < recordings.executions.size(); ++p) {
@@ -62,7 +63,7 @@ double usualMaxSpeed(const PatternSet& set, const SurfaceRecordings& recordings)
   return std::max(kLeastMaxSpeed, kMedianMargin * largest);
 }
 
-/// Why an execution is left out; empty if it is a fair one.
+/// Why an execution is left out; empty if it is valid.
 std::string fault(const Execution& poses, const MotionPattern& pattern, double period,
                   double max_speed) {
   if (poses.size() != pattern.commands.size())
@@ -110,7 +111,7 @@ std::vector<Pose2> meanOfPoses(const Fair& fair) {
   return mean;
 }
 
-/// Mean body twist of each sample, driven again from the start.
+/// Mean body twist of each sample, integrated from the start.
 std::vector<Pose2> meanOfTwists(const Fair& fair, double period) {
   std::vector<Twist2> twists(fair.front()->size());
   const auto n = static_cast<double>(fair.size());
@@ -136,7 +137,7 @@ double largestYaw(const std::vector<Pose2>& poses) {
   return largest;
 }
 
-/// Spread of the end poses about their mean; unknown of a single one.
+/// Spread of the end poses about their mean; unknown for a single one.
 PoseCovariance endSpread(const Fair& fair, const Pose2& mean) {
   if (fair.size() < 2) return kUnknownCovariance;
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();

@@ -8,24 +8,25 @@
 
 namespace tread::recordings {
 
-/// How a table is written.
+/// The format of a table.
 struct CsvLayout {
-  char delimiter = '\0';       ///< between fields; of spaces, several are one; 0: as is found
-  bool header = true;          ///< a line names the columns
-  bool decimal_comma = false;  ///< numbers are 0,5; else only where nothing else can be meant
-  /// Names that the header has. With them it may stand anywhere and behind a #, and a row of units
-  /// may follow it; without them it is the first line that is no comment.
+  char delimiter = '\0';  ///< between fields; a run of spaces counts as one; 0: detect
+  bool header = true;     ///< a line names the columns
+  bool decimal_comma =
+      false;  ///< numbers are 0,5; if false, only where they cannot be read otherwise
+  /// Names in the header. If given, the header may be anywhere and behind a #, and a row of units
+  /// may follow it; otherwise the header is the first line that is no comment.
   std::vector<std::string> columns;
 };
 
 /// A line of a table, cut into its fields.
 struct CsvLine {
-  std::vector<std::string> fields;  ///< without quotes and blanks around
+  std::vector<std::string> fields;  ///< without quotes and surrounding blanks
   size_t number = 0;                ///< of the file, from 1
   bool comment = false;             ///< begins with #
 };
 
-/// The lines of a table, one after the other; empty ones are left out.
+/// The lines of a table in order; empty ones are left out.
 class CsvLines {
  public:
   CsvLines(std::string_view text, char delimiter) : text_(text), delimiter_(delimiter) {}
@@ -49,26 +50,25 @@ class CsvLines {
 struct CsvStart {
   char delimiter = ',';
   CsvLine header;       ///< line 0 if there is none
-  std::string problem;  ///< empty if the table can be read
+  std::string problem;  ///< empty if the table is readable
 };
 
 CsvStart findStart(std::string_view text, const CsvLayout& layout);
 
-/// Whether a field holds a number, be its decimal sign a point or a comma.
+/// Whether a field is a number, with a decimal point or comma.
 bool isNumeric(std::string field);
 
-/// Whether all fields hold numbers or nothing.
+/// Whether each field is a number or empty.
 bool holdsNumbers(const CsvLine& line);
 
-/// Whether a field says that nothing was measured: empty, nan, inf, n/a and what else programs
-/// write.
+/// Whether a field means "not measured": empty, nan, inf, n/a and similar.
 bool isNoMeasurement(std::string field);
 
-/// What a field says of the decimal sign.
+/// Decimal sign that a field suggests.
 enum class DecimalSign { kNone, kPoint, kComma, kCommaOrThousands };
 DecimalSign decimalSign(const std::string& field);
 
-/// Why a field is no number, and what to do, for messages.
+/// Why a field is not a number, and what to do, for messages.
 std::string numberProblem(const std::string& field, bool decimal_comma);
 
 }  // namespace tread::recordings

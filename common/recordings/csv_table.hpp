@@ -20,12 +20,12 @@ class RecordingError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A table of separated values, read whole, as spreadsheets and other people's programs write it.
-/** Lines end with LF, CR LF or CR; quoted fields may hold delimiters and line ends. Empty rows and
- * lines that begin with # are left out, empty fields behind the last column, too. Throws
+/// A table of separated values, read whole, as written by spreadsheets and third-party programs.
+/** Lines end with LF, CR LF or CR; quoted fields may contain delimiters and line ends. Empty rows,
+ * lines that begin with # and empty fields after the last column are ignored. Throws
  * RecordingError for a file that cannot be opened, is no UTF-8 text, has no rows, or has a row of
- * another length. A column is asked for by its name or by its number from 1; one that is missing
- * or of a name that is there twice throws RecordingError. */
+ * another length. A column is addressed by its name or by its number from 1; a missing column or
+ * an ambiguous name throws RecordingError. */
 class CsvTable {
  public:
   explicit CsvTable(const std::string& path, const CsvLayout& layout = {});
@@ -33,26 +33,26 @@ class CsvTable {
   CsvTable(std::string text, const std::string& path, const CsvLayout& layout = {});
 
   size_t rows() const { return rows_.size(); }
-  /// Of the file, from 1; behind the last row, that of the last one.
+  /// Line in the file, from 1; for a row beyond the end, that of the last row.
   size_t line(size_t row) const { return lines_[std::min(row, lines_.size() - 1)]; }
   /// Throws RecordingError that lists the columns needed if one is missing.
   void require(const std::vector<std::string>& names) const;
   const std::string& text(size_t row, std::string_view column) const;
-  /// Whether a field holds no measurement: empty, nan, inf, n/a and what else programs write.
+  /// Whether a field means "not measured": empty, nan, inf, n/a and similar.
   bool missing(size_t row, std::string_view column) const;
   /// A finite number; throws RecordingError otherwise.
   double number(size_t row, std::string_view column) const;
   double numberWithin(size_t row, std::string_view column, double min, double max) const;
   /// A whole number.
   int integer(size_t row, std::string_view column) const;
-  /// What the last digit of a column's numbers is worth, in the row where it is worth least; 0
-  /// where not all of them are written as 1.76414E+12.
+  /// Resolution of a column: the largest value of a last digit in it; 0 unless all numbers are
+  /// written like 1.76414E+12.
   double lastDigit(std::string_view column) const;
-  /// The lines below the header that were left out as its units, in words.
+  /// The lines below the header that were skipped as units, in words.
   std::vector<std::string> units() const;
-  /// That of a column, as "deg" also where [deg] or a sign of degrees stands there; or empty.
+  /// The unit of a column, "deg" also for [deg] or a degree sign; may be empty.
   std::string unit(std::string_view column) const;
-  /// "file:line: problem" for a row; behind the last one, for the last line.
+  /// "file:line: problem" for a row; beyond the end, for the last line.
   RecordingError error(size_t row, const std::string& problem) const;
   /// The same for the line of the header.
   RecordingError headerError(const std::string& problem) const;
@@ -73,7 +73,7 @@ class CsvTable {
   char delimiter_ = ',';
   bool decimal_comma_ = false;
   CsvLine header_;
-  std::map<std::string, size_t, std::less<>> columns_;  ///< kTwice for a name that is there twice
+  std::map<std::string, size_t, std::less<>> columns_;  ///< kTwice for a duplicate name
   size_t width_ = 0;
   std::vector<std::vector<std::string>> units_;
   std::vector<std::vector<std::string>> rows_;

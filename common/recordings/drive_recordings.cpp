@@ -13,7 +13,7 @@
 namespace tread::recordings {
 namespace {
 
-/// Rounded to micrometres, microradians: files are for people, too.
+/// Rounded to micrometres and microradians, for readability.
 double rounded(double value) {
   return std::round(value * 1e6) / 1e6 + 0.0;
 }
@@ -84,7 +84,7 @@ std::string joined(const std::vector<std::string>& lines) {
   return text;
 }
 
-/// The n-th largest of what the surfaces' sessions reach, per axis.
+/// The n-th largest reach of the surfaces' sessions, per axis.
 BodyCommand commonReach(const std::vector<Session>& sessions, const std::string& robot, size_t n) {
   std::map<std::string, BodyCommand> best;
   for (const Session& session : sessions) {
@@ -105,10 +105,10 @@ BodyCommand commonReach(const std::vector<Session>& sessions, const std::string&
   return {v[n - 1], w[n - 1]};
 }
 
-/// What the largest commands of the patterns are of the largest that were driven, if made to fit.
+/// Ratio of the largest pattern commands to the largest driven ones, when fitted.
 constexpr double kFittedShare = 0.6;
 
-/// Makes the recipe's commands smaller if they are larger than those that were driven; says so.
+/// Reduces the recipe's commands if they exceed the driven ones; adds a note.
 bool fitRecipe(DriveRequest& request, const BodyCommand& driven, std::vector<std::string>& notes) {
   const BodyCommand reach = request.recipe.reach();
   const bool reached = driven.v >= reach.v && driven.w >= reach.w;
@@ -121,7 +121,7 @@ bool fitRecipe(DriveRequest& request, const BodyCommand& driven, std::vector<std
   return true;
 }
 
-/// The sessions that are compared, and a recipe that fits them.
+/// The sessions to compare, and a recipe that fits them.
 SessionChoice chosenSessions(const std::vector<Session>& sessions, const std::string& robot,
                              DriveRequest& request, std::vector<std::string>& notes) {
   if (!request.sessions.empty()) {
@@ -136,7 +136,7 @@ SessionChoice chosenSessions(const std::vector<Session>& sessions, const std::st
   return comparableSessions(sessions, robot, request.recipe.reach());
 }
 
-/// One clear line if sessions of too few surfaces were chosen.
+/// Throws one clear line if sessions of too few surfaces were chosen.
 void requireSurfaces(const DriveRequest& request, const std::string& robot,
                      const std::vector<Session>& sessions, const SessionChoice& choice,
                      const std::vector<std::string>& notes) {

@@ -25,11 +25,11 @@
 //      constant command is a failure of the lidar's poses.
 
 // Recordings of the same patterns on several surfaces, built from drives in which no command was
-// ever given twice: windows of each surface are moved to the patterns' commands (above)
-// and integrated. Nothing about any robot, surface or session is known here. Units: m, rad, s.
+// given twice: the windows of each surface are shifted to the patterns' commands (above) and
+// integrated. This code knows no particular robot, surface or session. Units: m, rad, s.
 namespace tread::recordings {
 
-/// One pattern to build: its command held for its whole length.
+/// One pattern to build: its command, held for its whole length.
 struct PatternWish {
   std::string name;
   BodyCommand command;
@@ -39,10 +39,10 @@ struct PatternWish {
 struct PatternRecipe {
   std::string name = "drive";
   double period = 0.05;  ///< [s] of the recordings' commands
-  double length = 2.0;   ///< [s] of a pattern; that of a steady window
-  int neighbours = 30;   ///< windows nearest to a command that its mean comes from
-  int deviations =
-      15;  ///< steps whose deviation is used, with both signs: twice as many recordings
+  double length = 2.0;   ///< [s] of a pattern; equal to that of a steady window
+  int neighbours = 30;   ///< number of windows nearest to a command whose mean is taken
+  int deviations = 15;   ///< number of steps whose deviation is used, with both signs: gives twice
+                         ///< as many recordings
   std::vector<PatternWish> patterns;
 
   size_t samples() const;
@@ -50,7 +50,7 @@ struct PatternRecipe {
   BodyCommand reach() const;
 };
 
-/// What is built without --recipe; config/patterns/recipes/drive.yaml says the same.
+/// The recipe used without --recipe; equal to config/patterns/recipes/drive.yaml.
 PatternRecipe defaultRecipe();
 
 /// Reads a recipe; throws ConfigError at file:line.
@@ -62,28 +62,28 @@ PatternRecipe scaledRecipe(PatternRecipe recipe, double v_factor, double w_facto
 /// Motion of one pattern on one surface.
 struct LocalMotion {
   TwistLine mean;
-  std::vector<TwistLine> deviations;  ///< one sign; add and subtract
-  size_t implausible = 0;             ///< steps passed over for deviations: their windows disagree
-  double reach = 0.0;                 ///< [1] distance of the farthest window used
-  size_t windows = 0;                 ///< that the mean comes from
+  std::vector<TwistLine> deviations;  ///< of one sign; use both + and -
+  size_t implausible = 0;  ///< steps not used for deviations because their windows disagree
+  double reach = 0.0;      ///< [1] distance of the farthest window used
+  size_t windows = 0;      ///< used for the mean
 };
 
 /// The motion for a command; `reach` holds the largest |v| and |w| of the patterns.
-/** Throws RecordingError if there are fewer windows than neighbours wanted, fewer than `deviations`
- * steps of which both windows are there and agree, or none with as large a command. */
+/** Throws RecordingError if there are fewer windows than neighbours required, fewer than
+ * `deviations` steps with two windows that agree, or no window with a command this large. */
 LocalMotion localMotion(const std::vector<SteadyWindow>& windows, const BodyCommand& command,
                         const PatternRecipe& recipe);
 
 /// Profiles of all recordings of a motion: the mean plus and minus each deviation.
 std::vector<TwistLine> recordedProfiles(const LocalMotion& motion);
 
-/// What is made of a folder of drives.
+/// A request to build recordings from a folder of drives.
 struct DriveRequest {
   std::string folder;                 ///< sessions.csv, steps_quality.csv, steps/
-  std::string robot;                  ///< part of its name; empty = the only one
+  std::string robot;                  ///< part of the robot's name; empty = the only one
   std::vector<std::string> sessions;  ///< empty = all that are comparable
   PatternRecipe recipe = defaultRecipe();
-  /// The commands may be made smaller where too few surfaces were driven with as large ones.
+  /// Commands may be reduced if too few surfaces were driven with commands that large.
   bool fit_recipe = true;
   size_t min_surfaces = 2;
 };
@@ -91,12 +91,12 @@ struct DriveRequest {
 /// Windows of a surface.
 struct SurfaceWindows {
   std::string surface;                ///< as the sessions call it
-  std::vector<std::string> sessions;  ///< that it was driven in
+  std::vector<std::string> sessions;  ///< on this surface
   std::vector<SteadyWindow> used;
   std::map<std::string, int> left_out;  ///< windows by reason
 };
 
-/// What came of a surface.
+/// Result for one surface.
 struct SurfaceSummary {
   std::string surface;  ///< the name of its recordings
   std::vector<std::string> sessions;
@@ -105,29 +105,28 @@ struct SurfaceSummary {
   std::vector<LocalMotion> motions;  ///< by pattern
 };
 
-/// Recordings and how they came about.
+/// Recordings and their origin.
 struct DriveRecordings {
   PatternRecordings recordings;
   std::string robot;
-  std::vector<std::string> notes;  ///< sessions and surfaces left out, commands made smaller
+  std::vector<std::string> notes;  ///< sessions and surfaces left out, reduced commands
   std::vector<SurfaceSummary> surfaces;
 };
 
-/// A surface's name as a file may be called: letters, digits, '-' and '_'.
+/// A surface's name as a file name: letters, digits, '-' and '_'.
 std::string fileName(const std::string& surface);
 
-/// The recordings of windows that are already there; `notes` gets a line for each surface left out.
+/// Makes recordings from given windows; `notes` gets a line for each surface left out.
 /** Track commands by `baseline` [m]. Entry and exit class of a pattern is its own steady motion,
- * the mean over the surfaces. Throws RecordingError if fewer than `min_surfaces` are left. */
+ * averaged over the surfaces. Throws RecordingError if fewer than `min_surfaces` remain. */
 DriveRecordings recordingsOf(const std::vector<SurfaceWindows>& windows,
                              const PatternRecipe& recipe, double baseline, size_t min_surfaces);
 
-/// Reads the folder and makes recordings of it; throws RecordingError or RecordingError, one line
-/// each.
+/// Reads the folder and makes recordings of it; throws RecordingError with one line.
 DriveRecordings recordingsFromDrives(const DriveRequest& request);
 
-/// The averaged set of a surface (index into the recordings): what a robot that knows this surface
-/// ships with. Its classes are this surface's own steady motions.
+/// The averaged set of a surface (index into the recordings): the set to ship with a robot on this
+/// surface. Its classes are this surface's own steady motions.
 PatternSet averagedSet(const DriveRecordings& drives, size_t surface);
 
 /// Lines for people: what was used and left out, and each pattern's mean twist and spread.

@@ -21,7 +21,7 @@ int64_t microseconds(double seconds) {
   return std::llround(seconds * 1e6);
 }
 
-/// Own draws: those of the standard library differ between its makers.
+/// Own shuffle: the standard library's differs between implementations.
 void shuffle(std::vector<size_t>& values, std::mt19937_64& random) {
   for (size_t i = values.size(); i > 1; --i)
     std::swap(values[i - 1], values[static_cast<size_t>(random() % i)]);
@@ -109,7 +109,7 @@ class LogMaker {
     addIns(motion, start, last);
     addMotor(pattern, start, end, last);
     addRecords(pattern, start, end);
-    // The robot drives on unmeasured; where to is of no interest, since a new track begins.
+    // The robot moves on unmeasured; its path does not matter, because a new track begins.
     T_map_start_ = T_map_start_ * motion.poseAt(static_cast<double>(last - start) * 1e-6);
     now_ = last + microseconds(request_.silence);
   }
@@ -184,7 +184,7 @@ class LogMaker {
   DriveLogBuilder log_;
   int64_t now_ = kOriginUs;  ///< [us] when the next execution's lead begins
   int64_t execution_ = 0;
-  bool seen_ = false;  ///< by the INS: later tracks begin with a jump
+  bool seen_ = false;  ///< by the INS: later tracks start with a jump
   Pose2 T_map_start_;
 };
 

@@ -6,7 +6,7 @@
 
 namespace tread::recordings {
 
-/// Types of other projects' robots, MAEBot and MBot; of equal fingerprint there is one.
+/// Types of other projects' robots, MAEBot and MBot; one for each fingerprint.
 const MessageTypes& foreignTypes();
 
 }  // namespace tread::recordings

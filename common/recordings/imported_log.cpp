@@ -16,7 +16,7 @@ namespace {
 
 constexpr int64_t kImportOriginUs = 1'000'000;
 constexpr int64_t kPeriodUs = 50'000;
-constexpr int64_t kSame = 1000;  // [us] by which times differ that are meant to be one
+constexpr int64_t kSame = 1000;  // [us] of difference between times that are meant to be equal
 constexpr int64_t kImportRunId = 1;
 
 int64_t utimeOf(double seconds) {
@@ -39,7 +39,7 @@ const CommandHole* holeWithin(const std::vector<CommandHole>& holes, double begi
   return hole != holes.end() && hole->begin < end ? &*hole : nullptr;
 }
 
-/// The n-th execution of a command; nothing where it would begin without the command.
+/// The n-th execution of a command; nullopt if the command would be missing at its start.
 std::optional<Planned> plannedExecution(const CommandRun& run, int n, const ExecutionLayout& layout,
                                         const std::vector<CommandHole>& holes) {
   const double begin = run.begin + layout.offset + n * layout.length;
@@ -106,13 +106,13 @@ class ImportMaker {
     int64_t last = 0;
     for (const Fix& fix : fixes) {
       const int64_t utime = utimeOf(fix.time);
-      // Two fixes within a microsecond are one.
+      // Two fixes within a microsecond count as one.
       if (utime <= last) continue;
       auto ins = blank<ins_t>();
       fill(ins, fix);
       const bool gap = last > 0 && utime - last > std::llround(longest_step * 1e6);
       if (gap) ins.ins_status |= ins_t::STATUS_GAP;
-      // The same reading must not be said twice.
+      // Do not send the same reading twice.
       if (!gyro.empty()) ins.rate[2] = kUnknown;
       messages[last = utime] = ins;
     }
@@ -205,7 +205,7 @@ class ImportMaker {
     }
   }
 
-  /// Names the execution that a sample belongs to, if it does.
+  /// Enters the execution that a sample belongs to, if any.
   static void place(motor_t& motor, const Planned& planned) {
     const int64_t since = motor.utime - planned.record.started + kPeriodUs / 2;
     if (since < 0) return;
@@ -237,7 +237,7 @@ std::vector<LogEvent> makeLog(const RecordedDrive& recording, const Session& ses
   if (!recording.drive.empty()) begin = recording.drive.front().time;
   if (!recording.fixes.empty()) begin = std::min(begin, recording.fixes.front().time);
   if (!recording.scans.empty()) begin = std::min(begin, recording.scans.front().time);
-  // Steps are interpolated to 20 Hz in the aligned format; elsewhere fixes come at the rate of the
+  // In the aligned format poses are interpolated to 20 Hz; elsewhere fixes come at the rate of the
   // ICP.
   const double step = format == "aligned" ? kPeriod : 1.0 / session.pose_rate;
   ImportMaker maker(counts);

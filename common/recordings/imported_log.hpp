@@ -11,19 +11,18 @@
 #include "common/pattern/pattern.hpp"
 #include "common/recordings/sessions.hpp"
 
-// The three formats become one recorded drive: times in seconds on one axis, steps of separate
-// recordings apart from each other by a silence in which the INS is gone, poses at the time at
-// which they were measured.
+// Converts the three formats to one recorded drive: times in seconds on one axis, steps that were
+// recorded separately divided by a silence without INS, poses at the time of their measurement.
 
 // Which executions a log gets. The recordings hold one command for six seconds and enter it at the
 // speed of the one before. From `offset` on (delay and three time constants of the wheels later)
 // the motion is nearly steady, and `executions` patterns of `length` follow one after the other:
 // each is the same command series entered in its own steady motion. For the k-th command of a log
-// (k = 1, 2, ...), the n-th of its executions has
-//     execution id = 10 k + n,   pattern id = the recording's step number,   set version 1,   run
-//     id 1.
-// A command that did not last until the end of an execution leaves it aborted, with the reason; so
-// does a time of which no command is known, and no MOTOR is made up for it.
+// (k = 1, 2, ...), its n-th execution has
+//     execution id = 10 k + n,   pattern id = the recording's step number,   set version 1,
+//     run id 1.
+// If a command ends before an execution does, the execution is aborted, with the reason. The same
+// holds for a time without a known command, for which no MOTOR is invented.
 namespace tread::recordings {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -53,22 +52,22 @@ struct DriveSample {
   Command command;                 ///< by channel, in the units of their kinds
   Command speed;                   ///< [m/s] of the wheels' rims, by channel
   bool automatic = true;           ///< false: idle or driven by the operator
-  bool apart = false;              ///< recorded apart from the sample before
+  bool apart = false;              ///< recorded separately from the previous sample
   double voltage = kUnknown;       ///< [V]
   Command current = allUnknown();  ///< [A] by channel
 };
 
 /// One command held for a while.
 struct CommandRun {
-  int step = 0;            ///< the recording's number of the command
+  int step = 0;            ///< number of the command in the recording
   double begin = 0.0;      ///< [s] first sample with it
   double end = 0.0;        ///< [s] one period after the last sample with it
   std::string end_reason;  ///< why it ended
 };
 
-/// What the gyro said at a time.
+/// A gyro reading.
 struct GyroReading {
-  double time = 0.0;      ///< [s]; the gyro is not late
+  double time = 0.0;      ///< [s]; the gyro has no lag
   double yaw_rate = 0.0;  ///< [rad/s]
 };
 
@@ -97,22 +96,22 @@ struct RecordedDrive {
   std::vector<DriveSample> drive;    ///< in order of time
   std::vector<CommandRun> runs;      ///< in order of time
   std::vector<TimedScan> scans;      ///< in order of time
-  std::vector<TimedGround> grounds;  ///< in order of time, where the recording names them
+  std::vector<TimedGround> grounds;  ///< in order of time, if the recording names them
 };
 
-/// Silence between steps that were recorded apart [s].
+/// Silence between steps that were recorded separately [s].
 inline constexpr double kSilence = 2.0;
 /// Period of the recordings [s].
 inline constexpr double kPeriod = 0.05;
 /// Longest gap between poses that is interpolated [s].
 inline constexpr double kMaxInterpolated = 0.3;
-/// A command is taken to hold until the next one for no longer than this [s].
+/// A command is assumed to hold until the next one, at most this long [s].
 inline constexpr double kLongestHold = 0.3;
-/// Why a command ended where the recording has none.
+/// Why a command ended where the recording lacks commands.
 inline constexpr const char* kCommandsMissing = "commands are missing";
 
-/// steps/*.csv: poses held and late; a fix where pose_new says so. Throws RecordingError.
-/** A session without pose lag leaves the poses at the time at which they were logged. */
+/// steps/*.csv: poses are held and late; a new fix where pose_new is set. Throws RecordingError.
+/** For a session without pose lag the poses keep the time at which they were logged. */
 RecordedDrive readSteps(const std::string& path, const Session& session,
                         Gyro gyro = Gyro::kAtFixes);
 /// aligned/*.csv: lag already removed, poses interpolated to 20 Hz; none inside ICP gaps above 0.3
@@ -128,16 +127,16 @@ struct ExecutionLayout {
   int executions = 2;   ///< per command, at most 9
 };
 
-/// A time of which no command is known.
+/// A time without a known command.
 struct CommandHole {
   double begin = 0.0;  ///< [s] one period after the last command
   double end = 0.0;    ///< [s]
 };
 
-/// Where samples that were recorded together are further apart than a command is taken to hold.
+/// Where consecutive samples of one recording are farther apart than a command is assumed to hold.
 std::vector<CommandHole> commandHoles(const std::vector<DriveSample>& drive);
 
-/// What was put into a log.
+/// Contents of a generated log.
 struct ImportCounts {
   size_t ins = 0;
   size_t motor = 0;

@@ -26,12 +26,12 @@ void readPattern(ConfigReader& reader, PatternRecipe& recipe) {
   recipe.patterns.push_back(wish);
 }
 
-/// Beyond the farthest neighbour, so that it counts a little, too.
+/// Beyond the farthest neighbour, so that it has some weight, too.
 constexpr double kBandwidth = 1.1;
-/// Differences beyond so many robust standard deviations are no motion of a vehicle.
+/// Differences beyond this many robust standard deviations are no vehicle motion.
 constexpr double kPlausible = 3.5;
 constexpr double kMadToSigma = 1.4826;  // of a normal distribution
-/// Residuals below these are never called large: m/s, m/s, rad/s and the same per second.
+/// Lower limits of the residual scales: m/s, m/s, rad/s and the same per second.
 constexpr double kSmall[6] = {0.01, 0.01, 0.01, 0.01, 0.01, 0.01};
 
 struct Neighbour {
@@ -86,7 +86,7 @@ const SteadyWindow* partnerOf(const std::vector<SteadyWindow>& windows, const St
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-/// (c_1 - c_2) / sqrt(2) of each step of which both windows are there, in the order of `sorted`.
+/// (c_1 - c_2) / sqrt(2) of each step with both windows, in the order of `sorted`.
 std::vector<Vector6> differencesOf(const std::vector<SteadyWindow>& windows,
                                    const std::vector<Neighbour>& sorted) {
   std::vector<Vector6> differences;
@@ -99,7 +99,7 @@ std::vector<Vector6> differencesOf(const std::vector<SteadyWindow>& windows,
   return differences;
 }
 
-/// What a component's difference may be at most, from the `count` nearest steps.
+/// Limit of a component's difference, from the `count` nearest steps.
 Vector6 plausibleDifference(const std::vector<Vector6>& differences, size_t count) {
   Vector6 bound;
   count = std::min(count, differences.size());
@@ -126,7 +126,7 @@ void addDeviations(const std::vector<SteadyWindow>& windows, const std::vector<N
   }
 }
 
-/// A command that is larger than any that was driven would be a guess.
+/// A command larger than any driven one would be extrapolated.
 void requireWithin(const std::vector<SteadyWindow>& windows, const BodyCommand& command) {
   BodyCommand driven;
   for (const SteadyWindow& window : windows) {

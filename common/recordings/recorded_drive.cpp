@@ -10,7 +10,7 @@
 namespace tread::recordings {
 namespace {
 
-/// A drive is no longer than this, and turns no more often; what is beyond is no pose.
+/// A drive is no longer than this, and turns no more often; poses beyond are invalid.
 constexpr double kFarthest = 100'000.0;   // [m]
 constexpr double kMostTurned = 10'000.0;  // [rad]
 
@@ -29,8 +29,8 @@ struct StepRows {
   double origin;
 };
 
-/// Groups of rows by step, placed one after the other with a silence between them.
-/** `before` [s]: how much earlier than its row a fix can be. */
+/// Groups rows by step and places the groups in sequence with a silence between them.
+/** `before` [s]: how much earlier than its row a fix may be. */
 std::vector<StepRows> placedSteps(const CsvTable& table, double before) {
   std::vector<StepRows> steps;
   double end = 0.0;
@@ -69,8 +69,8 @@ size_t rowFrom(const CsvTable& table, size_t first, size_t last, double time) {
   return first;
 }
 
-/// The gyro's reading at a fix, for poses that are late and a gyro that is on time: the one nearest
-/// to a time among the rows [first, last), within one period; else NaN.
+/// The gyro's reading at a fix, for late poses and a timely gyro: the one nearest to a time among
+/// the rows [first, last), within one period; else NaN.
 double gyroAt(const CsvTable& table, size_t first, size_t last, double time, const char* gyro,
               double sign) {
   double nearest = 1.01 * kPeriod;
@@ -86,7 +86,7 @@ double gyroAt(const CsvTable& table, size_t first, size_t last, double time, con
   return reading;
 }
 
-/// The two formats by step: a sample for each row, and the fixes that `fixOf` finds in it.
+/// The two formats by step: a sample for each row, and the fixes that `fixOf` extracts from it.
 template <class FixOf>
 RecordedDrive readByStep(const CsvTable& table, const Session& session, double before,
                          const FixOf& fixOf) {
@@ -110,7 +110,7 @@ RecordedDrive readByStep(const CsvTable& table, const Session& session, double b
       new_track = false;
       drive.fixes.push_back(*fix);
     }
-    // From t_s = 0 on, where the step's command began.
+    // From t_s = 0, where the step's command began.
     drive.runs.push_back({table.integer(rows.first, "step"), rows.origin,
                           rows.origin + table.number(rows.last - 1, "t_s") + kPeriod,
                           "the recording of the step ends"});
@@ -147,7 +147,7 @@ Fix continuousFix(const CsvTable& table, size_t row, double origin, const Sessio
   fix.z = metres(table, row, "map_z_m");
   fix.roll = angle(table, row, "map_roll_rad");
   fix.pitch = angle(table, row, "map_pitch_rad");
-  // Rows that can hold the gyro of that time, generously.
+  // Rows that can contain the gyro of that time, with a margin.
   const auto back = static_cast<size_t>((session.pose_lag + 1.0) / kPeriod);
   fix.yaw_rate =
       gyroAt(table, row > back ? row - back : 0, row + 1,
@@ -220,7 +220,7 @@ RecordedDrive readAligned(const std::string& path, const Session& session) {
   const CsvTable table(path);
   return readByStep(table, session, 0.0,
                     [&](size_t row, const StepRows& rows) -> std::optional<Fix> {
-                      // What was interpolated across a long ICP gap is not a measurement.
+                      // Interpolation across a long ICP gap is no measurement.
                       if (table.number(row, "pose_gap_s") > kMaxInterpolated) return std::nullopt;
                       Fix fix;
                       fix.time = rows.origin + table.number(row, "t_s");
@@ -232,7 +232,7 @@ RecordedDrive readContinuous(const std::string& path, const Session& session, Gy
   const CsvTable table(path);
   RecordedDrive drive;
   RunFinder finder(drive.runs);
-  // The first fix is measured before the first row.
+  // The first fix precedes the first row.
   const double origin = kSilence;
   for (size_t row = 0; row < table.rows(); ++row) {
     if (row > 0 && table.number(row, "t_s") <= table.number(row - 1, "t_s"))

@@ -85,7 +85,7 @@ class SurfaceReader {
     result_.executions[pattern_].emplace_back().reserve(wanted());
   }
 
-  /// Whether the execution that was read has all of its samples.
+  /// Checks that the execution just read has all of its samples.
   void requireWhole() const {
     if (open_ && poses().size() != wanted())
       throw error(place() + " ends before this line with " + std::to_string(poses().size()) +
@@ -131,7 +131,7 @@ void appendExecution(std::string& text, const std::string& pattern, size_t numbe
   }
 }
 
-/// The files of the surfaces, sorted, so that they are read alike on every machine.
+/// The files of the surfaces, sorted, so that their order is the same on every machine.
 std::vector<fs::path> surfaceFiles(const std::string& folder) {
   std::vector<fs::path> files;
   std::error_code failure;
@@ -158,18 +158,18 @@ void requirePatternName(const std::string& name) {
                          "recordings could not hold; rename it");
 }
 
-/// A file that holds the same set already keeps the comments that people wrote into it.
+/// An existing file with the same set keeps its comments.
 void writePatterns(const std::string& path, const PatternSet& patterns) {
   std::error_code failure;
   if (fs::exists(path, failure)) try {
       if (readPatternFile(path).checksum() == patterns.checksum()) return;
     } catch (const std::exception&) {
-      // What cannot be read is replaced.
+      // An unreadable file is replaced.
     }
   writeText(path, formatPatterns(patterns));
 }
 
-/// What makes two sets different ones to execute, in words; empty if nothing.
+/// How two sets differ in what is executed, in words; empty if they do not.
 std::string executedDifference(const PatternSet& recorded, const PatternSet& executed) {
   const PatternSetContent& there = recorded.content();
   const PatternSetContent& here = executed.content();
@@ -299,7 +299,7 @@ bool addSurface(const std::string& folder, const PatternSet& executed,
   requireAddable(folder, executed, surface.surface);
   std::error_code failure;
   const bool was_there = fs::exists(fs::path(folder) / (surface.surface + ".csv"), failure);
-  // Predictions may differ from those of the recordings, which keep their own.
+  // Predictions may differ from those of the recordings, which are kept.
   const std::string patterns = (fs::path(folder) / kPatterns).string();
   const bool has_patterns = fs::exists(patterns, failure);
   writeRecordings(folder, {has_patterns ? readPatternFile(patterns) : executed, {surface}});

@@ -10,14 +10,14 @@
 #include "common/pattern/pattern.hpp"
 #include "common/recordings/csv_table.hpp"
 
-// Recordings: what patterns really did, executed many times on one surface each (RP_S, section V.A
-// of the paper). They lie in a folder:
+// Recordings: the measured motion of patterns, each executed many times on one surface (RP_S,
+// section V.A of the paper). A folder holds:
 //   patterns.yaml    the pattern set that was executed (commands, classes; predictions do not
 //                    matter)
 //   SURFACE.csv      a surface: pattern,execution,sample,x_m,y_m,yaw_rad; sample counts from 1, the
 //                    pose after that command relative to the start, yaw unwrapped. The rows of an
-//                    execution stand together; executions of a pattern have rising numbers from 1,
-//                    with gaps where some were taken out by hand. Lines that begin with # are
+//                    execution are consecutive; executions of a pattern have rising numbers from 1,
+//                    with gaps where some were removed by hand. Lines that begin with # are
 //                    comments. Every pattern has at least one execution on every surface.
 // Units: m, rad, s.
 namespace tread::recordings {
@@ -31,14 +31,14 @@ struct SurfaceRecordings {
   std::vector<std::vector<Execution>> executions;  ///< by pattern, in the order of the set
 };
 
-/// Throws RecordingError unless there are recordings of as many patterns as the set has.
+/// Throws RecordingError if the number of patterns differs from the set's.
 void requireSamePatternCount(const SurfaceRecordings& surface, const PatternSet& set);
 
-/// Whether an execution has as many poses as that, all of them finite.
+/// Whether an execution has this many poses, all of them finite.
 bool isWhole(const Execution& poses, size_t samples);
 
-/// Throws RecordingError for what readRecordings() would refuse: another number of patterns, a
-/// pattern without an execution, one that is not whole, names that files cannot hold.
+/// Throws RecordingError for anything that readRecordings() would refuse: another number of
+/// patterns, a pattern without an execution, an incomplete execution, names that are no file names.
 void requireReadable(const SurfaceRecordings& surface, const PatternSet& set);
 
 /// Recordings of one pattern set on several surfaces.
@@ -49,78 +49,79 @@ struct PatternRecordings {
 
 /// Reads a folder, its surfaces sorted by name; throws RecordingError.
 PatternRecordings readRecordings(const std::string& folder);
-/// Writes a folder, which is made if needed; files of other surfaces there stay. Throws
+/// Writes a folder, creating it if needed; files of other surfaces there stay. Throws
 /// RecordingError.
 void writeRecordings(const std::string& folder, const PatternRecordings& recordings);
 
 /// Reads the text of a surface's file; `path` stands for it in messages.
-/** The rows of an execution stand together, samples counting from 1 to the pattern's number of
- * commands; executions of a pattern have rising numbers, with gaps where some were taken out, and
- * patterns may take turns. Throws RecordingError at file:line. */
+/** The rows of an execution are consecutive, samples counting from 1 to the pattern's number of
+ * commands; executions of a pattern have rising numbers, with gaps where some were removed, and
+ * patterns may alternate. Throws RecordingError at file:line. */
 SurfaceRecordings parseSurface(const std::string& text, const std::string& path,
                                const std::string& surface, const PatternSet& patterns);
-/// Text of a surface's file; parseSurface() of it gives the same numbers, bit for bit.
+/// Text of a surface's file; parseSurface() of it restores the same numbers, bit for bit.
 std::string formatSurface(const SurfaceRecordings& recordings, const PatternSet& patterns);
 
-/// Refuses what could not be added later, before anything is driven for it: a bad name, a folder
-/// that cannot be made or written to, recordings of other patterns.
-/** Order, names, classes, commands, kind and period must be the same, since recordings count only
- * for what was executed; a folder without recordings is fine. Throws RecordingError. */
+/// Refuses early, before any driving, what could not be added later: a bad name, a folder that
+/// cannot be created or written, recordings of other patterns.
+/** Order, names, classes, commands, kind and period must be equal, because recordings are valid
+ * only for the commands that were executed; a folder without recordings is fine. Throws
+ * RecordingError. */
 void requireAddable(const std::string& folder, const PatternSet& executed,
                     const std::string& surface);
 
 /// Adds a surface to a folder of recordings, or replaces it.
-/** patterns.yaml that is there already stays as it is. Returns whether the surface was there
- * before. Throws RecordingError as above and as writeRecordings() does. */
+/** An existing patterns.yaml stays unchanged. Returns whether the surface existed before. Throws
+ * RecordingError as above and as writeRecordings() does. */
 bool addSurface(const std::string& folder, const PatternSet& executed,
                 const SurfaceRecordings& surface);
 
-/// What averaging left out of one pattern, and why.
+/// Executions of one pattern that averaging left out, and why.
 struct AverageNote {
   std::string pattern;
   int used = 0;
-  bool by_twist = false;              ///< body twists were averaged, not poses: the turn is strong
+  bool by_twist = false;  ///< body twists were averaged, not poses, because the turn is strong
   std::vector<std::string> rejected;  ///< a line for each execution that was left out
   std::vector<size_t> left_out;       ///< the same executions by index, from 0
 };
 
-/// When an execution is no fair one, and how few are too few.
+/// When an execution is invalid, and how many valid ones are needed.
 struct AverageLimits {
   double strong_turn = 0.5;  ///< [rad] from here on twists are averaged
   double max_speed = 0.0;    ///< [m/s] of a step, over 0.1 s; 0 = 1.5 times the median's largest
-  int min_executions = 3;    ///< fewer fair ones are refused
+  int min_executions = 3;    ///< fewer valid ones are refused
 };
 
 /// IP_S: the set with averaged trajectories and the recorded spread of each end as its covariance.
-/** Strong turns are averaged as body twists sample by sample, because the mean of poses is shorter
- * than any of them. The spread is about the mean of the end poses (n - 1). An execution of another
- * length, with a number that is not finite, an impossible speed or a jump of yaw is left out and
- * noted, one note a pattern in the order of the set. Name, version and classes stay; times_learned
- * is 0. Throws RecordingError if a pattern has too few. */
+/** Strong turns are averaged as body twists sample by sample, because the mean of such poses is
+ * shorter than each of them. The spread is about the mean of the end poses (n - 1). An execution
+ * of another length, with a number that is not finite, an impossible speed or a jump of yaw is
+ * left out and noted, one note per pattern in the order of the set. Name, version and classes
+ * stay; times_learned is 0. Throws RecordingError if a pattern has too few executions. */
 PatternSet averageSet(const PatternSet& patterns, const SurfaceRecordings& recordings,
                       const AverageLimits& limits, std::vector<AverageNote>& notes);
 
-// Recordings as a robot would have sent them, so that the real learner process can hear them. First
-// all executions on one surface, then those on the other; MARK names the surface. Each execution is
-// a track of its own: INS and MOTOR tell of it from `lead` before its start to `tail` after its
-// end, and are silent between two. The windows that the recordings come from are steady, so before
-// its first and after its last pose the robot is taken to move by the mean twist of the recording
-// (that of its first sample alone would be mostly noise of the lidar's poses).
+// Recordings as a robot would have sent them, so that the real learner process can receive them.
+// First all executions on one surface, then those on the other; MARK names the surface. Each
+// execution is a track of its own: INS and MOTOR cover it from `lead` before its start to `tail`
+// after its end, and are silent in between. The windows behind the recordings are steady, so before
+// the first and after the last pose the robot is assumed to move with the recording's mean twist
+// (the twist of the first sample alone would be mostly noise of the lidar's poses).
 //   INS        100 Hz; between two recorded poses by the constant twist that leads from one to the
 //              other
 //   MOTOR      20 Hz, the steady command; execution and index while the pattern is played
 //   EXECUTION  on start and end, the last eight records; they name the version of the shipped set
 
 struct ExecutionLogRequest {
-  int executions = 40;   ///< on each surface; patterns take turns in drawn order
-  uint64_t seed = 1;     ///< draws that order, and which recordings are played
+  int executions = 40;   ///< on each surface; patterns alternate in a random order
+  uint64_t seed = 1;     ///< seed of that order and of the choice of recordings
   double lead = 0.5;     ///< [s]
   double tail = 0.3;     ///< [s]
   double silence = 1.0;  ///< [s] between two executions
 };
 
 /// The log; `shipped` is the set that the executions name, with the patterns of the recordings.
-/** Throws RecordingError if they do not fit. Same arguments, same bytes. */
+/** Throws RecordingError if they do not match. Deterministic: same arguments, same bytes. */
 std::vector<LogEvent> executionLog(const PatternSet& shipped, const SurfaceRecordings& from,
                                    const SurfaceRecordings& to, const ExecutionLogRequest& request);
 

@@ -12,9 +12,8 @@
 #include "common/pattern/pattern.hpp"
 
 // A folder of recorded drives: sessions.csv (robot, surface, geometry, lag of the poses),
-// steps_quality.csv (each held command, and whether its step is fit for use), steps/SESSION.csv
-// (what was driven, at 20 Hz, by step and window). Further columns and files are not looked at.
-// Units: m, rad, s.
+// steps_quality.csv (each held command, and whether its step is usable), steps/SESSION.csv (the
+// drive at 20 Hz, by step and window). Other columns and files are ignored. Units: m, rad, s.
 namespace tread::recordings {
 
 // The body twist over a steady window of T seconds as a line in time:
@@ -23,16 +22,16 @@ namespace tread::recordings {
 //   p(t)   = p_0 + integral of R(yaw(s)) (v_x(s), v_y(s)) ds.
 // Given yaw(t) the second is linear in p_0, v_x, v_x', v_y, v_y': two robust linear least squares.
 
-/// How a robust fit weighs its rows.
+/// How a robust fit groups and scales its rows.
 struct HuberLimits {
-  int group = 1;             ///< so many neighbouring rows belong to one observation
-  double least_scale = 0.0;  ///< [unit of b] smaller residuals are never called large
+  int group = 1;             ///< number of neighbouring rows of one observation
+  double least_scale = 0.0;  ///< [unit of b] lower limit of the residual scale
 };
 
 /// x that minimises the sum of rho(|A x - b| per observation), rho of Huber (k = 1.345 scales).
-/** Solved by iteratively reweighted least squares (QR); the scale is 1.4826 times the median of the
- * residuals' lengths per row, at least `least_scale`. `prior` holds a weight for each observation;
- * those of zero do not count. Deterministic. */
+/** Solved by iteratively reweighted least squares (QR); the scale is 1.4826 times the median
+ * residual length per row, at least `least_scale`. `prior` holds a weight for each observation;
+ * zero excludes it. Deterministic. */
 Eigen::VectorXd huberFit(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
                          const Eigen::VectorXd& prior, const HuberLimits& limits);
 
@@ -55,12 +54,12 @@ struct TwistLine {
   static TwistLine of(const Eigen::Matrix<double, 6, 1>& vector);
   /// The twist `time` seconds after the beginning of a window of `duration`.
   Twist2 at(double time, double duration) const;
-  /// What the mirrored robot would do.
+  /// The motion of the mirrored robot.
   TwistLine mirrored() const;
 };
 
 /// [s] after a command its motion is steady: a delay of 0.4 s and four time constants of 0.35 s, as
-/// skid-steer robots of 70 to 500 kg have them. What was measured earlier is not used.
+/// for skid-steer robots of 70 to 500 kg. Earlier measurements are not used.
 inline constexpr double kSettle = 1.8;
 
 /// Why a window cannot be smoothed, in words (a gap of more than 0.4 s, fewer than 5 poses); empty
@@ -73,7 +72,7 @@ TwistLine smoothed(const std::vector<WindowPose>& poses, double duration);
 /// Poses after each of `samples` periods, relative to the start: the profile integrated.
 std::vector<Pose2> integrated(const TwistLine& profile, size_t samples, double period);
 
-/// What the wheels are told, as body motion of an ideal differential drive.
+/// A wheel command as body motion of an ideal differential drive.
 struct BodyCommand {
   double v = 0.0;  ///< [m/s] + forward
   double w = 0.0;  ///< [rad/s] + counter-clockwise
@@ -86,22 +85,23 @@ struct CommandStep {
   bool ok = false;
 };
 
-/// What the tables say about one recording.
+/// One recording as described by the tables.
 struct Session {
   std::string name;
   std::string robot;
   std::string surface;
   double wheel_radius = 0.0;  ///< [m]
-  double baseline = 0.0;      ///< [m] that turns (v, w) commands into wheel speeds
+  double baseline = 0.0;      ///< [m] converts (v, w) commands to wheel speeds
   double pose_lag = 0.0;      ///< [s] poses are logged this much after they were measured
   // Of sessions.csv, for the import; readSessions() leaves them.
-  bool lag_kept = false;           ///< poses stay where they were logged; pose_lag is 0 then
-  double pose_rate = 0.0;          ///< [Hz]
-  double imu_sign = 1.0;           ///< of the gyro in raw files, so that + is counter-clockwise
-  bool absolute_attitude = false;  ///< roll and pitch in the map, not changes in a step
-  size_t rows = 0;                 ///< of the steps file
+  bool lag_kept = false;   ///< poses stay where they were logged; pose_lag is 0 then
+  double pose_rate = 0.0;  ///< [Hz]
+  double imu_sign = 1.0;   ///< sign of the gyro in raw files that makes counter-clockwise positive
+  bool absolute_attitude =
+      false;        ///< roll and pitch are in the map frame, not relative within a step
+  size_t rows = 0;  ///< of the steps file
   // Of readSessions() alone.
-  std::string problem;             ///< why its row cannot be used, in words; empty if it can
+  std::string problem;             ///< why its row cannot be used, in words; empty if usable
   std::vector<CommandStep> steps;  ///< as steps_quality.csv lists them
 
   size_t okSteps() const;
@@ -128,44 +128,48 @@ struct SteadyWindow {
   TwistLine profile;
 };
 
-/// The steady windows (1 and 2) of a session, those that were left out by reason.
+/// The steady windows (1 and 2) of a session, with counts of those left out, by reason.
 struct SessionWindows {
   std::vector<SteadyWindow> used;
   std::map<std::string, int> left_out;
 };
 
-/// Reads steps/SESSION.csv and smooths its steady windows; commands by the reference baseline.
-/** A window's poses are its own rows with a new pose; the first row is not used, because windows
- * were joined there. They were measured one pose lag before they were logged, so that a window of
- * [t, t + T] tells of [t - lag, t + T - lag]; what of it lies before the motion has settled is not
- * used. The profile is centred on the rest. Throws RecordingError. */
+/// Reads steps/SESSION.csv and smooths its steady windows; commands use the robot's reference
+/// baseline.
+/** A window's poses are its own rows with a new pose, except for the first row, where windows were
+ * joined. They were measured one pose lag before they were logged, so that a window of [t, t + T]
+ * describes [t - lag, t + T - lag]; the part before the motion has settled is not used. The
+ * profile is centred on the rest. Throws RecordingError. */
 SessionWindows readWindows(const std::string& folder, const Session& session, double baseline,
                            double duration);
 
-/// The robot that a part of its name means: the whole name, else its beginning, else any part.
-/** Case does not matter; empty means the only robot. Throws RecordingError that lists the robots if
- * none or several are meant. */
+/// The robot that matches a part of its name: the whole name first, then its beginning, then any
+/// part.
+/** Case-insensitive; empty means the only robot. Throws RecordingError with the list of robots if
+ * none or several match. */
 std::string chooseRobot(const std::vector<Session>& sessions, const std::string& wanted);
 
-/// Sessions that are compared with each other.
+/// Sessions that are comparable.
 struct SessionChoice {
-  std::vector<Session> taken;         ///< in the order of sessions.csv
-  std::vector<std::string> left_out;  ///< a line for each other session of the robot, with why
-  double baseline = 0.0;              ///< [m] by which (v, w) are turned into wheel speeds
+  std::vector<Session> taken;  ///< in the order of sessions.csv
+  std::vector<std::string>
+      left_out;           ///< a line with the reason for each other session of the robot
+  double baseline = 0.0;  ///< [m] converts (v, w) to wheel speeds
 };
 
-/// A session with fewer ok steps is not compared with others.
+/// A session with fewer usable steps is not compared with others.
 inline constexpr size_t kLeastSteps = 20;
 
 /// |v| and |w| that 95 % of a session's ok commands do not exceed.
 BodyCommand reachOf(const Session& session);
 
-/// All sessions of the robot whose commands reach those of the patterns, on wheels of the same
+/// All sessions of the robot whose commands cover those of the patterns, on wheels of the same
 /// geometry.
 SessionChoice comparableSessions(const std::vector<Session>& sessions, const std::string& robot,
                                  const BodyCommand& needed);
 
-/// Exactly these. Throws RecordingError for a name that is not one of the robot's sessions.
+/// Exactly these sessions. Throws RecordingError for a name that is not one of the robot's
+/// sessions.
 SessionChoice namedSessions(const std::vector<Session>& sessions, const std::string& robot,
                             const std::vector<std::string>& names);
 

@@ -11,7 +11,7 @@ namespace tread::recordings {
 namespace {
 
 constexpr int kIterations = 30;
-constexpr double kHuber = 1.345;        // 95 % efficient where the errors are normal
+constexpr double kHuber = 1.345;        // 95 % efficiency for normal errors
 constexpr double kMadToSigma = 1.4826;  // of a normal distribution
 
 /// Length of each observation's residual, per row.
@@ -33,7 +33,7 @@ double scaleOf(const Eigen::VectorXd& length, const Eigen::VectorXd& prior, doub
 
 constexpr double kMaxGap = 0.4;          // [s] between poses, and to either end of the window
 constexpr int kMinPoses = 5;             // in a window
-constexpr double kYawNoise = 0.005;      // [rad] residuals below it are never called large
+constexpr double kYawNoise = 0.005;      // [rad] lower limit of the residual scale
 constexpr double kPositionNoise = 0.01;  // [m] the same
 constexpr double kFineStep = 0.01;       // [s] of the numerical integral
 
@@ -60,7 +60,7 @@ Eigen::VectorXd fitYaw(const std::vector<WindowPose>& poses, double duration) {
   return huberFit(A, b, Eigen::VectorXd::Ones(n), {1, kYawNoise});
 }
 
-/// Goes on with the integrals from one time to a later one, by the midpoint rule.
+/// Integrals from 0 to t of (cos yaw, sin yaw) and of (s - T/2) times these.
 void advance(HeadingIntegrals& integrals, const Eigen::VectorXd& yaw, double from, double to,
              double duration) {
   const int steps = std::max(1, static_cast<int>(std::ceil((to - from) / kFineStep)));

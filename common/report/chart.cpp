@@ -136,7 +136,7 @@ void Chart::tube(const std::vector<ChartPoint>& points, const std::vector<double
         px(points[i - 1].x), py(points[i - 1].y), px(points[i].x), py(points[i].y), colour,
         " stroke-linecap=\"round\" stroke-width=\"" + at(scale * (radii[i - 1] + radii[i])) + "\"");
   }
-  // Only the whole is translucent: pieces would darken one another.
+  // Opacity applies to the group: overlapping pieces would darken one another.
   if (!pieces.empty()) shapes_ += "<g opacity=\"0.16\">" + pieces + "</g>\n";
 }
 

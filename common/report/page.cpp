@@ -98,7 +98,7 @@ struct HtmlWriter {
   }
 };
 
-/// Within a cell: no line ends, and a bar is no border.
+/// Within a cell: no line ends, and | is escaped.
 std::string cellText(const std::string& text) {
   std::string safe;
   for (const char letter : text) {
@@ -114,7 +114,7 @@ std::string rowText(const std::vector<std::string>& cells) {
   return text + "\n";
 }
 
-/// Writes blocks one after the other, an empty line behind each.
+/// Writes blocks in order, each followed by an empty line.
 struct MarkdownWriter {
   std::string text;
 

@@ -15,13 +15,13 @@ std::string sha256(const std::string& bytes);
 
 namespace tread::report {
 
-/// A point of a chart, in its quantities.
+/// A point of a chart, in the units of its axes.
 struct ChartPoint {
   double x = 0.0;
   double y = 0.0;
 };
 
-/// Colours of the pictures; told apart by colour-blind people, too.
+/// Colours of the pictures, distinguishable also with colour blindness.
 inline constexpr const char* kInk = "#1c2126";
 inline constexpr const char* kGreyInk = "#8a949e";
 inline constexpr const char* kBeforeColour = "#d0661c";
@@ -39,16 +39,16 @@ struct ChartRange {
 
   double height() const { return y_max - y_min; }
   void include(const ChartPoint& point);
-  /// A range that includes nothing yet.
+  /// An empty range.
   static ChartRange empty();
-  /// The same with some air, at least `least` wide; with equal scales for a plot of that shape.
+  /// The same with margins, at least `least` wide; with equal scales for a plot of that shape.
   ChartRange widened(double least) const;
   ChartRange withEqualScales() const;
 };
 
-/// A small picture with axes as SVG text: 320 x 230 units, as wide as its place in the page.
-/** Points that are not finite are left out; an axis without words has no numbers. Only shapes and
- * text with attributes of their own, so that it can stand alone as a file, too. */
+/// A small chart with axes as SVG text: 320 x 230 units, scaled to the width of its container.
+/** Points that are not finite are left out; an axis without label has no numbers. Uses only shapes
+ * and text with attributes of their own, so that it is also a valid file by itself. */
 class Chart {
  public:
   Chart(std::string title, std::string x_words, std::string y_words, const ChartRange& range);
@@ -58,7 +58,7 @@ class Chart {
   /// The area between low and high at each x.
   void band(const std::vector<ChartPoint>& low, const std::vector<ChartPoint>& high,
             const std::string& colour);
-  /// The surroundings of a path within a radius about each point; for charts with equal scales.
+  /// The region within a radius of each point of a path; for charts with equal scales.
   void tube(const std::vector<ChartPoint>& points, const std::vector<double>& radii,
             const std::string& colour);
   /// A spot of a map, in its own colour.
@@ -66,11 +66,11 @@ class Chart {
   void dot(const ChartPoint& at, const std::string& colour, bool filled = true);
   /// From low to high at x.
   void bar(double x, double low, double high, const std::string& colour);
-  /// A filled field between two corners.
+  /// A filled rectangle between two corners.
   void field(const ChartPoint& corner, const ChartPoint& opposite, const std::string& colour);
-  /// Words in the middle of a place just below the axis.
+  /// Text centred at a place just below the axis.
   void labelBelow(double x, const std::string& words);
-  /// A level line at y.
+  /// A horizontal line at y.
   void level(double y);
   /// One entry of the legend below the title.
   void legend(const std::string& words, const std::string& colour, bool dashed = false);
@@ -92,7 +92,7 @@ class Chart {
   double legend_end_ = 0.0;
 };
 
-/// Charts in rows of so many, as one SVG file.
+/// Charts in rows of `columns`, as one SVG file.
 std::string sheetOf(const std::vector<std::string>& charts, size_t columns);
 
 /// A sentence or more.
@@ -101,14 +101,14 @@ struct Paragraph {
   bool small = false;
 };
 
-/// Rows of cells; the first column is left-aligned, the others to the right unless said so.
+/// Rows of cells; the first `left` columns are left-aligned, the others right-aligned.
 struct Table {
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;
-  size_t left = 1;  ///< so many columns are left-aligned
+  size_t left = 1;  ///< number of left-aligned columns
 };
 
-/// Points, one below the other.
+/// A list of bullet points.
 struct Points {
   std::vector<std::string> items;
 };
@@ -118,7 +118,7 @@ struct Commands {
   std::vector<std::string> lines;
 };
 
-/// Pictures side by side, as many as fit.
+/// Pictures side by side, as many as fit in a row.
 struct Pictures {
   std::vector<std::string> svg;
   std::string caption;
@@ -126,13 +126,13 @@ struct Pictures {
 
 using Block = std::variant<Paragraph, Table, Points, Commands, Pictures>;
 
-/// A heading and what stands below it.
+/// A heading and its content.
 struct Section {
   std::string title;
   std::vector<Block> blocks;
 };
 
-/// A report: what one must know first, then sections with the details.
+/// A report: the most important facts first, then sections with details.
 struct Page {
   std::string title;    ///< of the window
   std::string verdict;  ///< the headline
@@ -141,10 +141,10 @@ struct Page {
   std::vector<Section> sections;
 };
 
-/// One self-contained HTML file: no scripts, nothing from elsewhere.
+/// One self-contained HTML file: no scripts, no external resources.
 std::string htmlOf(const Page& page);
 
-/// The same in Markdown; pictures are in the HTML only.
+/// The same in Markdown, without pictures.
 std::string markdownOf(const Page& page);
 
 }  // namespace tread::report

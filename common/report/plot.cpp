@@ -192,7 +192,7 @@ void Panel::verticalLine(double x, const Style& style) {
 
 void Panel::grid(const Grid& cells, double opacity) {
   cairo_t* context = picture_.surface_->context;
-  // Without anti-aliasing the cells join without seams.
+  // Without anti-aliasing there are no seams between cells.
   cairo_set_antialias(context, CAIRO_ANTIALIAS_NONE);
   const double half = cells.cellSize() / 2.0;
   for (int y = 0; y < cells.height(); ++y) {

@@ -19,7 +19,7 @@ struct Colour {
   double alpha = 1.0;
 };
 
-/// Colours that are told apart also by people who do not see red and green (Okabe and Ito).
+/// Colours distinguishable also with red-green blindness (Okabe and Ito).
 inline constexpr Colour kBlack{0.10, 0.10, 0.10};
 inline constexpr Colour kGrey{0.55, 0.55, 0.55};
 inline constexpr Colour kLightGrey{0.88, 0.88, 0.88};
@@ -88,9 +88,9 @@ class Panel {
   void line(const std::vector<Eigen::Vector2d>& points, const Style& style);
   void polygon(const std::vector<Eigen::Vector2d>& corners, Colour fill);
   void disc(const Eigen::Vector2d& centre, double radius, Colour fill);
-  /// A mark of constant size [pixels].
+  /// A dot of constant size [pixels].
   void dot(const Eigen::Vector2d& at, Colour colour, double pixels = 3.0);
-  /// Begins at a point, or farther left where it would leave the panel.
+  /// Starts at a point, shifted left if it would leave the panel.
   void text(const Eigen::Vector2d& at, const std::string& words, Colour colour = kBlack,
             double size = 11.0);
   /// Vertical bar from 0 to `height`.
@@ -102,7 +102,7 @@ class Panel {
   void legendEntry(const Style& style);
   /// Names instead of numbers below the x axis; call before finish().
   void xNames(std::vector<std::string> names) { x_names_ = std::move(names); }
-  /// Draws frame, ticks and legend over what was drawn. Call once, last.
+  /// Draws frame, ticks and legend on top. Call once, last.
   void finish();
 
  private:

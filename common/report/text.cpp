@@ -19,7 +19,7 @@ struct FieldUnit {
   const char* said;
 };
 
-/// Units that the field says in another way.
+/// Units that are shown to users in another form.
 const FieldUnit kFieldUnits[] = {{"1", 100.0, "%"},
                                  {"rad", kDegrees, "deg"},
                                  {"rad/m", kDegrees, "deg per metre"},
@@ -111,7 +111,7 @@ std::string withoutStop(const std::string& sentence) {
 }
 
 std::string inSentence(const std::string& words) {
-  // Abbreviations (INS, CANNOT) keep their letters.
+  // Abbreviations (INS, CANNOT) keep their capitals.
   if (words.size() < 2 || std::isupper(static_cast<unsigned char>(words[1])) != 0) return words;
   std::string text = words;
   text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));

@@ -12,18 +12,17 @@ namespace tread {
 /// printf into a string.
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
 
-/// A number with so many decimals.
+/// A number with this many decimals.
 std::string fixed(double value, int decimals);
 
-/// Three digits that count (0.0123, 1.20, 123), whole numbers as such (2); "no limit" for infinity,
-/// "-" for what is not known.
+/// Three significant digits (0.0123, 1.20, 123), whole numbers as such (2); "no limit" for
+/// infinity, "-" for unknown values.
 std::string threeDigits(double value);
 
-/// A number as people in the field say it: shares in per cent, angles in degrees, else with its
-/// unit.
+/// A number in everyday units: shares in per cent, angles in degrees, else with its unit.
 std::string said(double value, const std::string& unit);
 
-/// "1.2 to 1.4 rad/s"; in the words of said().
+/// "1.2 to 1.4 rad/s"; formatted as by said().
 std::string saidInterval(double low, double high, const std::string& unit);
 
 /// An angle [rad] in degrees, a distance in metres.
@@ -35,31 +34,31 @@ std::string saidChance(double p_value);
 
 // Axes.
 
-/// A step of 1, 2 or 5 times a power of ten that cuts a range into about so many pieces.
+/// A step of 1, 2 or 5 times a power of ten that divides a range into about `pieces` parts.
 double tickStep(double range, int pieces);
 
 /// Whole multiples of a step within a range.
 std::vector<double> ticks(double low, double high, double step);
 
-/// The number beside a tick, with the decimals that its step needs.
+/// The label of a tick, with as many decimals as its step needs.
 std::string tickText(double value, double step);
 
 // Sentences.
 
-/// The words with commas between them and `joint` before the last.
+/// The words joined by commas, with `joint` before the last.
 std::string joined(const std::vector<std::string>& words, const std::string& joint = "and");
 
-/// Sentences one after the other.
+/// Sentences joined by spaces.
 std::string joinedSentences(const std::vector<std::string>& sentences);
 
-/// The same sentence without its full stop; with a small first letter; with a large one.
+/// The same sentence without its full stop; with a lower-case first letter; with an upper-case one.
 std::string withoutStop(const std::string& sentence);
 std::string inSentence(const std::string& words);
 std::string asSentence(const std::string& words);
 
 // For HTML.
 
-/// Letters that HTML and SVG read as their own are written as entities.
+/// Replaces characters that are special in HTML and SVG by entities.
 std::string escaped(const std::string& text);
 
 /// Bytes as base64 (RFC 4648), for a picture inside a page.

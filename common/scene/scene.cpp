@@ -21,13 +21,13 @@ using Json = nlohmann::json;
 
 constexpr int64_t kMapPeriodUs = 2'000'000;
 constexpr double kMapReach = 15.0;    // [m] around the robot
-constexpr double kFarthest = 1e6;     // [m] from the origin of map; farther is a broken number
+constexpr double kFarthest = 1e6;     // [m] from the origin of map; beyond, a number is broken
 constexpr double kRobotHeight = 0.4;  // [m] drawn
 
 struct Rgba {
   double r, g, b, a;
 };
-// Okabe and Ito's, which are told apart also by people who do not see red and green.
+// Okabe and Ito's colours, distinguishable also with red-green blindness.
 constexpr Rgba kTreeColour{0.34, 0.71, 0.91, 0.5}, kPlanColour{0.90, 0.62, 0.00, 1.0},
     kDoubtColour{0.90, 0.62, 0.00, 0.3}, kGoalColour{0.00, 0.62, 0.45, 1.0},
     kRobotColour{0.00, 0.45, 0.70, 0.8};
@@ -289,7 +289,7 @@ void SceneMaker::hear(const config_t& config) {
                                {"head_diameter", 0.16},
                                {"color", colourOf(kPlanColour)}});
   } catch (const std::exception&) {
-    return;  // a log from before robots were described
+    return;  // a log older than robot descriptions
   }
   made_.push_back(sceneOf(std::move(drawn)));
 }

@@ -78,7 +78,7 @@ bool PrivateFile::ensure(const std::string& text) const {
   }
 }
 
-/// Opened first and asked afterwards, so that it is the file that was looked at.
+/// Opened first and checked afterwards, so that the checked file is the one that is read.
 std::string PrivateFile::read() const {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
   struct stat entry {};
@@ -93,7 +93,7 @@ std::string PrivateFile::read() const {
 }
 
 void PrivateFile::make(const std::string& text) const {
-  // Under its own name it is there whole or not at all: somebody else may be waiting for it.
+  // It appears under its own name complete or not at all: another process may be waiting for it.
   const std::string draft = path + ".new-" + std::to_string(::getpid());
   ::unlink(draft.c_str());  // of one that was killed
   const Descriptor file(

@@ -11,7 +11,7 @@ namespace tread {
 namespace {
 
 constexpr uint32_t kMagic = 0xD5EA1ED7;
-/// Where the fields stand in a seal [bytes].
+/// Offsets of the fields in a seal [bytes].
 constexpr size_t kSessionAt = 4;
 constexpr size_t kSenderAt = 12;
 constexpr size_t kTimeAt = 20;
@@ -134,7 +134,7 @@ SealVerdict Sealer::judgeTime(const std::string& channel, uint64_t sender, int64
     return SealVerdict::kGood;
   }
   if (newest_.size() >= kMostSenders) {
-    // Whatever one repeats of theirs is too old by itself.
+    // Repetitions of their messages are too old anyway.
     for (auto it = newest_.begin(); it != newest_.end();)
       it = it->second < now - kMaxAge ? newest_.erase(it) : std::next(it);
     if (newest_.size() >= kMostSenders) return SealVerdict::kTooManySenders;

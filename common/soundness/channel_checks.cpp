@@ -13,9 +13,9 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kFrozen = 3.0;        // [s] of one pose while it drives: the INS hangs
+constexpr double kFrozen = 3.0;        // [s] of a constant pose while driving: the INS hangs
 constexpr double kNoticedHold = 1.0;   // [s]
-constexpr double kClearCommand = 0.5;  // of the largest one: nobody stands still with it
+constexpr double kClearCommand = 0.5;  // of the largest one: a robot does not stand still with it
 constexpr double kSilence = 1.5;       // [s] of the INS
 constexpr double kSecondKind = 0.01;   // of the commands
 
@@ -83,7 +83,7 @@ void checkKinds(const SortedLog& log, Diagnostics& notes) {
     notes.note(std::to_string(invalid) + " MOTOR messages without a number as command; left out");
 }
 
-/// INS poses that stay away in the middle of a span.
+/// Checks for missing INS poses in the middle of a span.
 void checkSilences(const std::vector<HeardSpan>& spans, Diagnostics& notes) {
   size_t silences = 0;
   size_t jumps = 0;
@@ -124,13 +124,14 @@ void checkCommandGaps(const std::vector<HeardSpan>& spans, Diagnostics& notes) {
 }
 
 constexpr size_t kFewClashes = 5;
-constexpr size_t kRepeated = 20;  // the same message so many times: its publisher hangs
+constexpr size_t kRepeated =
+    20;  // repetitions of a message from which its publisher counts as hanging
 
 bool sameMessage(const Stamp& a, const Stamp& b) {
   return a.seq == b.seq && a.utime == b.utime;
 }
 
-/// How often seq does not grow although the message is another one.
+/// How often seq does not increase although the message differs.
 size_t seqFallsBack(const std::vector<Stamp>& stamps) {
   size_t count = 0;
   bool counts = false;
@@ -141,7 +142,7 @@ size_t seqFallsBack(const std::vector<Stamp>& stamps) {
   return counts ? count : 0;
 }
 
-/// Whether messages of one time say different things.
+/// Whether messages of the same time contradict each other.
 bool clash(const ins_t& a, const ins_t& b) {
   const auto first = planarPose(a);
   const auto second = planarPose(b);
@@ -165,8 +166,8 @@ bool bootsAlternate(std::vector<int64_t> boots) {
   return std::adjacent_find(boots.begin(), boots.end()) != boots.end();
 }
 
-/// One publisher whose clock went back: in the order of their numbers, which have no gap, the
-/// messages go back in time once or twice. The number of the message before that, or none.
+/// Detects one publisher whose clock went back: ordered by their numbers, which have no gap, the
+/// messages go back in time once or twice. Returns the last message before that, if any.
 std::optional<Stamp> clockWentBack(std::vector<Stamp> stamps) {
   std::stable_sort(stamps.begin(), stamps.end(),
                    [](const Stamp& a, const Stamp& b) { return a.seq < b.seq; });
@@ -229,7 +230,7 @@ void checkChannels(const SortedLog& log, const std::vector<HeardSpan>& spans, Di
 void checkPublishers(const SortedLog& log, Diagnostics& notes) {
   checkChannel("MOTOR", log.drive.motor_stamps, clashes(log.drive.motor), log, notes);
   checkChannel("INS", log.drive.ins_stamps, clashes(log.drive.ins), log, notes);
-  std::map<std::string, std::vector<int64_t>> boots;  // by process, as they follow each other
+  std::map<std::string, std::vector<int64_t>> boots;  // by process, in order
   for (const config_t& config : log.drive.configs) {
     std::vector<int64_t>& ids = boots[config.config_process];
     if (ids.empty() || ids.back() != config.config_boot_id) ids.push_back(config.config_boot_id);

@@ -15,30 +15,31 @@ constexpr int64_t kClockStep = 500'000;           // [us]
 constexpr int64_t kLongestLog = 172'800'000'000;  // [us] two days
 constexpr size_t kWindow = 200;                   // messages
 constexpr size_t kShortWindow = 20;               // messages
-constexpr int64_t kLongStep = 1'000'000;          // [us] that no driver needs between two messages
-constexpr int64_t kMotionWindow = 500'000;        // [us] over which motion is seen
-constexpr int64_t kShortest = 300'000;            // [us] over which motion can be told from noise
-constexpr int64_t kTogether = 300'000;   // [us] within which INS and MOTOR pause at one time
+constexpr int64_t kLongStep = 1'000'000;          // [us] longer than any driver's period
+constexpr int64_t kMotionWindow = 500'000;        // [us] over which motion is detected
+constexpr int64_t kShortest = 300'000;            // [us] over which motion exceeds noise
+constexpr int64_t kTogether =
+    300'000;  // [us] of difference between pauses of INS and MOTOR that count as simultaneous
 constexpr double kMessage = 0.1;         // [s] period of messages
 constexpr double kPositionNoise = 0.03;  // [m] between two fixes
 constexpr double kHeadingNoise = 0.05;   // [rad]
 
-/// Least time between message and recording among up to `kWindow` messages [us]: a recorder that
-/// was held up for a while has caught up somewhere among them.
+/// Least delay from message to recording among up to `kWindow` messages [us]: within them a delayed
+/// recorder has caught up.
 int64_t leastDelay(const std::vector<Stamp>& stamps, size_t begin, size_t end) {
   int64_t least = INT64_MAX;
   for (size_t i = begin; i < end; ++i) least = std::min(least, stamps[i].logged - stamps[i].utime);
   return least;
 }
 
-/// Whether robot's and recorder's clocks lie differently to each other from here on.
+/// Whether the offset between robot's and recorder's clocks changes here.
 bool clocksPart(const std::vector<Stamp>& stamps, size_t index) {
   const size_t begin = index > kWindow ? index - kWindow : 0;
   const size_t end = std::min(stamps.size(), index + kWindow);
   return std::abs(leastDelay(stamps, begin, index) - leastDelay(stamps, index, end)) > kClockStep;
 }
 
-/// Whether recorder and robot run at one pace: a replay may be recorded at any.
+/// Whether recorder and robot run at the same rate: a replay may be recorded at any.
 bool samePace(const std::vector<Stamp>& stamps) {
   std::vector<double> paces;
   for (size_t i = kShortWindow; i < stamps.size(); i += kShortWindow) {
@@ -52,7 +53,7 @@ bool samePace(const std::vector<Stamp>& stamps) {
   return usual > 0.8 && usual < 1.25;
 }
 
-/// Time going back, and the robot's clock against the recorder's.
+/// Checks for time going back, and for the robot's clock against the recorder's.
 void checkStamps(const std::string& channel, const std::vector<Stamp>& stamps, const SortedLog& log,
                  Diagnostics& notes) {
   size_t overtaken = 0;
@@ -78,8 +79,8 @@ void checkStamps(const std::string& channel, const std::vector<Stamp>& stamps, c
                " come out of order; sorted by their own time");
 }
 
-/// What counts as motion beside a pause. Where MOTOR pauses with the INS, and neither misses a
-/// number, there was most likely no pause at all, so that little motion is enough.
+/// Threshold of motion around a pause. If MOTOR pauses with the INS, and neither misses a number,
+/// there was most likely no pause at all, so that little motion is enough.
 struct Motion {
   double speed = 0.3;  ///< [m/s]
   double rate = 1e9;   ///< [rad/s]
@@ -87,7 +88,7 @@ struct Motion {
 constexpr Motion kAlone{};
 constexpr Motion kTogetherWithMotor{0.08, 0.1};
 
-/// The pose beside a pause, and how the robot moves there.
+/// The pose next to a pause, and the robot's motion there.
 struct Beside {
   int64_t utime = 0;
   Pose2 pose;
@@ -115,7 +116,7 @@ std::optional<Beside> beside(const std::vector<ins_t>& ins, size_t index, int di
   return found;
 }
 
-/// Whether the next pose from `index` on is said to be on a new track.
+/// Whether the next pose from `index` on is flagged as a new track.
 bool jumpAnnounced(const std::vector<ins_t>& ins, size_t index) {
   for (size_t i = index; i < ins.size(); ++i) {
     if ((ins[i].ins_status & ins_t::STATUS_JUMP) != 0) return true;
@@ -134,7 +135,7 @@ std::optional<std::pair<const motor_t*, const motor_t*>> motorAround(
   return std::pair(&*(after - 1), &*after);
 }
 
-/// Whether MOTOR, too, is silent from `begin` to `end`, and misses no number.
+/// Whether MOTOR is also silent from `begin` to `end`, without a missing number.
 bool motorPauses(const std::vector<motor_t>& motor, int64_t begin, int64_t end) {
   const auto around = motorAround(motor, begin, end);
   return around && isNext(around->second->seq, around->first->seq) &&
@@ -142,7 +143,7 @@ bool motorPauses(const std::vector<motor_t>& motor, int64_t begin, int64_t end) 
          std::abs(around->second->utime - end) <= kTogether;
 }
 
-/// Whether MOTOR has no message in half of the pause: nothing was recorded. The streams of an
+/// Whether MOTOR has no message in half of the pause: recording was interrupted. The streams of an
 /// import need not end together.
 bool isBreak(const std::vector<motor_t>& motor, int64_t begin, int64_t end) {
   const auto around = motorAround(motor, begin, end);
@@ -152,7 +153,7 @@ bool isBreak(const std::vector<motor_t>& motor, int64_t begin, int64_t end) {
 /// What happened in a pause.
 struct Pause {
   double length = 0.0;  ///< [s]
-  double rest = 0.0;    ///< [s] between the two poses but the pause, and a message's period
+  double rest = 0.0;    ///< [s] between the two poses, without the pause and a message's period
   double moved = 0.0;   ///< [m]
   double turned = 0.0;  ///< [rad]
   Motion motion;        ///< the faster one of before and after
@@ -169,7 +170,7 @@ Pause pauseBetween(const Beside& before, const Beside& after, int64_t step) {
   return pause;
 }
 
-/// Whether the robot is where it was one message later, although its motion went on.
+/// Whether the pose after the pause is that of one message later, although the robot was moving.
 bool stoodStill(const Pause& pause, bool with_motor) {
   constexpr double kFarLess = 0.3;
   const Motion& motion = pause.motion;
@@ -192,11 +193,11 @@ std::string lineOf(const Pause& pause, const std::string& place, bool with_motor
   return line + "; cut the log there";
 }
 
-/// A pause after which the robot is where it was one message later, although it moves: time went
-/// on, the robot did not.
-/** Where MOTOR pauses, too, only the numbers that the robot gave its messages tell such a jump from
- * a time in which nothing was recorded. An import numbers the rows that it has: its pauses are
- * breaks, whatever the poses are. A robot that turns on the spot may face the same way again. */
+/// Checks for pauses after which the robot is where it was one message later, although it moves:
+/// time advanced, the robot did not.
+/** If MOTOR pauses too, only the robot's message numbers distinguish such a jump from a gap in the
+ * recording. An import numbers its own rows, so its pauses are gaps, whatever the poses are. A
+ * robot that turns on the spot may face the same direction again. */
 void checkPauses(const SortedLog& log, Numbering numbering, Diagnostics& notes) {
   const std::vector<ins_t>& ins = log.ins;
   for (size_t i = 1; i < ins.size(); ++i) {

@@ -14,16 +14,16 @@ namespace {
 
 constexpr double kStep = 0.2;             // [s] of the grid, more for long logs
 constexpr double kMostCells = 8000.0;     // of a grid
-constexpr double kShortestMotion = 0.3;   // [s] between two poses whose difference is a rate
+constexpr double kShortestMotion = 0.3;   // [s] between two poses used for a rate
 constexpr double kLongestMotion = 1.2;    // [s]
-constexpr double kUsual[] = {-0.3, 2.0};  // [s] by which a vehicle follows its commands
+constexpr double kUsual[] = {-0.3, 2.0};  // [s] of lag between a vehicle and its commands
 constexpr double kLeastOverlap = 20.0;    // [s]
-constexpr double kLongOverlap = 60.0;     // [s] of which fewer correlation is enough
+constexpr double kLongOverlap = 60.0;     // [s] of overlap from which less correlation is enough
 constexpr double kExplains = 0.4;         // mean correlation^2 of speed and turn
 constexpr double kExplainsShort = 0.7;    // the same of less driving
-constexpr double kBetter = 0.3;           // by which it is larger than without an offset
-constexpr double kAloneBetter = 0.15;     // and than at any other offset
-constexpr double kApart = 3.0;            // [s] from which on it is another one
+constexpr double kBetter = 0.3;           // improvement required over no offset
+constexpr double kAloneBetter = 0.15;     // improvement required over any other offset
+constexpr double kApart = 3.0;  // [s] of difference between offsets that count as different
 
 /// Speed and turn at equal steps; NaN where they are not known.
 struct Grid {
@@ -43,7 +43,7 @@ struct Grid {
   }
 };
 
-/// The squared correlation of two rates, one of them shifted; 0 where they go against each other.
+/// The squared correlation of two rates, one of them shifted; 0 if it is negative.
 double explained(const std::vector<double>& led, const std::vector<double>& leading, long shift,
                  size_t least) {
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kManyBroken = 0.2;  // of the segments
 
-/// The kind of most commands while it drove.
+/// The most frequent kind of command while driving.
 CommandKind kindOf(const SortedLog& log) {
   std::map<int16_t, size_t> counts;
   for (const motor_t& motor : log.motor)
@@ -55,7 +55,7 @@ std::vector<Execution> recordsOf(const SortedLog& log) {
   return executions;
 }
 
-/// Steps of a recording whose poses lie in a wrong frame say nothing.
+/// Removes steps of a recording whose poses are in a wrong frame.
 void takeOutBroken(Drive& drive, Diagnostics& notes) {
   const std::vector<size_t> broken = brokenSegments(drive);
   if (broken.empty()) return;
@@ -70,9 +70,9 @@ void takeOutBroken(Drive& drive, Diagnostics& notes) {
   removeSegments(broken, drive);
 }
 
-constexpr double kSameGauge = 0.02;  // relative: tape measures and data sheets agree that well
+constexpr double kSameGauge = 0.02;  // relative: accuracy of tape measures and data sheets
 
-/// What stands behind "key: " at the beginning of a line; empty if there is no such line.
+/// The text after "key: " at the beginning of a line; empty if there is no such line.
 std::string valueOf(const std::string& text, const std::string& key) {
   const std::string begin = "\n" + key + ": ";
   const size_t at = ("\n" + text).find(begin);
@@ -84,7 +84,7 @@ std::string valueOf(const std::string& text, const std::string& key) {
   return value;
 }
 
-/// What two imports note, if both do and it differs.
+/// The notes of two imports, if both have them and they differ.
 std::optional<std::pair<std::string, std::string>> otherwise(const Drive& first,
                                                              const Drive& second,
                                                              std::string ImportNote::*what) {
@@ -95,8 +95,7 @@ std::optional<std::pair<std::string, std::string>> otherwise(const Drive& first,
   return std::pair{one, two};
 }
 
-/// What tread-import notes in CONFIG of the recording that it imported; nothing for other
-/// processes.
+/// The note of tread-import in CONFIG about its recording; nullopt for other processes.
 std::optional<ImportNote> importNoteOf(const config_t& config) {
   if (config.config_process != "tread-import") return std::nullopt;
   const std::string& text = config.config_text;
@@ -149,7 +148,7 @@ Drive readDrive(const std::string& path) {
   Drive drive = toDrive(log);
   drive.sha256 = sha256(readText(path));
   if (log.damage.empty()) return drive;
-  // Whole events are as good as in a whole log; whether they are enough is judged later.
+  // Intact events are as good as in an intact log; later checks decide whether they suffice.
   const double span = 1e-6 * static_cast<double>(events.back().utime - events.front().utime);
   drive.lost = log.damage + "; its " + std::to_string(events.size()) + " whole events, " +
                digits(span, 0) + " s, are used; copy the log again if the robot still has it";

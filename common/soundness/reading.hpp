@@ -26,68 +26,69 @@ struct SortedLog {
   double seconds(int64_t utime) const { return 1e-6 * static_cast<double>(utime - origin); }
 };
 
-/// Whether a number follows another one directly; any bytes may stand in a log.
+/// Whether one sequence number directly follows another; a log may hold any bytes.
 inline bool isNext(int64_t seq, int64_t before) {
   return static_cast<uint64_t>(seq) - static_cast<uint64_t>(before) == 1;
 }
 
 /// A time in which all commands are known.
 struct CommandSpan {
-  std::vector<CommandSample> commands;  ///< changes only, the first one at the begin; not empty
-  double end = 0.0;                     ///< [s]
+  std::vector<CommandSample>
+      commands;      ///< changes only, starting with the one at the begin; not empty
+  double end = 0.0;  ///< [s]
   VehicleLayout layout = VehicleLayout::kTracks;
-  bool after_silence = false;  ///< MOTOR messages before it are missing
+  bool after_silence = false;  ///< MOTOR messages are missing before it
 
   double begin() const { return commands.front().time; }
 };
 
-/// What the machine obeys at a MOTOR message; nothing where that is unknown.
+/// The command that acts after a MOTOR message; nullopt if it is unknown.
 std::optional<Command> obeyed(const motor_t& motor);
 
 /// The spans of a log, at least a second long, in order of time.
 std::vector<CommandSpan> knownCommands(const SortedLog& log);
 
-/// The command that acts at a time [s] within a span (the first one before it).
+/// The command that acts at a time [s] within a span (before it, the first one).
 Command commandAt(const CommandSpan& span, double time);
 
 /// Whether the span commands zero from `from` to `to` [s].
 bool standsBetween(const CommandSpan& span, double from, double to);
 
-/// Track speeds as the encoders say, where they do.
+/// Track speeds by encoders, if available.
 std::vector<EncoderSample> encoderSamples(const SortedLog& log);
 
-/// Motor currents, where both are measured.
+/// Motor currents, if both are measured.
 std::vector<CurrentSample> currentSamples(const SortedLog& log);
 
-/// Voltages of the battery, where they are measured.
+/// Battery voltages, if measured.
 std::vector<VoltageSample> voltageSamples(const SortedLog& log);
 
 /// An INS message within a span of known commands.
 struct InsReading {
-  InsSample sample;        ///< yaw as the message says; pose NaN where there is none or it is held
+  InsSample sample;        ///< yaw as sent; pose NaN where there is none or it is held
   bool fresh = false;      ///< whether the sample has a pose
   bool new_track = false;  ///< the first pose after a jump
 };
 
-/// A time in which the INS repeated its pose although the vehicle was told to move.
+/// A time in which the INS repeated its pose although motion was commanded.
 struct HeldPose {
   double begin = 0.0;  ///< [s]
   double end = 0.0;    ///< [s]
 };
 
-/// What the INS said in a span.
+/// INS readings of a span.
 struct SpanReadings {
   std::vector<InsReading> readings;  ///< in order of time
   std::vector<HeldPose> held;        ///< in order of time
-  size_t poses = 0;                  ///< messages with a pose, held ones too, while it drove
+  size_t poses = 0;                  ///< messages with a pose, held ones included, while driving
   size_t repeated = 0;               ///< of these: held
 };
 
-/// The INS messages in a span. Equal poses are real where nothing is commanded for a second, and
-/// held elsewhere.
+/// The INS messages in a span. Equal poses are real after a second of zero command; otherwise they
+/// are held.
 SpanReadings insReadings(const SortedLog& log, const CommandSpan& span);
 
-/// A span with what the INS said in it.
+/// A span with its INS readings.
 struct HeardSpan {
   CommandSpan commands;
   SpanReadings ins;
@@ -96,33 +97,32 @@ struct HeardSpan {
 /// Length of an execution [s].
 inline constexpr double kExecutionLength = 2.0;
 
-/// The segments of a log: spans, cut where the INS begins a new track.
+/// The segments of a log: spans, cut where the INS starts a new track.
 std::vector<Segment> segmentsOf(const std::vector<HeardSpan>& spans,
                                 const std::vector<EncoderSample>& encoders);
 
-/// The executions to be predicted; `records` in seconds, in order of time.
+/// The executions to predict; `records` in seconds, in order of time.
 std::vector<Execution> executionsOf(VehicleLayout layout, const std::vector<Segment>& segments,
                                     const std::vector<Execution>& records);
 
-inline constexpr int64_t kOvertaking = 200'000;  ///< [us] by which messages may come out of order
+inline constexpr int64_t kOvertaking = 200'000;  ///< [us] by which messages may arrive out of order
 
-/// Missing channels, commands of two kinds, silences, jumps and frozen
-/// poses.
+/// Checks for missing channels, commands of two kinds, silences, jumps and frozen poses.
 void checkChannels(const SortedLog& log, const std::vector<HeardSpan>& spans, Diagnostics& notes);
 
-/// Who gave the messages of a log their numbers.
+/// Source of the sequence numbers in a log.
 enum class Numbering {
-  kByRobot,   ///< a message that the recorder lost is missing in them
-  kByImport,  ///< they count what the recording has
+  kByRobot,   ///< gaps show messages lost by the recorder
+  kByImport,  ///< they number the recorded messages only
 };
 
-/// Clocks that jump or go back, pauses over which the robot did not move among them.
+/// Checks for clocks that jump or go back, also during pauses in which the robot did not move.
 void checkClocks(const SortedLog& log, Numbering numbering, Diagnostics& notes);
 
-/// Commands and poses whose clocks differ, by how much.
+/// Checks for an offset between the clocks of commands and poses, and its size.
 void checkOffset(const SortedLog& log, const std::vector<HeardSpan>& spans, Diagnostics& notes);
 
-/// Two robots (or two publishers of a channel) in one log.
+/// Checks for two robots (or two publishers of a channel) in one log.
 void checkPublishers(const SortedLog& log, Diagnostics& notes);
 
 }  // namespace tread::gap

@@ -9,14 +9,14 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kInsSilence = 1.5;    // [s]
-constexpr double kLead = 3.0;          // [s] of commands before poses; longer than any lag
-constexpr double kEncoderDelay = 0.3;  // [s] until when encoders speak of the begin
-constexpr double kSameSpeed = 0.35;    // [m/s] of encoders that are held for a quarter second
-constexpr size_t kFewest = 3;          // readings of which something can be learnt
+constexpr double kInsSilence = 1.5;            // [s]
+constexpr double kLead = 3.0;                  // [s] of commands before poses; longer than any lag
+constexpr double kEncoderDelay = 0.3;          // [s] at the begin for which encoders are valid
+constexpr double kSameSpeed = 0.35;            // [m/s] of encoders held for a quarter second
+constexpr size_t kFewest = 3;                  // fewest useful readings
 constexpr double kStepSilence[] = {1.8, 3.2};  // [s] between steps of an imported recording
 
-/// Track speeds at a time, if the encoders speak of it.
+/// Track speeds at a time, if the encoders cover it.
 std::optional<Command> speedAt(const std::vector<EncoderSample>& encoders, double time) {
   const auto next =
       std::lower_bound(encoders.begin(), encoders.end(), time - 1e-6,
@@ -25,7 +25,7 @@ std::optional<Command> speedAt(const std::vector<EncoderSample>& encoders, doubl
   return std::nullopt;
 }
 
-/// Track speeds before a time, if the encoders speak of it.
+/// Track speeds before a time, if the encoders cover it.
 std::optional<Command> speedBefore(const std::vector<EncoderSample>& encoders, double time) {
   const auto next =
       std::lower_bound(encoders.begin(), encoders.end(), time,
@@ -45,7 +45,7 @@ void takeCommands(const CommandSpan& span, double begin, double end, Segment& se
   }
 }
 
-/// The yaw that follows another one: unwrapped along the gyro, which knows whole turns.
+/// Unwraps a yaw along the gyro, which counts whole turns.
 class Unwrapper {
  public:
   void gyro(double time, double omega) {
@@ -57,7 +57,7 @@ class Unwrapper {
   }
 
   double pose(double time, double yaw) {
-    // Over a short time the nearest one is right, whatever the gyro says.
+    // Over a short time the nearest turn is right, whatever the gyro gives.
     const double expected = yaw_ + (time - time_ > kShort ? turned_ : 0.0);
     yaw_ = begun_ ? expected + wrapAngle(yaw - expected) : yaw;
     time_ = time;
@@ -128,7 +128,7 @@ class Cutter {
   std::vector<Segment> finished() { return std::move(segments_); }
 
  private:
-  /// In what state a span begins.
+  /// Sets the initial state of a span.
   void enter(const CommandSpan& span, Segment& segment) const {
     if (segment.entry_speeds) {
       segment.command_before = wentOnAtOnce(span, *segment.entry_speeds)
@@ -149,7 +149,7 @@ class Cutter {
         ins.end());
   }
 
-  /// Whether this is the next step of an imported recording, which the import set apart.
+  /// Whether this is the next step of an imported recording, separated only by the import.
   bool wentOnAtOnce(const CommandSpan& span, const Command& speed) const {
     if (before_ == nullptr || !span.after_silence) return false;
     const double silence = span.begin() - before_->end;
@@ -165,10 +165,10 @@ class Cutter {
   std::vector<Segment> segments_;
 };
 
-constexpr double kTolerance = 0.03;         // [s] within which an execution is as long as wanted
-constexpr double kMostlyNamed = 1.0 / 3.0;  // of a segment that executions should cover
+constexpr double kTolerance = 0.03;         // [s] of tolerance on the length of an execution
+constexpr double kMostlyNamed = 1.0 / 3.0;  // share of a segment that named executions should cover
 
-/// Pieces of the wanted length from `begin` on.
+/// Cuts pieces of the required length from `begin` on.
 void cut(size_t segment, double begin, double end, std::vector<Execution>& pieces) {
   while (begin + kExecutionLength <= end + kTolerance) {
     pieces.push_back({segment, begin, begin + kExecutionLength});
@@ -176,7 +176,7 @@ void cut(size_t segment, double begin, double end, std::vector<Execution>& piece
   }
 }
 
-/// Whether anything is commanded in a piece or in the second before it.
+/// Whether a command is not zero in a piece or in the second before it.
 bool drives(VehicleLayout layout, const Segment& segment, const Execution& piece) {
   for (size_t i = 0; i < segment.commands.size(); ++i) {
     const double begin = segment.commands[i].time;
@@ -218,7 +218,7 @@ std::vector<Execution> executionsOf(VehicleLayout layout, const std::vector<Segm
   std::vector<Execution> all;
   for (size_t index = 0; index < segments.size(); ++index) {
     const Segment& segment = segments[index];
-    // Where commands lead the poses, executions begin with the poses.
+    // If commands begin before the poses, executions begin with the poses.
     const double first_pose = posesBegin(segment);
     const double from = first_pose - segment.begin() > 1.5 ? first_pose : segment.begin();
     std::vector<Execution> pieces = namedIn(index, segment, from, records);

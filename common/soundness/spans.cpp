@@ -64,7 +64,7 @@ class SpanFinder {
   bool open_ = false;
 };
 
-/// A vehicle that was told to stand this long stands [s].
+/// A vehicle commanded to stop for this long is at rest [s].
 constexpr double kSettled = 1.0;
 
 bool samePose(const Pose2& a, const Pose2& b) {
@@ -89,7 +89,7 @@ class Reader {
   Reader(const SortedLog& log, const CommandSpan& span) : log_(log), span_(span) {}
 
   void add(const ins_t& ins) {
-    // A jump counts even if its own message has no pose: what follows is a new track.
+    // A jump counts even if its own message has no pose: a new track follows.
     jumped_ = jumped_ || (ins.ins_status & ins_t::STATUS_JUMP) != 0;
     std::optional<Pose2> pose = planarPose(ins);
     const double time = log_.seconds(ins.utime);
@@ -112,7 +112,7 @@ class Reader {
   bool isHeld(const Pose2& pose, double time) {
     const bool stands = standsBetween(span_, time - kSettled, time);
     if (!stands) ++result_.poses;
-    // What hangs while it drives does not come alive because it stands.
+    // A pose that froze while driving does not become valid at standstill.
     return (!stands || holding_) && last_ && samePose(*last_, pose);
   }
 

@@ -9,7 +9,7 @@
 
 namespace tread {
 
-/// A file that cannot be written: no rights, or the disk is full. Programs end with 1 of it.
+/// A file cannot be written: no permission, or the disk is full. Programs then exit with code 1.
 class WriteError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -17,26 +17,26 @@ class WriteError : public std::runtime_error {
 
 /// The only way in which our programs write a file.
 /** The bytes go to PATH.PID.unfinished beside it. commit() waits until they are on the disk and
- * moves them to PATH: whatever happens before, a full disk, an exception, kill -9, what was there
- * stays as it was. A link stays, and so do owner and rights. What is no regular file (a pipe,
- * /dev/stdout) is written to as it stands. All throw WriteError with one line. */
+ * renames it to PATH: if anything fails before (full disk, exception, kill -9), the old file stays
+ * unchanged. A symlink is kept, and so are owner and rights. A PATH that is no regular file (a
+ * pipe, /dev/stdout) is written directly. All functions throw WriteError with one line. */
 class OutputFile {
  public:
   enum class Kind {
     kWhole,    ///< as above
-    kGrowing,  ///< a new file under its own name from its first byte, for what is recorded live:
-               ///< what was flushed survives a crash; it never opens a file that is there
+    kGrowing,  ///< a new file under its final name from its first byte, for live recording: flushed
+               ///< data survive a crash; it never opens an existing file
   };
 
   explicit OutputFile(const std::string& path, Kind kind = Kind::kWhole);
-  /// Removes what was not committed, unless it grows.
+  /// Removes an uncommitted file, unless it is kGrowing.
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
   void write(const void* bytes, size_t size);
   void write(const std::string& text) { write(text.data(), text.size()); }
-  /// Hands over what is buffered.
+  /// Flushes the buffer.
   void flush();
   void commit();
 
@@ -51,17 +51,17 @@ class OutputFile {
   std::string temporary_;
   std::string buffer_;
   int fd_ = -1;
-  int error_ = 0;  ///< of the first failure; what was buffered then is lost, so it stays failed
+  int error_ = 0;  ///< of the first failure; the buffer was lost then, so the file stays failed
 };
 
-/// A folder whose files are put in their places together, once all of them are written.
-/** They are written in path(), a folder in it, by whatever means; commit() moves them up, in the
- * order of their names, over those of the same names. Other files of the folder stay. */
+/// A folder whose files are moved to their final places together, after all of them are written.
+/** They are written in path(), a subfolder, by any means; commit() moves them up, in the order of
+ * their names, over existing files of the same names. Other files of the folder stay. */
 class OutputFolder {
  public:
-  /// Makes the folder, if it is not there.
+  /// Creates the folder if needed.
   explicit OutputFolder(const std::string& folder);
-  /// Removes what was not committed.
+  /// Removes uncommitted files.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -75,26 +75,27 @@ class OutputFolder {
   bool made_ = false;
 };
 
-/// Waits until the names of a folder are on the disk: without it a rename may be lost with the
-/// power. A folder that may not be read or cannot do it is no failure.
+/// Waits until a folder's entries are on the disk: otherwise a power failure may undo a rename. A
+/// folder that cannot be read or synced is no failure.
 void syncFolder(const std::string& folder);
 
-/// Makes a name free for what is recorded anew: what is there becomes PATH.1, or the next free one.
+/// Frees a name for a new recording: an existing file is renamed to PATH.1, or the next free
+/// number.
 void moveAside(const std::string& path);
 
-/// Whether this is the name of what a killed program left behind.
+/// Whether this is the name of a file that a killed program left behind.
 bool isUnfinished(const std::string& name);
 
-/// What a program is about to write.
+/// A file or folder that a program will write.
 struct PlannedOutput {
   enum class Kind { kFile, kFolder, kEither };
   std::string path;  ///< empty = none
   Kind kind = Kind::kFile;
 };
 
-/// Before the work, with nothing opened: throws std::runtime_error with one line if an output is an
-/// input, by whatever name, or lies in a folder that is one; if two are the same; if it is there
-/// already, unless `replace`; and if it could not be written. A folder may be there if it is empty.
+/// Call before the work; opens nothing. Throws std::runtime_error with one line if an output is an
+/// input (by whatever name) or lies in an input folder, if two outputs are the same, if one exists
+/// (unless `replace`), or if it cannot be written. An existing empty folder is allowed.
 void checkOutputs(const std::vector<PlannedOutput>& outputs, const std::vector<std::string>& inputs,
                   bool replace);
 

@@ -22,8 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether a name may stand for an entry: letters, digits, '.', '_', '-', no dot in front, at most
-/// 200 characters, so that it is a visible file of the folder itself on any file system, and none
+/// Whether a name is a valid entry: letters, digits, '.', '_', '-', no leading dot, at most 200
+/// characters, so that it is a visible file directly in the folder on any file system, and none
 /// that is being written.
 bool isEntryName(const std::string& name) {
   constexpr size_t kLongest = 200;
@@ -33,7 +33,7 @@ bool isEntryName(const std::string& name) {
          });
 }
 
-/// The line that refuses such a name.
+/// The error for such a name.
 std::string badEntryName() {
   return "store: an entry's name has only letters, digits, '.', '_' and '-', at most 200, and does "
          "not begin with a dot";

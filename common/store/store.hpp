@@ -9,16 +9,16 @@
 
 namespace tread {
 
-/// Named pieces of state that outlive a process. Writing is atomic: after a crash the old or the
-/// new is there, whole.
+/// Named entries of state that outlive a process. Writing is atomic: after a crash either the old
+/// or the new entry is there, whole.
 class Store {
  public:
   virtual ~Store() = default;
 
-  /// Content of an entry, or nothing.
+  /// Content of an entry; nullopt if there is none.
   virtual std::optional<std::string> read(const std::string& name) const = 0;
-  /// Replaces an entry. Returns one clear line if it could not be written (disk full, no
-  /// permission), else nothing.
+  /// Replaces an entry. Returns one clear line if it cannot be written (disk full, no permission),
+  /// else nullopt.
   virtual std::optional<std::string> write(const std::string& name, const std::string& content) = 0;
   /// Removes an entry if it exists.
   virtual void remove(const std::string& name) = 0;
@@ -26,11 +26,11 @@ class Store {
   virtual std::vector<std::string> names() const = 0;
 };
 
-/// Entries are files of a folder, each written as OutputFile does.
+/// Each entry is a file of a folder, written as OutputFile does.
 class FileStore : public Store {
  public:
-  /// Creates the folder if needed; throws std::runtime_error if that fails, or where another
-  /// process uses it.
+  /// Creates the folder if needed; throws std::runtime_error if that fails, or if another process
+  /// uses it.
   explicit FileStore(std::string folder);
   ~FileStore() override;
   FileStore(const FileStore&) = delete;
@@ -53,7 +53,7 @@ class MemoryStore : public Store {
   std::optional<std::string> write(const std::string& name, const std::string& content) override;
   void remove(const std::string& name) override;
   std::vector<std::string> names() const override;
-  /// From now on writing fails with this line, as on a full disk; empty = works again.
+  /// Makes all writes fail with this message, as on a full disk; empty = writes work again.
   void failWith(const std::string& problem) { problem_ = problem; }
 
  private:
@@ -61,9 +61,9 @@ class MemoryStore : public Store {
   std::string problem_;
 };
 
-// Text files that people name.
+// Text files named by users.
 
-/// The whole text of a file; throws std::runtime_error with one line that names it.
+/// The whole text of a file; throws std::runtime_error with one line that contains its name.
 std::string readText(const std::string& path);
 
 /// Writes a file whole or not at all, as OutputFile does; throws WriteError with one line.

@@ -40,12 +40,12 @@ void appendReal(std::string& out, double value, bool single) {
     appendNumber(out, value);
 }
 
-/// Bytes that are no UTF-8 become its mark of replacement: JSON holds nothing else.
+/// Bytes that are no UTF-8 become the replacement character: JSON allows nothing else.
 void appendText(std::string& out, const std::string& text) {
   out += Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Writes JSON without a tree in memory: most of an export's time goes here.
+/// Writes JSON without a tree in memory, because it dominates the time of an export.
 class JsonWriter : public MessageVisitor {
  public:
   void beginField(const MessageField& field, size_t) override {
@@ -110,7 +110,7 @@ class JsonWriter : public MessageVisitor {
   bool first_ = true;
   bool boolean_ = false;
   std::string gathered_;
-  std::string* bytes_ = nullptr;  ///< where bytes go that become one text
+  std::string* bytes_ = nullptr;  ///< destination of bytes that become one text
 };
 
 /// Reads a message's JSON into its bytes.

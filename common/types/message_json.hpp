@@ -11,24 +11,23 @@
 
 namespace tread {
 
-// A message as JSON: an object with a member for each field. What JSON has no number for is a text,
-// as in Protocol Buffers' JSON: "NaN", "Infinity", "-Infinity". Arrays of several dimensions lie
-// flat, the last one fastest: viewers that know messages by their schema take no arrays of arrays.
-// An array of bytes is one base64 text.
+// A message as JSON: an object with a member for each field. Numbers that JSON cannot represent are
+// texts, as in Protocol Buffers' JSON: "NaN", "Infinity", "-Infinity". Arrays of several dimensions
+// are flattened, the last index fastest, because viewers that know messages by their schema do not
+// support arrays of arrays. An array of bytes is one base64 text.
 
-/// The message as JSON text; nothing if the bytes are no message of the type.
+/// The message as JSON text; nullopt if the bytes are no message of the type.
 std::optional<std::string> jsonOf(const MessageTypes& types, const MessageType& type,
                                   const std::vector<uint8_t>& bytes);
 
-/// The message's bytes from its JSON; throws std::invalid_argument with the field and what is wrong
-/// there.
-/** Members that the type does not have are left out. Lengths must fit: an array has as many values
- * as its type and the fields that tell its lengths say. */
+/// The message's bytes from its JSON; throws std::invalid_argument with the field and the error.
+/** Unknown members are ignored. Lengths must match: an array has as many values as its type and its
+ * length fields require. */
 std::vector<uint8_t> bytesOf(const MessageTypes& types, const MessageType& type,
                              const std::string& json);
 
-/// The type as JSON Schema (draft 7), as MCAP and the Foxglove protocol take it; the comments of
-/// the .lcm file are its descriptions.
+/// The type as JSON Schema (draft 7) for MCAP and the Foxglove protocol; its descriptions are the
+/// comments of the .lcm file.
 std::string jsonSchemaOf(const MessageTypes& types, const MessageType& type);
 
 }  // namespace tread

@@ -35,10 +35,10 @@ struct Token {
   enum class Kind { kWord, kSign, kComment, kEnd } kind = Kind::kEnd;
   std::string text;
   int line = 0;
-  bool apart = false;  ///< a comment that stands where a field would
+  bool apart = false;  ///< a comment in the place of a field
 };
 
-/// Cuts the text of .lcm files into words, signs and comments.
+/// Splits .lcm files into words, symbols and comments.
 class Lexer {
  public:
   explicit Lexer(const std::string& text) : text_(text) {}
@@ -95,11 +95,11 @@ class Lexer {
   const std::string& text_;
   size_t at_ = 0;
   int line_ = 1;
-  bool first_ = true;  ///< nothing of this line was taken yet
+  bool first_ = true;  ///< nothing read from this line yet
   size_t line_begin_ = 0;
 };
 
-/// Reads structs; packages are left out: within Tread a type's name is its own.
+/// Parses structs; package names are ignored, because Tread's type names are unique.
 class Parser {
  public:
   explicit Parser(const std::string& text) : lexer_(text) { advance(); }
@@ -127,8 +127,8 @@ class Parser {
                                 ", not '" + token_.text + "'");
   }
 
-  /// Comments go where they belong: behind a field, and below that, to the field, else to the
-  /// struct that follows.
+  /// Assigns comments: after a field and on the lines below it, to the field, else to the next
+  /// struct.
   void advance() {
     for (;;) {
       token_ = lexer_.next();
@@ -150,7 +150,7 @@ class Parser {
     if (!isSign(wanted)) fail(std::string("expected ") + wanted);
     advance();
   }
-  /// A sign behind which comments belong to `comment`.
+  /// A symbol after which comments belong to `comment`.
   void signBefore(const char* wanted, std::string* comment) {
     if (!isSign(wanted)) fail(std::string("expected ") + wanted);
     comment_ = comment;
@@ -209,7 +209,7 @@ class Parser {
 
   Lexer lexer_;
   Token token_;
-  std::string before_;              ///< comments that belong to what comes
+  std::string before_;              ///< comments for the next item
   std::string* comment_ = nullptr;  ///< where comments go now
 };
 
@@ -217,7 +217,7 @@ class Parser {
 class FieldHash {
  public:
   void add(uint64_t value) {
-    // The rule shifts a signed number to the right.
+    // The algorithm right-shifts a signed number.
     const auto high = static_cast<uint64_t>(static_cast<int64_t>(value_) >> 55);
     value_ = ((value_ << 8) ^ high) + value;
   }
@@ -262,7 +262,8 @@ class Walk {
  private:
   size_t rest() const { return bytes_.size() - at_; }
 
-  /// Values of the field; each takes a byte at least, so that more than bytes are left cannot be.
+  /// Number of values of the field; each takes at least a byte, so that more than the remaining
+  /// bytes is impossible.
   std::optional<size_t> countOf(const MessageField& field,
                                 const std::map<std::string, int64_t>& lengths) const {
     size_t count = 1;
@@ -332,7 +333,7 @@ class Walk {
   int64_t last_ = 0;  ///< the newest integer
 };
 
-/// Gathers numbers by the fields' names.
+/// Collects numbers by field name.
 class Numbers : public MessageVisitor {
  public:
   void beginField(const MessageField& field, size_t) override { now_ = &numbers[field.name]; }

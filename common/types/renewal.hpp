@@ -8,11 +8,11 @@
 
 namespace tread {
 
-/// Writes a message of a channel anew that was logged while its type had fewer fields
+/// Converts a message of a channel that was logged while its type had fewer fields
 /// (lcmtypes/before, a folder for each day on which types changed).
-/** Fields keep their values by their names. One that the message does not have is unknown: NaN,
- * empty, or 0; where its name ends in _code it is what the words beside it say (stopReasonOf()).
- * False if the bytes are none of an older type; they stay as they are then. */
+/** Fields are matched by name. A field missing in the message becomes unknown: NaN, empty, or 0;
+ * one whose name ends in _code is derived from the words beside it (stopReasonOf()). False if the
+ * bytes are of no older type; they stay unchanged then. */
 bool renewByNames(const std::string& channel, std::vector<uint8_t>& bytes);
 
 }  // namespace tread

@@ -68,7 +68,7 @@ std::vector<Effect> commandEffects() {
 
 namespace {
 
-/// One track alone; what an asymmetry with a slip of both would be, too.
+/// One track alone; an asymmetry plus slip of both tracks gives the same.
 Effect oneSided(const std::string& side, double EffectValues::*value) {
   const std::string other = side == "left" ? "right" : "left";
   Effect effect;

@@ -18,7 +18,7 @@ std::vector<Effect> powerEffects();                 ///< power that fades or dif
 std::vector<Effect> lagEffects();                   ///< lags and play of the drive
 std::vector<Effect> steeringEffects();              ///< of a car's steering
 std::vector<Effect> wheelEffects();                 ///< of the wheels of a holonomic base
-std::vector<Effect> sidewaysEffects();              ///< of how a holonomic base moves sideways
+std::vector<Effect> sidewaysEffects();              ///< of the lateral motion of a holonomic base
 std::vector<Effect> slipEffects();                  ///< slip and changes of the ground
 std::vector<Effect> turningEffects();               ///< resistance to turning
 std::vector<Effect> turningChangeEffects();         ///< turning with speed, direction and payload
@@ -26,10 +26,10 @@ std::vector<Effect> gripEffects();                  ///< limits and offsets of t
 std::vector<Effect> speedLossEffects();             ///< losses of forward speed
 std::vector<Effect> inertiaEffects();               ///< inertia, centre of rotation, crab
 std::vector<Effect> sideEffects();                  ///< drift and slopes
-std::vector<Effect> timingEffects();                ///< of the INS: latencies and scale
-std::vector<Effect> mountingEffects();              ///< of the INS: lever arm, alignment, bias
-std::vector<ConfoundedGroup> groupsOfEveryDrive();  ///< that no drive tells apart
-std::vector<ConfoundedGroup> groupsOfPoorDrives();  ///< that a better drive tells apart
+std::vector<Effect> timingEffects();                ///< effects that no drive can distinguish
+std::vector<Effect> mountingEffects();              ///< effects that a better drive can distinguish
+std::vector<ConfoundedGroup> groupsOfEveryDrive();  ///< groups that no drive can distinguish
+std::vector<ConfoundedGroup> groupsOfPoorDrives();  ///< groups that a better drive can distinguish
 
 inline constexpr VehicleLayouts kOfTracks = static_cast<VehicleLayouts>(VehicleLayout::kTracks);
 inline constexpr VehicleLayouts kOfCars = static_cast<VehicleLayouts>(VehicleLayout::kCar);
@@ -41,28 +41,29 @@ inline Effect only(VehicleLayouts layouts, Effect effect) {
   return effect;
 }
 
-/// Search settings of an effect that another one is under a second name.
+/// Search settings of an effect that equals another one under a second name.
 inline EffectSearch secondName() {
   EffectSearch search;
   search.second_name = true;
   return search;
 }
 
-/// Search settings of an effect that is put in the place of others.
+/// Search settings of an effect that may replace others.
 inline EffectSearch inPlace() {
   EffectSearch search;
   search.in_place = true;
   return search;
 }
 
-/// Search settings of an effect under the wheels that these others are where wheels show it.
+/// Search settings of an effect that, where the wheels show it, is explained by these effects
+/// instead.
 inline EffectSearch inWheels(std::vector<std::string> names) {
   EffectSearch search;
   search.in_wheels = std::move(names);
   return search;
 }
 
-/// Search settings of an effect that makes something late.
+/// Search settings of an effect that delays something.
 inline EffectSearch isLate(LateBy late_by, EffectSearch search = {}) {
   search.late_by = late_by;
   return search;
@@ -83,7 +84,8 @@ inline EffectParameter strength(std::string name, std::string unit, double min, 
   return {std::move(name), std::move(unit), min, max, typical, nullptr, value};
 }
 
-/// The reciprocal of a limit, called inverse_limit in files; natural: what people call the limit.
+/// The reciprocal of a limit, called inverse_limit in files; `natural` is the limit's everyday
+/// name.
 inline EffectParameter inverseLimit(std::string unit, double max, double typical,
                                     double EffectValues::*value, std::vector<double> probes,
                                     std::string natural_name, std::string natural_unit,
@@ -108,7 +110,7 @@ inline EffectParameter fitted(EffectParameter parameter) {
   return parameter;
 }
 
-/// How hard a limit is: the share of what is asked for beyond it that still comes.
+/// Softness of a limit: the share of the excess that still takes effect.
 inline EffectParameter beyond(double EffectValues::*value) {
   return fitted(shape(strength("beyond", "1", 0.0, 0.6, 0.15, value), {0.1}));
 }
@@ -130,7 +132,7 @@ inline EffectParameter withSigns(EffectParameter parameter, std::string positive
   return parameter;
 }
 
-/// A distance on the vehicle, plausible up to so many gauges.
+/// A distance on the vehicle, plausible up to this many gauges.
 inline EffectParameter upToGauges(double gauges, EffectParameter parameter) {
   parameter.gauges = gauges;
   return parameter;

@@ -19,7 +19,7 @@ namespace {
 constexpr Range kParameterRange{-1e6, 1e6};
 constexpr size_t kMostOfOne = 8;       // parameters of one effect
 constexpr double kUnchanged = 1e-9;    // [m/s or rad/s]
-constexpr double kLeastChange = 1e-6;  // [m/s or rad/s] that an effect makes somewhere
+constexpr double kLeastChange = 1e-6;  // [m/s or rad/s] least change by which an effect counts
 constexpr size_t kLongestText = 400;   // characters
 
 const std::vector<std::string>& limitedNames() {
@@ -65,7 +65,7 @@ EffectParameter readOneParameter(ConfigReader& reader) {
   return parameter;
 }
 
-/// Of a limit that is held as its reciprocal.
+/// For a limit that is stored as its reciprocal.
 void readLimit(ConfigReader& reader, EffectParameter& parameter) {
   std::string limits = limitedNames().front();
   reader.choice("limits", limits, limitedNames());
@@ -111,7 +111,7 @@ std::vector<EffectParameter> readParameters(ConfigReader& reader,
   return all;
 }
 
-/// Numbers that a vehicle's quantities have in any drive, in turn.
+/// Typical values of a vehicle's quantities in a drive, in turn.
 std::vector<std::vector<double>> sampleMotions(const std::vector<std::string>& quantities) {
   constexpr double kSamples[] = {0.0, 1.0, -1.0, 0.3, -0.7, 2.0};
   std::vector<std::vector<double>> motions;
@@ -137,7 +137,7 @@ size_t changedPlace(LawTarget target) {
   return placeIn(quantitiesOf(target), kNames[static_cast<size_t>(target)]);
 }
 
-/// A law with parameters, put on sample motions.
+/// A law with parameters, evaluated on sample motions.
 class TriedLaw {
  public:
   TriedLaw(const AddedLaw& law, const std::vector<double>& parameters)
@@ -152,7 +152,7 @@ class TriedLaw {
     memory_place_ = quantities_.size() + parameters.size();
   }
 
-  /// The most that it changes; throws where it has no value.
+  /// Its largest change; throws if it is undefined.
   double largestChange() const {
     double largest = 0.0;
     for (const std::vector<double>& motion : sampleMotions(quantities_)) {
@@ -169,7 +169,7 @@ class TriedLaw {
     for (const FormulaUse* formula : formulas_) formula->input(place) = value;
   }
 
-  /// A memory that follows at once is what it follows; another one may be anything.
+  /// A memory without delay equals its target; otherwise it may have any value.
   void remember(const std::vector<double>& motion) const {
     set(memory_place_, 0.5 * motion.front());
     const double target = finite(memory_[0], *law_.follows, motion);
@@ -196,7 +196,7 @@ class TriedLaw {
   size_t memory_place_ = 0;
 };
 
-/// An effect is off while its strengths are 0, and does something with each of them.
+/// An effect must be off while its strengths are 0, and each strength must change something.
 void requireSense(const AddedLaw& law, const std::vector<EffectParameter>& parameters) {
   std::vector<double> values;
   for (const EffectParameter& parameter : parameters)

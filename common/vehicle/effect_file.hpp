@@ -12,7 +12,7 @@ namespace tread {
 
 class ConfigReader;
 
-/// An effect that a file describes, with what it is confounded with.
+/// An effect described by a file, with its confounded groups.
 struct EffectEntry {
   Effect effect;
   std::vector<ConfoundedGroup> groups;
@@ -20,16 +20,17 @@ struct EffectEntry {
 
 /// Reads the file of an effect (YAML; config/effects has examples, common/vehicle/README.md the
 /// keys).
-/** Throws ConfigError with one line for what is no effect: a formula that does not compile, has no
- * value or changes something while the strengths are 0, missing ranges, a name that is taken. */
+/** Throws ConfigError with one line for an invalid effect: a formula that does not compile, is
+ * undefined or changes something while the strengths are 0, missing ranges, a name that is taken.
+ */
 EffectEntry readEffectFile(const std::string& path);
 
-/// The same of a section of another file.
+/// The same from a section of another file.
 EffectEntry readEffectEntry(ConfigReader& reader);
 
 /// Reads all files of a folder (*.yaml, by name) and adds their effects to the catalogue.
-/** An effect that is there in the same words is not added twice; another one of its name is
- * refused. Throws ConfigError. */
+/** An identical effect is not added twice; a different one of the same name is refused. Throws
+ * ConfigError. */
 void addEffectsOf(const std::string& folder);
 
 /// Adds an entry to the catalogue as addEffectsOf() does; `reader` is where it was read.
@@ -41,8 +42,8 @@ std::string formatEffect(const EffectEntry& entry);
 /// An unnamed term as an effect of the name, with `share` of the term's values as its size.
 EffectEntry effectOf(const UnnamedTerm& term, const std::string& name);
 
-/// Replaces an unnamed term of a model by the effect of the name, which effectOf() made of it and
-/// which is in the catalogue. What is known of its values is known of its share.
+/// Replaces an unnamed term of a model by the effect of this name, which effectOf() made from it
+/// and which is in the catalogue. The uncertainty of its values becomes that of its share.
 void replaceTerm(ModelDocument& document, const std::string& term, const Effect& effect);
 
 /// The entry of an added effect of the catalogue.

@@ -20,7 +20,7 @@ std::deque<Effect> allEffects() {
   return all;
 }
 
-/// What the program knows, added effects among it; they come in before anything is computed.
+/// The effects known to the program, including added ones, which are added before any computation.
 struct Catalogue {
   std::deque<Effect> effects = allEffects();
   std::deque<ConfoundedGroup> groups;

@@ -27,7 +27,7 @@ double smoothSign(double value) {
   return std::tanh(value / kSignWidth);
 }
 
-/// curve(x, a, f(a), b, f(b), ..): straight between, constant beyond; a, b, .. ascending.
+/// curve(x, a, f(a), b, f(b), ..): linear in between, constant outside; a, b, .. ascending.
 double curve(const double* arguments, int count) {
   if (count < 5 || count % 2 == 0)
     throw mu::ParserError("curve() takes a value and pairs of numbers, two or more");
@@ -41,7 +41,7 @@ double curve(const double* arguments, int count) {
   return at[1] + share * (at[3] - at[1]);
 }
 
-/// Whether it assigns, which muParser would do to the numbers.
+/// Whether it contains an assignment, which muParser would apply to the inputs.
 bool assigns(const std::string& text) {
   for (size_t i = 0; i < text.size(); ++i) {
     if (text[i] != '=') continue;

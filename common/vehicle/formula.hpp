@@ -9,14 +9,14 @@
 
 namespace tread {
 
-/// A formula over named numbers, as people write it: "v + offset * yaw_rate".
-/** Operators, functions and conditions are those of muParser, beside limited(value, inverse_limit,
- * beyond), dead_zone(value, width) and lessened(value, loss) as the effects of the catalogue use
- * them, smooth_sign(value), and curve(value, a, f(a), b, f(b), ..), straight between. There are no
- * loops and no assignments: the time that it takes is bounded by its length. */
+/// A formula over named numbers, as users write it: "v + offset * yaw_rate".
+/** Operators, functions and conditions are those of muParser, plus limited(value, inverse_limit,
+ * beyond), dead_zone(value, width) and lessened(value, loss) as in the effects of the catalogue,
+ * smooth_sign(value), and curve(value, a, f(a), b, f(b), ..), linear in between. There are no
+ * loops and no assignments: the length of a formula bounds its run time. */
 class Formula {
  public:
-  /// Compiles it; throws std::runtime_error with one line for what is no formula of these names.
+  /// Compiles it; throws std::runtime_error with one line if it is no formula of these names.
   Formula(std::string text, std::vector<std::string> names);
   Formula(const Formula&) = delete;
   Formula& operator=(const Formula&) = delete;
@@ -33,12 +33,13 @@ class Formula {
 
   const std::string text_;
   const std::vector<std::string> names_;
-  // What muParser compiles holds the numbers, too: each use has one of its own, and gives it back.
+  // muParser's compiled formula also holds the inputs: each use borrows one of its own and returns
+  // it.
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<Compiled>> idle_;
 };
 
-/// Evaluates a formula: for one thread at a time. Copies are independent.
+/// Evaluates a formula, in one thread at a time. Copies are independent.
 class FormulaUse {
  public:
   explicit FormulaUse(std::shared_ptr<const Formula> formula);
@@ -47,9 +48,9 @@ class FormulaUse {
   FormulaUse& operator=(FormulaUse other) noexcept;
   ~FormulaUse();
 
-  /// A number by its place in names(); to be set before value().
+  /// An input by its place in names(); set it before value().
   double& input(size_t place) const;
-  /// The value; NaN or infinite where the formula has none.
+  /// The value; NaN or infinite if the formula is undefined there.
   double value() const;
 
  private:

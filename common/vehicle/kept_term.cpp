@@ -42,8 +42,8 @@ EffectParameter shareOfTerm() {
   return share;
 }
 
-/// Deviation of the share s with which s values fit best, from the covariance of the values; 0
-/// where nothing is known.
+/// Standard deviation of the share s for which s values fit best, from the covariance of the
+/// values; 0 if it is unknown.
 double shareDeviation(const ParameterCovariance& covariance, const UnnamedTerm& term) {
   std::vector<size_t> rows;
   std::vector<double> values;
@@ -66,7 +66,7 @@ double shareDeviation(const ParameterCovariance& covariance, const UnnamedTerm& 
   return information > 0.0 ? 1.0 / std::sqrt(information) : 0.0;
 }
 
-/// Takes the values of a term out, and puts the share in.
+/// Replaces the values of a term by the share.
 void replaceKnown(ParameterCovariance& covariance, const UnnamedTerm& term,
                   const std::string& share) {
   const double deviation = shareDeviation(covariance, term);

@@ -18,13 +18,13 @@ using namespace steps;
 
 namespace {
 
-constexpr double kShortestStep = 1e-12;  // [s], below it is rounding of time
+constexpr double kShortestStep = 1e-12;  // [s], less is rounding of time
 
 double supplied(const VehicleModel& model, const DriveContext& context, double asked) {
   return suppliedSpeed(model.effects, asked, context.session_time, context.battery_drop);
 }
 
-/// Speeds that the drives are asked for, of what is supplied to them, before added effects.
+/// Speeds asked of the drives for what is supplied to them, before added effects.
 TrackCommand driveTargets(const VehicleModel& model, const TrackCommand& supply,
                           const TrackCommand& heat) {
   return {driveTarget(model.effects, supply.left, 1.0, heat.left),
@@ -36,14 +36,14 @@ TrackCommand supplied(const VehicleModel& model, const DriveContext& context,
   return {supplied(model, context, asked.left), supplied(model, context, asked.right)};
 }
 
-/// A track that has run in its direction for long has its slack behind it.
+/// After long motion in one direction a track's slack is taken up.
 TrackState enteredTrack(const EffectValues& effects, double speed, double ramp, double heat) {
   return {speed, ramp, speed < 0.0 ? effects.track_backlash : 0.0, heat};
 }
 
 using EndUnder = std::function<Pose2(const ExecutionNoise&)>;
 
-/// Change of the end pose per standard deviation of one noise.
+/// Change of the end pose per standard deviation of one noise component.
 Eigen::Vector3d sensitivity(const EndUnder& end, const ExecutionNoise& low,
                             const ExecutionNoise& high) {
   const Pose2 from = end(low);
@@ -226,7 +226,7 @@ PlaneMotion VehicleKernel::moveBody(const ChangesInForce& changes, const PlaneMo
     body_ = mean;
     return mean;
   }
-  // Tracks that are quick for the step jump to where they stay; of slack only means are known.
+  // Tracks with a lag below the step jump to their final value; of slack only means are known.
   const bool gradual = model_.driveLag() >= dt && effects.track_backlash == 0.0;
   const PlaneMotion begin = gradual ? led_to_ : mean;
   const PlaneMotion end =

@@ -14,36 +14,36 @@
 
 namespace tread {
 
-/// In what state a vehicle begins: standing still, cold, level, at the start of a session.
+/// The state in which a vehicle begins; default: at rest, cold, level, at the start of a session.
 struct EntryState {
   TrackCommand track_speeds{};  ///< [m/s] of the drive
   TrackCommand
-      command{};  ///< given so far; it acts on until the delay of the first new one is over
+      command{};  ///< the previous command; it acts until the delay of the first new one is over
   DriveContext context{};  ///< at the start
-  /// Forward speed and yaw rate of the body, for its inertia; else what the tracks lead to.
+  /// Forward speed and yaw rate of the body, for its inertia; default: those that the tracks give.
   std::optional<PlaneMotion> body = std::nullopt;
   TrackCommand heat{};  ///< [1] low-pass of the duty of each side's motor, see thermal_derating
-  /// [m/s] that the drives are asked for by their ramps, see slew_limit; else their speeds.
+  /// [m/s] drive targets after their ramps, see slew_limit; default: the drives' speeds.
   std::optional<TrackCommand> ramps = std::nullopt;
-  std::optional<Steering> steering = std::nullopt;  ///< of a car; else that of the command
-  /// Of unnamed terms; else as after a long time in the motion at the start, turns forgotten.
+  std::optional<Steering> steering = std::nullopt;  ///< of a car; default: that of the command
+  /// Of unnamed terms; default: the steady state of the motion at the start, turns forgotten.
   std::optional<TermMemory> memory = std::nullopt;
-  AddedMemory added_memory{};  ///< of added effects of the same model; else as after a long time
+  AddedMemory added_memory{};  ///< of added effects of the same model; default: the steady state
 };
 
-/// The state that a command leads to when it is held for long (motors cold).
+/// The steady state of a command (motors cold).
 EntryState steadyEntry(const VehicleModel& model, const TrackCommand& command,
                        const DriveContext& context = {});
 
-/// The body twist that a command leads to when it is held for long.
+/// The steady body twist of a command.
 Twist2 steadyTwist(const VehicleModel& model, const TrackCommand& command,
                    const DriveContext& context = {});
 
 /// Drives a model through commands; deterministic, without a clock.
-/** In which order effects act on a command: EffectValues.
+/** For the order in which effects act on a command see EffectValues.
  *
- * The body follows before its motion to the side is known, so that the centre of rotation belongs
- * to the true yaw rate (and icr_offset remains exactly a lever arm).
+ * The body's inertia is applied before lateral motion is computed, so that the centre of rotation
+ * belongs to the true yaw rate (and icr_offset remains exactly a lever arm).
  *
  * Lags and ramps are integrated exactly over steps of at most model.step; the pose moves along
  * SE(2) exponentials of each step's mean twist. An effect that is off does not change a bit. All
@@ -53,17 +53,17 @@ class VehicleKernel {
   VehicleKernel(const VehicleModel& model, const EntryState& entry,
                 const ExecutionNoise& noise = {});
 
-  /// Holds a command for `duration` [s]; the context stays, session time goes on.
+  /// Holds a command for `duration` [s]; the context stays, except for the session time.
   void step(const TrackCommand& command, double duration);
-  /// The same with what is known of this step; its session time is that of the step's beginning.
+  /// The same with a context for this step; its session time is that of the step's beginning.
   void step(const TrackCommand& command, double duration, const DriveContext& context);
-  /// Gives a command; it acts from the model's delay on until the next one does.
+  /// Gives a command; it acts after the model's delay, until the next one does.
   void give(const TrackCommand& command);
-  /// Goes on for `duration` [s] with what was given, as the last step(): one that holds a command
-  /// through many short times is integrated over each of them at once, whatever the delay.
+  /// Continues for `duration` [s] with the commands given so far. A command held over many short
+  /// spans costs one integration per span, whatever the delay.
   void hold(double duration, const DriveContext& context);
 
-  /// The body stands at once, as at a hard obstacle; tracks and waiting commands go on.
+  /// Stops the body at once, as at a hard obstacle; tracks and delayed commands go on.
   void stopBody() { body_ = {}; }
 
   /// Pose relative to the start, yaw unwrapped.
@@ -72,33 +72,33 @@ class VehicleKernel {
   Twist2 twist() const;
   /// Speeds of the drive, before slack and slip [m/s].
   TrackCommand trackSpeeds() const { return {left_.speed, right_.speed}; }
-  /// What unnamed terms depended on in the last step; nothing is kept of a model with neither terms
-  /// nor added effects of the motion.
+  /// Inputs of unnamed terms in the last step; not kept for a model with neither terms nor added
+  /// effects of the motion.
   const TermInputs& termInputs() const { return inputs_; }
-  /// State from which another kernel can begin (without waiting commands and slack).
+  /// State from which another kernel can continue (without delayed commands and slack).
   EntryState state() const;
   /// Changes the noise from now on, for noise that varies along a drive.
   void setNoise(const ExecutionNoise& noise);
 
  private:
   struct Waiting {
-    double until;  ///< [s] since the start; it begins to act then
+    double until;  ///< [s] since the start, when it begins to act
     TrackCommand command;
   };
 
   void hold(double duration);
   void advance(double duration);
   void integrateStep(const TrackCommand& asked, double dt);
-  /// Moves a car's steering on by dt; returns the mean angle of its wheels meanwhile [rad].
+  /// Advances a car's steering by dt; returns the mean angle of its wheels over dt [rad].
   double steer(double dt);
-  /// Forward speed and yaw rate of a body that follows the tracks over dt; its mean meanwhile.
+  /// Forward speed and yaw rate of a body that follows the tracks over dt; returns their means.
   PlaneMotion moveBody(const ChangesInForce& changes, const PlaneMotion& mean, double dt);
-  /// The same inputs with what the command asks for.
+  /// The same inputs, with those that depend on the command.
   TermInputs withCommand(TermInputs inputs) const;
-  /// What added effects add to a motion; their memories move on by dt.
+  /// Change of a motion by added effects; their memories advance by dt.
   Twist2 addedTo(const PlaneMotion& motion, const TermInputs& inputs, const ChangesInForce& changes,
                  const TrackCommand& tracks, double dt, AddedEffects& added) const;
-  /// The body twist of a motion to which that and unnamed terms are added.
+  /// The body twist of a motion, including added effects and unnamed terms.
   Twist2 withTerms(const TermInputs& inputs, const ChangesInForce& changes,
                    const TrackCommand& tracks, PlaneMotion motion, const Twist2& added) const;
   LawInputs known(const TermInputs& inputs, const TrackCommand& tracks) const;
@@ -115,17 +115,17 @@ class VehicleKernel {
   TrackState left_;
   TrackState right_;
   Steering steering_;       ///< of a car
-  TrackCommand on_ground_;  ///< [m/s] mean speeds of the tracks in the last step of integration
+  TrackCommand on_ground_;  ///< [m/s] mean speeds of the tracks in the last integration step
   PlaneMotion body_;
   TermMemory memory_;  ///< of unnamed terms
   TermInputs inputs_;
-  PlaneMotion led_to_;  ///< by the tracks at the end of the last step, for the body's inertia
+  PlaneMotion led_to_;  ///< given by the tracks at the end of the last step, for the body's inertia
   TrackCommand acting_;
   std::deque<Waiting> waiting_;
   double time_ = 0.0;
 };
 
-/// Poses after each command relative to the start (the trajectory R of a pattern), each command
+/// Poses after each command relative to the start (the trajectory R of a pattern); each command is
 /// held for `period` [s].
 std::vector<Pose2> simulate(const VehicleModel& model, const std::vector<TrackCommand>& commands,
                             double period, const EntryState& entry,
@@ -133,57 +133,58 @@ std::vector<Pose2> simulate(const VehicleModel& model, const std::vector<TrackCo
 
 /// Covariance of the last pose of a series of commands from the model's execution spread.
 /** First order: J diag(spread^2) J^T with J by central differences over one standard deviation.
- * Ground that is not the model's is not in it. */
+ * Does not include a change of ground. */
 PoseCovariance endCovariance(const VehicleModel& model, const std::vector<TrackCommand>& commands,
                              double period, const EntryState& entry);
 
-/// The same for a vehicle of any kind, entered in the steady motion of a command.
+/// The same for a vehicle of any kind, starting in the steady motion of a command.
 std::vector<Pose2> simulateFrom(const VehicleModel& model, const Command& entry,
                                 const std::vector<Command>& commands, double period,
                                 const ExecutionNoise& noise = {});
 
-/// The motion class that a steady command keeps up, with the model's twist.
+/// The motion class that a steady command maintains, with the model's twist.
 MotionClass classOf(const VehicleModel& model, const std::string& name, const Command& steady);
 
-/// Fills trajectory and end covariance of a pattern that was never driven, entered in a steady
+/// Predicts trajectory and end covariance of a pattern that was never driven, entered in a steady
 /// motion.
 void predict(const VehicleModel& model, double period, const MotionClass& entry,
              MotionPattern& pattern);
 
-/// Pose and yaw rate at one moment, of the vehicle or as the INS says.
+/// Pose and yaw rate at one instant, true or measured by the INS.
 struct MotionSample {
   double time = 0.0;   ///< [s] since the start of the session
   Pose2 T_map_body;    ///< yaw unwrapped
   double omega = 0.0;  ///< [rad/s]
 };
 
-/// The pose at a moment between samples, along the arc that joins its neighbours.
-/** Before the first and after the last sample the nearest arc goes on. `motion` in the order of
- * time, not empty, less than a full turn between samples. */
+/// The pose at an instant between samples, along the arc that joins its neighbours.
+/** Extrapolated by the nearest arc before the first and after the last sample. `motion` is in order
+ * of time, not empty, with less than a full turn between samples. */
 Pose2 poseAt(const std::vector<MotionSample>& motion, double time);
 
-/// The yaw rate at a moment, linear between samples, constant before the first and after the last.
+/// The yaw rate at an instant, linear between samples, constant before the first and after the
+/// last.
 double yawRateAt(const std::vector<MotionSample>& motion, double time);
 
-/// Values of the parameters of all measurement effects: what the INS makes of the true motion.
-/** Units and bounds stand in the catalogue; 0 = off. A new one is a value here, a line of
- * measuredPose() or measured() and its entry in the catalogue. */
+/// Parameters of all measurement effects: how the INS distorts the true motion.
+/** Units and bounds are in the catalogue; 0 = off. A new one needs a value here, a line of
+ * measuredPose() or measured() and an entry in the catalogue. */
 struct MeasurementModel {
   double ins_latency = 0.0;           ///< [s]
-  double ins_latency_gyro = 0.0;      ///< [1], shape: share of it that the yaw rate has, too
-  double heading_latency = 0.0;       ///< [s], of the heading behind the position
+  double ins_latency_gyro = 0.0;      ///< [1], shape: share of it that also affects the yaw rate
+  double heading_latency = 0.0;       ///< [s], delay of the heading relative to the position
   double position_scale = 0.0;        ///< [1]
   double lever_arm_x = 0.0;           ///< [m]
   double lever_arm_y = 0.0;           ///< [m]
   double heading_misalignment = 0.0;  ///< [rad]
   double gyro_bias = 0.0;             ///< [rad/s]
-  double gyro_bias_heading = 0.0;     ///< [1], shape: share of it that the heading integrates
+  double gyro_bias_heading = 0.0;     ///< [1], shape: share of the bias that the heading integrates
 };
 
-/// Whether the INS says the motion as it is: every measurement effect is off.
+/// Whether the INS measures the motion exactly: every measurement effect is off.
 bool isPerfect(const MeasurementModel& measurement);
 
-/// What the INS says of the pose at `time`, `pose` being the true one of ins_latency ago.
+/// The pose measured at `time`; `pose` is the true one ins_latency earlier.
 inline Pose2 measuredPose(const std::vector<MotionSample>& motion, const MeasurementModel& ins,
                           double time, Pose2 pose) {
   if (ins.lever_arm_x != 0.0 || ins.lever_arm_y != 0.0) {
@@ -200,7 +201,7 @@ inline Pose2 measuredPose(const std::vector<MotionSample>& motion, const Measure
   return pose;
 }
 
-/// What the INS says at the moment of a sample of a true motion.
+/// The INS's measurement at the time of a sample of a true motion.
 /** With t' = t - ins_latency: the position is (1 + position_scale) (p(t') - R(yaw(t')) lever_arm),
  * the heading yaw(t' - heading_latency) - heading_misalignment + gyro_bias_heading gyro_bias t, the
  * yaw rate omega(t - ins_latency_gyro ins_latency) + gyro_bias. Everything 0 returns the motion bit
@@ -216,11 +217,11 @@ inline MotionSample measured(const std::vector<MotionSample>& motion, const Meas
   return said;
 }
 
-/// The same at all its moments.
+/// The same at all samples.
 std::vector<MotionSample> measure(const std::vector<MotionSample>& motion,
                                   const MeasurementModel& measurement);
 
-/// What the INS says at one moment: a yaw rate beside the pose as in measure().
+/// The INS's measurement at one instant: a yaw rate in addition to the pose of measure().
 MotionSample measuredAt(const std::vector<MotionSample>& motion,
                         const MeasurementModel& measurement, double time);
 

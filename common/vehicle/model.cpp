@@ -34,8 +34,8 @@ Followed follow(double value, double target, double lag, double dt) {
 
 Followed follow(double value, const MovingTarget& target, double lag, double dt) {
   if (lag <= 0.0) return {target.mean, target.to};
-  // With s = t / dt the target is from + slope s + bend s^2; what follows it for good is
-  // target - lag target' + lag^2 target''.
+  // With s = t / dt the target is from + slope s + bend s^2; the steady response is target - lag
+  // target' + lag^2 target''.
   const double bend = 3.0 * (target.from + target.to) - 6.0 * target.mean;
   const double slope = target.to - target.from - bend;
   const double share = lag / dt;
@@ -108,7 +108,7 @@ namespace {
 
 const std::string kRest = "rest.";
 
-/// The number that is all of a path behind its beginning.
+/// The number that is the whole rest of a path after its beginning.
 std::optional<size_t> numberAfter(const std::string& beginning, const std::string& path) {
   size_t number = 0;
   const char* const end = path.data() + path.size();
@@ -135,7 +135,7 @@ UnnamedTerm* termOf(ModelDocument& document, const std::string& name) {
   return nullptr;
 }
 
-/// The value of an unnamed term that a path names.
+/// The value of an unnamed term at a path.
 double* termValue(ModelDocument& document, const std::string& path) {
   UnnamedTerm* term = termOf(document, path.substr(0, path.find('.')));
   if (term == nullptr) return nullptr;

@@ -14,8 +14,8 @@
 #include "common/vehicle/omni_wheels.hpp"
 #include "common/vehicle/unnamed_terms.hpp"
 
-// A vehicle on one ground: its numbers, the values of its effects, and what they do to a motion. A
-// new vehicle effect is a value and a line in this file, and its entry in the catalogue.
+// A vehicle on one ground: its numbers, the values of its effects, and their influence on a motion.
+// A new vehicle effect needs a value and a line in this file, and an entry in the catalogue.
 namespace tread {
 
 inline constexpr size_t kMostAdded = 32;  ///< parameters of all added effects
@@ -47,7 +47,7 @@ inline constexpr size_t kMostAdded = 32;  ///< parameters of all added effects
  *       -> slope_pitch, slope_roll
  *     body twist -> pose */
 struct EffectValues {
-  // What the drive makes of a command, per track.
+  // How the drive responds to a command, per track.
   double command_delay = 0.0;         ///< [s], added to the model's delay
   double motor_deadband = 0.0;        ///< [m/s]
   double speed_saturation = 0.0;      ///< [s/m], 1 / top speed
@@ -74,7 +74,7 @@ struct EffectValues {
   double wheel_2_loss = 0.0;  ///< [1]
   double wheel_3_loss = 0.0;  ///< [1]
   double wheel_4_loss = 0.0;  ///< [1]
-  // What the ground makes of the tracks.
+  // How the ground changes the motion of the tracks.
   double slip_ratio = 0.0;           ///< [1]
   double terrain_time_1 = 0.0;       ///< [s], shape
   double terrain_time_2 = 0.0;       ///< [s], shape
@@ -88,7 +88,7 @@ struct EffectValues {
   double yaw_rate_skid = 0.0;        ///< [s]
   double yaw_breakaway = 0.0;        ///< [rad/s]
   double turn_power_limit = 0.0;     ///< [s/rad], 1 / greatest yaw rate
-  double turn_power_beyond = 0.0;    ///< [1], shape: share beyond it that still comes
+  double turn_power_beyond = 0.0;    ///< [1], shape: share of the excess that still takes effect
   double speed_understeer = 0.0;     ///< [s2/m2]
   double reverse_yaw_gain = 0.0;     ///< [s/m]
   double payload_yaw = 0.0;          ///< [1]
@@ -96,7 +96,7 @@ struct EffectValues {
   double payload_icr = 0.0;          ///< [m]
   double payload_time = 0.0;         ///< [s], shape
   double grip_limit = 0.0;           ///< [1], 1 / friction
-  double grip_beyond = 0.0;          ///< [1], shape: share beyond it that still comes
+  double grip_beyond = 0.0;          ///< [1], shape: share of the excess that still takes effect
   double yaw_pull = 0.0;             ///< [rad/m]
   double yaw_rate_offset = 0.0;      ///< [rad/s]
   double turn_speed_loss = 0.0;      ///< [s]
@@ -111,43 +111,43 @@ struct EffectValues {
   double centrifugal_drift = 0.0;  ///< [s]
   double slope_pitch = 0.0;        ///< [s]
   double slope_roll = 0.0;         ///< [s]
-  // What a holonomic base does sideways.
+  // Of the lateral motion of a holonomic base.
   double translation_loss = 0.0;  ///< [1]
-  double sideways_loss = 0.0;     ///< [1], off the model's gain
+  double sideways_loss = 0.0;     ///< [1], subtracted from the model's gain
   double sideways_lag = 0.0;      ///< [s]
   double sideways_turn = 0.0;     ///< [rad/m]
   // What files describe.
   std::array<double, kMostAdded> added{};
 };
 
-/// How much one execution differs from the next on the same ground: standard deviations.
+/// How much executions on the same ground vary: standard deviations.
 struct ExecutionSpread {
   double forward = 0.0;  ///< [1] of the factor on the forward speed
   double yaw = 0.0;      ///< [1] of the factor on the yaw rate
   double crab = 0.0;     ///< [rad] of the direction of travel
 };
 
-/// What chance made of one execution; the default is the mean.
+/// Random deviation of one execution; the default is the mean.
 struct ExecutionNoise {
   double forward = 1.0;  ///< [1] factor on the forward speed
   double yaw = 1.0;      ///< [1] factor on the yaw rate
   double crab = 0.0;     ///< [rad] added to the direction of travel
 };
 
-/// What is known of a moment of a drive beside the command; level, at the start, by default.
-/** Frames: x forward, y left, z up; a nose that points down is a positive pitch, a raised left side
- * a positive roll. */
+/// Conditions at one instant of a drive besides the command; default: level, at the start.
+/** Frames: x forward, y left, z up; pitch is positive nose down, roll positive left side up. */
 struct DriveContext {
   double session_time = 0.0;  ///< [s] since the start of the session
-  double battery_drop = 0.0;  ///< [1] relative fall of the voltage since then; 0 = not measured
+  double battery_drop = 0.0;  ///< [1] relative drop of the voltage since then; 0 = not measured
   double roll = 0.0;          ///< [rad]
   double pitch = 0.0;         ///< [rad]
 };
 
 /// A vehicle on one ground: nominal two-track model and the effects that are on.
-/** A car is its two rear wheels: both follow the throttle, and the steered front wheels lead one to
- * run ahead of the other by Ackermann's law (rearWheels()); on them the effects act as on tracks.
- * Its commands are throttle or speed, and steering angle, in the places of left and right.
+/** A car is modelled by its two rear wheels: both follow the throttle, and by Ackermann's law the
+ * steered front wheels make one run faster than the other (rearWheels()); the effects act on them
+ * as on tracks. Its commands are throttle or speed, and steering angle, in the places of left and
+ * right.
  *
  * v_x = forward_gain (vl + vr) / 2, omega = yaw_gain (vr - vl) / gauge, v_y = 0; track speeds
  * follow the commands after a delay with a first-order lag; then the effects act.
@@ -156,20 +156,20 @@ struct DriveContext {
 struct VehicleModel {
   std::string name;
   CommandKind kind = CommandKind::kPower;
-  double full_speed = 1.0;  ///< [m/s] track speed at power 1; not used for track speed commands
+  double full_speed = 1.0;  ///< [m/s] track speed at power 1; unused for track speed commands
   double lag = 0.0;         ///< [s] time constant of the track speeds
   double delay = 0.0;       ///< [s] before a command begins to act
   double gauge = 1.0;       ///< [m] between the middles of the tracks, of a car's rear wheels
   double wheelbase = 0.0;   ///< [m] of a car, whose body origin is on its rear axle; 0 = two tracks
-  double steering_gain = 1.0;  ///< [1] of a car: angle of the wheels over that of the command
+  double steering_gain = 1.0;  ///< [1] of a car: ratio of the wheels' angle to the commanded one
   double steering_lag = 0.0;   ///< [s] time constant of a car's steering
-  double forward_gain = 1.0;   ///< [1] ground speed over mean track speed
-  double yaw_gain = 1.0;       ///< [1] yaw rate over that of the track speeds
-  OmniWheels wheels;           ///< of a holonomic base; else none
-  double sideways_gain = 1.0;  ///< [1] of a holonomic base: ground speed over that of the rims
-  double step = 0.005;         ///< [s] longest step of integration
+  double forward_gain = 1.0;   ///< [1] ratio of ground speed to mean track speed
+  double yaw_gain = 1.0;       ///< [1] ratio of yaw rate to that of the track speeds
+  OmniWheels wheels;           ///< of a holonomic base; otherwise empty
+  double sideways_gain = 1.0;  ///< [1] of a holonomic base: ratio of ground speed to rim speed
+  double step = 0.005;         ///< [s] longest integration step
   EffectValues effects;
-  /// What no effect of the catalogue names; each depends on the motion without any of them.
+  /// Terms outside the catalogue's effects; each depends on the motion without any of them.
   std::vector<UnnamedTerm> unnamed;
   ExecutionSpread spread;
 
@@ -178,30 +178,31 @@ struct VehicleModel {
   VehicleLayout layout() const {
     return isOmni() ? VehicleLayout::kOmni : isCar() ? VehicleLayout::kCar : VehicleLayout::kTracks;
   }
-  /// What its commands consist of, each channel in its whole range.
+  /// The channels of its commands, each with its full range.
   CommandChannels channels() const {
     if (isOmni()) return omniChannels(kind, wheels.size());
     return isCar() ? carChannels(kind) : trackChannels(kind);
   }
-  /// Track speeds that a command asks for, left and right [m/s]; of a car those of its drive.
+  /// Track speeds that a command asks for, left and right [m/s]; of a car, those of its drive
+  /// wheels.
   TrackCommand trackSpeeds(const TrackCommand& command) const {
     return {unit() * command.left, unit() * (isCar() ? command.left : command.right)};
   }
-  /// Speed that a command of 1 asks for [m/s].
+  /// Speed for a command of 1 [m/s].
   double unit() const { return kind == CommandKind::kTrackSpeed ? 1.0 : full_speed; }
-  /// Speeds of tracks on the ground that turn so fast; a car's by its steering angle [rad].
+  /// Ground speeds of tracks driven at these speeds; of a car, by its steering angle [rad].
   TrackCommand onGround(const TrackCommand& driven, double steering) const {
     if (!isCar()) return driven;
     const TrackCommand share = rearWheels(1.0, steering, wheelbase, gauge);
     return {driven.left * share.left, driven.right * share.right};
   }
-  /// Lag of a car's steering with the effect on it [s].
+  /// Lag of a car's steering, including the effect on it [s].
   double steeringLag() const { return std::max(0.0, steering_lag + effects.slow_steering); }
-  /// Delay of commands with the effect on it [s].
+  /// Delay of commands, including the effect on it [s].
   double commandDelay() const { return std::max(0.0, delay + effects.command_delay); }
-  /// Lag of the drive with the effect on it [s].
+  /// Lag of the drive, including the effect on it [s].
   double driveLag() const { return std::max(0.0, lag + effects.actuator_lag); }
-  /// The longest time constant with which a motion settles: drive and body, one after the other.
+  /// The longest time constant with which a motion settles: drive and body in series.
   double settlingLag() const {
     return driveLag() + std::max(0.0, effects.lag_asymmetry) +
            std::max(effects.yaw_inertia, effects.body_inertia);
@@ -211,16 +212,17 @@ struct VehicleModel {
 /// One draw of the noise of an execution: factors N(1, spread), crab angle N(0, spread).
 ExecutionNoise drawNoise(const ExecutionSpread& spread, std::mt19937_64& random);
 
-/// A quantity that follows its target for a while: its mean meanwhile and its value at the end.
+/// Mean of a quantity over a step in which it follows its target, and its value at the end.
 struct Followed {
   double mean;
   double end;
 };
 
-/// First-order lag [s] towards a constant target over dt; exact. Without lag it is there at once.
+/// First-order lag [s] towards a constant target over dt; exact. Without lag it jumps to the
+/// target.
 Followed follow(double value, double target, double lag, double dt);
 
-/// A target that runs from one value to another over a step, with that mean: a parabola.
+/// A target that changes over a step from one value to another with the given mean: a parabola.
 struct MovingTarget {
   double from;
   double mean;
@@ -231,61 +233,61 @@ struct MovingTarget {
 Followed follow(double value, const MovingTarget& target, double lag, double dt);
 
 /// First-order lag [s] behind a ramp of 1 / inverse_limit (0 = a step) to a target over dt; exact.
-/** `ramp`: where the ramp is, and then where it has come to. */
+/** `ramp`: state of the ramp, updated. */
 Followed followRamp(double value, double& ramp, double target, double inverse_limit, double lag,
                     double dt);
 
-/// What one track and its motor remember.
+/// State of one track and its motor.
 struct TrackState {
   double speed = 0.0;  ///< [m/s] of the drive, after its lag
-  double ramp = 0.0;   ///< [m/s] that the drive is asked for, see slew_limit
+  double ramp = 0.0;   ///< [m/s] asked of the drive, see slew_limit
   double taken = 0.0;  ///< [m] slack: 0 = taken up forwards, slack = taken up backwards
   double heat = 0.0;   ///< [1] low-pass of the duty, see thermal_derating
 };
 
-/// What a car's steering remembers.
+/// State of a car's steering.
 struct Steering {
-  double ramp = 0.0;     ///< [rad] that the servo is asked for, see steering_rate
+  double ramp = 0.0;     ///< [rad] demanded from the servo, see steering_rate
   double servo = 0.0;    ///< [rad] after its lag
   double linkage = 0.0;  ///< [rad] behind its play
 };
 
-/// How much of a change is in force, 0..1 each: averages over a short step of time.
+/// Active share of each change, 0..1: averages over a short time step.
 struct ChangesInForce {
   double payload = 0.0;
   double terrain_1 = 0.0;
   double terrain_2 = 0.0;
 };
 
-/// Forward speed and yaw rate to which steady tracks lead, before the body's inertia.
+/// Forward speed and yaw rate of steady tracks, before the body's inertia.
 struct PlaneMotion {
   double v = 0.0;
   double omega = 0.0;
 };
 
-// What the effects do, in their order.
+// The effects, in the order in which they act.
 namespace steps {
 
 constexpr double kGravity = 9.81;         // [m/s2]
 constexpr double kHour = 3600.0;          // [s]
-constexpr double kLeastDivisor = 0.1;     // [1], where a negative loss would divide by nothing
-constexpr double kSlopeFullSpeed = 0.05;  // [m/s], slower tracks hold on a slope
-constexpr double kTermFullSpeed = 0.05;   // [m/s], what stands stays where it is
+constexpr double kLeastDivisor = 0.1;     // [1], keeps a negative loss from dividing by zero
+constexpr double kSlopeFullSpeed = 0.05;  // [m/s], slower tracks slip less on a slope
+constexpr double kTermFullSpeed = 0.05;   // [m/s], a vehicle at rest stays at rest
 
-/// A value without its first `width`: 0 up to there, the rest beyond, sign kept.
+/// A value reduced by a dead zone: 0 up to `width`, the excess beyond, sign kept.
 inline double deadZone(double value, double width) {
   const double rest = std::abs(value) - width;
   return rest <= 0.0 ? 0.0 : std::copysign(rest, value);
 }
 
-/// A value up to a limit (held as its reciprocal; 0 = none), and a share of what is beyond it.
+/// A value up to a limit (stored as its reciprocal; 0 = none), plus a share of the excess.
 inline double limited(double value, double inverse_limit, double beyond) {
   if (std::abs(value) * inverse_limit <= 1.0) return value;
   const double limit = 1.0 / inverse_limit;
   return std::copysign(limit + beyond * (std::abs(value) - limit), value);
 }
 
-/// `value` over 1 + loss.
+/// `value` / (1 + loss).
 inline double lessened(double value, double loss) {
   return value / std::max(kLeastDivisor, 1.0 + loss);
 }
@@ -296,12 +298,12 @@ inline double shareAfter(double change, double from, double dt) {
   return dt <= 0.0 ? 0.0 : std::clamp((from + dt - change) / dt, 0.0, 1.0);
 }
 
-/// What both changes of ground add.
+/// Sum of both changes of ground.
 inline double on(double first, double second, const ChangesInForce& changes) {
   return first * changes.terrain_1 + second * changes.terrain_2;
 }
 
-/// What has changed from `session_time` on for dt seconds (0 = at that moment).
+/// Changes in force on average from `session_time` over dt seconds (0 = at that instant).
 inline ChangesInForce changesAt(const EffectValues& effects, double session_time, double dt) {
   ChangesInForce changes;
   if (effects.payload_yaw != 0.0 || effects.payload_speed != 0.0 || effects.payload_icr != 0.0)
@@ -318,7 +320,7 @@ inline ChangesInForce changesAt(const EffectValues& effects, double session_time
   return changes;
 }
 
-/// Speed that a track is asked for before it loses power to heat: deadband, saturation, battery.
+/// Speed asked of a track before derating by heat: deadband, saturation, battery.
 /** `session_time` since the start of the session [s]; `drop` of the battery's voltage [1]. */
 inline double suppliedSpeed(const EffectValues& effects, double asked, double session_time,
                             double drop) {
@@ -332,8 +334,8 @@ inline double suppliedSpeed(const EffectValues& effects, double asked, double se
   return speed;
 }
 
-/// Target that `supplied` is for the drive, after derating and asymmetry; `side` is +1 for the left
-/// and -1 for the right track.
+/// The drive's target for `supplied`, after derating and asymmetry; `side` is +1 for the left and
+/// -1 for the right track.
 inline double driveTarget(const EffectValues& effects, double supplied, double side, double heat) {
   double target = supplied;
   if (effects.thermal_derating != 0.0)
@@ -344,14 +346,14 @@ inline double driveTarget(const EffectValues& effects, double supplied, double s
   return target;
 }
 
-/// Angle of a car's wheels [rad] for one of its linkage.
+/// Angle of a car's wheels [rad] for an angle of its linkage.
 inline double wheelAngle(const VehicleModel& model, double linkage) {
   const EffectValues& effects = model.effects;
   return limited((model.steering_gain + effects.steering_ratio) * linkage + effects.steering_offset,
                  effects.steering_limit, 0.0);
 }
 
-/// Moves a car's steering on by dt towards a command [rad]; returns the wheels' mean angle.
+/// Advances a car's steering by dt towards a command [rad]; returns the wheels' mean angle.
 inline double steer(const VehicleModel& model, double command, double dt, Steering& steering) {
   const EffectValues& effects = model.effects;
   const Followed servo = followRamp(steering.servo, steering.ramp, command, effects.steering_rate,
@@ -370,7 +372,7 @@ inline double steer(const VehicleModel& model, double command, double dt, Steeri
   return wheelAngle(model, follows(before, servo.mean));
 }
 
-/// Mean speed behind the slack, of which the drive takes up or gives back what it moves.
+/// Mean speed behind the slack; the drive's motion first takes up the slack.
 inline double behindSlack(double slack, double mean, double dt, TrackState& track) {
   const double moved = mean * dt;
   const double taken = std::clamp(track.taken - moved, 0.0, slack);
@@ -379,8 +381,8 @@ inline double behindSlack(double slack, double mean, double dt, TrackState& trac
   return passed / dt;
 }
 
-/// Moves one track on by dt towards `target`, which comes of `supplied`; returns the mean speed of
-/// the track on the ground side of its slack.
+/// Advances one track by dt towards `target`, which results from `supplied`; returns the track's
+/// mean speed on the ground side of its slack.
 inline double driveTrack(const VehicleModel& model, double supplied, double target, double dt,
                          TrackState& track) {
   const EffectValues& effects = model.effects;
@@ -449,8 +451,9 @@ inline PlaneMotion groundMotion(const VehicleModel& model, const ExecutionNoise&
   return {slowed(effects, changes, v, omega), omega};
 }
 
-/// The body twist that forward speed and yaw rate go with: motion to the side and slopes.
-/** `tan_crab` of the whole crab angle. `track_speeds` only to fade slopes out at standstill. */
+/// The body twist of a forward speed and yaw rate: adds lateral motion and slopes.
+/** `tan_crab` of the whole crab angle. `track_speeds` is used only to fade out slopes at
+ * standstill. */
 inline Twist2 bodyTwist(const EffectValues& effects, double tan_crab, const ChangesInForce& changes,
                         const DriveContext& context, const TrackCommand& track_speeds,
                         const PlaneMotion& motion) {
@@ -468,7 +471,8 @@ inline Twist2 bodyTwist(const EffectValues& effects, double tan_crab, const Chan
   return v_body;
 }
 
-/// How much what depends on the motion may change it: 0 at standstill, as what stands stays.
+/// Share in 0..1 by which motion-dependent terms act: 0 at standstill, because a vehicle at rest
+/// stays at rest.
 inline double movingShare(const VehicleModel& model, const TrackCommand& track_speeds,
                           const TermInputs& inputs) {
   const double fastest = std::max({std::abs(track_speeds.left), std::abs(track_speeds.right),
@@ -476,7 +480,7 @@ inline double movingShare(const VehicleModel& model, const TrackCommand& track_s
   return std::min(1.0, fastest / kTermFullSpeed);
 }
 
-/// What unnamed terms add to a motion of that share.
+/// Change of the motion by unnamed terms, times the share.
 inline Twist2 unnamedTwist(const VehicleModel& model, double share, const TermInputs& inputs) {
   const Twist2 all = twistOf(model.unnamed, inputs);
   return {share * all.v_x, share * all.v_y, share * all.omega};

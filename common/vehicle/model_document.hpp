@@ -14,20 +14,20 @@ namespace tread {
 
 class ConfigReader;
 
-/// Narrower bounds than the catalogue's for one parameter of a model.
+/// Bounds for one parameter of a model, tighter than the catalogue's.
 struct ParameterBounds {
   std::string parameter;  ///< see findParameter()
   double min = 0.0;
   double max = 0.0;
 };
 
-/// How sure the parameters are that were estimated together; empty = not known.
+/// Covariance of parameters that were estimated together; empty = unknown.
 struct ParameterCovariance {
   std::vector<std::string> parameters;      ///< see findParameter()
   std::vector<std::vector<double>> matrix;  ///< in the parameters' units, symmetric
 };
 
-/// What a model did not explain when it was made: how its residuals (measured less predicted)
+/// What the model left unexplained when it was made: how its residuals (measured less predicted)
 /// depended on one condition that tread-gap tests.
 struct RestTerm {
   std::string channel;     ///< of the residuals: "yaw rate", "heading rate", "along", "lateral"
@@ -42,10 +42,10 @@ struct SourceLog {
   std::string sha256;  ///< 64 hexadecimal digits
 };
 
-/// A person's last word on an effect of the catalogue.
+/// A user's final decision on an effect of the catalogue.
 struct EffectDecision {
   std::string effect;
-  bool accepted = false;  ///< in whatever the tests say; else never considered
+  bool accepted = false;  ///< included whatever the tests give; else never considered
   std::string by;         ///< who decided; may be empty
 };
 
@@ -53,12 +53,12 @@ struct EffectDecision {
 struct Provenance {
   std::string tool;             ///< name and version; empty = written by hand
   std::optional<int64_t> seed;  ///< of its random numbers
-  int64_t runs = 0;             ///< how often a tool has worked on these logs
+  int64_t runs = 0;             ///< number of tool runs on these logs
   std::vector<SourceLog> logs;
   std::vector<EffectDecision> decisions;
 };
 
-/// The largest motion that a model was made from or that a drive asks for.
+/// The largest motions that a model was made from, or that a drive demands.
 struct Envelope {
   double v = 0.0;        ///< [m/s] largest |v|
   double omega = 0.0;    ///< [rad/s] largest |omega|
@@ -67,22 +67,22 @@ struct Envelope {
   void include(const Twist2& v_body);
 };
 
-/// What outside of an envelope is asked for; one line each, empty if all is within.
+/// Demands outside of an envelope; one line each, empty if there are none.
 std::vector<std::string> warningsOutside(const Envelope& known, const Envelope& asked);
 
-/// A model with all that is known of it: what a model file holds.
+/// The content of a model file: a model and its provenance.
 struct ModelDocument {
   VehicleModel vehicle;
   MeasurementModel measurement;
   std::vector<ParameterBounds> bounds;
   ParameterCovariance covariance;
-  /// Empty where nothing was left; nothing where that is not known, as of a model made by hand.
+  /// Empty if nothing was left unexplained; nullopt if unknown, as for a model made by hand.
   std::optional<std::vector<RestTerm>> rest;
   Provenance provenance;
   std::optional<Envelope> envelope;
 };
 
-/// Largest motions of a model that drives these commands, for warningsOutside().
+/// Largest motions of a model driven by these commands, for warningsOutside().
 Envelope envelopeOf(const VehicleModel& model, const std::vector<TrackCommand>& commands,
                     double period, const EntryState& entry);
 
@@ -95,53 +95,53 @@ inline bool isOn(const Effect& effect, const ModelDocument& document) {
   return isOn(effect, document.vehicle.effects, document.measurement);
 }
 
-/// The number of a document that a path names: lag, delay, forward_gain, yaw_gain, full_speed,
-/// gauge, effect.parameter (icr_offset.offset), rest.0, rest.1 .. (the size of a term of the rest),
-/// or unnamed_1.0, unnamed_1.1 .. (the values of an unnamed term); nullptr for anything else.
+/// The number of a document with this path: lag, delay, forward_gain, yaw_gain, full_speed, gauge,
+/// effect.parameter (icr_offset.offset), rest.0, rest.1 .. (the size of a term of the rest), or
+/// unnamed_1.0, unnamed_1.1 .. (the values of an unnamed term); nullptr for anything else.
 double* findParameter(ModelDocument& document, const std::string& path);
 const double* findParameter(const ModelDocument& document, const std::string& path);
 
 /// Numbers of the nominal model that a calibration of such a vehicle estimates.
 std::vector<std::string> calibratedNumbers(VehicleLayout layout);
 
-/// The path of a term of the rest, and the term that a path names; nothing for another path.
+/// The path of a term of the rest, and the term of a path; nullopt for another path.
 std::string restPath(size_t term);
 std::optional<size_t> restTermOf(const std::string& path);
 
-/// The unnamed term of whose values a path names one; nullptr for another path.
+/// The unnamed term that a path refers to; nullptr for another path.
 const UnnamedTerm* termOfPath(const ModelDocument& document, const std::string& path);
 
 /// The path of a value of an unnamed term.
 std::string termPath(const UnnamedTerm& term, size_t value);
 
-/// What is wrong with a name for an unnamed term of a model; empty if nothing is.
+/// What is wrong with a name for an unnamed term of a model; empty if it is valid.
 std::string problemWithTermName(const ModelDocument& document, const std::string& name);
 
-/// Gives an unnamed term another name, in the covariance and the bounds, too.
-/** Throws std::runtime_error with one line where the model has no such term or may have no such
- * name. */
+/// Renames an unnamed term, also in the covariance and the bounds.
+/** Throws std::runtime_error with one line if the model has no such term or the name is not
+ * allowed. */
 void renameTerm(ModelDocument& document, const std::string& from, const std::string& to);
 
 /// Its unit.
 std::string unitOf(const std::string& path);
 
-/// Values between which a parameter is plausible: the document's bounds, else the catalogue's; what
-/// is added to a number of the model can take no more away than it has. Nothing is said of numbers
-/// of the nominal model without bounds.
+/// Plausible range of a parameter: the document's bounds, else the catalogue's; an effect that is
+/// added to a number of the model cannot make it negative. nullopt for numbers of the nominal model
+/// without bounds.
 std::optional<ParameterBounds> plausibleBounds(const ModelDocument& document,
                                                const std::string& path);
 
 /// Reads a model file (YAML that people read and edit; see config/models).
 /** Throws ConfigError with one line "file:line: what is wrong; what is allowed" for bad YAML,
- * unknown keys or effects and values out of their ranges. What the file does not name has the value
- * of the nominal model (effects: off). Vehicle effects stand under effects:, those of the INS under
- * measurement:. A limit may be given as itself or as inverse_limit, its reciprocal. */
+ * unknown keys or effects and values out of range. Missing keys get the values of the nominal
+ * model (effects: off). Vehicle effects are under effects:, those of the INS under measurement:. A
+ * limit may be given directly or as inverse_limit, its reciprocal. */
 ModelDocument readModelDocument(const std::string& path);
 
 /// The same from text; `name` stands for the file in messages.
 ModelDocument parseModelDocument(const std::string& text, const std::string& name);
 
-/// The same for what computes with two tracks or a car; a holonomic base is refused.
+/// The same, for computations with two tracks or a car; a holonomic base is refused.
 ModelDocument readTrackModelDocument(const std::string& path);
 
 /// Only the vehicle of a model file.
@@ -151,7 +151,7 @@ VehicleModel readModelFile(const std::string& path);
 /// left out.
 std::string formatModelDocument(const ModelDocument& document);
 
-/// An effect by name; throws std::runtime_error with one line that guesses what was meant.
+/// An effect by name; throws std::runtime_error with one line that suggests a similar name.
 const Effect& effectOrGuess(const std::string& name);
 
 /// Reads the vehicle effects of a section whose keys are their names (not finished here).

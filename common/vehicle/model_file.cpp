@@ -26,7 +26,7 @@ constexpr Range kCurve{-1000.0, 1000.0};  // where an unnamed term has values, i
 constexpr Range kCurveValue{-kLargestTermValue, kLargestTermValue};
 constexpr size_t kMostUnnamedTerms = 16;
 
-/// Of a holonomic base, whose wheels stand where robot.yaml says.
+/// For a holonomic base, whose wheel positions are in robot.yaml.
 void readOmni(ConfigReader& reader, VehicleModel& model) {
   for (const char* key : {"gauge", "wheelbase"})
     if (reader.has(key))
@@ -140,7 +140,7 @@ void readRest(ConfigReader& reader, std::optional<std::vector<RestTerm>>& rest) 
   }
 }
 
-/// A condition of an unnamed term; refused where the kernel has none by that name.
+/// A condition of an unnamed term; refused if the kernel has none of that name.
 const TermCondition* readCondition(ConfigReader& entry, const std::string& key, bool required) {
   std::string name;
   std::vector<std::string> known;
@@ -191,7 +191,7 @@ void readUnnamed(ConfigReader& reader, ModelDocument& document) {
   }
 }
 
-/// Whoever decides by hand may mistype; a decision about nothing would be kept for ever.
+/// A mistyped name in a manual decision would be kept forever without effect.
 void requireEffect(const ConfigReader& reader, const std::string& name) {
   try {
     effectOrGuess(name);
@@ -239,7 +239,7 @@ std::optional<Envelope> readEnvelope(ConfigReader& reader) {
   return envelope;
 }
 
-/// An effect that such a vehicle cannot have would do nothing, or something else.
+/// Refuses effects that such a vehicle cannot have: they would act wrongly or not at all.
 void refuseOthers(ConfigReader& effects, const VehicleModel& model) {
   for (const Effect& effect : effectCatalogue())
     if (effect.kind() == EffectKind::kVehicle && isOn(effect, model.effects, {}) &&
@@ -281,7 +281,7 @@ void line(std::ostringstream& out, const std::string& key, double value,
   out << '\n';
 }
 
-/// Unit of a parameter and, for a limit, the limit itself.
+/// Unit of a parameter and, for a limit, its natural value.
 std::string unitOf(const EffectParameter& parameter, double value) {
   if (!parameter.reciprocal() || value == 0.0) return parameter.unit;
   char limit[40];
@@ -290,7 +290,7 @@ std::string unitOf(const EffectParameter& parameter, double value) {
          parameter.natural_unit;
 }
 
-/// Whether an effect does nothing: shapes such as the time of a change are no effect by themselves.
+/// Whether an effect does nothing: shapes, such as the time of a change, have no effect alone.
 bool isOff(const ModelDocument& document, const Effect& effect) {
   return !isOn(effect, document.vehicle.effects, document.measurement);
 }
@@ -310,7 +310,7 @@ void writeEffects(std::ostringstream& out, const ModelDocument& document, Effect
   }
 }
 
-/// The effects of the model that files describe: it is read where those files are not.
+/// The model's effects that files describe, so that it can be read without those files.
 void writeCatalogue(std::ostringstream& out, const ModelDocument& document) {
   bool any = false;
   for (const Effect& effect : effectCatalogue()) {

@@ -24,16 +24,16 @@ namespace tread {
  * rate. */
 class OmniKernel {
  public:
-  /// `entry`: the command that was held for long; `rims`: their speeds [m/s], where others are
-  /// known.
+  /// `entry`: the command held for a long time before; `rims`: rim speeds [m/s], if they are known
+  /// to differ from it.
   OmniKernel(const VehicleModel& model, const Command& entry, const ExecutionNoise& noise = {},
              const DriveContext& context = {}, const std::optional<Command>& rims = {});
 
-  /// Holds a command for `duration` [s]; the context stays, session time goes on.
+  /// Holds a command for `duration` [s]; the context stays, except for the session time.
   void step(const Command& command, double duration);
-  /// Gives a command; it acts from the model's delay on until the next one does.
+  /// Gives a command; it acts after the model's delay, until the next one does.
   void give(const Command& command);
-  /// Goes on for `duration` [s] with what was given; the context is that of the beginning.
+  /// Continues for `duration` [s] with the commands given so far, in the context of the start.
   void hold(double duration, const DriveContext& context);
 
   /// Pose relative to the start, yaw unwrapped.
@@ -45,19 +45,19 @@ class OmniKernel {
 
  private:
   struct Waiting {
-    double until;  ///< [s] since the start; it begins to act then
+    double until;  ///< [s] since the start, when it begins to act
     Command command;
   };
 
   void hold(double duration);
   void advance(double duration);
   void integrateStep(double dt);
-  /// What a wheel's drive is asked for, and what of it is supplied [m/s].
+  /// Speeds demanded from a wheel's drive and delivered by it [m/s].
   double supplied(size_t wheel) const;
   double target(size_t wheel, double supply) const;
-  /// Steady twist that rims lead to, before the body's inertia.
+  /// Steady twist for given rim speeds, before the body's inertia.
   Twist2 onGround(const Command& rims, const ChangesInForce& changes) const;
-  /// The body twist of a motion: what it does to the side, and slopes.
+  /// The body twist of a motion, including its lateral part and slopes.
   Twist2 bodyTwist(const Twist2& motion, const ChangesInForce& changes, double fastest) const;
 
   VehicleModel model_;

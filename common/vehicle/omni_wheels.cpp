@@ -10,8 +10,9 @@
 namespace tread {
 namespace {
 
-/// Least over greatest singular value of J, its yaw column over the radius. Three wheels at equal
-/// angles have 0.7; below this one direction costs ten times the rim speed of another.
+/// Ratio of the least to the greatest singular value of J, its yaw column divided by the radius.
+/// Three wheels at equal angles have 0.7; below this limit one direction costs ten times the rim
+/// speed of another.
 constexpr double kLeastSpan = 0.1;
 constexpr int kDirections = 360;  // in which reach() looks
 
@@ -50,7 +51,7 @@ std::optional<OmniWheels> OmniWheels::make(std::vector<OmniWheel> wheels, std::s
   const double radius = omni.radius();
   Eigen::MatrixXd scaled = jacobian;
   if (radius > 0.0) scaled.col(2) /= radius;
-  // Squares of the singular values, in increasing order; a decomposition of `scaled` itself takes
+  // Squares of the singular values, in increasing order; decomposing `scaled` itself would take
   // seconds to compile.
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spans;
   spans.computeDirect(scaled.transpose() * scaled, Eigen::EigenvaluesOnly);
@@ -89,7 +90,7 @@ double OmniWheels::reach() const {
   double reach = 0.0;
   for (int k = 0; k < kDirections; ++k) {
     const double angle = 2.0 * kPi * k / kDirections;
-    // Each wheel as fast as it can: the point moves by its translation and by turning.
+    // Each wheel at its largest speed: the point moves by translation and rotation.
     const Eigen::Vector3d point(std::cos(angle), std::sin(angle), radius());
     double speed = 0.0;
     for (const Eigen::Vector3d& column : columns_) speed += std::abs(column.dot(point));

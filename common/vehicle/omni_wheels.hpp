@@ -20,25 +20,25 @@ class ConfigReader;
 struct OmniWheel {
   double x = 0.0;        ///< [m] p_body of its contact
   double y = 0.0;        ///< [m]
-  double heading = 0.0;  ///< [rad] body frame: where it rolls when it is driven forward
-  /// [rad] from there to the axis of the roller on the ground: 0 of an omni wheel, which lets the
-  /// body go along its axle; 45 degrees to either side of a mecanum wheel.
+  double heading = 0.0;  ///< [rad] body frame: rolling direction when driven forward
+  /// [rad] from there to the axis of the roller on the ground: 0 for an omni wheel, which allows
+  /// motion along its axle; +-45 degrees for a mecanum wheel.
   double rollers = 0.0;
 };
 
 /// The wheels of a holonomic base: forward, sideways and yaw are commanded independently.
-/** The rim of wheel i goes at w_i = J_i (v_x, v_y, omega). With p its contact and g the direction
+/** The rim speed of wheel i is w_i = J_i (v_x, v_y, omega). With p its contact and g the direction
  * of its rollers' axis, both in the body frame:
  *
  *     J_i = (g_x, g_y, p_x g_y - p_y g_x) / cos(rollers)
  *
- * The way back is the least-squares one: more than three wheels can contradict each other. */
+ * The inverse is by least squares, because more than three wheels can contradict each other. */
 class OmniWheels {
  public:
   /// None: another vehicle.
   OmniWheels() = default;
-  /// Nothing, and one line in `why`, for fewer than three wheels, more than a command has channels,
-  /// and wheels that do not span forward, sideways and yaw.
+  /// nullopt, and one line in `why`, for fewer than three wheels, more wheels than command
+  /// channels, or wheels that do not span forward, sideways and yaw motion.
   static std::optional<OmniWheels> make(std::vector<OmniWheel> wheels, std::string& why);
 
   bool empty() const { return wheels_.empty(); }
@@ -54,7 +54,7 @@ class OmniWheels {
 
   /// [m] of the farthest wheel from the body origin.
   double radius() const;
-  /// [1] the fastest that a point at that radius moves, over the largest rim speed.
+  /// [1] largest speed of a point at that radius, over the largest rim speed.
   double reach() const;
 
  private:
@@ -66,9 +66,9 @@ class OmniWheels {
 /// Channels of a holonomic base's commands, in the whole range of a kind: wheel1, wheel2, ...
 CommandChannels omniChannels(CommandKind kind, size_t wheels);
 
-/// The list `wheels` of a description: angle and distance of each from the body origin, or its
-/// position; throws ConfigError with file:line.
-/** `inverted`: whether each motor is mounted the other way round; null where nobody asks. */
+/// The list `wheels` of a description: angle and distance of each wheel from the body origin, or
+/// its position; throws ConfigError with file:line.
+/** `inverted`: whether each motor is mounted in reverse; may be null. */
 OmniWheels readOmniWheels(ConfigReader& reader, std::vector<bool>* inverted = nullptr);
 
 }  // namespace tread

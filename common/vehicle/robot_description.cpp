@@ -11,7 +11,7 @@
 namespace tread {
 namespace {
 
-/// Of whom two tracks know nothing, and who knows nothing of two tracks.
+/// The keys of wheels exclude those of two tracks, and vice versa.
 void readWheels(ConfigReader& reader, DriveDescription& drive) {
   for (const char* key : {"left_channel", "invert_left", "invert_right"})
     if (reader.has(key))
@@ -83,7 +83,7 @@ std::vector<Fence> readFences(ConfigReader& robot) {
   return fences;
 }
 
-/// Nothing here switches the lease off.
+/// The lease cannot be disabled.
 OperatorRules readOperators(ConfigReader reader) {
   OperatorRules rules;
   std::string lost = "stop";
@@ -96,7 +96,7 @@ OperatorRules readOperators(ConfigReader reader) {
   return rules;
 }
 
-/// People think of slopes in degrees.
+/// Users give slopes in degrees.
 void readDegrees(ConfigReader& reader, const std::string& key, double& angle, Range range,
                  const std::string& unit, bool required) {
   double degrees = toDegrees(angle);

@@ -12,7 +12,8 @@ double signOf(double value) {
   return std::tanh(value / kSignWidth);
 }
 
-/// A first-order memory that follows `now` over dt: its mean meanwhile; the memory is at its end.
+/// A first-order memory that follows `now` over dt: returns its mean; the memory ends at its final
+/// value.
 double followMemory(double now, double dt, double& memory) {
   const double decay = std::exp(-dt / kTermMemory);
   const double distance = memory - now;

@@ -17,7 +17,7 @@ namespace tread::gap {
 
 inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-/// The value that a share of the values does not exceed, the nearest one; NaN of none.
+/// The nearest-rank quantile: `share` of the values do not exceed it; NaN for no values.
 inline double quantile(std::vector<double> values, double share = 0.5) {
   if (values.empty()) return kNotMeasured;
   const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
@@ -34,7 +34,7 @@ struct CommandSample {
 /// One reading of the INS.
 struct InsSample {
   double time = 0.0;   ///< [s] of the measurement, since the log's first message
-  Pose2 T_map_body{};  ///< yaw unwrapped within a segment; all NaN where only the gyro spoke
+  Pose2 T_map_body{};  ///< yaw unwrapped within a segment; all NaN for a reading of the gyro alone
   double omega = kNotMeasured;  ///< [rad/s] of the gyro
   double roll = kNotMeasured;   ///< [rad] left side up positive
   double pitch = kNotMeasured;  ///< [rad] nose down positive
@@ -45,18 +45,18 @@ struct InsSample {
   }
 };
 
-/// Driving without a gap: all commands are known, and the INS gives one track.
+/// Continuous driving: all commands are known, and the INS gives one track.
 /** Where the INS jumped or was silent in the middle of driving, the commands begin up to 3 s before
- * the poses do (they are in the segment before, too), so that the state assumed at the beginning no
- * longer matters when the poses begin. */
+ * the poses do (they are also in the segment before), so that the assumed initial state no longer
+ * matters when the poses begin. */
 struct Segment {
   std::vector<CommandSample> commands;  ///< in order of time, not empty
   double end = 0.0;                     ///< [s] until when the last command acts
   std::vector<InsSample> ins;           ///< in order of time, within the commands' time
-  /// Speeds of tracks or wheels at the beginning where encoders say them; else a vehicle at rest is
-  /// assumed.
+  /// Speeds of tracks or wheels at the beginning, if encoders measure them; otherwise a vehicle at
+  /// rest is assumed.
   std::optional<Command> entry_speeds;
-  /// What was commanded before, until its delay is over; zero for a vehicle that stood.
+  /// The previous command, which acts until the delay is over; zero for a vehicle at rest.
   Command command_before{};
 
   double begin() const { return commands.front().time; }
@@ -75,7 +75,8 @@ struct VoltageSample {
   double voltage = 0.0;  ///< [V]
 };
 
-/// Whether a voltage was measured: it begins with one, and the readings are not all the same.
+/// Whether a voltage was really measured: the first one is present, and the readings are not all
+/// equal.
 inline bool isMeasured(const std::vector<VoltageSample>& voltage) {
   return !voltage.empty() && voltage.front().voltage > 0.0 &&
          std::any_of(voltage.begin(), voltage.end(), [&](const VoltageSample& sample) {
@@ -83,16 +84,16 @@ inline bool isMeasured(const std::vector<VoltageSample>& voltage) {
          });
 }
 
-/// Track speeds as encoders say: for the error floor, entry speeds and as witnesses of what was
-/// found, never for the fit. Of a car both are the speed of its drive.
+/// Track speeds by encoders: used for the error floor, for entry speeds and as evidence; never
+/// fitted. For a car, both are the speed of its drive.
 struct EncoderSample {
   double time = 0.0;  ///< [s]
   Command speed{};    ///< [m/s] of each track or wheel
 };
 
-/// Motor currents as the controller says them, for witnesses of what was found.
-/** Either positive forwards, or positive where the motor drives (negative or nothing where it
- * brakes): that is seen from the driving. */
+/// Motor currents reported by the controller, used as evidence.
+/** Either positive forwards, or positive while the motor drives (negative or zero while it brakes):
+ * the drive shows which. */
 struct CurrentSample {
   double time = 0.0;   ///< [s]
   double left = 0.0;   ///< [A]
@@ -104,38 +105,39 @@ struct LogNote {
   std::string log;
   std::string what;          ///< one clear line
   bool fatal = false;        ///< nothing can be concluded from this log
-  bool of_commands = false;  ///< about commands beside the motion
+  bool of_commands = false;  ///< about commands against the motion
 };
 
-/// What a log says of the recording that it was imported from.
+/// What a log records about its import.
 struct ImportNote {
-  std::string robot;      ///< empty = not said
-  double baseline = 0.0;  ///< [m] between the tracks for which commands were made; 0 = not said
-  std::string options;    ///< of the import, in words; empty = not said
+  std::string robot;      ///< empty = not recorded
+  double baseline = 0.0;  ///< [m] between the tracks, as assumed for the commands; 0 = not recorded
+  std::string options;    ///< of the import, in words; empty = not recorded
 };
 
-/// Two tracks that drive and turn as a command does, in the sense if not by as much: a car's with
-/// wheelbase and gauge 1. Of a holonomic base, whose wheels no log describes, they stand.
+/// Two tracks that drive and turn in the directions of a command, not necessarily by as much: for a
+/// car with wheelbase and gauge 1. Zero for a holonomic base, because logs do not describe its
+/// wheels.
 inline TrackCommand sidesOf(VehicleLayout layout, const Command& command) {
   if (layout == VehicleLayout::kOmni) return {};
   return layout == VehicleLayout::kCar ? rearWheels(command[0], command[1], 1.0, 1.0)
                                        : command.tracks();
 }
 
-/// What a log says about one drive of one vehicle, ready for the gap workflow.
+/// One drive of one vehicle as recorded in a log, ready for the gap workflow.
 struct Drive {
   std::string name;    ///< file name of the log
   std::string sha256;  ///< of the file
   CommandKind kind = CommandKind::kPower;
   VehicleLayout layout = VehicleLayout::kTracks;
   std::vector<Segment> segments;        ///< in order of time
-  std::vector<Execution> executions;    ///< in order of time; 2 s pieces where the log names none
+  std::vector<Execution> executions;    ///< in order of time; pieces of 2 s if the log names none
   std::vector<VoltageSample> voltage;   ///< empty = not measured
   std::vector<EncoderSample> encoders;  ///< empty = there are none
   std::vector<CurrentSample> currents;  ///< empty = not measured
-  std::optional<ImportNote> imported;   ///< nothing where the robot itself wrote the log
-  std::string lost;                     ///< what of a damaged file could not be read; empty = whole
-  std::vector<LogNote> notes;           ///< what the reader noticed, and validateLog()
+  std::optional<ImportNote> imported;   ///< nullopt if the robot itself wrote the log
+  std::string lost;            ///< part of a damaged file that could not be read; empty = none
+  std::vector<LogNote> notes;  ///< notes of the reader and of validateLog()
 
   TrackCommand sides(const Command& command) const { return sidesOf(layout, command); }
 

@@ -11,7 +11,7 @@
 namespace tread::gap {
 namespace {
 
-/// [m] whose direction is more than noise; the second for what is slower than that.
+/// [m] whose direction exceeds the noise; the second for slower motion.
 constexpr double kLeastWay[] = {0.1, 0.03};
 
 HeadingFit fitHeading(const std::vector<PoseIncrement>& increments, double factor,

@@ -9,7 +9,7 @@
 namespace tread::gap {
 
 inline constexpr double kDegree = kPi / 180.0;  // [rad]
-/// Coherence of way and heading that belong together, and of those that do not.
+/// Coherence of course and heading above which they agree, and below which they do not.
 inline constexpr double kTogether = 0.85;
 inline constexpr double kNotTogether = 0.6;
 inline constexpr size_t kFewestLegs = 20;
@@ -20,19 +20,20 @@ double way(const PoseIncrement& increment);
 /// The heading in the middle of an increment, times a factor [rad].
 double heading(const PoseIncrement& increment, double factor);
 
-/// How well the way goes along a heading that is read with a factor.
+/// Agreement of the course with a heading that is multiplied by a factor.
 struct HeadingFit {
   double factor = 1.0;
   double coherence = 0.0;  ///< 0..1
-  double offset = 0.0;     ///< [rad] of the way from the heading, within a quarter turn
+  double offset = 0.0;     ///< [rad] of the course from the heading, within a quarter turn
   size_t legs = 0;
 };
 
-/// Whether they belong together, but the way goes elsewhere all the time.
+/// Whether they agree except for a constant offset.
 bool isTurned(const HeadingFit& fit);
 
-/// The heading as it agrees with the way driven: as it is, mirrored, in degrees or in radians.
-/** As it is where nothing else clearly does. */
+/// The reading of the heading that agrees with the course: unchanged, mirrored, in degrees or in
+/// radians.
+/** Unchanged unless another reading agrees clearly better. */
 HeadingFit bestHeading(const std::vector<PoseIncrement>& increments);
 
 }  // namespace tread::gap

@@ -149,7 +149,7 @@ LagTable::LagTable(const std::vector<PoseIncrement>& increments, const std::vect
                            .value_or(kNotMeasured));
     leading_.push_back(std::move(column));
   }
-  // Lags are compared over the same increments: those late in a segment are steadier than others.
+  // Lags are compared over the same increments, because those late in a segment are steadier.
   for (size_t i = 0; i < rates_.size(); ++i)
     for (const std::vector<double>& column : leading_)
       if (!std::isfinite(column[i])) rates_[i] = kNotMeasured;

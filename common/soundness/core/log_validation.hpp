@@ -30,23 +30,23 @@ struct PoseIncrement {
 /// Increments over 0.4 to 1.2 s, one after the other, in order of time.
 std::vector<PoseIncrement> poseIncrements(const Drive& drive);
 
-/// One rate of all: &PoseIncrement::v or &PoseIncrement::omega.
+/// One rate of all increments: &PoseIncrement::v or &PoseIncrement::omega.
 std::vector<double> ratesOf(const std::vector<PoseIncrement>& increments,
                             double (PoseIncrement::*rate)() const);
 
 /// A running sum over time, within one segment, linear between its points.
 class RunningSum {
  public:
-  /// Appends a rate that holds from `begin` to `end` [s]; a pause before it ends what is known.
+  /// Appends a rate that holds from `begin` to `end` [s]; a gap before it starts a new piece.
   void add(double begin, double end, double rate);
-  /// Mean rate over an interval; nothing if it is not known all along.
+  /// Mean rate over an interval; nullopt unless it is known throughout.
   std::optional<double> mean(double begin, double end) const;
 
  private:
   struct Point {
     double time;
     double sum;
-    size_t piece;  ///< between pieces nothing is known
+    size_t piece;  ///< unknown between pieces
   };
   std::optional<std::pair<double, size_t>> at(double time) const;
   std::vector<Point> points_;
@@ -66,26 +66,27 @@ RunningSums commandSums(const Drive& drive, const std::function<double(const Tra
 RunningSums turnCommandSums(const Drive& drive);
 RunningSums driveCommandSums(const Drive& drive);
 
-/// How well one rate follows another one, later by a lag.
+/// How well one rate follows another with a lag.
 struct LagMatch {
   double lag = 0.0;          ///< [s]
   double correlation = 0.0;  ///< at that lag
-  double slope = 0.0;        ///< of the rate that follows, over the other one
-  double offset = 0.0;       ///< of the rate that follows where the other one is 0
+  double slope = 0.0;        ///< of the following rate over the leading one
+  double offset = 0.0;       ///< of the following rate where the leading one is 0
   size_t rows = 0;
-  double spread = 0.0;          ///< RMS of the rate that follows about its mean
-  double leading_spread = 0.0;  ///< the same of the other one
+  double spread = 0.0;          ///< RMS of the following rate about its mean
+  double leading_spread = 0.0;  ///< the same for the leading rate
 };
 
-/// Rates of increments beside another rate at many lags; increments count that speak at all lags.
+/// Rates of increments against another rate at many lags; uses increments for which it is known at
+/// all lags.
 class LagTable {
  public:
-  /// `rates` of the increments; `sums` of the rate that they follow, which is read `lag` earlier.
+  /// `rates` of the increments; `sums` of the leading rate, which is evaluated `lag` earlier.
   LagTable(const std::vector<PoseIncrement>& increments, const std::vector<double>& rates,
            const RunningSums& sums, std::vector<double> lags);
 
-  /// The match at one of the lags over increments [first, last); nothing where less than a third
-  /// of the increments speak, or nothing moves.
+  /// The match at one of the lags over increments [first, last); nullopt if fewer than a third of
+  /// the increments are usable, or there is no motion.
   std::optional<LagMatch> match(size_t lag, size_t first, size_t last) const;
   /// The match with the largest correlation (sign 1) or the most negative one (sign -1) among lags
   /// from `from` to `to` [s], refined between the lags.
@@ -104,15 +105,15 @@ class LagTable {
 /// Times from `begin` to `end` with equal steps [s].
 std::vector<double> lagGrid(double begin, double end, double step);
 
-/// Notes about one log, in the order in which they were made.
+/// Notes about one log, in the order of their making.
 class Diagnostics {
  public:
   explicit Diagnostics(std::string log) : log_(std::move(log)) {}
 
-  /// Nothing can be concluded from the log.
+  /// The log is unusable.
   void fatal(const std::string& what) { notes_.push_back({log_, what, true}); }
   void note(const std::string& what) { notes_.push_back({log_, what, false}); }
-  /// The same of commands beside the motion.
+  /// The same, for commands against the motion.
   void contradiction(const std::string& what) { notes_.push_back({log_, what, true, true}); }
   void following(const std::string& what) { notes_.push_back({log_, what, false, true}); }
   std::vector<LogNote> notes() { return std::move(notes_); }
@@ -122,7 +123,7 @@ class Diagnostics {
   std::vector<LogNote> notes_;
 };
 
-/// A number with so many decimals.
+/// A number with this many decimals.
 inline std::string fixed(double value, int decimals) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(decimals) << value;
@@ -143,35 +144,35 @@ inline double fastestOf(VehicleLayout layout) {
 
 /// The largest of the commands that move the vehicle.
 double largestCommand(const Drive& drive);
-/// Different commands, to a hundredth of the largest one.
+/// Number of different commands, to a hundredth of the largest one.
 size_t differentCommands(const Drive& drive);
 
-/// Whether a drive's measurements belong together, before anything is fitted:
+/// Checks the measurements of a drive for consistency before any fit:
 /// motion against commands (command_check.hpp; order in time, clocks that jump or drift), gyro
-/// against heading (sign, scale, offset of the clocks), what changes on the way (frozen, another
-/// sign), jumps, fixes, noise and bias at standstill, and what was driven.
-/** Fatal are only contradictions that no effect of the catalogue makes. The reader's own notes
+/// against heading (sign, scale, offset of the clocks), changes on the way (frozen values, another
+/// sign), jumps, fixes, noise and bias at standstill, and the kind of driving.
+/** Only contradictions that no effect of the catalogue causes are fatal. The reader's own notes
  * (Drive::notes) are not repeated. */
 std::vector<LogNote> validateLog(const Drive& drive);
 
-/// How the heading turns beside the gyro; nothing where one of them is missing or nothing turns.
+/// Turning of the heading against the gyro; nullopt if one of them is missing or nothing turns.
 /** lag: of the heading behind the gyro [s]; slope: heading over gyro; offset: -bias * slope. */
 std::optional<LagMatch> headingBesideGyro(const Drive& drive);
 
-/// Segments whose poses do not belong to one frame: the heading turns otherwise than the gyro, or
-/// the way leads elsewhere than the heading, far more than in the others. Indices in order.
-/** Only among ten or more segments (a recording in steps), as others do not tell. */
+/// Segments whose poses are not in the common frame: the heading turns differently from the gyro,
+/// or the course deviates from the heading, far more than in the other segments. Indices in order.
+/** Only for ten or more segments (a recording in steps); fewer are not conclusive. */
 std::vector<size_t> brokenSegments(const Drive& drive);
 
-/// Takes out segments (and their executions).
+/// Removes segments (and their executions).
 void removeSegments(const std::vector<size_t>& segments, Drive& drive);
 
 // Parts of validateLog().
 void checkGyro(const Drive& drive, Diagnostics& notes);
-/// Whether the motion follows the commands by one lag, as a vehicle does.
+/// Whether the motion follows the commands with a constant lag, as a vehicle's does.
 void checkLags(const Drive& drive, const std::vector<PoseIncrement>& increments,
                Diagnostics& notes);
-/// What was sound and is not any more, or not yet: frozen, of another sign, turned.
+/// Signals that are valid in one part of the drive only: frozen, inverted or turned in the other.
 void checkMidway(const Drive& drive, const std::vector<PoseIncrement>& increments,
                  Diagnostics& notes);
 void checkPoses(const Drive& drive, const std::vector<PoseIncrement>& increments,
