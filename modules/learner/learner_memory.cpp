@@ -13,19 +13,19 @@ namespace {
 
 constexpr const char* kSlots[2] = {"learner_state_1", "learner_state_2"};
 constexpr const char* kVersions = "learner_versions";
-/// Versions reserved at a time, and how many must be left before the next are.
+/// Versions reserved at a time, and number left at which the next are reserved.
 constexpr int64_t kReserve = 100 * Learner::kVersions;
 constexpr int64_t kReserveLeft = 50 * Learner::kVersions;
-/// Above a state whose reserve is lost.
+/// Added to a state's version if its reserve is lost.
 constexpr int64_t kWithoutReserve = 1000 * Learner::kVersions;
-/// Robot time for one version where nothing is known [us].
+/// Robot time per version if no file exists [us].
 constexpr int64_t kTimePerVersionUs = 20'000;
 
 void append(std::string& problem, const std::string& another) {
   problem += (problem.empty() ? "" : "; ") + another;
 }
 
-/// Bytes in a step of 20 ms; the rest of LCM's 100 kB is left to LEARNING and HEALTH.
+/// Bytes per step of 20 ms; the rest of LCM's 100 kB is left to LEARNING and HEALTH.
 constexpr int kPortion = 60'000;
 constexpr size_t kStateBytes = 50'000;
 constexpr size_t kWaitingStates = 2;
@@ -37,7 +37,7 @@ std::optional<int64_t> LearnerMemory::storedReserve(std::string& problem) const 
   if (!content) return std::nullopt;
   std::istringstream in(*content);
   int64_t reserve = 0;
-  // The whole entry must be the number: half a number would be a lower one.
+  // The whole entry must be the number: a truncated one would be lower.
   const bool whole = (in >> reserve) && (in >> std::ws).eof();
   if (whole && reserve >= 1 && reserve <= PatternSet::kHighestVersion) return reserve;
   append(problem, std::string(kVersions) + " is damaged: versions go on far above");

@@ -25,34 +25,35 @@
 
 namespace tread::learner {
 
-/// What the learner finds when it starts.
+/// The learner's stored state at its start.
 struct StoredLearning {
   std::optional<LearnerState> state;  ///< newest valid one of this shipped set
-  int64_t first_version = 1;          ///< to publish now; above everything ever published
-  std::string problem;                ///< one clear line if something was damaged; else empty
+  int64_t first_version = 1;          ///< next to publish; above every published version
+  std::string problem;                ///< one clear line if something was damaged; otherwise empty
 };
 
-/// The learner's files. Entries: learner_state_1 and _2, written in turn so that the one before is
-/// kept, and learner_versions, a number that no published version exceeds.
-/** The rule of versions: learner_versions is written ahead, for a hundred executions, before they
- * are used. A start begins above it, because the last versions may have been published from memory
- * while the disk was full. Without it, above the newest state by those of a thousand; without that,
- * too, at fifty per second of robot time, which is faster than executions can be learned from. A
- * node that then still hears of a higher version of its own goes above that (LearnerNode). */
+/// The learner's files. Entries: learner_state_1 and _2, written alternately so that the previous
+/// state is kept, and learner_versions, an upper limit of the published versions.
+/** Rule of versions: learner_versions is written ahead for a hundred executions before they are
+ * used. A start begins above it, because the last versions may have been published from memory
+ * while the disk was full. Without it, a start begins above the newest state by the versions of a
+ * thousand executions; without a state, at fifty per second of robot time, which is faster than
+ * executions can be learned from. A node that then receives a higher version of its own continues
+ * above that (LearnerNode). */
 class LearnerMemory {
  public:
   explicit LearnerMemory(Store& store) : store_(store) {}
 
   StoredLearning recall(const PatternSet& shipped, int64_t utime);
 
-  /// Makes sure that `version` may be published. One clear line if that could not be written.
+  /// Ensures that `version` may be published. Returns one clear line if that could not be written.
   std::optional<std::string> reserve(int64_t version);
-  /// Writes the state of a version over the older of the two. One clear line if it could not be
-  /// written.
+  /// Writes the state of a version over the older of the two. Returns one clear line if it could
+  /// not be written.
   std::optional<std::string> save(const std::string& state_text);
 
  private:
-  /// Nothing where it is missing, or damaged, which is added to `problem`.
+  /// nullopt if it is missing, or damaged, which is added to `problem`.
   std::optional<int64_t> storedReserve(std::string& problem) const;
 
   Store& store_;
@@ -60,25 +61,25 @@ class LearnerMemory {
   int next_slot_ = 0;
 };
 
-/// Another set in the place of one.
+/// Replaces a set by another one.
 using SetReplacement = std::function<PatternSet(const PatternSet&)>;
 
-/// Sends sets and states in portions: LCM silently loses messages where one
-/// publisher sends more than 100 kB in 20 ms.
+/// Sends sets and states in portions: LCM silently loses messages if one publisher sends more than
+/// 100 kB in 20 ms.
 class SetPublisher {
  public:
   explicit SetPublisher(Bus& bus) : bus_(bus) {}
 
-  /// Sets go out as this makes them from now on; it keeps their versions. For experiments.
+  /// Sets are converted by this before sending and keep their versions. For experiments.
   void replaceSets(SetReplacement replacement) { replacement_ = std::move(replacement); }
-  /// The parts of a set; those of an older one that are still here are not sent any more.
+  /// Enqueues the parts of a set; unsent parts of an older one are dropped.
   void putSet(const PatternSet& set);
-  /// The parts of a state's text, sent after the sets. At most two states wait; more drop the
-  /// older.
+  /// Enqueues the parts of a state's text, sent after the sets. At most two states wait; further
+  /// ones drop the older.
   void putState(const PatternSet& set, const std::string& rule, const std::string& text);
 
   bool setsSent() const { return sets_.empty(); }
-  /// Sends one portion; without sets only states.
+  /// Sends one portion; without sets, states only.
   void step(int64_t utime, bool with_sets = true);
 
  private:
@@ -95,64 +96,66 @@ struct LearnerNodeConfig {
   PatternSet shipped;  ///< where learning begins
   RuleConfig rule;
   MeasurementLimits limits;
-  int64_t period_us = 20'000;  ///< [us] between steps
-  int64_t settle_us =
-      200'000;  ///< [us] what is this old has arrived: INS latency and disorder of the bus
-  int64_t give_up_us =
-      2'000'000;  ///< [us] after its end: an execution is then measured with the INS there is
+  int64_t period_us = 20'000;   ///< [us] between steps
+  int64_t settle_us = 200'000;  ///< [us] after which a message must have arrived: INS latency and
+                                ///< disorder of the bus
+  int64_t give_up_us = 2'000'000;  ///< [us] after its end at which an execution is measured with
+                                   ///< the INS data available
   int64_t follow_us =
-      200'000;  ///< [us] a running execution is learned from as often as this; 0 = at its end only
+      200'000;  ///< [us] period of learning from a running execution; 0 = only at its end
   int64_t repeat_us = 2'000'000;       ///< [us] between repetitions of the set
-  int64_t track_span_us = 60'000'000;  ///< [us] of INS that is kept
-  int64_t listen_us = 0;  ///< [us] without a set at the start: is there a learner already?
-  bool shock = false;     ///< learns how hard ground shakes the robot, and publishes it
-  double front = 0.0;     ///< [m] from the body origin to the front end, where shock is felt
-  int64_t remembered_versions = 50;  ///< sets kept to score executions with the version they name
+  int64_t track_span_us = 60'000'000;  ///< [us] of INS data that are kept
+  int64_t listen_us = 0;  ///< [us] without publishing sets at the start, to detect another learner
+  bool shock = false;     ///< learn how strongly ground shakes the robot, and publish it
+  double front = 0.0;     ///< [m] from the body origin to the front end, where shock is measured
+  int64_t remembered_versions =
+      50;  ///< sets kept to score executions with the version that they name
 
   std::string store = "state/learner";  ///< folder of the state; used by the process
-  std::vector<std::string> warnings;    ///< of keys that were given and that the rule does not read
+  std::vector<std::string> warnings;    ///< about given keys that the rule does not use
 
   explicit LearnerNodeConfig(PatternSet set) : shipped(std::move(set)) {}
   /// The configuration with its defaults, for CONFIG.
   std::string effective() const;
 };
 
-/// Which of the keys memory, scaling and ground a rule reads.
+/// The keys among memory, scaling and ground that a rule uses.
 std::vector<std::string> keysReadBy(const Rule& rule);
 
 /// Reads the configuration and the pattern file that it names; throws ConfigError with file:line.
 LearnerNodeConfig readLearnerConfig(ConfigReader& reader);
 
-/// Reads everything but the pattern file, over what `config` holds; does not finish() the reader.
+/// Reads everything except the pattern file into `config`; does not finish() the reader.
 void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config);
 
 /// The learner process. INS, EXECUTION, MOTOR, MAP in; PATTERN_SET, LEARNER_STATE, LEARNING, SHOCK,
 /// GRIP, HEALTH, CONFIG out.
 /** 1. Inputs wait until they are settle_us old and are then taken in the order of (utime, seq).
- *  2. An execution is cut, gated and scored against the set version that its record names.
- *     What a person drives by hand is an execution, too, where its commands are a pattern's or
- *     the beginning of one: of run 0, with the time of its start as id.
+ *  2. An execution is cut, gated and scored against the set version that its record names. Manual
+ *     driving whose commands equal a pattern's, or the beginning of one, is an execution, too: of
+ *     run 0, with the time of its start as id.
  *  3. If the rule changes the set, state and set are written and published under the next version.
  *  4. A rule that learns from parts follows a running execution: sets are published as if it had
- *     ended there, but neither written nor reported. What it teaches in the end replaces them.
- *  5. With `shock` it also learns from INS and MAP how hard ground shakes the robot
+ *     ended there, but neither written nor reported. The final result replaces them.
+ *  5. With `shock` it also learns from INS and MAP how strongly ground shakes the robot
  *     (ShockPublisher).
- *  6. From executions that are fair, or refused for their entry only, it learns how much the ground
- *     gives (GripEstimator), also while they run, and publishes it.
+ *  6. From executions that are valid, or refused only for their entry, it estimates the available
+ *     deceleration (GripEstimator), also while they run, and publishes it.
  *
- * Each (run id, execution id) is handled once. Versions only go up: see LearnerMemory. While a
- * learner that was started earlier lives, this one publishes and learns nothing; then it goes on
+ * Each (run id, execution id) is handled once. Versions only increase: see LearnerMemory. While a
+ * learner that was started earlier lives, this one neither publishes nor learns; then it continues
  * above the versions of that one. */
 class LearnerNode : public Node {
  public:
   LearnerNode(LearnerNodeConfig config, Bus& bus, Store& store);
 
-  /// Goes on as exactly that version, without a new number: for replay, to begin where a log does.
-  /** `earlier`: sets before it that executions may still name. Call before the first step. */
+  /// Continues with exactly that version, without a new number: for a replay that begins with a
+  /// log.
+  /** `earlier`: previous sets that executions may still name. Call before the first step. */
   void resume(LearnerState state, const std::vector<PatternSet>& earlier);
 
-  /// The planner is given other sets than the learned ones, by which executions are still scored.
-  /// Call before the first step.
+  /// Publishes other sets than the learned ones, which are still used for scoring executions. Call
+  /// before the first step.
   void replaceSets(SetReplacement replacement) {
     publisher_.replaceSets(std::move(replacement));
     publisher_.putSet(learner_.set());
@@ -162,7 +165,7 @@ class LearnerNode : public Node {
   void step(int64_t utime) override;
 
   const PatternSet& set() const { return learner_.set(); }
-  /// How many surfaces the rule remembers.
+  /// Number of surfaces that the rule remembers.
   int rememberedSurfaces() const { return std::max(0, learner_.rule().remembered()); }
   /// The state as it is written to disk.
   std::string stateText() const;
@@ -204,22 +207,22 @@ class LearnerNode : public Node {
   ExecutionQueue executions_;
   CommandWatch commands_;
   HandWatch hand_;
-  std::optional<execution_record_t> running_;  ///< execution that is followed
+  std::optional<execution_record_t> running_;  ///< the followed execution
   int64_t followed_until_ = 0;                 ///< [us] of its time
   int64_t seq_motor_ = -1;                     ///< of the last MOTOR; -1 = none yet
   SetPublisher publisher_;
   HealthReporter health_;
   std::optional<ShockPublisher> shock_;
   GripEstimator grip_;
-  int64_t grip_felt_ = 0;  ///< [us] end of the newest execution that told something
+  int64_t grip_felt_ = 0;  ///< [us] end of the newest execution with evidence
   int64_t next_grip_ = 0;  ///< [us]
   int64_t seq_grip_ = 0;
   std::map<int64_t, PatternSet> versions_;  ///< the last sets by version
   std::map<int64_t, int>
-      unknown_versions_;  ///< versions above ours that records named, and how often
+      unknown_versions_;  ///< versions above ours that records named, with counts
   std::string start_problem_;
   std::string write_problem_;
-  int64_t highest_heard_ = 0;  ///< version that somebody named and was believed
+  int64_t highest_heard_ = 0;  ///< highest version that was named by others and accepted
   bool passive_ = false;
   int64_t steps_ = 0;
   int64_t next_repeat_ = 0;

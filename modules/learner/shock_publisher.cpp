@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kEntry = "learner_shock";
 constexpr int64_t kPeriod = 1'000'000;  // [us]
-/// Not each pair is worth a write.
+/// Not every pair justifies a write.
 constexpr int kPairsBetweenWrites = 10;
 
 }  // namespace
@@ -36,7 +36,7 @@ void ShockPublisher::take(const ins_t& ins) {
   if (!T_map_body || (ins.ins_status & kBroken) != 0) return;
   const Eigen::RowVector3d up = T_map_body->linear().row(2);
   BodyMotion motion{ins.utime, T_map_body->translation().head<2>(), up[0], ins.velocity[0], 0.0};
-  // What the device does not measure is 0: a vehicle moves in its own plane.
+  // A component that the device does not measure is 0: a vehicle moves in its own plane.
   const double own_up = std::isfinite(ins.velocity[2]) ? ins.velocity[2] : 0.0;
   motion.climb = up.dot(Eigen::RowVector3d(ins.velocity[0], ins.velocity[1], own_up));
   if (const auto felt = learner_.take(motion)) felt_ = *felt;

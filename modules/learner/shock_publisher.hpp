@@ -11,12 +11,12 @@
 
 namespace tread::learner {
 
-/// Learns from INS and MAP how hard ground shakes the robot, publishes it as SHOCK once a second
-/// and keeps it in the store (entry learner_shock). Its node gives it INS and time.
+/// Learns from INS and MAP how strongly ground shakes the robot, publishes it as SHOCK once a
+/// second and keeps it in the store (entry learner_shock). Its node passes it INS and time.
 class ShockPublisher {
  public:
-  /// `front` [m] from the body origin to the front end, where shock is felt. Goes on from what the
-  /// store holds.
+  /// `front` [m] from the body origin to the front end, where shock is measured. Continues from the
+  /// store's content.
   ShockPublisher(double front, Bus& bus, Store& store, HealthReporter& health);
 
   void take(const ins_t& ins);

@@ -82,7 +82,7 @@ std::vector<AtlasCell> cellsOf(const Observations& data, const std::vector<size_
   return cells;
 }
 
-/// Variables that a person looks at; the others are combinations of them.
+/// Variables of the standard view; the others are combinations of them.
 bool isShownVariable(const std::string& variable) {
   static const std::set<std::string> kShown{"v",           "yaw rate",           "v x yaw rate",
                                             "change of v", "change of yaw rate", "pitch",
@@ -98,9 +98,9 @@ Variable elapsedTime(const Observations& data) {
 }
 
 constexpr size_t kFields = 10;       // along each axis
-constexpr size_t kLeastInField = 4;  // a mean of fewer is not shown
+constexpr size_t kLeastInField = 4;  // means of fewer rows are not shown
 
-/// Equal fields over what is common: one reading in a hundred at either end is left out.
+/// Equal cells over the common range: one value in a hundred at either end is left out.
 std::vector<double> fieldEdges(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const size_t margin = values.size() / 100;
@@ -113,7 +113,7 @@ std::vector<double> fieldEdges(std::vector<double> values) {
   return edges;
 }
 
-/// The field in which a value lies; nothing outside.
+/// The cell that contains a value; nullopt outside.
 std::optional<size_t> fieldOf(const std::vector<double>& edges, double value) {
   if (value < edges.front() || value > edges.back()) return std::nullopt;
   const auto above = std::upper_bound(edges.begin() + 1, edges.end() - 1, value);
@@ -157,7 +157,8 @@ struct AtlasRows {
   Eigen::VectorXd after;
 };
 
-/// Where a channel and variable stand among what is unexplained; at its end if they do not.
+/// Rank of a channel and variable among the unexplained ones; at the end if they are not among
+/// them.
 size_t placeAmong(const std::vector<Unexplained>& unexplained, const std::string& channel,
                   const std::string& variable) {
   const auto at = std::find_if(unexplained.begin(), unexplained.end(), [&](const Unexplained& one) {
@@ -198,7 +199,7 @@ void addMap(const AtlasRows& of, ObservedRate channel, const std::vector<size_t>
 }
 
 constexpr size_t kLikened = 3;     // rests, the strongest ones
-constexpr double kLikeness = 0.5;  // correlation from which one direction is like another
+constexpr double kLikeness = 0.5;  // correlation from which two directions are similar
 
 /// Directions in which the effects of the catalogue act or could act, with their names.
 struct EffectDirections {
@@ -224,7 +225,7 @@ EffectDirections effectDirections(const Fitter& fitter, const FitState& state) {
   return all;
 }
 
-/// The effect whose direction is most like another one where that one is not 0; empty if none is.
+/// The effect whose direction is most similar to another one where that is not 0; empty if none is.
 std::string mostLike(const EffectDirections& all, const Eigen::VectorXd& direction,
                      const Eigen::VectorXd& scales) {
   const Eigen::VectorXd own = direction.cwiseQuotient(scales);
@@ -243,7 +244,7 @@ std::string mostLike(const EffectDirections& all, const Eigen::VectorXd& directi
   return like;
 }
 
-/// What is unexplained, and the direction in which it is.
+/// An unexplained dependence, and its direction.
 struct Rest {
   Unexplained told;
   Eigen::VectorXd direction;  ///< rows x 1
@@ -270,10 +271,11 @@ double restsOnVariables(const Fitter& fitter, const FitState& state, double alph
   return least;
 }
 
-constexpr double kSmoothShare = 0.5;  // of the chance of an error, beside that of the variables
+constexpr double kSmoothShare =
+    0.5;  // of the error probability, in addition to that of the variables
 
-/// Adds channels whose residuals are a function of all conditions together and that no rest is of
-/// so far; returns the least p-value of all, as of a test at `alpha`.
+/// Adds channels whose residuals are a function of all conditions together and that have no rest so
+/// far; returns the least p-value, scaled to a test at `alpha`.
 double restsOnAll(const Fitter& fitter, const FitState& state, double alpha, uint64_t seed,
                   std::vector<Rest>& rests) {
   double least = 1.0;

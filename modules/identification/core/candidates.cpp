@@ -11,13 +11,13 @@ namespace tread::gap {
 namespace {
 
 constexpr double kGravity = 9.81;     // [m/s2]
-constexpr double kSmallProbe = 0.25;  // of the typical value: smooth effects are straight there
+constexpr double kSmallProbe = 0.25;  // of the typical value: smooth effects are linear up to there
 constexpr double kVanished = 2e-3;    // of an effect's typical size
-constexpr int kChanges = 15;          // times at which a change is looked for
-constexpr double kElsewhere = 0.1;    // of a given value: nearer ones the slope tells
+constexpr int kChanges = 15;          // number of times tested for a change
+constexpr double kElsewhere = 0.1;    // of a given value: closer ones are covered by the slope
 constexpr double kEdge = 0.06;        // share of the drive without changes at either end
 
-/// The most that a drive demands of what a limit limits, in the unit of the limit.
+/// The largest demand of a drive on a limited quantity, in the unit of the limit.
 double demandOn(LimitedQuantity limited, const Excitation& most) {
   if (limited == LimitedQuantity::kTrackSpeed) return most.track_speed;
   return limited == LimitedQuantity::kYawRate ? most.omega : most.v_omega;
@@ -28,7 +28,7 @@ std::vector<double> probesOf(const EffectParameter& parameter, const Excitation&
     return parameter.probes.empty() || parameter.search_from_slope
                ? std::vector<double>{kSmallProbe * parameter.typical}
                : parameter.probes;
-  // Reciprocals of limits that bite: just, and more and more.
+  // Reciprocals of limits that act: slightly, and increasingly.
   std::vector<double> probes;
   const double demand = demandOn(parameter.limited, most);
   if (demand <= 0.0) return probes;
@@ -40,13 +40,13 @@ std::vector<double> probesOf(const EffectParameter& parameter, const Excitation&
   return probes;
 }
 
-/// With what values of other parameters a strength is tried.
+/// Values of other parameters with which a strength is tested.
 struct Setting {
   std::vector<std::pair<std::string, double>> shapes;
   double since = kNotMeasured;
 };
 
-/// The change point with which a strength begins to act; none = it always acts.
+/// The change point at which a strength begins to act; none = it always acts.
 const ChangePoint* changePointOf(const Effect& effect, const std::string& strength) {
   for (const ChangePoint& change : effect.search.change_points)
     if (contains(change.strengths, strength)) return &change;
@@ -58,7 +58,7 @@ const ChangePoint* previousTo(const Effect& effect, const ChangePoint& change) {
   return &change == &effect.search.change_points.front() ? nullptr : &change - 1;
 }
 
-/// Changes at times all over the drive, later than the previous change of the same effect, which
+/// Changes at times throughout the drive, later than the previous change of the same effect, which
 /// they first repeat.
 std::vector<Setting> changesOf(const Effect& effect, const ChangePoint& change,
                                const ModelDocument& model, const Excitation& most) {
@@ -95,7 +95,7 @@ std::vector<Setting> settingsFor(const Effect& effect, const std::string& streng
   return {{}};
 }
 
-/// What is fitted together with a strength.
+/// Parameters fitted together with a strength.
 std::vector<std::string> freedWith(const Effect& effect, const std::string& strength) {
   std::vector<std::string> names{strength};
   if (const ChangePoint* change = changePointOf(effect, strength))
@@ -111,13 +111,14 @@ std::vector<std::string> freedWith(const Effect& effect, const std::string& stre
 bool isOpen(const Effect& effect, const EffectParameter& parameter, const ModelDocument& model,
             const Excitation& most) {
   if (parameter.role == ParameterRole::kShape || !effect.isOf(model.vehicle.layout())) return false;
-  // A battery whose voltage is measured shows by it how empty it is.
+  // A measured battery voltage itself shows the state of charge.
   const bool by_voltage = std::any_of(effect.parameters.begin(), effect.parameters.end(),
                                       [](const EffectParameter& one) { return one.needs_voltage; });
   if (by_voltage && parameter.needs_voltage != most.voltage) return false;
   const ChangePoint* change = changePointOf(effect, parameter.name);
   if (change == nullptr) return !isOn(effect, model);
-  // The others, a load that only moves its centre for one, look like a constant from early on.
+  // The other strengths, for instance of a load that only shifts its centre, resemble a constant
+  // from early on.
   const auto tested = change->strengths.begin() + static_cast<std::ptrdiff_t>(change->fitted);
   if (std::find(change->strengths.begin(), tested, parameter.name) == tested) return false;
   const ChangePoint* previous = previousTo(effect, *change);
@@ -159,8 +160,8 @@ Candidate releaseOf(const FreeParameter& term, double from, double to) {
   return release;
 }
 
-/// Terms that are on may have changed: those that are held by what is known of them, by a little,
-/// and limits and thresholds, to where the drive would feel them.
+/// Terms that are on may have changed: those with priors slightly, and limits and thresholds to
+/// values that the drive would reach.
 void addGivenTerms(const FitState& state, const Excitation& most,
                    std::vector<Candidate>& candidates) {
   for (const FreeParameter& term : state.free) {
@@ -183,7 +184,7 @@ void takeOut(std::vector<Candidate>& candidates,
   candidates.erase(std::remove_if(candidates.begin(), candidates.end(), which), candidates.end());
 }
 
-/// What a state has free is no candidate, though a fit may have taken its size to 0.
+/// Free parameters of a state are no candidates, even if a fit has set their size to 0.
 void forgetFree(const FitState& state, std::vector<Candidate>& candidates) {
   const auto isFree = [&state](const std::string& path) {
     return std::any_of(state.free.begin(), state.free.end(),
@@ -194,7 +195,7 @@ void forgetFree(const FitState& state, std::vector<Candidate>& candidates) {
   });
 }
 
-/// Effects that are a number of the nominal model under another name.
+/// Removes effects that equal a number of the nominal model.
 void forgetNominal(std::vector<Candidate>& candidates) {
   takeOut(candidates, [](const Candidate& candidate) {
     return !effectNamed(candidate.effect).search.nominal.empty();
@@ -314,7 +315,7 @@ void addCandidate(const Fitter& fitter, FitState& state, const Candidate& candid
     return;
   }
   for (const auto& [path, value] : candidate.shapes) *findParameter(state.model, path) = value;
-  // Thresholds begin at their probe, whose slope is known; the others at their first order size.
+  // Thresholds start at their probe, whose slope is known; the others at their first-order size.
   const EffectParameter& known = parameterNamed(effectNamed(candidate.effect), candidate.parameter);
   const bool threshold = known.reciprocal() || (!known.probes.empty() && !known.search_from_slope);
   const double from = candidate.value - candidate.change;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What motor currents say of the effects that were found.
+// Evidence of the motor currents about found effects.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,14 +16,14 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kCreeps = 0.03;      // [m/s] from which on dry friction is whole
+constexpr double kCreeps = 0.03;      // [m/s] from which dry friction is fully developed
 constexpr size_t kLeastBins = 500;    // with currents
-constexpr double kUnlike = 0.05;      // of an effect, in no other column
-constexpr double kVisible = 0.01;     // of the motion, an effect's RMS at least
-constexpr double kSteady = 0.03;      // [m/s] of change from bin to bin
+constexpr double kUnlike = 0.05;      // of an effect, not in any other column
+constexpr double kVisible = 0.01;     // of the motion, lower limit of an effect's RMS
+constexpr double kSteady = 0.03;      // [m/s] of change between bins
 constexpr double kLeastSteady = 0.2;  // of an effect's square, in steady motion
-constexpr double kVaries = 0.01;      // of a current's square, about the mean of its size
-constexpr double kFollows = 0.5;      // of the currents' variance, explained by the motion
+constexpr double kVaries = 0.01;      // of a current's square, about its mean magnitude
+constexpr double kFollows = 0.5;      // of the currents' variance that the motion must explain
 
 Both togetherOf(const Both& tracks) {
   return {0.5 * (tracks[0] + tracks[1]), 0.5 * (tracks[1] - tracks[0])};
@@ -51,7 +51,7 @@ Currents measuredIn(const std::vector<MotionBin>& bins, const std::vector<Drive>
   return measured;
 }
 
-/// Whether the current of a track is always the same, and no measurement.
+/// Whether the current of a track is constant, so no measurement.
 bool isStuck(const Currents& measured) {
   for (size_t side = 0; side < 2; ++side) {
     double sum = 0.0;
@@ -66,7 +66,7 @@ bool isStuck(const Currents& measured) {
   return false;
 }
 
-/// Makes currents positive forwards, whichever of the two a controller says.
+/// Makes currents positive forwards, for either convention of the controller.
 void orient(Currents& measured) {
   double forwards = 0.0;
   double driving = 0.0;
@@ -84,7 +84,7 @@ void orient(Currents& measured) {
           by_direction ? sign : std::copysign(sign, measured.bins[i].tracks[side]);
 }
 
-// Columns of a kind: the current, then its ordinary dependence, then each effect.
+// Columns of a kind: the current, then its usual dependence, then each effect.
 constexpr Eigen::Index kOrdinary = 6;
 constexpr Eigen::Index kSpeed = 1;
 constexpr Eigen::Index kOnes = kOrdinary;
@@ -103,7 +103,7 @@ BlockGrams currentGrams(const Currents& measured, size_t effects) {
     const Both current = togetherOf(measured.tracks[i]);
     const Both friction = togetherOf({dryFriction(bin.tracks[0]), dryFriction(bin.tracks[1])});
     for (size_t kind = 0; kind < 2; ++kind) {
-      // Ground that is pushed aside resists turning like dry friction, too.
+      // Ground that is pushed aside also resists turning like dry friction.
       const double scrub = kind == 1 ? dryFriction(bin.speed[1]) : 0.0;
       row.head(kEffects) << current[kind], bin.speed[kind], bin.before[kind], bin.after[kind],
           friction[kind], scrub, 1.0;
@@ -115,12 +115,12 @@ BlockGrams currentGrams(const Currents& measured, size_t effects) {
   return blocks;
 }
 
-/// Least squares of the currents: each kind has its own ordinary dependence, all kinds the same
+/// Least squares of the currents: each kind has its own usual dependence, all kinds the same
 /// current per speed that an effect takes.
 struct CurrentFit {
   Eigen::MatrixXd normal;
-  Eigen::VectorXd values;  ///< ordinary ones of both kinds, then effects [A s/m]
-  Both rest{};             ///< sum of squares that stays, by kind
+  Eigen::VectorXd values;  ///< usual ones of both kinds, then effects [A s/m]
+  Both rest{};             ///< residual sum of squares, by kind
 
   Eigen::Index effectAt(size_t effect) const {
     return 2 * kOrdinary + static_cast<Eigen::Index>(effect);
@@ -154,7 +154,7 @@ CurrentFit fitCurrents(const Grams& grams, const Both& weights) {
   return fit;
 }
 
-/// Weights of the kinds by what stays of their currents.
+/// Weights of the kinds from the residuals of their currents.
 Both weightsOf(const Grams& all) {
   Both weights{};
   for (size_t kind = 0; kind < 2; ++kind)
@@ -165,8 +165,8 @@ Both weightsOf(const Grams& all) {
   return weights;
 }
 
-/// Current per speed, over those kinds of motion that an effect takes; without what the effects
-/// draw.
+/// Current per speed, over the kinds of motion that an effect reduces; without the effects' own
+/// currents.
 double ordinaryPerSpeed(const Grams& grams, const CurrentFit& fit, size_t effect) {
   const Eigen::Index effects = grams[0].cols() - kEffects;
   double weighed = 0.0;
@@ -182,7 +182,7 @@ double ordinaryPerSpeed(const Grams& grams, const CurrentFit& fit, size_t effect
   return weight > 0.0 ? weighed / weight : 0.0;
 }
 
-/// How much of an effect no other column has.
+/// Share of an effect that no other column can imitate.
 double unlikeOthers(const CurrentFit& fit, size_t effect) {
   const Eigen::Index at = fit.effectAt(effect);
   const Eigen::VectorXd unit = Eigen::VectorXd::Unit(fit.normal.cols(), at);
@@ -198,8 +198,8 @@ bool follows(const Grams& all, const CurrentFit& fit) {
   return fit.rest[0] + fit.rest[1] < (1.0 - kFollows) * varies;
 }
 
-/// Whether an effect takes something of steady motion, too: what it takes of changes alone cannot
-/// be told from the currents of inertia.
+/// Whether an effect also reduces steady motion: reductions of changes alone cannot be
+/// distinguished from the currents of inertia.
 bool actsSteadily(const std::vector<MotionBin>& bins, size_t effect) {
   double all = 0.0;
   double steady = 0.0;
@@ -213,7 +213,7 @@ bool actsSteadily(const std::vector<MotionBin>& bins, size_t effect) {
   return steady > kLeastSteady * all;
 }
 
-/// Whether an effect takes enough of the motion to be looked at.
+/// Whether an effect reduces the motion enough to be evaluated.
 bool isVisible(const Grams& all, Eigen::Index effect, Eigen::Index speed) {
   const double taken = all[0](effect, effect) + all[1](effect, effect);
   const double moved = all[0](speed, speed) + all[1](speed, speed);

@@ -10,7 +10,7 @@
 #include "modules/identification/core/fit.hpp"
 #include "modules/identification/core/search.hpp"
 
-// What a drive says of a model, and on what the residuals still depend.
+// What a drive reveals about a model, and what the residuals still depend on.
 namespace tread::gap {
 
 /// A quantity on which residuals may depend, at each observation.
@@ -20,76 +20,79 @@ struct Variable {
   Eigen::VectorXd values;  ///< rows x 1
 };
 
-/// All such quantities, from the simulated motion, the roll and pitch of the INS and the time.
+/// All such quantities, from the simulated motion, the INS's roll and pitch, and the time.
 std::vector<Variable> variablesOf(const Observations& data, const ModelDocument& model);
 
-/// Plain conditions of the motion, the commands and what was before, of which the residuals may be
-/// some function; speed and yaw rate first.
+/// Simple conditions of the motion, the commands and the recent past on which the residuals may
+/// depend; speed and yaw rate first.
 std::vector<Variable> inputsOf(const Observations& data, const ModelDocument& model);
 
-/// Tests every channel of the residuals for every variable, with the state's free parameters, and
+/// Tests every channel of the residuals for each variable, with the state's free parameters, and
 /// for any smooth function of all conditions together.
-/** Of the strongest rests it says which effect of the catalogue, on or off, they resemble most in
- * their channel. It is not taken for that effect: its size was free to explain it, or no test, or a
- * person, took it in. The chance of an error is `alpha` over all variables and half of it more for
- * the smooth functions, so that these cost the variables no power; they are told where no variable
- * of their channel is, by the condition that matters most. Where the fitter predicts a rest, both
- * are tested for what is beyond it. */
+/** For the strongest remainders it names the effect of the catalogue, on or off, that they resemble
+ * most in their channel. They are not attributed to that effect: its size was already free, or a
+ * test or a person excluded it. The error probability is `alpha` over all variables, plus half of
+ * it for the smooth functions, so that these do not reduce the variables' power; smooth functions
+ * are reported for channels without a variable, by their most important condition. If the fitter
+ * predicts a rest, both are tested for what exceeds it. */
 Adequacy testAdequacy(const Fitter& fitter, const FitState& state, double alpha, uint64_t seed);
 
-/// Where the residuals of two models are: curves of every channel over variables that a person
-/// looks at and over those of what is unexplained, and maps over speed and yaw rate.
+/// The residuals of two models: curves of every channel over the standard variables and over the
+/// unexplained ones, and maps over speed and yaw rate.
 /** The interval of a curve's cell is from the scatter of its blocks' means; cells that exclude 0
  * after correction for the number of cells (Bonferroni, 5 %) are marked. */
 ResidualAtlas residualAtlas(const Observations& observations, const ModelDocument& before,
                             const ModelDocument& after,
                             const std::vector<Unexplained>& unexplained = {});
 
-/// Blocks of measured driving from which chance and cause can be told apart.
+/// Fewest blocks of measured driving for a statistical conclusion.
 inline constexpr int kLeastBlocks = 10;
 
-/// Empty if rows are enough to conclude anything from; else one line that says how much to drive.
+/// Empty if the rows suffice for a conclusion; otherwise one line with the amount of driving
+/// needed.
 std::string tooLittleDriving(const Observations& data);
 
-/// The model that a search ended with: its effects and terms with their 95 % intervals, covariance
-/// and envelope, and the effects that the drive could not have shown.
-/** `before` is the model that the search began with. */
+/// The result of a search as a model: effects and terms with their 95 % intervals, covariance and
+/// envelope, and the effects that the drive could not have shown.
+/** `before` is the model at the start of the search. */
 IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& before,
                                 const SearchSettings& settings, const FoundTerms& result);
 
-/// The headline of a finding whose effects, calibrated terms, adequacy and errors are known: one
-/// verdict, with its reason where it is kCannotTell.
-/** Adequate is a p-value above `adequacy_alpha`. Terms of the model that moved count if the end
- * error falls by more than the share `least_gain`. A search that was cut short is kPartial with
- * what it has found, and kCannotTell if that is nothing. */
+/// Sets the verdict of a finding from its effects, calibrated terms, adequacy and errors, with the
+/// reason for kCannotTell.
+/** Adequate means a p-value above `adequacy_alpha`. Moved terms of the model count if the end error
+ * falls by more than the share `least_gain`. A search that was cut short is kPartial with its
+ * results, and kCannotTell without any. */
 void judge(GapFinding& finding, double adequacy_alpha, double least_gain);
 
-/// What `tread-gap find` is asked.
+/// The task of `tread-gap find`.
 struct GapTask {
   ModelDocument model;
   std::vector<Drive> train;
   std::vector<Drive> test;         ///< never used for structure or parameters; may be empty
-  std::vector<LogNote> log_notes;  ///< what is known of the logs
-  /// Lag, delay and gains of the nominal model are fitted, too: makes a model of a new vehicle.
+  std::vector<LogNote> log_notes;  ///< notes on the logs
+  /// Also fits lag, delay and gains of the nominal model: makes a model of a new vehicle.
   bool calibrate = false;
-  /// What is real stays in, however little it changes the end error.
+  /// Keeps all real effects, however little they change the end error.
   bool keep_small = false;
-  /// What no effect explains is told, and becomes no term of the new model; nor does it where a
-  /// person has rejected an effect, which would come back without its name.
+  /// Deviations that no effect explains are reported but not added to the new model as a term; the
+  /// same holds if a person has rejected an effect, which would otherwise return without its name.
   bool named_only = false;
-  /// Accepted effects are in the model from the start and stay; rejected ones are never considered.
+  /// Accepted effects are in the model from the start and are kept; rejected ones are never
+  /// considered.
   std::vector<EffectDecision> decisions;
   uint64_t seed = 1;
   ParallelFor parallel = serialFor;  ///< does not change a bit of the result
-  TimeLimit is_over = neverOver;     ///< then the best so far is the result
+  TimeLimit is_over = neverOver;     ///< if so, the search returns the best result so far
 };
 
-/// Where simulation and measurement disagree, what it is most likely called, how sure that is.
-/** Calibrates, tests and selects effects, tests what is left, and measures the error on driving
- * that was used neither for the choice of effects nor for their size: the test drives, or else
- * alternate blocks of the training drives, each half predicted with what the other half found.
- * Deterministic for a seed. Throws std::invalid_argument for an accepted effect that the drives
- * cannot size. */
+/// Where simulation and measurement disagree, the most probable name of the difference, and its
+/// certainty.
+/** Calibrates, tests and selects effects, tests the remainder, and measures the error on driving
+ * that was used neither for choosing the effects nor for their sizes: the test drives or, without
+ * any, alternate blocks of the training drives, each half predicted from the other. Deterministic
+ * for a seed. Throws std::invalid_argument for an accepted effect whose size the drives cannot
+ * determine. */
 GapFinding findGap(const GapTask& task, const Progress& say);
 
 }  // namespace tread::gap

@@ -14,7 +14,8 @@ namespace tread::gap {
 
 namespace {
 
-constexpr double kNearest = 0.25;  // [s] a fix may be away from an execution's beginning or end
+constexpr double kNearest =
+    0.25;  // [s] largest distance of a fix from an execution's beginning or end
 constexpr int kOverlayPoints = 21;
 
 const InsSample* nearestFix(const Segment& segment, double time) {
@@ -65,7 +66,7 @@ std::map<int, BlockErrors> byBlock(const std::vector<ExecutionError>& errors) {
   return blocks;
 }
 
-/// Median over some blocks, which may be among them several times.
+/// Median over some blocks, which may be repeated.
 double medianOver(const std::map<int, BlockErrors>& blocks, const std::vector<int>& drawn,
                   std::vector<double> BlockErrors::*of) {
   std::vector<double> errors;
@@ -89,9 +90,9 @@ double deviationOf(const std::vector<double>& values) {
 constexpr size_t kTypical = 6;
 constexpr size_t kWorst = 3;
 constexpr size_t kLeastForBand = 20;
-constexpr double kShare = 0.9;  // of the executions that the band holds
+constexpr double kShare = 0.9;  // of the executions inside the band
 
-/// An execution with how uncertain the position is along its path, up to a factor.
+/// An execution with the position uncertainty along its path, up to a factor.
 struct Shown {
   Overlay overlay;
   std::vector<double> spread;  ///< [m] at each point
@@ -142,7 +143,7 @@ std::vector<Shown> shownOf(const std::vector<Unseen>& unseen, const ModelDocumen
   return all;
 }
 
-/// With what factor spreads hold the share of all executions, at each point.
+/// Factor by which spreads contain the required share of all executions, at each point.
 std::vector<double> factorsOf(const std::vector<Shown>& all) {
   std::vector<double> factors;
   for (size_t point = 0; point < all.front().spread.size(); ++point) {
@@ -318,20 +319,20 @@ ShownExecutions shownExecutions(const std::vector<Unseen>& unseen, const ModelDo
 namespace {
 
 constexpr double kStep = 0.05;    // [s] of integration
-constexpr double kCertain = 0.5;  // |correlation| that a scale needs
+constexpr double kCertain = 0.5;  // |correlation| required for a scale
 
 /// Mean of the encoders' track speeds, by segment.
 RunningSums meanSpeeds(const Drive& drive) {
   return encoderSums(drive, [](const TrackCommand& c) { return 0.5 * (c.left + c.right); });
 }
 
-/// A pair of rates, the second one to be explained by the first.
+/// A pair of rates; the first explains the second.
 struct Rates {
   double leading;
   double following;
 };
 
-/// Factor of the leading rate with the least sum of absolute deviations from `following - offset`.
+/// Factor of the leading rate with the least absolute deviations from `following - offset`.
 double scaleOf(std::vector<Rates> rates, double offset) {
   double weight = 0.0;
   for (Rates& r : rates) {
@@ -352,7 +353,7 @@ double offsetOf(const std::vector<Rates>& rates, double scale) {
   return quantile(std::move(rest));
 }
 
-/// Motion to the side for each v omega, from poses alone [s].
+/// Lateral motion per v omega, from poses alone [s].
 double sidewaysOf(const std::vector<PoseIncrement>& increments) {
   std::vector<Rates> rates;
   for (const PoseIncrement& increment : increments) {
@@ -377,7 +378,7 @@ std::vector<Rates> pairs(const std::vector<PoseIncrement>& increments,
   return all;
 }
 
-/// One drive with all that its reckoning needs.
+/// A drive with all data for its dead reckoning.
 class Reckoner {
  public:
   Reckoner(const Drive& drive, const Reckoning& fit)

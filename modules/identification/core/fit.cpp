@@ -15,9 +15,9 @@ namespace {
 
 constexpr int kMostSteps = 25;
 constexpr int kMostRounds = 8;    // with new Jacobians
-constexpr double kEnough = 0.02;  // [nats] a step that gains less ends a fit
+constexpr double kEnough = 0.02;  // [nats] a smaller gain ends a fit
 constexpr double kRoughlyEnough = 0.5;
-constexpr double kMostDamping = 1e6;  // beyond it no step is left
+constexpr double kMostDamping = 1e6;  // above it no step remains
 constexpr double kStepOfTypical = 0.02;
 
 double& valueOf(ModelDocument& model, const std::string& path) {
@@ -37,16 +37,16 @@ FreeParameter nominalNumber(const std::string& path, double value) {
   return {path, 0.02, 5.0, 0.01, value};  // gains and full speed
 }
 
-/// Share of a correlation that counts. It was estimated from few blocks: the least of many
-/// combinations comes out smaller than it is.
+/// Share of a correlation that is used. It was estimated from few blocks: the smallest of many
+/// combinations is underestimated.
 constexpr double kCorrelationKept = 0.9;
-constexpr double kLeastShare = 0.02;  // of a variance, in any combination
+constexpr double kLeastShare = 0.02;  // of a variance, in any combination: lower limit
 
-/// What is known of the free parameters.
+/// The prior of the free parameters.
 struct Known {
   std::vector<Eigen::Index> at;  // which of them
   Eigen::VectorXd deviation;
-  Eigen::VectorXd values;  // of their correlation, and its vectors
+  Eigen::VectorXd values;  // of their correlation, with eigenvectors
   Eigen::MatrixXd vectors;
 };
 
@@ -56,7 +56,7 @@ Known knownOf(const FitState& state) {
     if (std::isfinite(state.free[i].deviation)) known.at.push_back(static_cast<Eigen::Index>(i));
   const auto count = static_cast<Eigen::Index>(known.at.size());
   const ParameterCovariance& covariance = state.model.covariance;
-  std::vector<size_t> rows;  // of the covariance; its size = not there
+  std::vector<size_t> rows;  // of the covariance; its size = absent
   known.deviation.resize(count);
   for (Eigen::Index k = 0; k < count; ++k) {
     const FreeParameter& parameter =
@@ -82,7 +82,7 @@ Known knownOf(const FitState& state) {
   return known;
 }
 
-/// A matrix over the known parameters, spread over all of them; 0 elsewhere.
+/// A matrix over the parameters with a prior, extended to all; 0 elsewhere.
 Eigen::MatrixXd spread(const Known& known, const Eigen::VectorXd& eigenvalues,
                        const Eigen::VectorXd& units, size_t free) {
   const Eigen::MatrixXd vectors = units.asDiagonal() * known.vectors;
@@ -110,7 +110,7 @@ Normal priorNormal(const FitState& state, const Eigen::VectorXd& residuals,
   return normal;
 }
 
-/// A damped step that holds parameters which stand on a bound and are pulled outwards.
+/// A damped step; fixes parameters that are at a bound and are pulled outwards.
 Eigen::VectorXd dampedStep(const FitState& state, Normal normal, double damping) {
   for (Eigen::Index i = 0; i < normal.pull.size(); ++i) {
     const FreeParameter& parameter = state.free[static_cast<size_t>(i)];
@@ -130,7 +130,7 @@ Eigen::VectorXd dampedStep(const FitState& state, Normal normal, double damping)
 
 constexpr double kFirstStep = 16.0;  // [s]
 constexpr double kLastStep = 0.25;   // [s]
-constexpr double kFarthest = 120.0;  // [s] that an interval is looked for to either side
+constexpr double kFarthest = 120.0;  // [s] search range of an interval to either side
 
 double lossAt(const Fitter& fitter, const FitState& state, const std::string& path, double time) {
   ModelDocument model = state.model;
@@ -147,7 +147,7 @@ FreeParameter freeParameter(const ModelDocument& model, const std::string& path)
   free.expected = valueOf(model, path);
   const EffectParameter* known = findEffectParameter(path);
   if (termOfPath(model, path) != nullptr) {
-    // An unnamed term has no range that is plausible: its values are what the data say.
+    // An unnamed term has no plausible range: its values are determined by the data.
     free = {path, -kAnyTermValue, kAnyTermValue, kTermStep, free.expected};
   } else if (known == nullptr) {
     free = nominalNumber(path, free.expected);
@@ -210,7 +210,7 @@ Normal normalOf(const FitState& state, const Eigen::VectorXd& residuals,
   for (Eigen::Index i = 0; i < residuals.size(); ++i)
     weights[i] = mask[static_cast<size_t>(i)] ? weightOf(residuals[i], state.scales[i]) : 0.0;
   const Eigen::MatrixXd weighted = weights.asDiagonal() * state.jacobian;
-  // It is symmetric: half of it is computed.
+  // Symmetric: only half of it is computed.
   Eigen::MatrixXd half = Eigen::MatrixXd::Zero(weighted.cols(), weighted.cols());
   half.triangularView<Eigen::Lower>() += state.jacobian.transpose() * weighted;
   return {half.selfadjointView<Eigen::Lower>(), weighted.transpose() * residuals};
@@ -281,7 +281,7 @@ Eigen::VectorXd Fitter::column(const FitState& state, size_t index) const {
     return rest_.col(static_cast<Eigen::Index>(*term));
   ModelDocument changed = state.model;
   double& value = valueOf(changed, parameter.path);
-  // Inwards where the next step would leave the bounds.
+  // Inwards if the step would leave the bounds.
   const double step = value + parameter.step > parameter.max ? -parameter.step : parameter.step;
   value += step;
   return secant(state, changed, step);
@@ -310,7 +310,7 @@ bool Fitter::stepOnce(FitState& state, double& damping, double& gained) const {
     tried.loss = lossOf(tried);
     gained = state.loss - tried.loss;
     if (std::isfinite(tried.loss) && gained > 0.0) {
-      // Broyden: the Jacobian along the step is now known for nothing.
+      // Broyden: the derivative along the step is known at no cost.
       const Eigen::VectorXd seen = tried.predicted - state.predicted;
       const Eigen::VectorXd metric = normal.matrix.diagonal().cwiseProduct(taken);
       const double size = metric.dot(taken);
@@ -338,7 +338,7 @@ void Fitter::fit(FitState& state) const {
   if (state.free.empty()) return;
   fitRoughly(state);
   for (int round = 0; round < kMostRounds; ++round) {
-    // With a Jacobian of these values: what is left is found, and covariances hold.
+    // With a Jacobian at these values the remaining effects are found, and covariances are valid.
     renewJacobian(state);
     double damping = 1e-3;
     double gained = 0.0;
@@ -372,7 +372,7 @@ void refineChangePoint(const Fitter& fitter, FitState& state, const std::string&
   for (double step = kFirstStep; step >= kLastStep;) {
     const double later = lossAt(fitter, state, path, time + step);
     const double earlier = time > step ? lossAt(fitter, state, path, time - step) : least;
-    // Not where a loss is no number, either; each step has less, of finitely many times.
+    // Also rejects a NaN loss; each step reduces the loss, over finitely many times.
     if (!(std::min(later, earlier) < least)) {
       step /= 2.0;
       continue;
@@ -387,10 +387,10 @@ void refineChangePoint(const Fitter& fitter, FitState& state, const std::string&
 namespace {
 
 constexpr double kForever = 1e9;  // [s], later than any drive
-constexpr double kSays = 3.0;     // [nats] with which one execution says whether a change was there
-constexpr double kSayTogether = 20.0;  // the same of several, whose noise is correlated
+constexpr double kSays = 3.0;  // [nats] by which one execution shows whether a change had happened
+constexpr double kSayTogether = 20.0;  // the same for several executions, whose noise is correlated
 
-/// Losses of all rows with a change at some time.
+/// Losses of all rows with a change at a given time.
 Eigen::VectorXd lossesWith(const Fitter& fitter, const FitState& state, const std::string& path,
                            double time) {
   ModelDocument model = state.model;
@@ -403,7 +403,7 @@ Eigen::VectorXd lossesWith(const Fitter& fitter, const FitState& state, const st
   return losses;
 }
 
-/// The execution of a drive in which a time lies; none between them.
+/// The execution of a drive that contains a time; none in between.
 const Execution* executionAt(const Drive& drive, double time) {
   const auto after = std::upper_bound(
       drive.executions.begin(), drive.executions.end(), time,
@@ -412,14 +412,14 @@ const Execution* executionAt(const Drive& drive, double time) {
   return &*std::prev(after);
 }
 
-/// What one execution says of a change: it was there (positive), or not [nats].
+/// Evidence of one execution about a change: it had happened (positive), or not [nats].
 struct Vote {
   double begin = 0.0;  ///< [s] of the execution
   double end = 0.0;
   double nats = 0.0;
 };
 
-/// Those of all executions, in order of time.
+/// Evidence of all executions, in order of time.
 std::vector<Vote> votesOn(const Fitter& fitter, const FitState& state, const std::string& path) {
   const Eigen::VectorXd gained =
       lossesWith(fitter, state, path, kForever) - lossesWith(fitter, state, path, 0.0);
@@ -436,8 +436,8 @@ std::vector<Vote> votesOn(const Fitter& fitter, const FitState& state, const std
   return in_order;
 }
 
-/// The end of the last execution before a time that says the change was not there yet, or up to
-/// which all together do; `otherwise` if none does.
+/// The end of the last execution before a time that shows that the change had not happened, or up
+/// to which all together do; `otherwise` if there is none.
 double lastWithout(const std::vector<Vote>& votes, double time, double otherwise) {
   double together = 0.0;
   for (auto vote = votes.rbegin(); vote != votes.rend(); ++vote) {
@@ -448,7 +448,7 @@ double lastWithout(const std::vector<Vote>& votes, double time, double otherwise
   return otherwise;
 }
 
-/// The begin of the first execution after a time that says it was there.
+/// The begin of the first execution after a time that shows that it had happened.
 double firstWith(const std::vector<Vote>& votes, double time, double otherwise) {
   double together = 0.0;
   for (const Vote& vote : votes) {

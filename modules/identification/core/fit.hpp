@@ -21,7 +21,7 @@ struct FreeParameter {
   double min = 0.0;  ///< hard bounds: what is physically plausible
   double max = 0.0;
   double step = 0.0;  ///< of differences, in the parameter's unit
-  /// What is known of it beforehand; infinite deviation = nothing.
+  /// Prior of it; infinite deviation = no prior.
   double expected = 0.0;
   double deviation = std::numeric_limits<double>::infinity();
 };
@@ -37,24 +37,25 @@ inline constexpr double kTermStep = 0.01;
 
 /// A parameter of the catalogue, of the nominal model or of an unnamed term, free within its
 /// plausible bounds.
-/** Throws std::out_of_range for a path that names nothing. */
+/** Throws std::out_of_range for an unknown path. */
 FreeParameter freeParameter(const ModelDocument& model, const std::string& path);
 
-/// The model, the data and how they compare.
+/// Model, prediction and noise of a fit.
 struct FitState {
   ModelDocument model;
   std::vector<FreeParameter> free;
   Eigen::VectorXd predicted;  ///< rows x 1, see Fitter::predict()
   Eigen::VectorXd scales;     ///< rows x 1, held during a fit
-  Eigen::MatrixXd jacobian;   ///< rows x free: change of the prediction; may be of earlier values
-  double loss = 0.0;          ///< of the rows that count, with what is known beforehand [nats]
+  Eigen::MatrixXd
+      jacobian;       ///< rows x free: derivative of the prediction; may belong to earlier values
+  double loss = 0.0;  ///< of the rows that count, including the prior [nats]
 };
 
 /// Fits models to rows by iterated, damped least squares within bounds.
 class Fitter {
  public:
-  /// To all rows; the rows must outlive it. `rest`: the conditions of the models' rest, see
-  /// restConditions() (rows x terms); without columns models have none.
+  /// Uses all rows; the rows must outlive it. `rest`: the conditions of the models' rest, see
+  /// restConditions() (rows x terms); without columns models have no rest.
   explicit Fitter(const Observations& data, ParallelFor parallel = serialFor,
                   Eigen::MatrixXd rest = {})
       : data_(data),
@@ -69,24 +70,25 @@ class Fitter {
   /// The same with all rows.
   Fitter onAllRows() const { return Fitter(data_, parallel_, rest_); }
 
-  /// What the rows would be if the vehicle and the INS were the model's, with its rest (rows x 1);
-  /// segments of which no row counts are not simulated.
+  /// The rows predicted by the model's vehicle and INS, with its rest (rows x 1); segments without
+  /// rows that count are not simulated.
   Eigen::VectorXd predict(const ModelDocument& model) const;
-  /// A state of a model with its prediction and own noise; nothing is fitted.
+  /// A state of a model with its prediction and its own noise, without a fit.
   FitState start(const ModelDocument& model, std::vector<FreeParameter> free) const;
-  /// Noise and scales of the state's residuals (and its loss with them).
+  /// Re-estimates noise and scales from the state's residuals (and its loss with them).
   void renewNoise(FitState& state) const;
-  /// Takes a parameter into the state, with a value to begin at.
+  /// Frees a parameter in the state, with a start value.
   void add(FitState& state, const FreeParameter& parameter, double value) const;
-  /// Holds one of them at its value.
+  /// Fixes one of them at its value.
   void release(FitState& state, size_t index) const;
-  /// Minimises the loss; columns that are missing in the Jacobian are made first.
+  /// Minimises the loss; first computes missing columns of the Jacobian.
   void fit(FitState& state) const;
-  /// The same to within half a nat, with a Jacobian updated from the steps (Broyden): to compare.
+  /// The same to within half a nat, with a Jacobian updated from the steps (Broyden): for
+  /// comparisons.
   void fitRoughly(FitState& state) const;
   /// The Jacobian at the state's values.
   void renewJacobian(FitState& state) const;
-  /// Change of the prediction per change of a parameter to `value` (rows x 1); 0 where it is equal.
+  /// Change of the prediction when a parameter is set to `value` (rows x 1); 0 if it is equal.
   Eigen::VectorXd secant(const FitState& state, const ModelDocument& changed, double change) const;
 
   const Observations& data() const { return data_; }
@@ -94,7 +96,7 @@ class Fitter {
   /// Which blocks have rows that count.
   std::vector<char> blocksThatCount() const { return data_.blocksOf(mask_); }
   const ParallelFor& parallel() const { return parallel_; }
-  /// Conditions of the rest that its models have (rows x terms).
+  /// Conditions of the rest of its models (rows x terms).
   const Eigen::MatrixXd& rest() const { return rest_; }
 
  private:
@@ -115,58 +117,60 @@ struct Normal {
   Eigen::VectorXd pull;
 };
 
-/// Those of rows whose mask is not 0, without what is known beforehand.
+/// For rows whose mask is not 0, without the prior.
 Normal normalOf(const FitState& state, const Eigen::VectorXd& residuals,
                 const std::vector<char>& mask);
 
-/// Prior precision of the free parameters (free x free); zero where nothing is known.
-/** Deviations are the parameters' own, correlations those of the model's covariance: a delay and a
- * lag may each be vague where their sum is known. */
+/// Prior precision of the free parameters (free x free); zero rows for parameters without a prior.
+/** Deviations are the parameters' own, correlations those of the model's covariance: delay and lag
+ * may each be vague while their sum is known. */
 Eigen::MatrixXd priorPrecision(const FitState& state);
 
-/// The covariance that it is the inverse of; zero where nothing is known (free x free).
+/// Inverse of the prior precision; zero rows for parameters without a prior (free x free).
 Eigen::MatrixXd priorCovariance(const FitState& state);
 
-/// Standard deviation of a number by the model's covariance; infinite if it says nothing.
+/// Standard deviation of a number by the model's covariance; infinite if it has none.
 double knownDeviation(const ModelDocument& model, const std::string& path);
 
-/// How far the free parameters are from what was known of them (free x 1).
+/// Difference of the free parameters from their prior means (free x 1).
 Eigen::VectorXd offExpected(const FitState& state);
 
-/// Whether a parameter is a term that the model already had, and not one that was found.
+/// Whether a parameter belongs to a term that the model already had, not to a found one.
 inline bool isGiven(const FreeParameter& parameter) {
   return parameter.expected != 0.0;
 }
 
-/// Whether a parameter stands on one of its bounds.
+/// Whether a parameter is at one of its bounds.
 bool onBound(const ModelDocument& model, const FreeParameter& parameter);
 
-/// Whether a parameter is a time by its name: a change point, a time constant, the time of a drift.
-/** Its size over its error says nothing, and it has no range to run to the end of. */
+/// Whether a parameter's name makes it a time: a change point, a time constant, the time of a
+/// drift.
+/** The ratio of a time to its error is meaningless, and a time cannot run to the end of its range.
+ */
 inline bool isTime(const FreeParameter& parameter) {
   return parameter.path.find(".time") != std::string::npos;
 }
 
-/// Whether a size ran to the end of its plausible range, which makes it none.
-/** An effect that is off has no size, a change point no range; the lag or delay of a model may be
- * taken away altogether. */
+/// Whether a size ran to the end of its plausible range, which makes it invalid.
+/** An effect that is off has no size, a change point no range; the lag or delay of a model may
+ * vanish completely. */
 bool runsToBound(const ModelDocument& model, const FreeParameter& parameter);
 
 /// Whether a strength of a change point is not 0.
 bool hasChanged(const Effect& effect, const ChangePoint& change, const ModelDocument& model);
 
-/// Paths of the change points at which effects of a model that are on begin to act.
+/// Paths of the change points of a model's effects that are on.
 std::vector<std::string> changePointsOn(const ModelDocument& model);
 
-/// Moves a change point to where the loss is least, all else as it is.
-/** The loss over its time is not smooth (each time concerns other data), so it is searched, not
- * followed downhill: halving steps down to a quarter of a second. */
+/// Moves a change point to the minimum of the loss, with everything else fixed.
+/** The loss is not smooth over its time (each time affects other data), so it is searched directly:
+ * halving steps down to a quarter of a second. */
 void refineChangePoint(const Fitter& fitter, FitState& state, const std::string& path);
 
-/// Times between which the loss stays within `allowed` nats of the state's [s], and at least from
-/// the last execution that speaks against the change to the first that speaks for it.
-/** All else is held, so that the loss alone would be too sure; between these executions nothing in
- * the drive says when it was. */
+/// Times between which the loss stays within `allowed` nats of the state's [s], at least from the
+/// last execution that contradicts the change to the first that supports it.
+/** Everything else is fixed, so that the loss alone would be too certain; between these executions
+ * the drive has no information about the time. */
 std::pair<double, double> changePointInterval(const Fitter& fitter, const FitState& state,
                                               const std::string& path, double allowed);
 

@@ -8,12 +8,12 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kTellsNothing = 2.0;   // limits; a reading that is less sure is no stake
-constexpr double kSpreadMemory = 0.02;  // [1] of each new reading in the spread
-constexpr double kOneSide = 0.5;        // [1] the other drive changed by less than that of this one
+constexpr double kTellsNothing = 2.0;   // limits; a less certain reading is not staked on
+constexpr double kSpreadMemory = 0.02;  // [1] weight of each new reading in the spread
+constexpr double kOneSide = 0.5;        // [1] the other drive changed by less than this share
 constexpr size_t kMostRecent = 2000;    // readings, some three hours
 
-/// A reading's change of a part and how sure it is.
+/// A reading's change of a part and its certainty.
 struct Said {
   double change;
   double uncertainty;
@@ -44,7 +44,7 @@ Said saidOf(const WatchReading& reading, ChangedPart part) {
 }  // namespace
 
 GapWatch::GapWatch(const WatchLimits& limits) : limits_(limits) {
-  // Each game may say one false word in so many readings.
+  // Each game may give one false alarm in this many readings.
   const double games = 2.0 * kChangedParts * kStakes.size();
   enough_ = games * limits.hours * 3600.0 / limits.stretch;
   for (size_t p = 0; p < kChangedParts; ++p)
@@ -55,7 +55,7 @@ double GapWatch::limitOf(ChangedPart part) const {
   return part == ChangedPart::kDelay ? limits_.delay : limits_.gain;
 }
 
-/// Since when it changed, if that is sure now.
+/// Time of the change, if it is now certain.
 std::optional<double> GapWatch::play(Part& part, ChangedPart which, double change, double begin) {
   const double beyond = change - part.said;
   const double unit = std::max(limitOf(which), 2.0 * part.spread);
@@ -73,7 +73,7 @@ std::optional<double> GapWatch::play(Part& part, ChangedPart which, double chang
   return since;
 }
 
-/// Its size since then, by all readings; its uncertainty comes from their scatter.
+/// Its size since then, from all readings; its uncertainty comes from their scatter.
 NoticedGap GapWatch::noticed(ChangedPart part, double since, double now) const {
   NoticedGap gap{part, since, now, 0.0, 0.0, false};
   double weights = 0.0;
@@ -98,7 +98,7 @@ NoticedGap GapWatch::noticed(ChangedPart part, double since, double now) const {
   return gap;
 }
 
-/// From now on that is what holds.
+/// This is the reported state from now on.
 void GapWatch::say(const NoticedGap& gap) {
   const double change = gap.as_model ? 0.0 : gap.change;
   const auto set = [this](ChangedPart part, double said) {
@@ -112,11 +112,11 @@ void GapWatch::say(const NoticedGap& gap) {
     set(ChangedPart::kBothDrives,
         0.5 * (saidBefore(ChangedPart::kLeftDrive) + saidBefore(ChangedPart::kRightDrive)));
   }
-  // One change moves several readings a little: all begin anew.
+  // One change affects several readings slightly: all games restart.
   for (Part& part : parts_) part.games = {};
 }
 
-/// What is furthest from what was said, of all that is sure by now.
+/// The largest deviation from the reported state, of those that are certain.
 std::optional<NoticedGap> GapWatch::furthest(const WatchReading& reading) {
   std::optional<NoticedGap> most;
   double largest = 0.0;
@@ -135,7 +135,7 @@ std::optional<NoticedGap> GapWatch::furthest(const WatchReading& reading) {
   return most;
 }
 
-/// Where the other drive has changed in the same way, it is both.
+/// If the other drive has changed in the same way, both have.
 NoticedGap GapWatch::withOther(const NoticedGap& gap) const {
   if (gap.part != ChangedPart::kLeftDrive && gap.part != ChangedPart::kRightDrive) return gap;
   const ChangedPart other =

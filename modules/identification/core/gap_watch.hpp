@@ -10,46 +10,46 @@
 
 namespace tread::gap {
 
-/// What is said to have changed.
+/// The part that has changed.
 enum class ChangedPart { kLeftDrive, kRightDrive, kBothDrives, kTurning, kDelay };
 inline constexpr size_t kChangedParts = 5;
 
-/// When a change counts.
+/// When a change is reported.
 struct WatchLimits {
-  double gain = 0.03;    ///< [1] less is no change
-  double delay = 0.05;   ///< [s] less is no change
-  double hours = 100.0;  ///< [h] of driving between two false alarms, at least, on average
-  double stretch = 5.0;  ///< [s] of driving in a reading
+  double gain = 0.03;    ///< [1] smaller changes are ignored
+  double delay = 0.05;   ///< [s] smaller changes are ignored
+  double hours = 100.0;  ///< [h] mean driving time between false alarms, at least
+  double stretch = 5.0;  ///< [s] of driving per reading
 };
 
-/// Something is new beyond chance.
+/// A significant change.
 struct NoticedGap {
   ChangedPart part = ChangedPart::kBothDrives;
   double since = 0.0;        ///< [s]
   double noticed = 0.0;      ///< [s]
-  double change = 0.0;       ///< against the model: gain less 1, or delay [s]
+  double change = 0.0;       ///< relative to the model: gain minus 1, or delay [s]
   double uncertainty = 0.0;  ///< its standard deviation
-  bool as_model = false;     ///< it was said to have changed, and is as the model says again
+  bool as_model = false;     ///< a reported change is gone: the part agrees with the model again
 };
 
-/// Watches readings for a change that lasts.
+/// Monitors readings for a lasting change.
 /** For each part and direction a test martingale against "the change is at most the limit". A share
- * l of the wealth W is staked on each reading, which wins or loses by how far it is beyond the
- * limit: W <- max(1, W) (1 + l clamp((s (g - g_0) - limit) / m, -1, 1)) with s = +-1, g_0 what was
- * said last (0: the model), m the spread of the readings so far. While the clamped excess is not
+ * l of the wealth W is staked on each reading, which wins or loses by its excess over the limit: W
+ * <- max(1, W) (1 + l clamp((s (g - g_0) - limit) / m, -1, 1)) with s = +-1, g_0 the last reported
+ * value (0: the model), m the spread of the readings so far. While the clamped excess is not
  * positive on average, W does not grow on average either, and exceeds c no sooner than after c
- * readings on average (Ville's inequality; Shin, Ramdas and Rinaldo 2024: e-detectors). c is chosen
- * for `hours`; `since` is when W began to grow. Readings that follow each other may share some of
- * their ground: that is what the limit is for. */
+ * readings on average (Ville's inequality; Shin, Ramdas and Rinaldo 2024: e-detectors). c is
+ * chosen for `hours`; `since` is when W began to grow. Consecutive readings may share part of
+ * their ground; the limit allows for that. */
 class GapWatch {
  public:
   explicit GapWatch(const WatchLimits& limits = {});
 
-  /// In order of time; each may be the last that a change needs.
+  /// In order of time; returns a change as soon as a reading completes the evidence for it.
   std::optional<NoticedGap> take(const WatchReading& reading);
-  /// The robot's clock begins anew: what was said still holds, what was read does not count.
+  /// The robot's clock restarted: reported changes remain, readings are discarded.
   void restart();
-  /// Whether nothing that was said holds any more.
+  /// Whether no reported change remains.
   bool asModel() const;
 
  private:

@@ -18,20 +18,20 @@ struct LagNames {
   std::vector<std::string> all() const { return {drive, yaw, body}; }
 };
 
-constexpr double kLeastLag = 0.03;   // [s] with which a fit of one begins
+constexpr double kLeastLag = 0.03;   // [s] start value of a fit
 constexpr double kLeastNats = 10.0;  // by which another structure must be better
-constexpr double kLongLag = 0.1;     // [s] of a model that may be two
+constexpr double kLongLag = 0.1;     // [s] of a model's lag that may consist of two
 
 std::string pathOf(const std::string& lag) {
   return primaryPath(effectNamed(lag));
 }
 
-using Lags = std::vector<std::pair<std::string, double>>;  // effect, [s] with which a fit begins
+using Lags = std::vector<std::pair<std::string, double>>;  // effect, [s] start value of the fit
 
-/// A lag of the drive, with one of the yaw rate or of the speed behind it, or these two alone.
-/** `v` and `omega`: how late both are altogether [s]. */
+/// A lag of the drive, combined with one of the yaw rate or of the speed, or only the latter two.
+/** `v` and `omega`: total delays of both [s]. */
 std::vector<Lags> structuresFor(const LagNames& names, double v, double omega) {
-  // Where both are equal one of two begins with half of it, so that the fit sees two of them.
+  // If both are equal, one of two starts with half of it, so that the fit distinguishes them.
   const bool alike = std::abs(v - omega) < kLeastLag;
   const double common = std::max(kLeastLag, (alike ? 0.5 : 1.0) * std::min(v, omega));
   const double rest = std::max(kLeastLag, alike ? 0.5 * v : std::abs(v - omega));
@@ -42,14 +42,14 @@ std::vector<Lags> structuresFor(const LagNames& names, double v, double omega) {
            {names.body, std::max(kLeastLag, (alike ? 0.5 : 1.0) * v)}}};
 }
 
-/// A structure that was fitted, and what it gains over that of the result on blocks left out.
+/// A fitted structure, and its gain over the result's structure on held-out blocks.
 struct Trial {
   std::vector<std::string> effects;
   FitState state;
   Gain gain;
 };
 
-/// Whether the lag of the drive is a number of the nominal model that is free.
+/// Whether the lag of the drive is a free number of the nominal model.
 bool isNominalLagFree(const FitState& state) {
   return std::any_of(state.free.begin(), state.free.end(), [](const FreeParameter& parameter) {
     return parameter.path == "lag" && std::isinf(parameter.deviation);
@@ -78,7 +78,7 @@ std::optional<Trial> tryOut(const SearchState& search, const Lags& lags,
     lag.expected = 0.0;
     fitter.add(trial.state, lag, value);
   }
-  // Far from where they begin: once more with a Jacobian of there.
+  // Far from the start values: repeat with a Jacobian computed there.
   for (int round = 0; round < 2; ++round) {
     fitter.fitRoughly(trial.state);
     fitter.renewJacobian(trial.state);
@@ -99,11 +99,11 @@ bool chooseLags(const SearchState& search) {
   std::vector<std::string> now;
   for (const std::string& lag : lag_names.all()) {
     const bool found = contains(result.effects, lag);
-    // What the model or a person says stays.
+    // Lags of the model and accepted lags are kept.
     if ((isOn(effectNamed(lag), result.state.model) && !found) || search.isAccepted(lag) ||
         contains(search.settings.rejected, lag))
       return false;
-    // Beside a free lag of the model that of the drive is the same number once more.
+    // With a free lag of the model, the drive's lag effect would duplicate it.
     if (nominal && lag == lag_names.drive && found) return false;
     if (found) now.push_back(lag);
   }
@@ -124,7 +124,7 @@ bool chooseLags(const SearchState& search) {
     if (names == now || search.isCutShort()) continue;
     std::optional<Trial> trial = tryOut(search, lags, loss_now);
     if (!trial) continue;
-    // One lag in the place of two need only be as good.
+    // One lag that replaces two need only be as good.
     const double needed = names.size() < now.size() ? -std::min(kLeastNats, trial->gain.error)
                                                     : std::max(kLeastNats, trial->gain.error);
     if (trial->gain.value < needed || (best && trial->gain.value - needed <= most)) continue;
@@ -144,7 +144,7 @@ bool chooseLags(const SearchState& search) {
     result.effects.erase(std::find(result.effects.begin(), result.effects.end(), lag));
   for (const std::string& lag : best->effects) {
     result.effects.push_back(lag);
-    // Chosen, not tested yet: pruning does that, and says so.
+    // Chosen but not tested yet: pruning tests it, and reports it.
     if (!result.evidence[lag].p_value) result.evidence[lag].p_value = 1.0;
     if (contains(now, lag)) continue;
     const std::string remark = "the lags together: " + taken;

@@ -8,9 +8,9 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kLeastScale = 1e-6;  // [rad/s or m/s], of residuals that are all 0
+constexpr double kLeastScale = 1e-6;  // [rad/s or m/s], for residuals that are all 0
 
-/// Residuals of one channel with what goes on in their rows.
+/// Residuals of one channel with the motion in their rows.
 struct ChannelResiduals {
   std::vector<double> residual;
   std::vector<double> activity;
@@ -31,7 +31,7 @@ double medianSize(std::vector<double> values) {
   return std::max(kLeastScale, quantile(std::move(values)));
 }
 
-/// Least negative log likelihood by steps along either logarithm, halved when none helps.
+/// Least negative log likelihood by steps along either logarithm, halved if none helps.
 ChannelNoise estimated(const ChannelResiduals& of) {
   const double size = medianSize(of.residual) / 0.74;  // median of |t| with 4 degrees of freedom
   const double busy = medianSize(of.activity);
@@ -43,7 +43,7 @@ ChannelNoise estimated(const ChannelResiduals& of) {
       const ChannelNoise tried{std::max(kLeastScale, best.still * std::exp(still * step)),
                                best.share * std::exp(share * step)};
       const double loss = negativeLogLikelihood(of, tried);
-      if (!(loss < least - 1e-9)) continue;  // nor where it is no number
+      if (!(loss < least - 1e-9)) continue;  // also rejects NaN
       least = loss;
       best = tried;
       better = true;
@@ -71,7 +71,7 @@ double chanceBeyond(double normal_quantile) {
 
 double normalQuantileOf(double chance) {
   double low = 0.0;
-  double high = 38.0;  // beyond it no chance is left in a double
+  double high = 38.0;  // above it the probability underflows
   for (int i = 0; i < 100; ++i) {
     const double middle = 0.5 * (low + high);
     (chanceBeyond(middle) > chance ? low : high) = middle;
@@ -96,7 +96,7 @@ Eigen::VectorXd activityOf(const std::vector<Observation>& data, const Eigen::Ve
   Eigen::VectorXd activity(predicted.size());
   for (size_t i = 0; i < data.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    // Rows along and across follow one another, see Observations.
+    // Rows along and across are consecutive, see Observations.
     if (data[i].channel == ObservedRate::kAlong)
       activity[at] = std::hypot(predicted[at], predicted[at + 1]);
     else if (data[i].channel == ObservedRate::kAcross)

@@ -19,8 +19,8 @@ std::vector<Both> speedsIn(const std::vector<MotionSample>& motion, double begin
   return speeds;
 }
 
-/// The bins of one segment but the first and the last; `motions`: with all, then without each
-/// effect.
+/// The bins of one segment except the first and the last; `motions`: with all effects, then without
+/// each.
 void addBins(const std::vector<const std::vector<MotionSample>*>& motions,
              const VehicleModel& vehicle, const Segment& segment, MotionBin bin,
              const Observations& data, std::vector<MotionBin>& bins) {

@@ -10,29 +10,29 @@
 
 namespace tread::gap {
 
-inline constexpr double kBin = 0.2;  ///< [s] over which motion and what motors say are averaged
+inline constexpr double kBin = 0.2;  ///< [s] over which motion and motor signals are averaged
 
 /// A quantity of the left and the right track, or of both together: mean, and half the difference
 /// right - left.
 using Both = std::array<double, 2>;
 
-/// A short time of a drive, as the whole model moves in it.
+/// A short time of a drive, as moved by the whole model.
 struct MotionBin {
   size_t drive = 0;
   size_t segment = 0;
   int block = 0;
   double begin = 0.0;
   Both speed{};            ///< [m/s] over ground, of both tracks together
-  Both before{}, after{};  ///< [m/s] of the neighbouring bins less that
-  Both tracks{};           ///< [m/s] of left and right track, as the drive turns them
-  std::vector<Both> lost;  ///< [m/s] by each effect
+  Both before{}, after{};  ///< [m/s] of the neighbouring bins minus that
+  Both tracks{};           ///< [m/s] of left and right track, at the drive
+  std::vector<Both> lost;  ///< [m/s] taken by each effect
 };
 
-/// All bins of the drives with what each of these effects takes.
+/// All bins of the drives with the speed that each of these effects takes.
 std::vector<MotionBin> binsOf(const Fitter& fitter, const FitState& state,
                               const std::vector<std::string>& effects);
 
-/// Effects of the vehicle of which motors may say something.
+/// Vehicle effects about which motor signals may be informative.
 std::vector<std::string> askedOf(const std::vector<std::string>& effects);
 
 }  // namespace tread::gap

@@ -11,13 +11,14 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kMoved = 0.01;  // chance that any given term is said to have changed wrongly
-constexpr double kLeastTogether = 1e-3;  // of a variance, in any combination of terms
-constexpr double kBearable = 10.0;       // [nats] that fewer changes may cost
+constexpr double kMoved = 0.01;  // probability that any given term is wrongly reported as changed
+constexpr double kLeastTogether = 1e-3;  // of a variance, in any combination of terms: lower limit
+constexpr double kBearable = 10.0;       // [nats] allowed cost of fewer changes
 
-/// Terms that move further than chance together though each alone may: a delay and a lag may both
-/// be vague where their sum is well known. Of each such combination the term that makes most of it.
-/** Where a rest is known, which makes each vaguer. */
+/// Terms that moved together by more than chance, though each alone may not: a delay and a lag may
+/// each be vague while their sum is well known. Of each such combination the term with the largest
+/// part.
+/** Needed where a known rest makes each term vaguer. */
 std::vector<char> movedTogether(const FitState& state, const Eigen::MatrixXd& moves, double most) {
   std::vector<char> moved(state.free.size(), 0);
   std::vector<Eigen::Index> held;
@@ -44,7 +45,7 @@ std::vector<char> movedTogether(const FitState& state, const Eigen::MatrixXd& mo
   return moved;
 }
 
-/// Indices of given terms that moved and are held.
+/// Indices of given terms that moved and are held by a prior.
 std::vector<size_t> movedTerms(const SearchState& search, const ModelDocument& before) {
   const FitState& state = search.result.state;
   const Moves moves = movesOf(search.fitter, before, search.result);
@@ -63,7 +64,7 @@ std::vector<size_t> movedTerms(const SearchState& search, const ModelDocument& b
   return moved;
 }
 
-/// Terms that the search has released already.
+/// Terms that the search has already released.
 std::vector<MovedTerm> releasedTerms(const SearchState& search) {
   const FitState& state = search.result.state;
   std::vector<MovedTerm> terms;
@@ -76,7 +77,7 @@ std::vector<MovedTerm> releasedTerms(const SearchState& search) {
   return terms;
 }
 
-/// The state with one term held again by what the model says of it, all fitted.
+/// The state with the prior of one term restored, and everything fitted.
 FitState held(const Fitter& fitter, FitState state, const MovedTerm& term) {
   for (FreeParameter& parameter : state.free)
     if (parameter.path == term.path) parameter.deviation = term.deviation;
@@ -133,7 +134,7 @@ void reestimateMoved(const SearchState& search, const ModelDocument& before) {
     terms.erase(terms.begin() + static_cast<std::ptrdiff_t>(i));
   }
   search.result.state = std::move(freed);
-  while (replaceMoved(search, terms)) continue;  // each takes a term away
+  while (replaceMoved(search, terms)) continue;  // each replacement removes a term
 }
 
 }  // namespace tread::gap

@@ -11,11 +11,12 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kTransient = 0.8;  // [s] after a change of command; then all changes slowly
-constexpr double kSlowly = 2.0;     // factor on the length of pieces then
-constexpr double kShortest = 1e-3;  // [s] cuts closer than that are one
+constexpr double kTransient =
+    0.8;                         // [s] after a change of command; later everything changes slowly
+constexpr double kSlowly = 2.0;  // factor on the length of pieces after that
+constexpr double kShortest = 1e-3;  // [s] closer cuts are merged
 
-/// Roll and pitch at a time; where the INS does not say, the last ones known, level at first.
+/// Roll and pitch at a time; without INS data the last known ones, initially level.
 void levelAt(const std::vector<InsSample>& ins, double time, size_t& next, DriveContext& context) {
   for (; next < ins.size() && ins[next].time <= time; ++next) {
     if (std::isfinite(ins[next].roll)) context.roll = ins[next].roll;
@@ -23,18 +24,18 @@ void levelAt(const std::vector<InsSample>& ins, double time, size_t& next, Drive
   }
 }
 
-/// Relative fall of the battery's voltage since the first sample.
+/// Relative drop of the battery's voltage since the first sample.
 double dropAt(const std::vector<VoltageSample>& voltage, double time, size_t& at) {
   if (voltage.empty() || voltage.front().voltage <= 0.0) return 0.0;
   while (at + 1 < voltage.size() && voltage[at + 1].time <= time) ++at;
   return 1.0 - voltage[at].voltage / voltage.front().voltage;
 }
 
-/// Fixes around one, averaged where there are many; the pose at their mean time.
+/// Fixes around one, averaged if there are many; the pose at their mean time.
 struct Endpoint {
   double time = 0.0;
   Pose2 T_map_body{};
-  size_t next = 0;  ///< first fix after those that were used
+  size_t next = 0;  ///< first fix after the used ones
 };
 
 std::vector<InsSample> fixesOf(const Segment& segment) {
@@ -67,8 +68,8 @@ size_t fixAfter(const std::vector<InsSample>& fixes, size_t from, double time) {
   return from;
 }
 
-/// Yaw of poseAt(), at a tenth of its cost: along an arc it is linear in time. Looks from piece
-/// `i` on, and leaves there where it was found.
+/// Yaw of poseAt(), at a tenth of its cost: linear in time along an arc. Searches from piece `i`
+/// on, and leaves `i` at the result.
 double yawAt(const std::vector<MotionSample>& motion, double time, size_t& i) {
   if (motion.size() < 2) return motion.front().T_map_body.yaw;
   if (i + 1 >= motion.size()) i = 0;
@@ -150,7 +151,7 @@ EntryState SegmentPlan::entryFor(const VehicleModel& vehicle) const {
 
 std::vector<MotionSample> SegmentPlan::simulate(const VehicleModel& vehicle) const {
   VehicleModel model = vehicle;
-  model.step = longest_;  // lags and ramps are exact within one
+  model.step = longest_;  // lags and ramps are exact within a step
   if (model.isOmni())
     return motionOf(OmniKernel(model, command_before_, {}, pieces_.front().context, entry_speeds_));
   return motionOf(VehicleKernel(model, entryFor(model)));
@@ -189,7 +190,7 @@ std::vector<TermSample> SegmentPlan::termInputs(const VehicleModel& vehicle) con
 
 namespace {
 
-/// Mean over a time of samples that follow each other.
+/// Mean of consecutive samples over a time.
 TermInputs meanInputs(const std::vector<TermSample>& samples, double from, double to) {
   TermInputs mean;
   double all = 0.0;
@@ -225,7 +226,7 @@ Observations::Observations(const std::vector<Drive>& drives, const ObservationSe
     all += drive.segments.size();
   }
   for (size_t i = 0; i < drives.size(); ++i) addDrive(i, settings.block);
-  // Poses are simulated where rows begin and end: only latencies have them interpolated.
+  // Poses are simulated at the ends of rows: only latencies require interpolation.
   std::vector<std::vector<double>> cuts(all);
   for (const Observation& row : all_)
     for (double time : {row.begin, row.end})
@@ -287,7 +288,7 @@ int Observations::measuredBlocks() const {
 int Observations::blockAt(size_t drive, size_t segment, double time) const {
   const auto& [before, duration] = driven_[segmentIndex(drive, segment)];
   const double length = drive_lengths_[drive];
-  // A short run is never split: its rows share what chance did to it.
+  // A short segment is not split, because its rows share their disturbance.
   const double at =
       duration < length ? duration / 2.0 : time - drives_[drive].segments[segment].begin();
   const auto& [first, count] = drive_blocks_[drive];
@@ -309,7 +310,7 @@ void Observations::addGyro(const Segment& segment, const Observation& like) {
     const double last = gyro[at + count - 1]->time;
     at += count;
     if (count < 3 || last - from < 0.5 * settings_.gyro_bin) continue;
-    // Samples stand for the time around them.
+    // Each sample represents the time around it.
     const double half = (last - from) / (2.0 * static_cast<double>(count - 1));
     Observation row = like;
     row.channel = ObservedRate::kYawRate;
@@ -390,7 +391,7 @@ Eigen::VectorXd Observations::predict(const Motions& motions, const MeasurementM
       const double before = yawAt(motion, row.begin - gyro_latency, piece);
       value = (yawAt(motion, row.end - gyro_latency, piece) - before) / duration + ins.gyro_bias;
     } else {
-      // The three rows of an interval follow one another, and intervals share their ends.
+      // The three rows of an interval are consecutive, and intervals share their ends.
       if (row.channel == ObservedRate::kHeading) {
         const Pose2 start =
             of == &motion && from_time == row.begin ? from : saidPose(motion, ins, row.begin);

@@ -14,7 +14,7 @@
 
 namespace tread::gap {
 
-/// What unnamed terms depend on for a while.
+/// Inputs of unnamed terms over one piece.
 struct TermSample {
   double begin = 0.0;  ///< [s]
   double end = 0.0;    ///< [s]
@@ -22,34 +22,34 @@ struct TermSample {
 };
 
 /// The commands of a segment cut into short pieces, each with the drive context at its time.
-/** Made once a drive; simulating again with other parameters is then one pass over it. */
+/** Made once per drive; each simulation with other parameters is one pass over it. */
 class SegmentPlan {
  public:
-  /// Pieces of at most `piece` seconds, of twice that where a command has held for a while; cut
-  /// also at these times [s], in order, at which poses will be asked for: within a piece they are
-  /// interpolated. The segment may go away afterwards.
+  /// Pieces of at most `piece` seconds, or twice that where a command has held for a while; also
+  /// cut at these times [s], in order, at which poses are needed: within a piece they are
+  /// interpolated. The segment need not outlive it.
   SegmentPlan(const Drive& drive, const Segment& segment, double piece,
               const std::vector<double>& cuts = {});
 
-  /// True poses of a model through the segment, relative to its beginning; one entry a piece.
-  /// Yaw rates are left at 0: rows take theirs from the yaws.
+  /// True poses of a model through the segment, relative to its beginning; one entry per piece. Yaw
+  /// rates are 0: rows derive theirs from the yaws.
   std::vector<MotionSample> simulate(const VehicleModel& vehicle) const;
-  /// What unnamed terms depend on in each piece, of a model that has some.
+  /// Inputs of unnamed terms in each piece, for a model with such terms.
   std::vector<TermSample> termInputs(const VehicleModel& vehicle) const;
 
  private:
   struct Piece {
     double duration;                 ///< [s]
-    std::optional<Command> command;  ///< given at its beginning; none = the last one holds
+    std::optional<Command> command;  ///< given at its beginning; nullopt = the last one holds
     DriveContext context;
   };
 
-  /// Where pieces end between two times, the last one included.
+  /// Ends of the pieces between two times, including the last one.
   static std::vector<double> endsBetween(double from, double to, double longest,
                                          const std::vector<double>& cuts);
 
   EntryState entryFor(const VehicleModel& vehicle) const;
-  /// Poses of a kernel that stands at the beginning of the segment.
+  /// Poses of a kernel that is initialised at the beginning of the segment.
   template <class Kernel>
   std::vector<MotionSample> motionOf(Kernel kernel) const;
 
@@ -60,10 +60,10 @@ class SegmentPlan {
   Command command_before_;
 };
 
-/// True motions of all segments of some drives, drive after drive.
+/// True motions of all segments of several drives, drive after drive.
 using Motions = std::vector<std::vector<MotionSample>>;
 
-/// What an observation is: mean rates over an interval, in the body frame of its beginning.
+/// Kind of an observation: mean rates over an interval, in the body frame of its beginning.
 enum class ObservedRate { kYawRate, kHeading, kAlong, kAcross };
 inline constexpr size_t kChannels = 4;
 
@@ -80,23 +80,23 @@ struct Observation {
   double begin = 0.0;     ///< [s] since the drive's first message
   double end = 0.0;       ///< [s]
   double measured = 0.0;  ///< [rad/s] or [m/s], mean over the interval
-  int block = 0;          ///< index of the block of driving in which it lies
+  int block = 0;          ///< index of the block of driving that contains it
 };
 
 /// How drives are cut.
 struct ObservationSettings {
-  double gyro_bin = 0.25;      ///< [s] over which the gyro is averaged
-  double pose_interval = 0.4;  ///< [s] at least, between fixes
-  double longest = 1.2;        ///< [s] at most, between fixes
-  double smoothing = 0.05;     ///< [s] to either side over which frequent fixes are averaged
+  double gyro_bin = 0.25;      ///< [s] averaging time of the gyro
+  double pose_interval = 0.4;  ///< [s] least time between fixes
+  double longest = 1.2;        ///< [s] largest time between fixes
+  double smoothing = 0.05;     ///< [s] to either side, for averaging frequent fixes
   double block = 20.0;         ///< [s] of driving, at least
   double piece = 0.05;         ///< [s] of simulation
 };
 
-/// Rows of drives, and what a model predicts for them.
-/** Increments instead of poses: the integral form, which needs no differentiation and lets the
- * simulation run open loop over any time. The measurement part of a model acts on the
- * simulated motion, so that data compare what the INS says with what it would say. */
+/// Rows of drives, and a model's predictions for them.
+/** Increments instead of poses: the integral form needs no differentiation and lets the simulation
+ * run open loop over any time. The measurement part of a model acts on the simulated motion, so
+ * that the INS's data are compared with its predicted data. */
 class Observations {
  public:
   /// The drives must outlive the rows.
@@ -109,27 +109,28 @@ class Observations {
 
   /// True motions of all segments.
   Motions simulate(const VehicleModel& vehicle) const;
-  /// The same of those segments alone whose entry is not 0; the others remain empty.
+  /// The same only for segments whose entry is not 0; the others stay empty.
   Motions simulate(const VehicleModel& vehicle, const std::vector<char>& segments) const;
-  /// What the rows would be if the vehicle and the INS were the model's (rows x 1).
+  /// The rows predicted by the model's vehicle and INS (rows x 1).
   Eigen::VectorXd predict(const ModelDocument& model) const {
     return predict(simulate(model.vehicle), model.measurement);
   }
-  /// The same from simulated motions; 0 where the segment was not simulated.
+  /// The same from simulated motions; 0 for segments that were not simulated.
   Eigen::VectorXd predict(const Motions& motions, const MeasurementModel& ins) const;
-  /// Measured less predicted (rows x 1).
+  /// Measured minus predicted (rows x 1).
   Eigen::VectorXd residuals(const Eigen::VectorXd& predicted) const {
     return measured_ - predicted;
   }
-  /// What unnamed terms depend on, means over each row (as many as rows); of a model that has some.
+  /// Inputs of unnamed terms, averaged over each row (as many as rows); for a model with such
+  /// terms.
   std::vector<TermInputs> termInputs(const VehicleModel& vehicle) const;
   /// Which blocks have rows whose mask is not 0.
   std::vector<char> blocksOf(const std::vector<char>& mask) const;
   /// Which segments, among all, have rows whose mask is not 0.
   std::vector<char> segmentsOf(const std::vector<char>& mask) const;
-  /// Blocks in which something was measured.
+  /// Number of blocks with measurements.
   int measuredBlocks() const;
-  /// Block in which a time of a segment lies.
+  /// Block that contains a time of a segment.
   int blockAt(size_t drive, size_t segment, double time) const;
   /// Index of a segment among all, as in simulate().
   size_t segmentIndex(size_t drive, size_t segment) const {
@@ -145,10 +146,11 @@ class Observations {
   ObservationSettings settings_;
   std::vector<SegmentPlan> plans_;
   std::vector<size_t> first_segment_;  ///< of each drive among all
-  /// Of each segment: driving before it in its drive, and its own [s].
+  /// For each segment: driving before it in its drive, and its own [s].
   std::vector<std::pair<double, double>> driven_;
-  std::vector<std::pair<int, int>> drive_blocks_;  ///< of each drive: first block and their number
-  std::vector<double> drive_lengths_;              ///< of each drive: length of its blocks [s]
+  std::vector<std::pair<int, int>>
+      drive_blocks_;                   ///< for each drive: first block and number of blocks
+  std::vector<double> drive_lengths_;  ///< for each drive: length of its blocks [s]
   std::vector<Observation> all_;
   Eigen::VectorXd measured_;
   int blocks_ = 0;
@@ -158,29 +160,29 @@ class Observations {
 /// Normal quantile of 97.5 %.
 inline constexpr double kNormal975 = 1.959964;
 
-/// Quantile of Student's distribution that has the probability of a normal quantile.
+/// Quantile of Student's distribution with the probability of a normal quantile.
 /** Cornish and Fisher's expansion: within .5 % from 3 degrees of freedom on for 97.5 %, too large
  * by a tenth at 8 degrees for 1e-4. */
 double studentQuantile(double freedom, double normal_quantile = kNormal975);
 
-/// Normal quantile that is exceeded, either way, with a probability of `chance` (0 to 1).
+/// Normal quantile that is exceeded in magnitude with a probability of `chance` (0 to 1).
 double normalQuantileOf(double chance);
 
-/// Chance that a normal number exceeds a quantile, either way.
+/// Probability that a normal number exceeds a quantile in magnitude.
 double chanceBeyond(double normal_quantile);
 
-/// Degrees of freedom of the residuals' Student distribution: a jump of the INS must not decide.
+/// Degrees of freedom of the residuals' Student distribution: limits the influence of an INS jump.
 inline constexpr double kFreedom = 4.0;
 
-/// Negative log likelihood of a residual over its scale, without constants [nats].
+/// Negative log likelihood of a residual with a scale, without constants [nats].
 double lossOf(double residual, double scale);
-/// Its derivative by the prediction, negated: positive for a positive residual.
+/// Its negative derivative with respect to the prediction: positive for a positive residual.
 double pullOf(double residual, double scale);
-/// Weight with which an iterated least squares fit takes a row: pull over residual.
+/// Weight of a row in an iterated least squares fit: pull over residual.
 double weightOf(double residual, double scale);
 
-/// How large residuals of one channel are: scale^2 = still^2 + (share activity)^2.
-/** The ground disturbs a motion in proportion to it, the INS by itself. */
+/// Size of the residuals of one channel: scale^2 = still^2 + (share activity)^2.
+/** The ground disturbs a motion in proportion to it, the INS independently. */
 struct ChannelNoise {
   double still = 1.0;  ///< [rad/s or m/s]
   double share = 0.0;  ///< [1]
@@ -190,7 +192,7 @@ using Noise = std::array<ChannelNoise, kChannels>;
 /// Size of the motion at each observation: |yaw rate| for the yaw channels, speed for the others.
 Eigen::VectorXd activityOf(const std::vector<Observation>& data, const Eigen::VectorXd& predicted);
 
-/// Noise of greatest likelihood for residuals; rows whose mask is 0 do not count.
+/// Maximum likelihood noise of residuals; rows whose mask is 0 do not count.
 Noise estimateNoise(const std::vector<Observation>& data, const Eigen::VectorXd& residuals,
                     const Eigen::VectorXd& activity, const std::vector<char>& mask);
 

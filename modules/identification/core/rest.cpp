@@ -13,15 +13,16 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kRestAlpha = 0.05;  // more than adequacy's: what was nearly seen is no news, too
+constexpr double kRestAlpha = 0.05;  // larger than the adequacy test's: a dependence that was
+                                     // nearly significant is no news either
 constexpr size_t kMostTerms = 12;
-/// Functions that conditions tell apart, see restVariation(). Chosen on vehicles of foreign
-/// physics: with 5 two of 17 hidden effects lost their names, with 10 one got a false one beside
-/// it.
+/// Number of functions that conditions distinguish, see restVariation(). Chosen on vehicles with
+/// different physics: with 5, two of 17 hidden effects lost their names; with 10, one got a false
+/// one in addition.
 constexpr double kFunctions = 20.0;
 constexpr int kRestDraws = 1999;
 constexpr double kAnySize = 1e9;           // bound of a size, in any unit
-constexpr double kLeastDeviation = 1e-12;  // so that nothing is known for ever
+constexpr double kLeastDeviation = 1e-12;  // so that no prior is absolute
 
 ObservedRate channelNamed(const std::string& name) {
   for (size_t i = 0; i < kChannels; ++i)
@@ -30,7 +31,7 @@ ObservedRate channelNamed(const std::string& name) {
                               "' is no channel of the residuals; take the term out of the model");
 }
 
-/// The channel whose function of all conditions a channel belongs to, see smoothRests().
+/// The channel whose function of all conditions includes a channel, see smoothRests().
 const char* channelOfFunction(ObservedRate channel) {
   return channelName(channel == ObservedRate::kHeading ? ObservedRate::kYawRate : channel);
 }
@@ -39,7 +40,7 @@ FreeParameter sizeOf(size_t term, double expected, double deviation) {
   return {restPath(term), -kAnySize, kAnySize, 1.0, expected, deviation};
 }
 
-/// A rest under way: its terms are free in a state, the numbers of the model are held.
+/// A fit of a rest: its terms are free in a state, the numbers of the model are fixed.
 class RestFit {
  public:
   RestFit(const Fitter& fitter, const FitState& state)
@@ -71,7 +72,7 @@ class RestFit {
     fit();
   }
 
-  /// The state with the rest: all is free.
+  /// The state with the rest: everything is free.
   FitState state() const {
     FitState all = found_;
     all.model = held_.model;
@@ -95,7 +96,7 @@ class RestFit {
 
  private:
   void fit() {
-    fitter_->renewJacobian(held_);  // columns that are known: nothing is simulated
+    fitter_->renewJacobian(held_);  // columns without simulation
     held_.predicted = fitter_->predict(held_.model);
     fitter_->fitRoughly(held_);
   }

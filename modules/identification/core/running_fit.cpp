@@ -12,16 +12,16 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kPrior = 0.3;  // [1] and [s], standard deviation before the driving
+constexpr double kPrior = 0.3;  // [1] and [s], standard deviation of the prior
 constexpr double kStep = 0.02;  // [1] and [s] of a change, for derivatives
 constexpr int kFits = 3;
-// Rows of one stretch share its ground: they are worth a third of their number.
+// Rows of one stretch share its ground: they count a third of their number.
 constexpr double kAlike = 3.0;
 
 using Changes = Eigen::Matrix<double, static_cast<int>(kWatched), 1>;
 using Derivatives = Eigen::Matrix<double, Eigen::Dynamic, static_cast<int>(kWatched)>;
 
-/// The drive of a vehicle whose commands arrive scaled on one side.
+/// The drive of a vehicle whose commands are scaled on one side.
 Drive scaled(const Drive& drive, size_t side, double factor) {
   Drive other = drive;
   for (Segment& segment : other.segments) {

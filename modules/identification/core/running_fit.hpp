@@ -10,30 +10,31 @@
 
 namespace tread::gap {
 
-/// What a vehicle that is driven is compared with its model by.
+/// Quantities by which a driving vehicle is compared with its model.
 enum class Watched {
-  kLeft,     ///< what the left drive gives of what is asked [1]
+  kLeft,     ///< ratio of the left drive's output to its command [1]
   kRight,    ///< the right one
-  kTurning,  ///< yaw rate over what the tracks make of it [1]
-  kDelay,    ///< commands act that much later [s]
+  kTurning,  ///< ratio of the yaw rate to that of the tracks [1]
+  kDelay,    ///< additional delay of commands [s]
 };
 inline constexpr size_t kWatched = 4;
 using WatchedNumbers = std::array<double, kWatched>;  ///< in the order of Watched
 
-/// How a few seconds of driving differ from a model.
+/// Difference of a few seconds of driving from a model.
 struct WatchReading {
   double begin = 0.0;       ///< [s]
   double end = 0.0;         ///< [s]
-  WatchedNumbers change{};  ///< less the model's; gains relative to the model's
+  WatchedNumbers change{};  ///< minus the model's; gains relative to the model's
   WatchedNumbers
-      uncertainty{};  ///< standard deviations; the prior's where the driving tells nothing
+      uncertainty{};  ///< standard deviations; the prior's if the driving is uninformative
 };
 
 /// Least squares over the rows that begin between two times [s] of a drive with track commands.
 /** Residuals are linear in the changes, with derivatives by finite differences of the simulation;
- * rows count by Student's distribution, and a change that the driving does not show is drawn to 0:
- * before it, gains are known to .3 and the delay to .3 s. Nothing where no row lies between. A pull
- * to one side is not among them: seconds of driving cannot tell it from a weak drive. */
+ * rows are weighted by Student's distribution, and a change that the driving does not excite is
+ * drawn to 0 by the prior: .3 for gains and .3 s for the delay. nullopt if no row lies between the
+ * times. A pull to one side is not included: within seconds it cannot be distinguished from a weak
+ * drive. */
 std::optional<WatchReading> readChanges(const Drive& drive, const ModelDocument& model, double from,
                                         double to);
 

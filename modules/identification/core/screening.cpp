@@ -24,7 +24,7 @@ bool isSimulated(const Candidate& candidate) {
   return !candidate.release || candidate.elsewhere;
 }
 
-/// Of a term that is fitted: its column of the Jacobian.
+/// For a fitted term: its column of the Jacobian.
 Eigen::VectorXd releaseDirection(const FitState& state, const Candidate& candidate) {
   const std::string path = candidate.path();
   for (size_t i = 0; i < state.free.size(); ++i)
@@ -32,7 +32,7 @@ Eigen::VectorXd releaseDirection(const FitState& state, const Candidate& candida
   throw std::logic_error("" + path + " is not free, and cannot be released");
 }
 
-constexpr double kChangeAlpha = 0.01;    // of what may begin at any time
+constexpr double kChangeAlpha = 0.01;    // for effects that may begin at any time
 constexpr double kPowerQuantile = 0.84;  // normal: 80 % power
 
 std::vector<size_t> bestOfEffects(const Screening& screening) {
@@ -50,10 +50,10 @@ std::vector<size_t> bestOfEffects(const Screening& screening) {
   return order;
 }
 
-/// Evidence for a candidate over what is needed; less than 1 if chance explains it.
+/// Evidence for a candidate relative to the requirement; less than 1 if chance explains it.
 double evidenceOf(const ScoreTest& test, Eigen::Index candidate, const Screening& screening,
                   bool first) {
-  // A change finds a few blocks of chance wherever they are: it has to show in many.
+  // A change can match a few random blocks anywhere: it must show in many.
   const bool change = !effectNamed(screening.candidates[static_cast<size_t>(candidate)].effect)
                            .search.change_points.empty();
   const double level = change ? std::min(screening.alpha, kChangeAlpha) : screening.alpha;
@@ -95,7 +95,7 @@ Eigen::MatrixXd SensitivityCache::directions(const Fitter& fitter, const FitStat
 void SensitivityCache::renew(const Fitter& fitter, const FitState& state,
                              const std::vector<Candidate>& candidates) {
   if (candidates.empty()) return;
-  // Of all rows: searches over others will ask for the same directions.
+  // For all rows: searches over other rows will need the same directions.
   const Fitter all = fitter.onAllRows();
   FitState of = state;
   of.predicted = all.predict(state.model);
@@ -119,7 +119,7 @@ double detectableSize(const std::vector<Candidate>& candidates, const ScoreTest&
   double gentlest = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& tried = candidates[i];
-    // The direction goes to the limit itself: all of it must be seen.
+    // The direction leads to the limit itself: it must be detected completely.
     if (tried.effect == best.effect && tried.parameter == best.parameter &&
         sizeOf(i) <= tried.change)
       gentlest = std::min(gentlest, tried.value);

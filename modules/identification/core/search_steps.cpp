@@ -15,10 +15,10 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kUnsized = 2.0;  // times its typical size: what the 95 % interval must not exceed
-constexpr double kConfirmed = 2.5;  // standard errors, on rows that sizes were not fitted to
+constexpr double kUnsized = 2.0;    // times its typical size: limit of the 95 % interval
+constexpr double kConfirmed = 2.5;  // standard errors, on rows that were not used for the sizes
 
-/// The candidate that promises most; none that would change anything = candidates.
+/// The most promising candidate; `candidates` if none would change anything.
 size_t mostPromising(const ScoreTest& test) {
   const auto count = static_cast<size_t>(test.candidates());
   size_t best = count;
@@ -51,18 +51,19 @@ std::string reasonNotSized(const Fitter& fitter, const FitState& state,
 }
 
 constexpr double kHopeless = 2.5;       // standard errors by which a pair is better in first order
-constexpr double kHopelessNats = 20.0;  // and what rounding of that order may cost
+constexpr double kHopelessNats = 20.0;  // and the rounding error of that order
 constexpr double kBearableNats = 10.0;  // that simplicity may cost
-constexpr double kInWheels = 0.7;       // of an effect: the wheels show it
-constexpr double kImitated = 0.35;  // uniqueness below which the found effects imitate another one
+constexpr double kInWheels = 0.7;       // of an effect: counts as shown by the wheels
+constexpr double kImitated =
+    0.35;  // uniqueness below which the found effects can imitate another one
 
-/// An effect that the found ones can imitate, and what it would change.
+/// An effect that the found ones can imitate, and its direction.
 struct Single {
   Candidate candidate;
   Eigen::VectorXd direction;
 };
 
-/// One of each such effect, those among them that are only put in the place of others.
+/// One candidate of each such effect, including those that only replace others.
 std::vector<Single> imitated(const SearchState& search) {
   const Fitter& fitter = search.fitter;
   const FitState& state = search.result.state;
@@ -80,7 +81,7 @@ std::vector<Single> imitated(const SearchState& search) {
   for (size_t i = 0; i < candidates.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     const Effect& effect = effectNamed(candidates[i].effect);
-    // A change early in the drive has more numbers than the two, and is no simpler.
+    // A change early in the drive has more parameters than the two, and is not simpler.
     if (!candidates[i].change_point.empty()) continue;
     if (isOn(effect, state.model)) continue;
     if (test.uniqueness(at) < kImitated && names.insert(effect.name).second)
@@ -89,7 +90,7 @@ std::vector<Single> imitated(const SearchState& search) {
   return chosen;
 }
 
-/// The state with one effect in the place of two, in first order and without a simulation.
+/// The state with one effect replacing two, in first order and without a simulation.
 FitState linearlyReplaced(const Fitter& fitter, const FitState& state, const Single& single,
                           const std::string& a, const std::string& b) {
   FitState reduced = withoutLinearly(fitter, withoutLinearly(fitter, state, a), b);
@@ -100,7 +101,7 @@ FitState linearlyReplaced(const Fitter& fitter, const FitState& state, const Sin
   return reduced;
 }
 
-/// Losses of a state on every block, with its own parameters and with those of other blocks.
+/// Losses of a state on every block, with its own parameters and with those from other blocks.
 struct BlockLosses {
   Eigen::VectorXd fitted;
   Eigen::VectorXd held_out;
@@ -118,12 +119,13 @@ Eigen::VectorXd fittedLoss(const Fitter& fitter, const FitState& state) {
   return loss;
 }
 
-/// Whether a pair is so much better than what is in its place that first order is no excuse.
+/// Whether a pair is so much better than its replacement that the error of first order does not
+/// matter.
 bool isHopeless(const Gain& gain, double rounding) {
   return gain.value > kHopeless * gain.error + rounding;
 }
 
-/// One effect in the place of two.
+/// One effect that replaces two.
 struct Exchange {
   std::string single;
   std::string a;
@@ -133,14 +135,14 @@ struct Exchange {
   bool by_wheels = false;
 };
 
-/// Keeps the exchange of two effects for a single one if it is bearable and the best so far.
+/// Keeps the exchange of two effects for one if it is acceptable and the best so far.
 void tryExchange(const SearchState& search, const Single& imitated_one, const std::string& a,
                  const std::string& b, const BlockLosses& loss, std::optional<Exchange>& best) {
   if (search.isAccepted(a) || search.isAccepted(b)) return;
   const Fitter& fitter = search.fitter;
   const FitState& state = search.result.state;
   const FitState nearly = linearlyReplaced(fitter, state, imitated_one, a, b);
-  // What is far worse on the rows that it was fitted to needs no validation to be seen.
+  // An effect that is far worse on the rows it was fitted to needs no validation.
   const Gain fitted = gainOf(fitter, fittedLoss(fitter, nearly), loss.fitted);
   if (isHopeless(fitted, 2.0 * kHopelessNats)) return;
   const Gain first_order = gainOf(fitter, heldOutLoss(fitter, nearly), loss.held_out);
@@ -152,7 +154,7 @@ void tryExchange(const SearchState& search, const Single& imitated_one, const st
   fitter.fitRoughly(tried);
   for (const FreeParameter& parameter : tried.free)
     if (effectOf(parameter.path) == single.effect && onBound(tried.model, parameter)) return;
-  // What does not fit as well needs no validation; that is in first order and may be mistaken.
+  // A worse fit needs no validation; that comparison is in first order and may be wrong.
   if (tried.loss - state.loss > 2.0 * kBearableNats) return;
   if (best && tried.loss >= best->state.loss) return;
   const Gain pair_gain = gainOf(fitter, heldOutLoss(fitter, tried), loss.held_out);
@@ -167,14 +169,14 @@ bool anyOnBound(const FitState& state, const std::vector<std::string>& effects) 
   });
 }
 
-/// Switches the effect of a candidate on, at its size in first order, and fits.
+/// Switches a candidate's effect on, at its first-order size, and fits.
 void takeCandidate(const Fitter& fitter, FitState& state, const Candidate& candidate) {
   const ScoreTest test(fitter, state, directionsOf(fitter, state, {candidate}));
   addCandidate(fitter, state, candidate, test.size(0));
   fitter.fitRoughly(state);
 }
 
-/// Whether a state explains as much as that of a result: by what it fits, and on blocks left out.
+/// Whether a state explains as much as that of a result: by its fit, and on held-out blocks.
 bool isLevel(const Fitter& fitter, const FitState& tried, const FitState& now) {
   if (tried.loss - now.loss > 2.0 * kBearableNats) return false;
   const Gain behind = gainOf(fitter, heldOutLoss(fitter, tried), heldOutLoss(fitter, now));
@@ -190,15 +192,15 @@ std::vector<std::string> membersOf(const ConfoundedGroup& group, EffectKind kind
   return members;
 }
 
-/// Whether a search has chosen these effects by itself, all of them.
+/// Whether all of these effects were chosen by the search itself.
 bool isAllFound(const SearchState& search, const std::vector<std::string>& effects) {
   return std::all_of(effects.begin(), effects.end(), [&search](const std::string& effect) {
     return contains(search.result.effects, effect) && !search.isAccepted(effect);
   });
 }
 
-/// The state with the vehicle's members of a group in the place of the INS's; nothing where a
-/// person has rejected one, or its size is not plausible.
+/// The state with the vehicle's members of a group replacing the INS's; nullopt if a person has
+/// rejected one, or its size is implausible.
 std::optional<FitState> withVehicleInstead(const SearchState& search,
                                            const std::vector<std::string>& instrument,
                                            const std::vector<std::string>& vehicle) {
@@ -216,7 +218,7 @@ std::optional<FitState> withVehicleInstead(const SearchState& search,
   return tried;
 }
 
-/// Whether the wheels show most of an effect that is none of theirs.
+/// Whether the wheels show most of an effect that should not be visible in them.
 bool isInWheels(const SearchState& search, const std::string& effect) {
   if (effectNamed(effect).search.in_wheels.empty()) return false;
   const auto witnesses = wheelWitnesses(search.fitter, search.result.state, search.result.effects);
@@ -224,14 +226,14 @@ bool isInWheels(const SearchState& search, const std::string& effect) {
   return found != witnesses.end() && found->second.share > kInWheels && found->second.low > 0.0;
 }
 
-/// An effect that may be put in the place of another one.
+/// An effect that may replace another one.
 struct Substitute {
   Candidate candidate;
   std::string other;
   bool shown_by_wheels = false;  ///< it need not be better
 };
 
-/// What an effect under the wheels is where they show it, as candidates.
+/// Adds, as candidates, the effects that explain an effect below the wheels if the wheels show it.
 void addShownByWheels(const SearchState& search, const std::string& other,
                       std::vector<Substitute>& all) {
   const FitState& state = search.result.state;
@@ -256,8 +258,8 @@ std::vector<Substitute> substitutes(const SearchState& search) {
   return all;
 }
 
-/// Whether a substitute explains more, by what it fits and not less by blocks left out; or, where
-/// the wheels speak for it, as much.
+/// Whether a substitute explains more, by its fit without a loss on held-out blocks; or as much, if
+/// the wheels support it.
 bool isBetter(const SearchState& search, const FitState& tried, const BlockLosses& loss,
               bool shown_by_wheels) {
   const double least = shown_by_wheels ? -2.0 * kBearableNats : 2.0 * kBearableNats;
@@ -266,7 +268,7 @@ bool isBetter(const SearchState& search, const FitState& tried, const BlockLosse
   return gain.value > -gain.error;
 }
 
-/// One effect in the place of another that does the same less well, the best of them.
+/// One effect that replaces a worse one with the same influence; the best of them.
 std::optional<Exchange> betterOne(const SearchState& search) {
   const Fitter& fitter = search.fitter;
   const FitState& state = search.result.state;
@@ -287,7 +289,7 @@ std::optional<Exchange> betterOne(const SearchState& search) {
   return best;
 }
 
-/// The exchange whose single effect fits best, if any is bearable.
+/// The exchange whose single effect fits best, if any is acceptable.
 std::optional<Exchange> bestExchange(const SearchState& search) {
   const std::vector<std::string>& effects = search.result.effects;
   if (effects.size() < 2 || search.isCutShort()) return std::nullopt;
@@ -303,7 +305,7 @@ std::optional<Exchange> bestExchange(const SearchState& search) {
   return best;
 }
 
-/// Adds what a state misses on every other block: position, yaw, yaw rate and nats (blocks x 4).
+/// Adds a state's errors on alternate blocks: position, yaw, yaw rate and nats (blocks x 4).
 void addMissed(const Fitter& fitter, const FitState& state, const Eigen::VectorXd& scales, int half,
                Eigen::MatrixXd& sums) {
   const Observations& data = fitter.data();
@@ -320,7 +322,7 @@ void addMissed(const Fitter& fitter, const FitState& state, const Eigen::VectorX
   }
 }
 
-/// The result with its given, released and accepted terms alone.
+/// The result with only its given, released and accepted terms.
 FitState withoutFound(const SearchState& search) {
   const FoundTerms& result = search.result;
   if (result.released.empty()) return result.calibrated;
@@ -347,7 +349,8 @@ bool isConfirmed(const SearchState& search, const FitState& lacking) {
     const Gain gain = gainOf(without.col(i), with.col(i), every);
     if (gain.value > gain.error) return true;
   }
-  // The ends of executions scatter more than rows do: what is far beyond chance in these is there.
+  // The ends of executions scatter more than rows do: an effect that is highly significant in the
+  // rows is real.
   const Gain nats = gainOf(without.col(3), with.col(3), every);
   return nats.value > kConfirmed * nats.error;
 }
@@ -401,7 +404,7 @@ void replacePairs(const SearchState& search) {
     evidence.by_wheels = exchange.by_wheels;
     search.result.state = exchange.state;
   };
-  // Each exchange takes an effect away, or puts one that nothing else replaces in its place.
+  // Each exchange removes an effect, or adds one that nothing else replaces.
   while (const auto exchange = bestExchange(search)) exchangeFor(*exchange);
   while (const auto exchange = betterOne(search)) exchangeFor(*exchange);
 }
@@ -418,7 +421,7 @@ bool putVehicleFirst(const SearchState& search) {
     for (size_t i = 0; i < vehicle.size(); ++i) {
       if (isOn(effectNamed(vehicle[i]), result.state.model)) continue;
       result.effects.push_back(vehicle[i]);
-      result.evidence[vehicle[i]].p_value = 1.0;  // chosen, not tested yet: pruning does that
+      result.evidence[vehicle[i]].p_value = 1.0;  // chosen, not tested yet: pruning tests it
       result.evidence[vehicle[i]].replaced = {instrument[std::min(i, instrument.size() - 1)]};
       const std::string remark = "the vehicle before the INS: in the place of " +
                                  result.evidence[vehicle[i]].replaced.front();
@@ -435,7 +438,7 @@ bool putVehicleFirst(const SearchState& search) {
 
 namespace {
 
-/// Holds a term that moved by what was known of it.
+/// Restores the prior of a term that moved.
 void holdAgain(FitState& state, const MovedTerm& term) {
   for (FreeParameter& parameter : state.free)
     if (parameter.path == term.path) {
@@ -444,7 +447,7 @@ void holdAgain(FitState& state, const MovedTerm& term) {
     }
 }
 
-/// What one effect may stand for: a term that moved, and another one or an effect that was found.
+/// Two changes that one effect may explain: a term that moved, and another one or a found effect.
 struct TwoChanges {
   size_t moved = 0;
   std::optional<size_t> also_moved{};
@@ -462,7 +465,7 @@ std::vector<TwoChanges> pairsOfChanges(const SearchState& search,
   return pairs;
 }
 
-/// The state with one effect in the place of two changes.
+/// The state with one effect replacing two changes.
 FitState inPlaceOf(const SearchState& search, const TwoChanges& pair,
                    const std::vector<MovedTerm>& moved, const Candidate& candidate) {
   const Fitter& fitter = search.fitter;
@@ -516,7 +519,7 @@ bool replaceMoved(const SearchState& search, std::vector<MovedTerm>& moved) {
 
 namespace {
 
-/// Whether a term that the model has would explain as much as an effect that was found.
+/// Whether a term that the model has would explain as much as a found effect.
 bool mayStandFor(const SearchState& search, const std::string& given, const std::string& found) {
   FitState tried = switchedOff(search.fitter, search.result.state, {found});
   for (FreeParameter& parameter : tried.free)

@@ -17,17 +17,17 @@ namespace {
 
 constexpr size_t kFeatures = 320;
 constexpr size_t kMostInputs = 3;  // of one feature
-constexpr double kWidth = 1.5;     // deviations of an input within which a function is smooth
-constexpr double kFarthest = 3.0;  // deviations; what is further out counts as that
+constexpr double kWidth = 1.5;     // deviations of an input over which a function is smooth
+constexpr double kFarthest = 3.0;  // deviations; larger ones are clamped
 constexpr double kRidge = 1.0;     // of each feature's own information
 constexpr double kLeastUniqueShare =
     4e-4;                     // share of its information that is its own, as in ScoreTest
-constexpr int kDraws = 9999;  // a few of them must lie beyond the level of one channel
+constexpr int kDraws = 9999;  // enough that a few of them exceed the level of one channel
 
-/// Inputs in units of their deviation, those of both signs also without their sign.
+/// Inputs in units of their deviation; those of both signs also as magnitudes.
 struct Inputs {
   Eigen::MatrixXd values;      ///< rows x columns
-  std::vector<size_t> source;  ///< of each column: which input it is
+  std::vector<size_t> source;  ///< of each column: its input
   Eigen::MatrixXd amplitudes;  ///< rows x 3: 1, speed, yaw rate
 };
 
@@ -98,11 +98,11 @@ std::vector<Feature> drawFeatures(const Inputs& inputs, uint64_t seed) {
   return features;
 }
 
-/// The rows of some channels, and what the free parameters say in all rows.
+/// The rows of some channels, and the free parameters' influence in all rows.
 struct Rows {
   std::vector<size_t> of_channels;
   Eigen::VectorXd residuals;   ///< of all rows
-  Eigen::VectorXd metric;      ///< 1 / scale^2 of those that count
+  Eigen::VectorXd metric;      ///< 1 / scale^2 of rows that count
   Eigen::MatrixXd free_pulls;  ///< blocks x free
 };
 
@@ -125,14 +125,14 @@ Rows rowsOf(const Fitter& fitter, const FitState& state,
   return rows;
 }
 
-/// What the features pull at, each in units of its own information.
+/// The features' pulls, each in units of its own information.
 struct Pulls {
   Eigen::MatrixXd values;   ///< rows of the channels x features
   Eigen::MatrixXd blocks;   ///< blocks x features
   Eigen::MatrixXd overlap;  ///< features x features, with the ridge
 };
 
-/// The same, before the features are freed of what the free parameters explain.
+/// The same, before orthogonalization to the free parameters.
 Pulls rawPulls(const Fitter& fitter, const FitState& state, const Inputs& inputs,
                const std::vector<Feature>& features, const Rows& rows, Eigen::MatrixXd& shared) {
   const auto count = static_cast<Eigen::Index>(features.size());
@@ -176,7 +176,7 @@ Pulls pullsOf(const Fitter& fitter, const FitState& state, const Inputs& inputs,
   return pulls;
 }
 
-/// How the blocks agree (blocks x blocks), by these features.
+/// Mutual agreement of the blocks (blocks x blocks), by these features.
 Eigen::MatrixXd agreement(const Pulls& pulls, const std::vector<Eigen::Index>& features) {
   const auto count = static_cast<Eigen::Index>(features.size());
   Eigen::MatrixXd overlap(count, count);
@@ -190,13 +190,12 @@ Eigen::MatrixXd agreement(const Pulls& pulls, const std::vector<Eigen::Index>& f
   return blocks * overlap.ldlt().solve(blocks.transpose());
 }
 
-/// By how much blocks agree with random signs: standard deviation.
+/// Standard deviation of the blocks' agreement under random signs.
 double deviationOf(const Eigen::MatrixXd& agreement) {
   return std::sqrt(2.0 * (agreement.squaredNorm() - agreement.diagonal().squaredNorm()));
 }
 
-/// Standard deviations of chance by which the blocks agree more than with random signs and what is
-/// known.
+/// The blocks' agreement beyond random signs and the known rest, in standard deviations of chance.
 double scoreOf(const Eigen::MatrixXd& agreement, double known = 0.0) {
   const double deviation = deviationOf(agreement);
   return deviation > 0.0 ? (agreement.sum() - agreement.trace() - known) / deviation : 0.0;
@@ -214,15 +213,15 @@ double chanceOf(const Eigen::MatrixXd& agreement, double known, uint64_t seed) {
   return (larger + 1.0) / (kDraws + 1.0);
 }
 
-/// How much the blocks agree by a function of root mean square 1.
-/** A pull has (f + 1) / (f + 3) of the slope that its scale has, see ScoreTest. */
+/// Agreement of the blocks due to a function of root mean square 1.
+/** A pull has (f + 1) / (f + 3) of its scale's slope, see ScoreTest. */
 double agreementOfUnit(const Rows& rows) {
   double sum = 0.0;
   for (const size_t row : rows.of_channels) sum += rows.metric[static_cast<Eigen::Index>(row)];
   return sum * std::pow((kFreedom + 1.0) / (kFreedom + 3.0), 2);
 }
 
-/// The largest size that a rest which is known would have in another drive.
+/// The largest size that a known rest would have in another drive.
 double mostKnown(const SmoothRest& rest, const std::vector<RestTerm>& known) {
   for (const RestTerm& term : known)
     if (term.condition == kAllConditions && term.channel == channelName(rest.channels.front()))
@@ -230,7 +229,7 @@ double mostKnown(const SmoothRest& rest, const std::vector<RestTerm>& known) {
   return 0.0;
 }
 
-/// Features for which something holds.
+/// Features with a property.
 template <class Holds>
 std::vector<Eigen::Index> featuresWhere(const std::vector<Feature>& features, Holds holds) {
   std::vector<Eigen::Index> chosen;
@@ -239,16 +238,16 @@ std::vector<Eigen::Index> featuresWhere(const std::vector<Feature>& features, Ho
   return chosen;
 }
 
-/// Whether an input differs from row to row: one that is constant or was not measured does not.
+/// Whether an input varies from row to row, unlike a constant or unmeasured one.
 bool varies(const Inputs& inputs, size_t input) {
   const auto first = std::find(inputs.source.begin(), inputs.source.end(), input);
   return !inputs.values.col(std::distance(inputs.source.begin(), first)).isZero(0.0);
 }
 
-/// The input that says most: by itself, and beyond what all others say.
-/** Inputs go together, so that without one the others stand in for it: what it says alone counts,
- * too (of a Shapley value the first and the last place). Functions of one that does not vary are
- * the amplitudes alone, and say nothing of it. */
+/// The most informative input: alone, and in addition to all others.
+/** Inputs are correlated, so that without one the others replace it: therefore its information
+ * alone counts, too (the first and the last term of a Shapley value). Functions of an input that
+ * does not vary are only the amplitudes, and carry no information about it. */
 size_t mostTelling(const Pulls& pulls, const std::vector<Feature>& features, const Inputs& inputs) {
   size_t most = 0;
   double largest = -std::numeric_limits<double>::infinity();

@@ -14,24 +14,24 @@ namespace tread::gap {
 
 /// Whether the residuals of some channels are a smooth function of all conditions together.
 struct SmoothRest {
-  std::vector<ObservedRate> channels;  ///< tested together: both that tell of turning, or one
+  std::vector<ObservedRate> channels;  ///< tested together: both channels of turning, or one
   double p_value = 1.0;                ///< over all channels (Bonferroni)
-  double score = 0.0;                  ///< standard deviations of chance above its mean
-  std::string variable{};              ///< on which it depends most; empty where chance explains it
+  double score = 0.0;          ///< above its mean, in standard deviations under the null hypothesis
+  std::string variable{};      ///< the most influential one; empty if chance explains it
   Eigen::VectorXd function{};  ///< as fitted, 0 in other channels (rows x 1); empty likewise
-  double size = 0.0;           ///< its root mean square, without chance [rad/s or m/s]
-  double deviation = 0.0;      ///< by which chance makes the size larger
+  double size = 0.0;           ///< its root mean square, corrected for chance [rad/s or m/s]
+  double deviation = 0.0;      ///< standard deviation of the size by chance
 };
 
-/// Tests channels for a smooth function of all inputs, of which no form is known beforehand.
+/// Tests channels for a smooth function of all inputs, without a prescribed form.
 /** Random Fourier features (Rahimi and Recht 2007), each of one to three inputs in units of their
  * deviation, a third of them times the speed and a third times the yaw rate: cos(w x + phase).
- * Freed of what the free parameters explain, with a ridge prior on their sizes, they give one
- * quadratic score: the pulls of blocks on one another, as far as they agree where conditions are
- * alike. Its distribution under "nothing is there" comes from random signs of the blocks, as in
- * ScoreTest. Where it is beyond chance (`alpha`) the variable is the input that says most, by
- * itself and beyond all others. Of a channel of whose rest so much is `known` (see kAllConditions)
- * only what exceeds it counts. `inputs`: speed and yaw rate first. */
+ * Orthogonalized to the free parameters, with a ridge prior on their sizes, they give one
+ * quadratic score: the mutual pulls of blocks, as far as they agree under similar conditions. Its
+ * null distribution comes from random signs of the blocks, as in ScoreTest. If it is significant
+ * (`alpha`), the variable is the most informative input, alone and in addition to all others. For
+ * a channel with a `known` rest (see kAllConditions) only the excess counts. `inputs`: speed and
+ * yaw rate first. */
 std::vector<SmoothRest> smoothRests(const Fitter& fitter, const FitState& state,
                                     const std::vector<Variable>& inputs,
                                     const std::vector<RestTerm>& known, double alpha,

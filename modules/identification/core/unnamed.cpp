@@ -15,16 +15,17 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kBeyondKnots = 0.01;  // share of the rows to either side that no knot is among
-constexpr double kLeastSide = 0.05;    // share of the range that 0 must be inside to be a knot
-constexpr size_t kTermsRefitted = 4;   // forms that the kernel simulates
-/// [rad/s or m/s] what is known of a value beforehand: values that the drive does not tell from
-/// what is free elsewhere stay small.
+constexpr double kBeyondKnots = 0.01;  // share of the rows beyond the outer knots, to either side
+constexpr double kLeastSide = 0.05;    // share of the range by which 0 must be inside to be a knot
+constexpr size_t kTermsRefitted = 4;   // forms simulated by the kernel
+/// [rad/s or m/s] prior of a value: keeps values small that the drive cannot distinguish from other
+/// free parameters.
 constexpr double kWide = 0.15;
 constexpr size_t kTermCells = 12;
-constexpr double kLeastFactor = 0.1;  // of the largest factor: rows with less of it draw no curve
+constexpr double kLeastFactor =
+    0.1;  // of the largest factor: rows with less are not used for a curve
 
-/// Factors that are tried; nullptr = 1.
+/// Tested factors; nullptr = 1.
 std::vector<const TermCondition*> factors() {
   std::vector<const TermCondition*> all{nullptr};
   for (const char* name : {"sign of v", "sign of yaw rate", "v", "|v|", "yaw rate", "|yaw rate|"})
@@ -41,7 +42,7 @@ std::string unsignedName(const TermCondition& condition) {
   return name;
 }
 
-/// Whether a factor adds nothing that the curve over a condition does not have.
+/// Whether a factor adds nothing to the curve over a condition.
 bool isSame(const TermCondition& condition, const TermCondition* times) {
   return times != nullptr && unsignedName(condition) == unsignedName(*times);
 }
@@ -52,7 +53,7 @@ bool isOf(ObservedRate channel, TermChannel term) {
   return term == TermChannel::kYawRate;
 }
 
-/// The range in which most rows are.
+/// The range of most rows.
 std::pair<double, double> mostOf(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const auto edge = static_cast<size_t>(kBeyondKnots * static_cast<double>(values.size()));
@@ -65,7 +66,7 @@ std::vector<double> equalSteps(double from, double to, int steps) {
   return all;
 }
 
-/// Where a curve has its values: with so many to either side of 0, or twice as many over all.
+/// Knots of a curve: this many to either side of 0, or twice as many overall.
 std::vector<double> knots(double low, double high, int to_either_side) {
   const double side = kLeastSide * (high - low);
   if (!(low < -side && high > side)) return equalSteps(low, high, 2 * to_either_side);
@@ -75,7 +76,7 @@ std::vector<double> knots(double low, double high, int to_either_side) {
   return at;
 }
 
-/// A term whose values are 0; nothing where the drive hardly changes its condition.
+/// A term with values of 0; nullopt if the drive hardly varies its condition.
 std::optional<UnnamedTerm> emptyTerm(const std::vector<TermInputs>& rows, TermChannel channel,
                                      const TermCondition& condition, const TermCondition* times,
                                      int to_either_side) {
@@ -99,8 +100,8 @@ std::optional<UnnamedTerm> emptyTerm(const std::vector<TermInputs>& rows, TermCh
   return term;
 }
 
-/// The value that stays 0: where the condition is nearest to 0. What all values have in common is
-/// the factor alone, which named effects and gains of the model do.
+/// The value that is fixed at 0: where the condition is closest to 0. A part common to all values
+/// is the factor alone, which is left to named effects and gains of the model.
 size_t pinned(const UnnamedTerm& term) {
   const auto nearest = std::min_element(
       term.at.begin(), term.at.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
@@ -116,7 +117,8 @@ double priorDeviation(const UnnamedTerm& term) {
   return kWide / std::max(1e-3, largestFactor(term));
 }
 
-/// The conditions of every row: one simulation, of which a term of values 0 keeps the conditions.
+/// The conditions of every row: one simulation, in which a term with values of 0 records the
+/// conditions.
 std::vector<TermInputs> rowInputs(const Observations& data, const VehicleModel& vehicle) {
   VehicleModel keeps = vehicle;
   UnnamedTerm nothing;
@@ -127,8 +129,8 @@ std::vector<TermInputs> rowInputs(const Observations& data, const VehicleModel& 
   return data.termInputs(keeps);
 }
 
-/// How the values of a term change the rows, in first order and without a simulation; 0 of the
-/// pinned one.
+/// Derivatives of the rows with respect to a term's values, without a simulation; 0 for the fixed
+/// one.
 Eigen::MatrixXd columnsOf(const Fitter& fitter, const std::vector<TermInputs>& rows,
                           const UnnamedTerm& term) {
   Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows.size()),
@@ -145,9 +147,9 @@ Eigen::MatrixXd columnsOf(const Fitter& fitter, const std::vector<TermInputs>& r
   return columns;
 }
 
-/// What first order needs of a state, for many terms.
+/// First-order data of a state, for many terms.
 struct Pull {
-  Eigen::VectorXd weights;              ///< rows x 1, 0 of rows that do not count
+  Eigen::VectorXd weights;              ///< rows x 1, 0 for rows that do not count
   Eigen::VectorXd pulls;                ///< rows x 1: weight times residual
   Eigen::MatrixXd weighted;             ///< rows x free
   Eigen::LDLT<Eigen::MatrixXd> normal;  ///< of the free parameters
@@ -169,7 +171,7 @@ Pull pullOfAll(const Fitter& fitter, const FitState& state) {
   return pull;
 }
 
-/// What a term would gain in first order beside all that is free [nats].
+/// First-order gain of a term in addition to all free parameters [nats].
 double promiseOf(const Pull& pull, const Eigen::MatrixXd& columns, double deviation) {
   const Eigen::MatrixXd shared = pull.weighted.transpose() * columns;
   Eigen::MatrixXd own = columns.transpose() * pull.weights.asDiagonal() * columns;
@@ -179,7 +181,7 @@ double promiseOf(const Pull& pull, const Eigen::MatrixXd& columns, double deviat
   return 0.5 * pulled.dot(own.ldlt().solve(pulled));
 }
 
-/// Terms by what they promise, the most promising ones first.
+/// Terms by their estimated gain, the most promising first.
 std::vector<UnnamedTerm> promisingTerms(const Fitter& fitter, const FitState& state,
                                         const std::vector<TermInputs>& rows,
                                         const std::vector<TermChannel>& channels) {
@@ -187,7 +189,7 @@ std::vector<UnnamedTerm> promisingTerms(const Fitter& fitter, const FitState& st
   for (const TermChannel channel : channels)
     for (const TermCondition& condition : termConditions())
       for (const TermCondition* times : factors()) {
-        // A sign has two values: a factor, and no condition of a curve.
+        // A sign has only two values: it can be a factor, but not the condition of a curve.
         if (std::string(condition.name).find("sign") == 0 || isSame(condition, times)) continue;
         if (auto term = emptyTerm(rows, channel, condition, times, 1))
           terms.push_back(std::move(*term));
@@ -211,7 +213,7 @@ std::string freeName(const ModelDocument& model) {
   }
 }
 
-/// The state with a term, simulated by the kernel and fitted roughly.
+/// The state with a term, simulated by the kernel and roughly fitted.
 FitState withTerm(const Fitter& fitter, const FitState& state, const UnnamedTerm& term) {
   FitState with = state;
   with.model.vehicle.unnamed.push_back(term);
@@ -224,7 +226,7 @@ FitState withTerm(const Fitter& fitter, const FitState& state, const UnnamedTerm
   return with;
 }
 
-/// A term that was tried, and what it brings on blocks left out.
+/// A tested term, and its gain on held-out blocks.
 struct Tried {
   FitState state;
   Eigen::VectorXd loss;

@@ -16,20 +16,22 @@ constexpr int kFolds = 5;
 constexpr int kRefits = 3;                 // iterated least squares steps of a linearised refit
 constexpr double kLeastEigenvalue = 1e-7;  // of the normal matrix in units of its diagonal
 constexpr double kUnknownVariance = 1e12;
-constexpr double kFewBlocks = 1.25;  // a root of active blocks below so many critical scores
+constexpr double kFewBlocks =
+    1.25;  // few: root of active blocks below this multiple of the critical score
 constexpr double kAlmostOne = 0.999;
 constexpr double kSparse = 3.9;  // normal quantile: 1e-4
-/// The same of a first effect: 1e-3 each. With it 2 of 400 null logs of ten blocks named something.
+/// The same for a first effect: 1e-3 each. With it 2 of 400 null logs of ten blocks named
+/// something.
 constexpr double kFirst = 3.3;
 constexpr double kLeastActive = 3.0;  // blocks that must excite it
-/// Deviations that count for one that a model says of its numbers: it was estimated on some days,
+/// Factor on the deviations that a model states for its numbers: they were estimated on some days,
 /// and others differ more. Chosen on seed 14; with 1, five of 120 logs without effects got a name.
 constexpr double kDaysDiffer = 2.0;
-constexpr double kLeastUnique = 0.02;  // below it a column is what the model's curvature leaves
-/// Mean slope of the pull by the residual, over 1 / scale^2: (f + 1) / (f + 3).
+constexpr double kLeastUnique = 0.02;  // below it a column is due to the model's curvature
+/// Mean derivative of the pull with respect to the residual, times scale^2: (f + 1) / (f + 3).
 constexpr double kInformation = (kFreedom + 1.0) / (kFreedom + 3.0);
 
-/// Fold of each row: whole blocks, counted among those that count.
+/// Fold of each row: whole blocks, counted among those with rows that count.
 std::vector<int> foldsOf(const Observations& data, const std::vector<char>& counts) {
   std::vector<int> fold_of_block(counts.size(), 0);
   int next = 0;
@@ -70,7 +72,7 @@ Eigen::MatrixXd imitation(const FitState& state, const Eigen::VectorXd& metric,
   if (state.free.empty()) return shared;
   Eigen::MatrixXd normal = state.jacobian.transpose() * metric.asDiagonal() * state.jacobian +
                            priorPrecision(state) / kInformation;
-  // A ridge far below rounding of the data keeps columns apart that are the same.
+  // A ridge far below the data's rounding separates identical columns.
   normal.diagonal() += 1e-10 * normal.diagonal() +
                        Eigen::VectorXd::Constant(normal.rows(), 1e-12 * normal.trace() + 1e-300);
   return normal.ldlt().solve(shared);
@@ -124,14 +126,14 @@ Gain gainOf(const Fitter& fitter, const Eigen::VectorXd& first, const Eigen::Vec
 
 namespace {
 
-/// What rows say of the free parameters together.
+/// Joint information of the rows about the free parameters.
 struct Curvature {
   Eigen::MatrixXd rows;     ///< information of the rows alone (free x free)
-  Eigen::MatrixXd scatter;  ///< of the blocks' pulls, with its small-sample factor
-  Eigen::MatrixXd inverse;  ///< of information and prior, without directions of neither
+  Eigen::MatrixXd scatter;  ///< of the blocks' pulls, with the small-sample factor
+  Eigen::MatrixXd inverse;  ///< of information plus prior, without directions that have neither
   std::vector<char> lost;   ///< parameters in such directions
-  /// Variance of each by what a known rest varies, all others held: what two of them share is as
-  /// well known with a rest as without (free x 1).
+  /// Variance of each from the variation of a known rest, with all others fixed: what two of them
+  /// share is as well known with a rest as without (free x 1).
   Eigen::VectorXd by_rest;
 };
 
@@ -154,7 +156,7 @@ Curvature curvatureOf(const Fitter& fitter, const FitState& state, const Eigen::
   const auto blocks = static_cast<double>(std::count(counts.begin(), counts.end(), char{1}));
   if (blocks > 1.0) of.scatter *= blocks / (blocks - 1.0);
   const Eigen::MatrixXd all = of.rows + prior;
-  // In units of each diagonal, so that metres and seconds compare.
+  // In units of each diagonal, so that metres and seconds are comparable.
   Eigen::VectorXd unit(count);
   for (Eigen::Index i = 0; i < count; ++i)
     unit[i] = all(i, i) > 0.0 ? 1.0 / std::sqrt(all(i, i)) : 1.0;
@@ -194,12 +196,13 @@ Eigen::MatrixXd moveCovariance(const Fitter& fitter, const FitState& state) {
   if (state.free.empty()) return {};
   const Curvature of = curvatureOf(fitter, state, priorPrecision(state));
   FitState known = state;
-  // A vehicle with a rest is not of the model's form, so that its terms differ more, too.
+  // A vehicle with a rest does not have the model's form, so that its terms vary more, too.
   const double differ = state.model.rest && !state.model.rest->empty() ? kDaysDiffer : 1.0;
   for (FreeParameter& parameter : known.free)
     if (!restTermOf(parameter.path))
       parameter.deviation = differ * knownDeviation(state.model, parameter.path);
-  // A vehicle as the model says lies so far from its best numbers, and the rows pull towards it.
+  // A vehicle as described by the model deviates this much from its best numbers, and the rows pull
+  // towards it.
   const Eigen::MatrixXd pull = of.scatter + of.rows * priorCovariance(known) * of.rows.transpose();
   Eigen::MatrixXd moves = of.inverse * pull * of.inverse;
   moves.diagonal() = moves.diagonal().cwiseMax(0.0) + of.by_rest;
@@ -269,7 +272,7 @@ void ScoreTest::weighPrior(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& 
   prior_parts_ = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(known.size()), follow.cols());
   if (known.empty()) return;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(prior);
-  // The largest as many: the rest is zero.
+  // The largest ones; the others are zero.
   const Eigen::Index skipped = prior.rows() - prior_parts_.rows();
   for (Eigen::Index i = 0; i < prior_parts_.rows(); ++i)
     prior_parts_.row(i) = std::sqrt(std::max(0.0, eigen.eigenvalues()[skipped + i])) *
@@ -314,7 +317,7 @@ double ScoreTest::overdispersion(Eigen::Index candidate) const {
   double scatter = 0.0;
   for (Eigen::Index b = 0; b < pulls_.rows(); ++b) {
     const double information = block_information_(b, candidate);
-    // What a block has itself drawn the common size to is given back.
+    // The block's own influence on the common size is subtracted.
     const double rest = std::max(0.05, 1.0 - information / information_[candidate]);
     scatter += std::pow(pulls_(b, candidate) - common * information, 2) / rest;
   }
@@ -369,7 +372,7 @@ bool isSparse(const ScoreTest& test, Eigen::Index candidate, double score) {
 
 double evidence(const ScoreTest& test, Eigen::Index candidate, const Needed& needed) {
   double by_blocks = std::abs(test.score(candidate)) / needed.score;
-  // Where few blocks act chance reaches the largest score of all: to equal it is nothing.
+  // If few blocks act, chance reaches the largest possible score: equalling it is no evidence.
   if (by_blocks < 1.0 + 1e-9) by_blocks = std::min(by_blocks, kAlmostOne);
   if (!needed.size_counts || !isSparse(test, candidate, needed.score)) return by_blocks;
   if (needed.first && test.activeBlocks(candidate) < kLeastActive) return by_blocks;

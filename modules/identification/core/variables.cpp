@@ -10,20 +10,20 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kBack = 0.5;        // [s] before an observation, for the motion just before it
+constexpr double kBack = 0.5;        // [s] before an observation, for the preceding motion
 constexpr double kRemembered = 0.8;  // [rad] of turning after which earlier turns are forgotten
 constexpr double kSlipped = 0.3;     // [m] after which a reversal is forgotten
-constexpr double kArm = 0.4;         // [m] way of a track in a turn on the spot, over its angle
+constexpr double kArm = 0.4;         // [m] path of a track in a turn on the spot, over its angle
 constexpr double kSettles = 0.5;     // [s] of standing
-constexpr double kStill = 0.02;      // [m/s] below it no direction changes
-constexpr double kBefore = 1.2;      // [s] over which commands count as those before
-constexpr double kLongSince = 3.0;   // [s] after which a command has been there for long
+constexpr double kStill = 0.02;      // [m/s] below it the direction does not change
+constexpr double kBefore = 1.2;      // [s] over which commands count as preceding
+constexpr double kLongSince = 3.0;   // [s] after which a command counts as old
 
-/// What a vehicle has done before a sample of its motion.
+/// A vehicle's recent past before a sample of its motion.
 struct Past {
-  double turned = 0.0;    ///< where the last turns have led, -1..1, forgotten turn by turn
-  double reversed = 0.0;  ///< 1 just after the direction has changed, forgotten metre by metre
-  double rested = 0.0;    ///< 1 after standing, forgotten in the same way
+  double turned = 0.0;    ///< direction of the recent turns, -1..1, forgotten by turning
+  double reversed = 0.0;  ///< 1 just after a change of direction, forgotten by distance
+  double rested = 0.0;    ///< 1 after a standstill, forgotten in the same way
 };
 
 std::vector<Past> pastOf(const std::vector<MotionSample>& motion) {
@@ -47,7 +47,7 @@ std::vector<Past> pastOf(const std::vector<MotionSample>& motion) {
   return past;
 }
 
-/// How the vehicle moves during one observation.
+/// The vehicle's motion during one observation.
 struct Conditions {
   double v = 0.0;             // [m/s]
   double omega = 0.0;         // [rad/s]
@@ -56,12 +56,12 @@ struct Conditions {
   double omega_change = 0.0;
   double roll = 0.0, pitch = 0.0;
   double roll_change = 0.0, pitch_change = 0.0;  // [rad/s]
-  double elapsed = 0.0;                          // share of the drive, -1..1
-  double voltage = 0.0;         // below that at the beginning, over it; 0 = not measured
+  double elapsed = 0.0;                          // share of the drive, scaled to -1..1
+  double voltage = 0.0;         // relative drop since the beginning; 0 = not measured
   double inner = 0.0;           // [m/s] of the inner track in the direction of the outer one
   TrackCommand command;         // mean during the observation
   TrackCommand command_before;  // mean over kBefore before it
-  double since_command = 0.0;   // [s] since the command has changed, at most kLongSince
+  double since_command = 0.0;   // [s] since the last change of command, at most kLongSince
   Past past;
 };
 
@@ -252,7 +252,7 @@ double turning(const TrackCommand& command) {
   return 0.5 * (command.right - command.left);
 }
 
-/// What a residual may depend on in a way that nobody has thought of; speed and yaw rate first.
+/// Inputs for dependences of unknown form; speed and yaw rate first.
 const std::vector<Basis>& inputs() {
   static const std::vector<Basis> all{
       {"v", "m/s", [](const Conditions& m) { return m.v; }},

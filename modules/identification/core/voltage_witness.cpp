@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What the battery voltage says of the effects that were found.
+// Evidence of the battery voltage about found effects.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -14,8 +14,9 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kFactor = 0.7;    // of an effect, one factor on each kind of motion in a block
-constexpr double kChanges = 0.05;  // of it, in which the factors of the blocks differ
+constexpr double kFactor =
+    0.7;  // of an effect, described by one factor on each kind of motion in a block
+constexpr double kChanges = 0.05;          // of it, by which the factors of the blocks must differ
 constexpr size_t kLeastVoltageBlocks = 8;  // with voltage
 
 /// Sums over one block.
@@ -25,7 +26,7 @@ struct BlockMotion {
   double voltage = 0.0;               ///< [V] summed over bins
   double load = 0.0;                  ///< squared speeds of the tracks
   std::array<double, 2> square{};     ///< of the motion without the effect, by kind
-  std::array<double, 2> with_lost{};  ///< that motion times what the effect takes
+  std::array<double, 2> with_lost{};  ///< that motion times the effect's part
   double lost_square = 0.0;
 
   double motion() const { return square[0] + square[1]; }
@@ -68,7 +69,7 @@ std::map<int, BlockMotion> blockMotions(const std::vector<MotionBin>& bins,
 }
 
 /// Whether an effect is one factor on all driving and one on all turning of a block, which changes
-/// from block to block.
+/// between blocks.
 bool isFactorOverTime(const std::map<int, BlockMotion>& blocks) {
   double all = 0.0, explained = 0.0, weight = 0.0, sum = 0.0;
   for (const auto& [number, block] : blocks) {
@@ -85,10 +86,10 @@ bool isFactorOverTime(const std::map<int, BlockMotion>& blocks) {
   return all > 0.0 && explained > kFactor * all && changes > kChanges * all;
 }
 
-/// Gram matrices of the blocks; columns: fall of the voltage, share of the motion that the effect
+/// Gram matrices of the blocks; columns: drop of the voltage, share of the motion that the effect
 /// takes, load, and one column of ones for each drive.
 BlockGrams voltageGrams(const std::map<int, BlockMotion>& blocks, size_t drives) {
-  std::vector<double> full(drives, 0.0);  // [V], of the block with most
+  std::vector<double> full(drives, 0.0);  // [V], of the block with the highest voltage
   for (const auto& [number, block] : blocks)
     full[block.drive] = std::max(full[block.drive], block.voltage / block.bins);
   const auto columns = static_cast<Eigen::Index>(3 + drives);
@@ -99,13 +100,13 @@ BlockGrams voltageGrams(const std::map<int, BlockMotion>& blocks, size_t drives)
     row[1] = block.factor();
     row[2] = block.load / block.bins;
     row[static_cast<Eigen::Index>(3 + block.drive)] = 1.0;
-    // A block that hardly moves says nothing of the factor.
+    // A block that hardly moves has no information about the factor.
     gramsAt(grams, number, columns)[0] += block.motion() * row * row.transpose();
   }
   return grams;
 }
 
-/// Fall of the voltage per share of the motion that the effect takes, at equal load.
+/// Drop of the voltage per share of the motion that the effect takes, at equal load.
 double fallOf(const Grams& grams) {
   const Eigen::Index columns = grams[0].cols() - 1;
   Eigen::MatrixXd normal = grams[0].bottomRightCorner(columns, columns);

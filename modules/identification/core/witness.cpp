@@ -15,13 +15,13 @@ namespace tread::gap {
 namespace {
 
 constexpr double kUnlike = 0.2;     // of the effect, in directions that are no scale of the motion
-constexpr double kShown = 0.7;      // of the effect, not in the motion to the side
-constexpr double kSharp = 0.25;     // standard error of a share that says anything
-constexpr double kAlike = 0.8;      // correlation from which two effects are told together
-constexpr int kRounds = 60;         // until scales and shares agree
+constexpr double kShown = 0.7;      // of the effect, outside of lateral motion
+constexpr double kSharp = 0.25;     // largest standard error of an informative share
+constexpr double kAlike = 0.8;      // correlation from which two effects are evaluated together
+constexpr int kRounds = 60;         // until scales and shares have converged
 constexpr size_t kLeastRows = 100;  // with wheel speeds
 
-/// The track speeds of a drive while it moves as a row was measured.
+/// The track speeds of a drive during the measurement of a row.
 class WheelSpeeds {
  public:
   WheelSpeeds(const Drive& drive, double gauge)
@@ -33,7 +33,7 @@ class WheelSpeeds {
   std::optional<double> speed(const Observation& row, double late) const {
     return speed_[row.segment].mean(row.begin - late, row.end - late);
   }
-  /// Of a car's wheels only the speed of the drive is measured.
+  /// For a car, only the speed of the drive is measured.
   std::optional<double> turn(const Observation& row, double late) const {
     if (!turns_) return std::nullopt;
     return turn_[row.segment].mean(row.begin - late, row.end - late);
@@ -45,15 +45,15 @@ class WheelSpeeds {
   RunningSums turn_;
 };
 
-/// What a prediction says of the way along in a row, over its chord: the mean speed.
-/** Of a yaw effect nothing is left in it. The heading's row stands before. */
+/// Mean speed of a prediction in a row: the way along over its chord.
+/** Removes the influence of yaw effects. The heading's row precedes it. */
 double speedOf(const Observation& row, const Eigen::VectorXd& predicted, Eigen::Index at) {
   const double turned = predicted[at - 1] * (row.end - row.begin);
   const double chord = std::abs(turned) < 1e-6 ? 1.0 : std::sin(turned) / turned;
   return std::abs(chord) > 0.3 ? predicted[at] / chord : kNotMeasured;
 }
 
-/// Gram matrices of the blocks; columns: wheels, prediction, and what each effect changes.
+/// Gram matrices of the blocks; columns: wheels, prediction, and the change by each effect.
 BlockGrams gramsOf(const Fitter& fitter, const FitState& state,
                    const std::vector<Eigen::VectorXd>& without, size_t& rows) {
   const Observations& data = fitter.data();
@@ -86,8 +86,8 @@ BlockGrams gramsOf(const Fitter& fitter, const FitState& state,
   return blocks;
 }
 
-/// Shares of the effects for which wheels = a (prediction - sum (1 - share) effect) holds best, a
-/// by kind.
+/// Shares of the effects for which wheels = a (prediction - sum (1 - share) effect) fits best, a by
+/// kind.
 Eigen::VectorXd sharesOf(const Grams& grams) {
   const Eigen::Index effects = grams[0].cols() - 2;
   Eigen::VectorXd hidden = Eigen::VectorXd::Constant(effects, 0.5);  // 1 - share
@@ -111,7 +111,7 @@ Eigen::VectorXd sharesOf(const Grams& grams) {
   return Eigen::VectorXd::Ones(effects) - hidden;
 }
 
-/// How much of an effect is no mere scale of the motion: the wheels' own scale is not known.
+/// Share of an effect that is no scale of the motion, because the wheels' own scale is unknown.
 double unlikeScale(const Grams& grams, Eigen::Index effect) {
   double own = 0.0;
   double all = 0.0;
@@ -122,7 +122,7 @@ double unlikeScale(const Grams& grams, Eigen::Index effect) {
   return all > 0.0 ? own / all : 0.0;
 }
 
-/// How much alike two effects are in what wheels could show: the correlation of their directions.
+/// Similarity of two effects in what wheels could show: the correlation of their directions.
 double likeness(const Grams& grams, Eigen::Index a, Eigen::Index b) {
   double both = 0.0;
   double first = 0.0;
@@ -135,13 +135,13 @@ double likeness(const Grams& grams, Eigen::Index a, Eigen::Index b) {
   return first > 0.0 && second > 0.0 ? std::abs(both) / std::sqrt(first * second) : 0.0;
 }
 
-/// Whether two witnesses say the same of where their effects are.
+/// Whether two results agree about the location of their effects.
 bool sayTheSame(const WheelWitness& one, const WheelWitness& other) {
   return (one.saysDrive() && other.saysDrive()) || (one.saysGround() && other.saysGround());
 }
 
-/// Which of the shares are of an effect that resembles another one with another answer: how both
-/// share what the wheels show is more than they tell.
+/// Which of the shares belong to an effect that resembles another one with a different answer: the
+/// wheels cannot decide how to divide what they show.
 std::vector<char> contradicted(const Grams& grams, const std::vector<WheelWitness>& witnesses) {
   std::vector<char> marked(witnesses.size(), 0);
   for (size_t i = 0; i < witnesses.size(); ++i)
@@ -154,7 +154,7 @@ std::vector<char> contradicted(const Grams& grams, const std::vector<WheelWitnes
   return marked;
 }
 
-/// How much of an effect is not in the motion to the side.
+/// Share of an effect outside of lateral motion.
 double showsIn(const Fitter& fitter, const FitState& state, const Eigen::VectorXd& without) {
   double shown = 0.0;
   double all = 0.0;
@@ -168,7 +168,7 @@ double showsIn(const Fitter& fitter, const FitState& state, const Eigen::VectorX
   return all > 0.0 ? shown / all : 0.0;
 }
 
-/// Whether an effect is one factor on driving or on turning, which the wheels' scales are, too.
+/// Whether an effect is one factor on driving or on turning, like the wheels' scales.
 bool isScale(const Effect& effect) {
   return contains(effect.search.nominal, "forward_gain") ||
          contains(effect.search.nominal, "yaw_gain");
@@ -193,7 +193,7 @@ std::map<std::string, WheelWitness> wheelWitnesses(const Fitter& fitter, const F
     else
       asked.push_back({effect});
   }
-  // How a delay and two lags share what the wheels are late is more than they tell.
+  // The wheels cannot decide how a delay and two lags divide their total delay.
   if (!lags.empty()) asked.push_back(lags);
   std::vector<Eigen::VectorXd> without;
   for (size_t i = 0; i < asked.size();) {

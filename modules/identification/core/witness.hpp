@@ -11,34 +11,32 @@
 
 namespace tread::gap {
 
-/// How much of each effect the wheel speeds show, which no fit has used; with 95 % intervals over
-/// blocks.
-/** What the wheels show is in the drive, what they do not show is under it or in the INS. The
- * shares of all effects are estimated together; where two resemble each other and have other
- * answers, wheels say nothing of either. The wheels' radius and the track that counts are unknown,
- * so that their speeds are compared up to one factor for driving and one for turning; of an effect
- * that is such a factor (slip, track width) they say nothing. Encoders that are late themselves, by
- * a tenth of a second or two, show a lag as longer than it is. Nothing where no drive has encoders,
- * of effects of the INS and of motion to the side, and where the answer would be vague. `state`: of
- * the whole model, with current prediction. */
+/// Share of each effect that the wheel speeds show (they are never fitted); with 95 % intervals
+/// over blocks.
+/** Effects that the wheels show are in the drive, the others below it or in the INS. The shares of
+ * all effects are estimated together; if two resemble each other but have different answers,
+ * neither gets one. The wheels' radius and effective track are unknown, so their speeds are
+ * compared up to one factor for driving and one for turning; effects that equal such a factor
+ * (slip, track width) get no answer. Encoders with a lag of their own, by a tenth of a second or
+ * two, make a lag look longer. No entry without encoders, for effects of the INS and on lateral
+ * motion, and for vague answers. `state`: of the whole model, with a current prediction. */
 std::map<std::string, WheelWitness> wheelWitnesses(const Fitter& fitter, const FitState& state,
                                                    const std::vector<std::string>& effects);
 
-/// By how much the motor currents rise with each effect, beyond their ordinary dependence on the
-/// tracks' speed, its change and dry friction; with 95 % intervals over blocks.
-/** What takes speed by a load draws current; what the drive does not give draws none, and neither
- * do tracks that slip. Only torques count, so `currents` must be those of the motors, not of the
- * battery. Nothing where no drive has currents, or ones that do not follow the motion (stuck, cut
- * off, of another machine), of lags and what else acts on changes alone, of the INS, of motion to
- * the side, and of an effect that looks like the ordinary dependence (a factor on all motion, a dry
- * friction). */
+/// Rise of the motor currents with each effect, beyond their usual dependence on the tracks' speed,
+/// its change and dry friction; with 95 % intervals over blocks.
+/** A load that reduces the speed draws current; a weak drive or slipping tracks do not. Only
+ * torques count, so `currents` must be those of the motors, not of the battery. No entry without
+ * currents, for currents that do not follow the motion (stuck, cut off, of another machine), for
+ * lags and other effects on changes only, for the INS, for lateral motion, and for an effect that
+ * resembles the usual dependence (a factor on all motion, a dry friction). */
 std::map<std::string, CurrentWitness> currentWitnesses(const Fitter& fitter, const FitState& state,
                                                        const std::vector<std::string>& effects);
 
-/// How much of each effect that comes and goes with time the battery voltage falls by, too; with
-/// 95 % intervals over blocks.
-/** A motor is slower in proportion to its voltage. Nothing where no voltage is measured, and of
- * effects that are not one factor on the motion that changes from block to block. */
+/// Share of each intermittent effect that the battery voltage also shows; with 95 % intervals over
+/// blocks.
+/** A motor's speed is proportional to its voltage. No entry without a measured voltage, and for
+ * effects that are not one factor on the motion that changes between blocks. */
 std::map<std::string, VoltageWitness> voltageWitnesses(const Fitter& fitter, const FitState& state,
                                                        const std::vector<std::string>& effects);
 

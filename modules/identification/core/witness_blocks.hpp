@@ -24,7 +24,7 @@ inline Grams& gramsAt(BlockGrams& blocks, int block, Eigen::Index columns) {
   return blocks.try_emplace(block, Grams{none, none}).first->second;
 }
 
-/// Sums over all blocks, of which there must be one.
+/// Sum over all blocks, at least one.
 inline Grams sumOf(const BlockGrams& blocks) {
   Grams all = blocks.begin()->second;
   for (auto block = std::next(blocks.begin()); block != blocks.end(); ++block)
@@ -32,7 +32,7 @@ inline Grams sumOf(const BlockGrams& blocks) {
   return all;
 }
 
-/// What all blocks together say.
+/// Estimate from all blocks together.
 struct BlockEstimate {
   Grams all;
   Eigen::VectorXd values;
@@ -40,7 +40,7 @@ struct BlockEstimate {
   double quantile = 0.0;   ///< of the 95 % interval, in standard errors
 };
 
-/// Estimates from sums, with errors; of two blocks or more.
+/// Estimates from sums, with errors; needs two blocks or more.
 inline BlockEstimate estimateOver(const BlockGrams& blocks,
                                   const std::function<Eigen::VectorXd(const Grams&)>& estimate) {
   BlockEstimate result;

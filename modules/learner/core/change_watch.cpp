@@ -12,9 +12,9 @@ namespace {
 
 /// Between two windows [s].
 constexpr double kStep = 0.1;
-/// Windows one after the other that must exceed the threshold.
+/// Consecutive windows that must exceed the threshold.
 constexpr int kInARow = 2;
-/// Steps at the end of a window that tell since when the ground is another one.
+/// Fewest steps at the end of a window for dating the change.
 constexpr int kFewestSteps = 2;
 
 Eigen::Index samplesOfStep(double period) {
@@ -42,8 +42,8 @@ double chiSquare3(double probability) {
 ChangeWatch::ChangeWatch(const ChangeLimits& limits)
     : limits_(limits), threshold_(chiSquare3(limits.chance)) {}
 
-/// x of the last samples before `end`, which may begin in the execution before; nothing where they
-/// begin before all that is known.
+/// x of the last samples before `end`, which may begin in the previous execution; nullopt if they
+/// begin before the known motion.
 std::optional<double> ChangeWatch::unlikeness(const LearningRule& rule, size_t pattern,
                                               const ConstTrajectory& measured, Eigen::Index end,
                                               Eigen::Index samples, double period) const {
@@ -53,7 +53,7 @@ std::optional<double> ChangeWatch::unlikeness(const LearningRule& rule, size_t p
   auto departure = rule.departure(pattern, measured, end - here, here);
   if (!departure) return std::nullopt;
   if (before > 0) {
-    // What is not known of the ground is the same in both: their covariances are no less together.
+    // The uncertainty of the ground is common to both: their joint covariance is no smaller.
     const TwistDeparture& tail = tail_[before - 1];
     const double share = static_cast<double>(here) / static_cast<double>(samples);
     departure->mean = share * departure->mean + (1.0 - share) * tail.mean;

@@ -13,8 +13,8 @@ constexpr double kGone = 0.5;        // [s]
 constexpr double kExpected = 0.2;    // [s] tau_0
 constexpr double kLongest = 1.0;     // [s] tau at most
 constexpr double kCertainty = 0.05;  // [1] L over the square of the fastest
-constexpr double kMost = 0.5;        // [1] of the fastest: no more is believed
-constexpr double kFading = 0.99;     // [1] of the sums, from execution to execution
+constexpr double kMost = 0.5;        // [1] of the fastest: upper limit of d
+constexpr double kFading = 0.99;     // [1] of the sums, per execution
 
 double share(double seconds) {
   return 1.0 - std::exp(-seconds / kGone);
@@ -51,7 +51,7 @@ std::optional<Eigen::Vector2d> Coasting::beside(const std::vector<Pose2>& measur
 }
 
 double Coasting::tau() const {
-  // A set that moves nowhere has nothing to coast with.
+  // A set without motion cannot coast.
   const double certainty = std::max(1e-12, kCertainty * fastest_ * fastest_);
   return std::clamp((certainty * kExpected + products_) / (certainty + squares_), 0.0, kLongest);
 }

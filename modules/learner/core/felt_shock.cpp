@@ -12,11 +12,11 @@ namespace {
 constexpr double kBinSeconds = static_cast<double>(FeltShock::kBin) * 1e-6;
 /// Measurements of a bin below which it counts as a gap.
 constexpr int kLeastCount = 2;
-/// Slower than this the vehicle stands, and what is measured is noise [m/s].
+/// Below this speed the vehicle stands, and the signal is noise [m/s].
 constexpr double kStanding = 0.02;
-/// Share that one bin has in the estimate of the noise.
+/// Weight of one bin in the estimate of the noise.
 constexpr double kNoiseGain = 0.05;
-/// Less cannot be felt, whatever the INS: a logarithm needs something [m2/s4].
+/// Lower limit, because the logarithm needs a positive number [m2/s4].
 constexpr double kLeastSquare = 1e-4;
 
 }  // namespace

@@ -10,25 +10,25 @@
 namespace tread::learner {
 namespace {
 
-constexpr double kSpeedWindow = 0.2;    // [s] over which a velocity is a mean
-constexpr double kSlideWindow = 0.4;    // [s] INS noise of 1 cm looks like a slide over less
-constexpr double kChange = 0.2;         // [s] over which an acceleration is a mean
-constexpr double kLate = 0.3;           // [s] that the vehicle may answer later than predicted
-constexpr double kSettles = 0.3;        // [s] at least, to see whether a speed goes on to change
-constexpr double kLeastAsked = 0.8;     // [m/s2] less says nothing about the ground
-constexpr double kLeastGiven = 0.15;    // [m/s2] less is a vehicle that is held, or does not drive
-constexpr double kGaveWay = 0.5;        // [1] of what was asked
-constexpr double kGaveWayAtOnce = 0.3;  // [1] the real grounds we know leave .4 of the speed
-constexpr double kHolds = 0.7;          // [1] of what was asked when it gave way
-constexpr double kGoesOn = 0.3;         // [1] of its acceleration, when it should have settled
-constexpr double kLeastSlide = 0.25;    // [m/s] sideways
-constexpr double kSlideShare = 0.15;    // [1] of the speed
-constexpr double kLeastSlideGiven = 0.3;  // [m/s2] a slide does not say that it is less
+constexpr double kSpeedWindow = 0.2;  // [s] over which a velocity is a mean
+constexpr double kSlideWindow = 0.4;  // [s] over shorter times INS noise of 1 cm looks like a slide
+constexpr double kChange = 0.2;       // [s] over which an acceleration is a mean
+constexpr double kLate = 0.3;         // [s] by which the vehicle may respond later than predicted
+constexpr double kSettles = 0.3;      // [s] at least, to see whether a speed still changes
+constexpr double kLeastAsked = 0.8;   // [m/s2] smaller requests are uninformative about the ground
+constexpr double kLeastGiven = 0.15;  // [m/s2] less means a vehicle that is held, or does not drive
+constexpr double kGaveWay = 0.5;      // [1] of the request
+constexpr double kGaveWayAtOnce = 0.3;    // [1] known real grounds leave .4 of the speed
+constexpr double kHolds = 0.7;            // [1] of the request at which it gave way
+constexpr double kGoesOn = 0.3;           // [1] of its acceleration, after it should have settled
+constexpr double kLeastSlide = 0.25;      // [m/s] sideways
+constexpr double kSlideShare = 0.15;      // [1] of the speed
+constexpr double kLeastSlideGiven = 0.3;  // [m/s2] a slide is no evidence for less
 constexpr double kTurns = 0.1;            // [rad/s]
-constexpr double kMostTurn = 3.0;         // [1] of the turn that the pattern makes
-constexpr double kLevel = 0.05;           // [rad] on steeper ground gravity starts and stops, too
+constexpr double kMostTurn = 3.0;         // [1] of the pattern's turn
+constexpr double kLevel = 0.05;  // [rad] on steeper ground gravity also accelerates the vehicle
 
-/// Mean velocity around a moment, body frame.
+/// Mean velocity about an instant, body frame.
 struct Speed {
   double time = 0.0;                                   ///< [s] since the start
   double forward = 0.0;                                ///< [m/s]
@@ -65,7 +65,7 @@ std::vector<Speed> speedsOf(const std::vector<Pose2>& poses, size_t count, doubl
 
 /// The largest change of the forward speed over kChange.
 struct Change {
-  double acceleration = 0.0;  ///< [m/s2] mean of the changes that are at least half of it
+  double acceleration = 0.0;  ///< [m/s2] mean of the changes of at least half its size
   size_t from = 0, to = 0;    ///< indices
 };
 
@@ -104,10 +104,10 @@ double forwardAt(const std::vector<Speed>& speeds, double time) {
   return a.forward + (time - a.time) / (b.time - a.time) * (b.forward - a.forward);
 }
 
-/// Whether the speed goes on to change after the pattern's has settled.
+/// Whether the speed still changes after the pattern's has settled.
 bool goesOn(const std::vector<Speed>& measured, const std::vector<Speed>& asked, double sign,
             const Change& given) {
-  constexpr double kSettled = 0.1;  // [1] of the whole change
+  constexpr double kSettled = 0.1;  // [1] of the total change
   const double first = asked.front().forward, last = asked.back().forward;
   const double near = std::max(0.05, kSettled * std::abs(last - first));
   double settled = 0.0;
@@ -119,7 +119,7 @@ bool goesOn(const std::vector<Speed>& measured, const std::vector<Speed>& asked,
   return more > kGoesOn * given.acceleration * left;
 }
 
-/// What a start or a stop says.
+/// Evidence from a start or a stop.
 std::optional<GripSign> alongSign(const std::vector<Speed>& measured,
                                   const std::vector<Speed>& shipped) {
   constexpr double kEver = 1e9;
@@ -128,7 +128,7 @@ std::optional<GripSign> alongSign(const std::vector<Speed>& measured,
   const double sign = faster.acceleration >= slower.acceleration ? 1.0 : -1.0;
   const Change& change = sign > 0.0 ? faster : slower;
   if (change.acceleration < kLeastAsked) return std::nullopt;
-  // A vehicle that enters with another speed is asked for another change.
+  // A vehicle that enters at another speed is asked for another change.
   const double start = shipped[change.from].time, end = shipped[change.to].time;
   const double asked =
       std::min(change.acceleration,
@@ -136,7 +136,7 @@ std::optional<GripSign> alongSign(const std::vector<Speed>& measured,
   if (asked < kLeastAsked || measured.back().time < end - 1e-9) return std::nullopt;
   Change given = largestChange(measured, sign, start, start + kLate);
   const bool goes_on = goesOn(measured, shipped, sign, given);
-  // What goes on as it began is measured over all of it.
+  // A change that continues is measured over its whole duration.
   if (goes_on)
     given.acceleration = std::min(given.acceleration,
                                   sign * (measured.back().forward - measured[given.from].forward) /
@@ -148,18 +148,18 @@ std::optional<GripSign> alongSign(const std::vector<Speed>& measured,
   return GripSign{std::min(given.acceleration, asked), asked, false};
 }
 
-/// What a slide says.
+/// Evidence from a slide.
 std::optional<GripSign> slideSign(const std::vector<Speed>& measured,
                                   const std::vector<Speed>& shipped) {
   std::optional<GripSign> slide;
   for (size_t i = 0; i < std::min(measured.size(), shipped.size()); ++i) {
     const Speed &at = measured[i], &wanted = shipped[i];
-    // An origin beside the centre of turning moves sideways as fast as the vehicle turns.
+    // A body origin beside the centre of rotation moves sideways in proportion to the turn rate.
     double left = wanted.left;
     if (std::abs(wanted.turn) > kTurns) left *= std::clamp(at.turn / wanted.turn, 0.0, kMostTurn);
     const double speed = at.velocity.norm();
     if (!(std::abs(at.left - left) >= std::max(kLeastSlide, kSlideShare * speed))) continue;
-    // Where it moves less to the side than it should, it does not slide.
+    // If it moves less sideways than it should, it does not slide.
     if (std::abs(at.left) <= std::abs(left)) continue;
     size_t j = i + 1;
     while (j < measured.size() && measured[j].time - at.time < kChange - 1e-9) ++j;

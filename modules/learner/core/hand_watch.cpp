@@ -12,9 +12,9 @@ namespace {
 constexpr int64_t kSteady = 500'000;    // [us] of the entry class's command before a pattern
 constexpr int64_t kShortest = 400'000;  // [us] of a beginning: shorter ones are mostly INS noise
 constexpr int64_t kEdge = 15'000;       // [us] by which a change may be early or late
-constexpr int64_t kSilent = 200'000;    // [us] between two commands: what was given is not known
+constexpr int64_t kSilent = 200'000;    // [us] between two commands: longer gaps are unknown
 constexpr int64_t kKept = 70'000'000;   // [us] longer than any series
-constexpr double kSameCommand = 2e-3;   // MOTOR is single precision, a Roboteq takes thousandths
+constexpr double kSameCommand = 2e-3;   // MOTOR is single precision, a Roboteq resolves thousandths
 
 }  // namespace
 
@@ -61,7 +61,8 @@ std::optional<size_t> HandWatch::driven(const PatternSet& set, const MotionPatte
   for (size_t i = 0; i < pattern.commands.size(); ++i, begin += period) {
     for (const int64_t utime : {begin + kEdge, begin + period - kEdge}) {
       if (utime > newest_) return std::nullopt;
-      // Where the bridge took over, the robot may have been held: that is no ground.
+      // After a takeover by the bridge the robot may have been held: that is not the ground's
+      // influence.
       if (!at(utime)->by_hand) return 0;
       if (!given(pattern.commands[i], utime)) return i;
     }

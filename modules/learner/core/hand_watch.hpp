@@ -11,14 +11,14 @@
 
 namespace tread::learner {
 
-/// What the motors were given from a time on.
+/// The command to the motors from a time on.
 struct GivenCommand {
   int64_t utime = 0;  ///< [us]
   Command command;
   bool by_hand = false;
 };
 
-/// A piece of driving by hand that is an execution of a pattern, or the beginning of one.
+/// A part of manual driving that equals an execution of a pattern, or the beginning of one.
 struct HandDrivenPattern {
   int pattern_id = 0;
   int64_t started = 0;  ///< [us] when its first command took effect
@@ -26,25 +26,26 @@ struct HandDrivenPattern {
   bool completed = false;
 };
 
-/// Finds the patterns in what a person drives by hand.
-/** A rule learns from patterns only: what a person drives teaches where its commands are a
+/// Finds patterns in manual driving.
+/** A rule learns only from patterns, so manual driving is used where its commands equal a
  * pattern's, one for one, after half a second of the steady command of the pattern's entry class.
- * The longest pattern counts; where none was driven to its end, the longest beginning of one that
- * the person went on from in another way. Pieces do not overlap. Whether it also moved as the entry
- * class does is the gates' business. Pure: time comes with the commands. */
+ * The longest pattern counts; if none was completed, the longest beginning of one from which the
+ * driver departed. Parts do not overlap. Whether the motion also matched the entry class is
+ * checked by the gates. Pure: time comes with the commands. */
 class HandWatch {
  public:
-  /// Takes the commands in the order of time. `lost`: some before this one are missing.
+  /// Takes the commands in order of time. `lost`: some before this one are missing.
   void add(const GivenCommand& given, bool lost);
-  /// Whether a command, from whomever, was given without a break for half a second before a time.
+  /// Whether a command, from any source, was held without interruption for half a second before a
+  /// time.
   bool steadyBefore(const Command& command, int64_t utime, int64_t period_us) const;
-  /// The patterns of a set that have ended since the last call, in the order of time, with or
-  /// without beginnings.
+  /// The patterns of a set that have ended since the last call, in order of time, with or without
+  /// beginnings.
   std::vector<HandDrivenPattern> take(const PatternSet& set, bool beginnings);
 
  private:
-  /// How many of a pattern's commands were driven by hand from a time on; nullopt while it may
-  /// still go on; 0 if the bridge, not the person, ended it.
+  /// How many of a pattern's commands were driven manually from a time on; nullopt while it may
+  /// still continue; 0 if the bridge, not the driver, ended it.
   std::optional<size_t> driven(const PatternSet& set, const MotionPattern& pattern,
                                int64_t start) const;
   std::optional<HandDrivenPattern> longestFrom(int64_t start, const PatternSet& set,
@@ -53,8 +54,8 @@ class HandWatch {
   const GivenCommand* at(int64_t utime) const;
   int64_t nextStart(int64_t start, int64_t period_us) const;
 
-  std::deque<GivenCommand> given_;  ///< where something changed, oldest first
-  int64_t newest_ = 0;              ///< [us] the last command that was taken
+  std::deque<GivenCommand> given_;  ///< changes only, oldest first
+  int64_t newest_ = 0;              ///< [us] the last command taken
   int64_t start_ = 0;               ///< [us] where the next pattern may begin
 };
 

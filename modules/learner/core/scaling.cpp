@@ -49,7 +49,7 @@ std::vector<Pose2> posesOf(const ConstTrajectory& trajectory) {
 
 namespace {
 
-/// A box that has shrunk to less than this cannot be divided by [m, rad].
+/// A smaller box cannot be a divisor [m, rad].
 constexpr double kTiniestBox = 1e-6;
 
 /// Variances of x, y, yaw within xx xy xyaw yy yyaw yawyaw.
@@ -76,7 +76,7 @@ PatternRole roleOf(const MotionPattern& shipped, const ScalingLimits& limits) {
     const double noise = known ? limits.min_box_sigmas * std::sqrt(variance[axis]) : 0.0;
     role.scalable[static_cast<size_t>(axis)] = box[axis] >= std::max(limits.min_box[axis], noise);
   }
-  // Section IV: what moves in one dimension only (forward motions, turns in place) gives no V.
+  // Section IV: one-dimensional motion (straight driving, turns in place) gives no V.
   role.gives_scaling = std::count(role.scalable.begin(), role.scalable.end(), true) >= 2;
   return role;
 }
@@ -104,7 +104,7 @@ void smooth(const ConstTrajectory& measured, double memory, Trajectory predicted
 bool isKnown(const PoseCovariance& covariance) {
   const bool finite = std::all_of(covariance.begin(), covariance.end(),
                                   [](double element) { return std::isfinite(element); });
-  // Nothing is certain: all variances zero come from a model that tells of no spread.
+  // Nothing is certain: variances that are all zero come from a model without spread.
   return finite && (covariance[0] > 0.0 || covariance[3] > 0.0 || covariance[5] > 0.0);
 }
 

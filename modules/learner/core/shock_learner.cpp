@@ -9,9 +9,10 @@ namespace tread::learner {
 namespace {
 
 constexpr double kKeptRadius = 25.0;  // of map [m]
-/// Share that a new segment has in what the ground here is like, on a logarithmic scale.
+/// Weight of a new segment in the estimate of the local ground, on a logarithmic scale.
 constexpr double kHereGain = 0.6;
-/// Smoother ground shakes nobody, and what was seen of it is mostly the range finder's noise [m].
+/// Smoother ground shakes no vehicle, and its measured roughness is mostly the range finder's noise
+/// [m].
 constexpr double kLeastSeen = 0.003;
 
 }  // namespace
@@ -49,7 +50,7 @@ double ShockLearner::seenAlong(const std::vector<Eigen::Vector2d>& p_map) const 
 std::optional<FeltSegment> ShockLearner::take(const BodyMotion& motion) {
   std::optional<FeltSegment> segment = felt_.take(motion);
   if (!segment) return segment;
-  // Cells that the robot has come to are not looked at any more: this is what was seen before.
+  // Cells under the robot are not observed any more: this is the earlier observation.
   const double seen = seenAlong(segment->p_map);
   if (seen >= kLeastSeen) regression_.learn(seen, segment->speed, segment->shock);
   const double felt = segment->shock / model().speedFactor(segment->speed);

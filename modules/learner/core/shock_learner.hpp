@@ -11,7 +11,7 @@
 
 namespace tread::learner {
 
-/// Learns from what is felt on a segment what the range finder saw of it before.
+/// Learns shock on a segment from the roughness that the range finder measured there before.
 class ShockLearner {
  public:
   /// `arm` [m] from the body origin to the front end.
@@ -19,19 +19,19 @@ class ShockLearner {
 
   /// Takes a tile of the map; false if it is malformed.
   bool takeTile(Tile tile, double cell_size, int tile_cells);
-  /// Takes a measurement; returns the segment that has just ended, which was learned from.
+  /// Takes a measurement; returns the segment that it completes and that was learned from, if any.
   std::optional<FeltSegment> take(const BodyMotion& motion);
-  /// The INS jumped: neither the way so far nor the map is true any more.
+  /// The INS jumped: neither the current segment nor the map is valid any more.
   void restart();
 
   ShockModel model() const { return regression_.model(); }
   const ShockRegression& regression() const { return regression_; }
   void resume(const ShockRegression& regression) { regression_ = regression; }
   int pairs() const { return regression_.pairs(); }
-  /// Shock that the ground of the last metres would give at 1 m/s [m/s2]; NaN before the first
+  /// Shock of the ground of the last metres, converted to 1 m/s [m/s2]; NaN before the first
   /// segment.
   double here() const { return here_; }
-  /// RMS roughness that was seen along a way [m]; 0 where nothing was seen.
+  /// RMS roughness observed along a path [m]; 0 where none was observed.
   double seenAlong(const std::vector<Eigen::Vector2d>& p_map) const;
 
  private:

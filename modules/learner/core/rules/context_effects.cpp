@@ -10,17 +10,17 @@
 namespace tread::learner {
 namespace {
 
-/// Executions on a ground before its mean context says anything.
+/// Executions on a ground before its mean context is usable.
 constexpr double kLeastExecutions = 3.0;
-/// Executions after which the older ones fade in the mean context: the ground follows as fast.
+/// Executions after which older ones fade in the mean context, as in that of the ground.
 constexpr double kMemory = 30.0;
-/// Share of the evidence that an execution leaves of the older.
+/// Share of older evidence that remains after an execution.
 constexpr double kEvidenceKept = 0.99;
-/// The evidence is kept within this, so that a vehicle that was repaired is believed in time.
+/// Limit of the evidence, so that a repair of the vehicle is detected in time.
 constexpr double kMostEvidence = 20.0;
-/// What is farther off than so many standard deviations is other ground.
+/// A deviation of more standard deviations means other ground.
 constexpr double kMostSigmas = 4.0;
-/// No slope or battery does more [1] of a velocity.
+/// Upper limit of the effect of slope or battery [1], as a share of a velocity.
 constexpr double kMostEffect = 0.5;
 
 double logNormal(double y, double variance) {
@@ -72,7 +72,7 @@ void ContextEffects::learn(const Inputs& f, const Eigen::Vector3d& beyond,
   }
   const Inputs g = f - mean_;
   if (executions_ >= kLeastExecutions) {
-    // The ground has taken in what is steady of an effect: what is left goes with g.
+    // The ground includes the constant part of an effect: the rest varies with g.
     const Inputs counted = counts_.cwiseProduct(c_).cwiseProduct(g);
     forEach([&](Eigen::Index i, Eigen::Index k) {
       const double y = beyond[i] + counted(i, k);

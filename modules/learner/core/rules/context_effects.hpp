@@ -12,15 +12,15 @@
 
 namespace tread::learner {
 
-/// What slope and battery do to a mean twist, the same on every ground.
-/** Velocity i of an execution is moved by sum_k c_ik f_ik, f of its context:
+/// Influence of slope and battery on a mean twist, the same on every ground.
+/** Velocity i of an execution changes by sum_k c_ik f_ik, f of its context:
  *    slope      f = |v| rise along body x for v_x, along body y for v_y and omega
  *    voltage    f = v (V / V_0 - 1) for v_x, omega (V / V_0 - 1) for omega
- * V_0 the first voltage that was measured. What is steady belongs to the ground, so that c is
- * learned from how f differs from its mean on the same ground, by a Kalman filter for each c. A c
- * counts only where it predicts better: the log densities of executions with it less those without
- * it, each before it was learned from, are summed; it counts from `context_evidence` on, until the
- * sum is negative. */
+ * V_0 is the first measured voltage. Constant influences belong to the ground, so c is learned
+ * from the deviation of f from its mean on the same ground, by a Kalman filter for each c. A c is
+ * used only if it improves the prediction: the differences of the log densities of executions with
+ * and without it, each evaluated before learning from the execution, are summed; it is used once
+ * the sum reaches `context_evidence`, until it is negative. */
 class ContextEffects {
  public:
   enum Input { kSlope, kVoltage, kInputs };
@@ -28,23 +28,23 @@ class ContextEffects {
 
   explicit ContextEffects(const GroundConfig& config);
 
-  /// The battery has this voltage [V] now, if it is known. The first one becomes V_0.
+  /// Sets the present battery voltage [V], if known. The first one becomes V_0.
   void meet(double voltage);
-  /// f at the voltage met last; 0 where the tilt is not known.
+  /// f at the latest voltage; 0 where the tilt is unknown.
   Inputs inputs(const PatternPart& part, double seconds, const Tilt& tilt) const;
-  /// What the effects that count add to each velocity.
+  /// Change of each velocity by the effects in use.
   Eigen::Vector3d effect(const Inputs& f) const;
-  /// What they add to forward and yaw gain at the voltage met last [1].
+  /// Their change of forward and yaw gain at the latest voltage [1].
   Eigen::Vector2d gainsNow() const;
-  /// Learns from `beyond`: the measured velocities less those of the ground and effect(f), with
-  /// their variance. A new number of `ground` begins a new mean of f.
+  /// Learns from `beyond`: the measured velocities minus those of the ground and effect(f), with
+  /// their variance. A new number of `ground` restarts the mean of f.
   void learn(const Inputs& f, const Eigen::Vector3d& beyond, const Eigen::Vector3d& variance,
              int64_t ground);
   bool counts(size_t velocity, Input input) const {
     return counts_(static_cast<Eigen::Index>(velocity), input) > 0.0;
   }
 
-  /// Numbers, all of them finite; restore() returns false if they do not fit.
+  /// Finite numbers; restore() returns false if they are invalid.
   void save(std::vector<double>& memory) const;
   bool restore(const std::vector<double>& memory, size_t& at);
 
@@ -60,12 +60,12 @@ class ContextEffects {
   Inputs c_ = Inputs::Zero();
   Inputs variance_;                 ///< of c
   Inputs gained_ = Inputs::Zero();  ///< sum of the differences of log densities
-  Inputs counts_ = Inputs::Zero();  ///< 1 if it counts, 0 if not
+  Inputs counts_ = Inputs::Zero();  ///< 1 if in use, 0 if not
   Inputs mean_ = Inputs::Zero();    ///< of f on this ground
-  double executions_ = 0.0;         ///< that the mean is of
+  double executions_ = 0.0;         ///< number of executions in the mean
   int64_t ground_ = -1;
-  double first_voltage_ = 0.0;  ///< V_0 [V]; 0 before one was measured
-  double sag_ = 0.0;            ///< V / V_0 - 1 at the voltage met last
+  double first_voltage_ = 0.0;  ///< V_0 [V]; 0 before the first measurement
+  double sag_ = 0.0;            ///< V / V_0 - 1 at the latest voltage
 };
 
 }  // namespace tread::learner

@@ -14,36 +14,35 @@
 namespace tread::learner {
 namespace {
 
-// How corrections are distributed on a ground of scale 1, relative to gain, to turns and to yaw
-// gain [1].
+// Distribution of corrections on a ground of scale 1, relative to gain, to turns and to yaw gain
+// [1].
 constexpr double kCrabSpread = 0.2;
 constexpr double kShearSpread = 0.3;  // times isotropy: along one axis it is gain and crab
 constexpr double kTurnLossSpread = 0.7;
 constexpr double kSideslipSpread = 0.7;
 constexpr double kShiftSpread = 0.5;
 constexpr double kYawBySpeedSpread = 0.6;
-/// Of yaw bias, how much patterns differ in it [1].
+/// Share of yaw bias that differs between patterns [1].
 constexpr double kBiasApart = 0.5;
-/// A turn on the spot moves half as much as a straight drive of the same speed of the tracks.
+/// A turn on the spot moves half as much as straight driving at the same track speed.
 constexpr double kTurnMoves = 0.5;
-/// Share of the recorded spread of ends in the noise, where there is one [1].
+/// Share of the recorded spread of ends in the noise, if there is one [1].
 constexpr double kRecorded = 0.9;
-/// A set that hardly turns is measured by what the vehicle could: [1] of v_ref / lever.
+/// Lower limit of the turn rate's scale for a set that hardly turns: [1] of v_ref / lever.
 constexpr double kLeastTurn = 0.2;
 
-/// A correction beyond these is none that ground makes; predictions stay drivable.
+/// Larger corrections are not caused by ground; predictions stay drivable.
 constexpr double kLargestFactor = 3.0;
 constexpr double kLargestBias = 0.5;  // [rad/m]
 constexpr double kLargestLag = 0.5;   // [s]
-/// Of the velocity's lag: what changes from execution to execution, over what a set may be wrong
-/// by.
+/// Of the velocity's lag: variation between executions, relative to the possible error of a set.
 constexpr double kLagNoise = 0.3;
-/// What a turn rate is at an end of a pattern is its mean over this [s].
+/// The turn rate at an end of a pattern is its mean over this [s].
 constexpr double kEndOfTurn = 0.15;
-/// [s] in which what a pattern was entered with is gone, for the part of it that a pattern feels.
+/// [s] in which an entry deviation decays, for the part that affects a pattern.
 constexpr double kGone = 0.5;
 
-/// sin(x) / x and cos(x); the series are exact to 1e-16 where they are used.
+/// sin(x) / x and cos(x); the series are exact to 1e-16 in the range used.
 struct HalfTurn {
   explicit HalfTurn(double x) {
     const double x2 = x * x;
@@ -62,8 +61,8 @@ struct HalfTurn {
   double cosine;
 };
 
-/// Chord over arc of a sample that turns by 2 `half`. Beyond half a turn a sample the arc would be
-/// ambiguous; its chord is taken.
+/// Ratio of chord to arc for a sample that turns by 2 `half`. Beyond half a turn per sample the arc
+/// would be ambiguous, so the chord is used.
 double chordShare(double half, double sinc) {
   return std::abs(half) < 1.5 ? sinc : 1.0;
 }
@@ -81,7 +80,7 @@ Eigen::Vector3d sampleMotion(const Pose2& from, const Pose2& to) {
 
 /// Change of a sample's twist per unit of each correction.
 struct Response {
-  /// `change`: of the velocity since the sample before, per second.
+  /// `change`: of the velocity since the previous sample, per second.
   Response(const BodyScale& scale, const Eigen::Vector3d& twist, const Eigen::Vector2d& change) {
     const Eigen::Vector2d V = twist.head<2>();
     const Eigen::Vector2d left(-V[1], V[0]);  // J V
@@ -99,7 +98,7 @@ struct Response {
     const double moves = std::hypot(speed, kTurnMoves * scale.speed / scale.turn * w);
     own.col(0) = moves * scale.axis;
     own.col(1) = moves * Eigen::Vector2d(-scale.axis[1], scale.axis[0]);
-    yaw << w, w * speed / scale.speed, V[0], V[1], 0.0;  // the lag: of a part as a whole
+    yaw << w, w * speed / scale.speed, V[0], V[1], 0.0;  // the lag: for a part as a whole
     yaw_own = w;
     bias_own = speed;
   }
@@ -109,8 +108,8 @@ struct Response {
   double yaw_own, bias_own;
 };
 
-/// Covariance of the mean twist that explains the recorded spread of a pattern's end; nothing where
-/// it is unknown.
+/// Covariance of the mean twist that explains the recorded spread of a pattern's end; nullopt if
+/// that is unknown.
 std::optional<Eigen::Matrix3d> recordedNoise(const MotionPattern& pattern,
                                              const TwistProfile& profile) {
   const PoseCovariance& known = pattern.end_covariance;
@@ -122,7 +121,7 @@ std::optional<Eigen::Matrix3d> recordedNoise(const MotionPattern& pattern,
   if (!lever.isInvertible()) return std::nullopt;
   const Eigen::Matrix3d inverse = lever.inverse();
   const Eigen::Matrix3d noise = inverse * covariance * inverse.transpose();
-  // A file may hold any six numbers.
+  // A file may contain any six numbers.
   if (!noise.allFinite() || noise.diagonal().minCoeff() < 0.0) return std::nullopt;
   return noise;
 }
@@ -143,7 +142,8 @@ TwistProfile::TwistProfile(const MotionPattern& shipped, double period) : period
     twists_.emplace_back(sampleMotion(poses.back(), pose) / period);
     poses.push_back(pose);
   }
-  // A change of a sample's twist moves the end: the step itself, and the turn about its place.
+  // A change of a sample's twist moves the end by the step itself, and by the rotation about its
+  // position.
   end_lever_.setZero();
   for (size_t t = 0; t < twists_.size(); ++t) {
     const double middle = poses[t].yaw + 0.5 * twists_[t][2] * period_;
@@ -190,9 +190,8 @@ PatternPart TwistProfile::part(const BodyScale& scale, Eigen::Index first,
   return part;
 }
 
-/// What a turn rate of the first samples loses on average, for each second that turns come later:
-/// what becomes of it from their beginning to their end, over the time; less what looks like a
-/// gain.
+/// Mean loss of turn rate in the first samples, per second of lag of turns: change of the rate from
+/// their beginning to their end, over the time; minus the part that looks like a gain.
 double TwistProfile::lossByLag(const BodyScale& scale, Eigen::Index first,
                                Eigen::Index samples) const {
   const auto edge = static_cast<Eigen::Index>(std::lround(kEndOfTurn / period_));
@@ -207,7 +206,7 @@ double TwistProfile::lossByLag(const BodyScale& scale, Eigen::Index first,
   return scale.lag_as_turn * mean - change / (period_ * static_cast<double>(samples));
 }
 
-/// What the velocity was some samples before t, held at both ends.
+/// Velocity this many samples before t, held at both ends.
 Eigen::Vector2d TwistProfile::velocityBefore(double samples, size_t t) const {
   if (samples == 0.0) return twists_[t].head<2>();
   const double at =
@@ -239,7 +238,7 @@ Pose2 TwistProfile::walk(const BodyScale& scale, const TwistCorrection& x, Put&&
   const double lost =
       within(c[TwistCorrection::kYawLag], kLargestLag) * lossByLag(scale, 0, samples());
   Pose2 at;
-  double c_at = 1.0, s_at = 0.0;  // of at.yaw, turned along instead of computed anew
+  double c_at = 1.0, s_at = 0.0;  // of at.yaw, updated by rotation instead of recomputed
   for (size_t t = 0; t < twists_.size(); ++t) {
     const Eigen::Vector2d V = velocityBefore(late, t);
     const double v = V[0], s = V[1], w = twists_[t][2];
@@ -326,7 +325,8 @@ GroundModel::GroundModel(const GroundConfig& config, const PatternSet& shipped)
   spread_ = spread_.cwiseAbs2().eval();
 }
 
-/// References, and along which axis the set moves: half the angle of the sum of squared velocities.
+/// Reference speeds, and main axis of the set's motion: half the angle of the sum of squared
+/// velocities.
 void GroundModel::measureScale(double lever) {
   scale_ = {1e-3, 0.0, lever};
   std::complex<double> sum;
@@ -365,7 +365,7 @@ PatternPart GroundModel::part(size_t pattern, Eigen::Index first, Eigen::Index s
   const double moved = squared(noise_.position / seconds) + squared(noise_.turning * part.turning);
   Eigen::Matrix3d to_path = Eigen::Matrix3d::Identity();
   to_path.topLeftCorner<2, 2>() = part.to_path;
-  // A profile that comes later by dt loses dt of its change.
+  // A profile that lags by dt loses dt times its derivative.
   const Eigen::Vector3d change = profile.twists()[static_cast<size_t>(first + samples - 1)] -
                                  profile.twists()[static_cast<size_t>(first)];
   Eigen::Vector3d late = noise_.lag / seconds * (to_path * change);
@@ -376,14 +376,14 @@ PatternPart GroundModel::part(size_t pattern, Eigen::Index first, Eigen::Index s
                       squared(noise_.yaw * part.turning) + squared(noise_.wander * part.speed) +
                           squared(noise_.heading / seconds)) +
       late.cwiseAbs2();
-  // A turn on the spot moves, too: half a metre for a radian.
+  // A turn on the spot counts as motion, too: half a metre per radian.
   constexpr double kMetresPerRadian = 0.5;
   part.shape = squared(noise_.shape * (part.metres + kMetresPerRadian * part.turning * seconds)) +
                squared(noise_.position);
   const double share = recorded_share_[pattern];
   const Eigen::Vector3d recorded = (to_path * recorded_[pattern] * to_path.transpose()).diagonal();
   constexpr double kLeast = 0.05;
-  // A recording of nothing is no proof that an execution is exact.
+  // A recorded spread of zero does not prove that an execution is exact.
   part.noise = ((1.0 - share) * expected + share * recorded).cwiseMax(kLeast * expected);
   return part;
 }

@@ -5,7 +5,7 @@
 namespace tread::learner {
 namespace {
 
-/// One width of what grounds differ in, and how probable it is beforehand.
+/// A possible width of the difference between grounds, and its prior probability.
 struct Width {
   double deviation;
   double weight;
@@ -13,20 +13,20 @@ struct Width {
 using Widths = std::vector<Width>;
 
 const Widths kGain{{0.03, 0.4}, {0.1, 0.3}, {0.3, 0.2}, {0.6, 0.08}, {1.5, 0.02}};
-/// What turns do to the velocity, beside what goes with the gain: a vehicle that drives straight as
+/// Effect of turns on the velocity, in addition to the gain: a vehicle that drives straight as
 /// before may slide in turns.
 const Widths kTurns{{0.0, 0.4}, {0.1, 0.4}, {0.3, 0.2}};
 const Widths kYawGain{{0.05, 0.3}, {0.15, 0.4}, {0.35, 0.2}, {0.8, 0.1}};
 const Widths kYawBias{{0.003, 0.8}, {0.03, 0.15}, {0.1, 0.05}};  // [1] of both sides together
 const Widths kResidual{{0.01, 0.5}, {0.04, 0.3}, {0.1, 0.15}, {0.25, 0.05}};
-/// Velocities of executions may scatter more than expected: else one of them told of any ground.
-/// Turn rates are measured well enough.
+/// Velocities of executions may scatter more than expected: otherwise a single one would identify
+/// any ground. Turn rates are measured accurately enough.
 const Widths kVelocityNoise{{1.0, 0.88}, {3.2, 0.12}};
-/// Where the gain changes patterns change otherwise by such a share of it [1].
+/// Residual change of patterns as a share of the change of the gain [1].
 constexpr double kResidualOfGain = 0.12;
 
-/// Variances of the lag and of how long an entry lasts, over those of new ground: a set is of the
-/// vehicle itself, as a rule.
+/// Variances of the lag and of the persistence of an entry, relative to those of new ground: a set
+/// is normally of the same vehicle.
 constexpr double kShippedLag = 0.1;
 
 const Widths kShippedGain{{0.02, 1.0}};

@@ -19,55 +19,59 @@ namespace tread::learner {
 
 /// Noise of one execution on unchanged ground: standard deviations of its mean body twist.
 struct TwistNoise {
-  double forward = 0.03;   ///< [1] of |v_x|
-  double lateral = 0.03;   ///< [1] of v_y over |v_x|
-  double yaw = 0.08;       ///< [1] of |omega|
-  double turning = 0.05;   ///< [m] of |omega|, added to the first two: where it turns about
-  double wander = 0.005;   ///< [rad/m] of |v_x|, added to the third: the course is not kept
-  double lag = 0.15;       ///< [s] by which a vehicle may follow later than its set says
-  double shape = 0.02;     ///< [1] of the way: where it ends apart from what its mean twist says
-  double position = 0.01;  ///< [m] of a measured end, added to the first two over the time it took
+  double forward = 0.03;  ///< [1] of |v_x|
+  double lateral = 0.03;  ///< [1] of v_y over |v_x|
+  double yaw = 0.08;      ///< [1] of |omega|
+  double turning =
+      0.05;  ///< [m] of |omega|, added to the first two: scatter of the centre of rotation
+  double wander = 0.005;  ///< [rad/m] of |v_x|, added to the third: scatter of the course
+  double lag = 0.15;      ///< [s] by which a vehicle may respond later than in its set
+  double shape =
+      0.02;  ///< [1] of the path length: deviation of its end from that of its mean twist
+  double position = 0.01;  ///< [m] of a measured end, added to the first two over its duration
   double heading = 0.01;   ///< [rad] the same, added to the third
 };
 
-/// What the multiple-model filter expects of grounds; the headers of the rule have the equations.
+/// Prior knowledge of grounds for the multiple-model filter; the headers of the rule have the
+/// equations.
 struct GroundConfig {
   static constexpr int64_t kMostSurfaces = 64;
 
-  TwistNoise noise;               ///< expected where nothing was recorded
-  double lever = 0.3;             ///< [m] half the gauge: turning against driving
-  double noise_prior = 5.0;       ///< [1] executions that the expected noise counts for
-  double most_freedom = 12.0;     ///< [1] of Student's t: even a known surface has tails
-  double change_prior = 10.0;     ///< [1] changes that the expected way to the next one counts for
-  double change_metres = 10.0;    ///< [m] mean way to the next change of ground
-  double fresh = 0.5;             ///< [1] probability that a change leads to ground not met before
-  double slope_effect = 1.0;      ///< [1] deviation of a velocity over |v|, per rise of the ground
-  double voltage_effect = 1.0;    ///< [1] the same, relative, per relative change of voltage
-  double context_evidence = 5.0;  ///< [nat] from which on slope or voltage counts; 1000: never
-  double sure = 0.9;              ///< [1] probability from which on a surface counts as recognized
-  int64_t settled_after = 10;     ///< executions on fresh ground until it is remembered
-  double longest_memory = 100.0;  ///< executions after which the oldest on a surface fade
-  int64_t moments = 8;            ///< hypotheses that the ground has changed lately
-  int64_t capacity = 16;          ///< remembered surfaces; that met longest ago makes room
+  TwistNoise noise;             ///< expected without recordings
+  double lever = 0.3;           ///< [m] half the gauge: scales turning relative to driving
+  double noise_prior = 5.0;     ///< [1] weight of the expected noise, in executions
+  double most_freedom = 12.0;   ///< [1] of Student's t: even a known surface has tails
+  double change_prior = 10.0;   ///< [1] weight of the expected distance between changes, in changes
+  double change_metres = 10.0;  ///< [m] mean distance to the next change of ground
+  double fresh = 0.5;           ///< [1] probability that a change leads to new ground
+  double slope_effect = 1.0;    ///< [1] deviation of a velocity over |v|, per slope
+  double voltage_effect = 1.0;  ///< [1] the same, relative, per relative change of voltage
+  double context_evidence =
+      5.0;                     ///< [nat] evidence from which slope or voltage is used; 1000: never
+  double sure = 0.9;           ///< [1] probability from which a surface is recognized
+  int64_t settled_after = 10;  ///< executions on new ground until it is remembered
+  double longest_memory = 100.0;  ///< executions after which the oldest ones on a surface fade
+  int64_t moments = 8;            ///< number of hypotheses that the ground has changed recently
+  int64_t capacity = 16;          ///< remembered surfaces; the least recently met one is dropped
 };
 
-/// Name of a rule of learning: one of ruleNames().
+/// Name of a learning rule: one of ruleNames().
 using Rule = std::string;
 
-/// The rule of learning and its guards.
+/// The learning rule and its guards.
 struct RuleConfig {
   Rule rule = "multi_model";
   double memory = 0.5;  ///< w of equation (2): weight of the OLD prediction, 0 <= w < 1
   ScalingLimits scaling;
-  double sign_sigmas = 3.0;  ///< how far beyond the noise M and R must disagree in sign
+  double sign_sigmas = 3.0;  ///< factor on the noise beyond which M and R must disagree in sign
   GroundConfig ground;
 };
 
-// The keys of learner.yaml, a section for each kind of rule. The reader is a ConfigReader; a core
-// does not know it by name.
+// The keys of learner.yaml, a section for each kind of rule. The reader is a ConfigReader, whose
+// name a core must not know.
 
-/// Keys that files of earlier versions have, and the configurations in their logs. The learner
-/// reads them without effect; readRules() leaves them unknown.
+/// Obsolete keys of earlier versions' files and logged configurations. The learner accepts them
+/// without effect; readRules() leaves them unknown.
 inline constexpr const char* kRetiredScalingKeys[] = {"min_turn", "min_length"};
 inline constexpr const char* kRetiredGroundKeys[] = {
     "recorded", "common", "vehicle", "residual", "shared", "shipped_spread", "far", "ahead"};
@@ -119,7 +123,7 @@ void readRules(Reader& reader, RuleConfig& rule) {
   readGround(reader, rule.ground);
 }
 
-/// What a rule made of one measurement. Plain numbers, so that learning allocates nothing.
+/// A rule's result for one measurement. Plain numbers, so that learning allocates nothing.
 struct RuleNote {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -128,52 +132,52 @@ struct RuleNote {
   bool one_dimensional = false;             ///< guard: the pattern cannot give a V
   bool moved_back = false;                  ///< guard: net x of M against the prediction's
   bool turned_back = false;                 ///< guard: net yaw of M against the prediction's
-  std::array<bool, 3> held{};               ///< guard: axes of the executed pattern that are noise
-  double change_probability = kUnknown;     ///< [1] that the ground changed
-  bool no_change = false;                   ///< a change noticed before proves to be none
-  int surface = 0;                          ///< likeliest remembered surface, from 1; 0 = unknown
-  double surface_probability = kUnknown;    ///< [1] of that, or of "unknown"
-  bool surface_stored = false;              ///< there is a new one to remember
+  std::array<bool, 3> held{};  ///< guard: axes of the executed pattern that are only noise
+  double change_probability = kUnknown;   ///< [1] that the ground changed
+  bool no_change = false;                 ///< a change detected earlier turns out to be none
+  int surface = 0;                        ///< most probable remembered surface, from 1; 0 = unknown
+  double surface_probability = kUnknown;  ///< [1] of that surface, or of "unknown"
+  bool surface_stored = false;            ///< a new surface should be stored
 };
 
-/// A measured mean body twist less the expected one [m/s, m/s, rad/s], and the covariance of that
-/// while the ground stays what it is taken for.
+/// A measured mean body twist minus the expected one [m/s, m/s, rad/s], and its covariance on
+/// unchanged ground.
 struct TwistDeparture {
   Eigen::Vector3d mean;
   Eigen::Matrix3d covariance;
 };
 
-/// A rule of learning: predictions of all patterns of a set, corrected by measurements.
-/** Patterns are named by their index in the shipped set. Same input, same bits; predictions
+/// A learning rule: predictions of all patterns of a set, corrected by measurements.
+/** Patterns are identified by their index in the shipped set. Same input, same bits; predictions
  * allocate nothing. Trajectories hold T x 3 numbers: x, y [m], yaw [rad, unwrapped] in the start
- * frame, one row a sample. */
+ * frame, one row per sample. */
 class LearningRule {
  public:
   virtual ~LearningRule() = default;
 
-  /// What was measured beside the execution that is learned from next.
+  /// Sets the context of the execution that is learned from next.
   virtual void setContext(const Context&) {}
-  /// Learns from a measured trajectory M of pattern `executed`: as many rows as its prediction, or
-  /// fewer, at least one, if the rule learns from parts.
+  /// Learns from a measured trajectory M of pattern `executed`: as many rows as its prediction or,
+  /// if the rule learns from parts, at least one.
   virtual void learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) = 0;
-  /// Whether it learns also from the beginning of a pattern.
+  /// Whether it also learns from the beginning of a pattern.
   virtual bool learnsParts() const { return false; }
-  /// Whether the set may ever change.
+  /// Whether it can change the set at all.
   virtual bool learns() const { return true; }
-  /// What the rule took an execution for, in words for LEARNING.
+  /// The rule's interpretation of an execution, in words for LEARNING.
   virtual std::string reason(const RuleNote&) const { return "own prediction moved"; }
   /// Writes R of a pattern.
   virtual void predict(size_t pattern, Trajectory prediction) const = 0;
-  /// The last pose of R, which is all that a score needs.
+  /// The last pose of R, sufficient for a score.
   virtual Pose2 predictEnd(size_t pattern) const = 0;
-  /// Of predictEnd(), of ground and execution together; nothing if the rule does not know it.
+  /// Of predictEnd(), of ground and execution together; nullopt if the rule does not know it.
   virtual std::optional<PoseCovariance> endCovariance(size_t /*pattern*/) const {
     return std::nullopt;
   }
 
-  /// How far the mean twist of some samples of an execution, from `first` on, is from what is
-  /// expected on the ground that the rule believes in; nothing if it does not know. The context is
-  /// that of setContext().
+  /// Deviation of the mean twist of some samples of an execution, from `first` on, from its
+  /// expectation on the ground that the rule assumes; nullopt if the rule does not know it. Uses
+  /// the context of setContext().
   virtual std::optional<TwistDeparture> departure(size_t /*pattern*/,
                                                   const ConstTrajectory& /*measured*/,
                                                   Eigen::Index /*first*/,
@@ -181,24 +185,24 @@ class LearningRule {
     return std::nullopt;
   }
 
-  /// Becomes what `other` is, without allocating; both are of the same rule and shipped set.
+  /// Copies `other`, without allocating; both are of the same rule and shipped set.
   virtual void assign(const LearningRule& other) = 0;
   virtual std::unique_ptr<LearningRule> clone() const = 0;
 
-  /// How many surfaces the rule remembers; negative if it remembers none by nature.
+  /// Number of surfaces that the rule remembers; negative for a rule without surfaces.
   virtual int remembered() const { return -1; }
 
-  /// What the rule knows beside the predictions, for the state file; may be empty.
+  /// The rule's knowledge beside the predictions, for the state file; may be empty.
   virtual std::vector<double> memory() const { return {}; }
-  /// Goes on from stored predictions (in the order of the set) and memory().
-  /** Returns false and changes nothing if they are not this rule's. */
+  /// Continues from stored predictions (in the order of the set) and memory().
+  /** Returns false and changes nothing if they are of another rule. */
   virtual bool restore(const TrajectoryTable& predictions, const std::vector<double>& memory) = 0;
 };
 
-/// Names of all rules, in the order in which reports list them.
+/// Names of all rules, in the order of reports.
 std::vector<std::string> ruleNames();
 
-/// The rule that a configuration names, knowing nothing but the shipped set.
+/// The rule that a configuration names, in its initial state for the shipped set.
 std::unique_ptr<LearningRule> makeRule(const RuleConfig& config, const PatternSet& shipped);
 
 }  // namespace tread::learner

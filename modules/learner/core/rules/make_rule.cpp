@@ -21,7 +21,7 @@ struct NamedRule {
   std::unique_ptr<LearningRule> (*make)(const RuleConfig& config, const PatternSet& shipped);
 };
 
-/// All rules, in the order in which reports list them. A new rule is one line here.
+/// All rules, in the order of reports. A new rule needs one line here.
 const NamedRule kRules[] = {
     {"off", &make<Off>},
     {"single", &make<Single>},

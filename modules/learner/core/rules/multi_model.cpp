@@ -13,29 +13,29 @@
 namespace tread::learner {
 namespace {
 
-/// A pattern that hardly drives may still cross a border [m].
+/// A pattern that hardly moves may still cross a border [m].
 constexpr double kLeastMetres = 0.05;
-/// The centre of new ground is kept to this [1]: its digits stand in the state file.
+/// Resolution of the centre of new ground [1], which limits its digits in the state file.
 constexpr double kCentreStep = 1e-6;
-/// Beginnings are cut to quarters of a pattern, so that what is measured of them stays together.
+/// Beginnings are rounded to quarters of a pattern, so that their measurements can be combined.
 constexpr Eigen::Index kPartSteps = 4;
-/// Fresh ground that is less probable is forgotten: others begin with each execution [1].
+/// Less probable fresh ground is dropped: each execution adds a new one [1].
 constexpr double kLeastHypothesis = 1e-3;
-/// A ground that comes back is never quite the same: deviation over the twist [1].
+/// A ground that returns is never exactly the same: deviation relative to the twist [1].
 constexpr double kReturned = 0.01;
-/// Grounds that are apart by less than this share of one execution's deviation are one [1].
+/// Grounds that differ by less than this share of one execution's deviation are merged [1].
 constexpr double kSame = 0.5;
-/// What is known of two grounds may differ by so many variances if they are one [1].
+/// Limit of the ratio of two grounds' variances for them to be merged [1].
 constexpr double kAsDoubted = 1.5;
-/// Grounds that what is expected of scales counts for.
+/// Weight of the scales' prior, in grounds.
 constexpr double kScalePrior = 4.0;
-/// From such a probability of a change on an execution tells nothing of its context [1].
+/// Above this probability of a change an execution is uninformative about its context [1].
 constexpr double kSurelyChanged = 0.5;
-/// Smaller sums of squared corrections are none.
+/// Smaller sums of squared corrections count as zero.
 constexpr double kLeastAgreed = 1e-12;
-/// Where a change was noticed it is so probable [1].
+/// Probability of a change that was detected [1].
 constexpr double kDecided = 0.9;
-/// The ground changes in the middle of a pattern, if it does: [1] of what changes.
+/// Share of a pattern after a change of ground, which is assumed in its middle [1].
 constexpr double kBehindChange = 0.5;
 
 double rounded(double number, double step) {
@@ -46,8 +46,7 @@ std::string percent(double probability) {
   return std::to_string(std::lround(100.0 * probability)) + " %";
 }
 
-/// Weights of what is expected, and of what grounds that were met had: `counted` says how many
-/// grounds what is expected counts for.
+/// Weights from the prior and from the grounds met: `counted` is the prior's weight in grounds.
 template <class Scales, class Count>
 void learnWeights(Scales& scales, double counted, Count&& count) {
   double total = 0.0;
@@ -75,7 +74,7 @@ MultiModel::MultiModel(const RuleConfig& config, const PatternSet& shipped)
   mix();
 }
 
-/// Expectation of what new ground has in common with those met: sum x_k / (1 + K).
+/// Expected common part of new ground and the grounds met: sum x_k / (1 + K).
 SetCorrection MultiModel::commonOf(const std::vector<const Surface*>& met) const {
   SetCorrection mean = SetCorrection::none(model_->patterns());
   const double share = 1.0 / (1.0 + static_cast<double>(met.size()));
@@ -83,8 +82,8 @@ SetCorrection MultiModel::commonOf(const std::vector<const Surface*>& met) const
     mean.common += share * surface->correction().common;
     mean.own += share * surface->correction().own;
   }
-  // Where grounds contradict each other their mean tells nothing of the next one. The shipped set
-  // counts as one of them; a turn that is learned wrong leads astray more than a gain.
+  // If grounds contradict each other, their mean does not predict the next one. The shipped set
+  // counts as one of them; an error of a turn does more harm than one of a gain.
   const auto agreement = [&](const auto& of) {
     const double size = of(mean).squaredNorm();
     double apart = size;
@@ -109,7 +108,7 @@ SetCorrection MultiModel::commonOf(const std::vector<const Surface*>& met) const
 SurfacePrior MultiModel::expectNewGround() const {
   std::vector<const Surface*> met;
   for (const Hypothesis& known : surfaces_)
-    // The shipped set's ground counts when the vehicle was really on it.
+    // The shipped set's ground counts if the vehicle was really on it.
     if (settled(known.surface)) met.push_back(&known.surface);
   const double share = 1.0 / (1.0 + static_cast<double>(met.size()));
   SurfacePrior prior;
@@ -241,7 +240,7 @@ void MultiModel::followScatter(const TwistSample& sample, const Eigen::Vector3d&
   const TwistProfile& profile = model_->profile(part.pattern);
   if (part.samples < profile.samples()) return;
   const Surface& ground = likeliest().surface;
-  // Where this mean twist would end if it were steady beside the profile.
+  // Deviation of the end for a constant deviation of the twist.
   const Eigen::Vector3d apart =
       sample.mean_twist + effect - part.mean - part.toBody() * ground.correction().added(part);
   const Eigen::Vector3d moved = profile.endLever() * apart;
@@ -272,8 +271,8 @@ bool MultiModel::settled(const Surface& surface) const {
   return surface.executions() >= static_cast<double>(config_.settled_after);
 }
 
-/// Whether a ground does the same to all patterns as one that is remembered, within half of what
-/// one execution tells.
+/// Whether a ground affects all patterns like a remembered one, within half of one execution's
+/// deviation.
 bool MultiModel::same(const Surface& a, const Surface& b) const {
   Eigen::Array3d over_doubt = Eigen::Array3d::Zero();
   Eigen::Array3d over_noise = Eigen::Array3d::Zero();
@@ -285,7 +284,7 @@ bool MultiModel::same(const Surface& a, const Surface& b) const {
     over_noise += apart / b.executionNoise(part).array();
   }
   const auto patterns = static_cast<double>(model_->patterns());
-  // A ground on which little was driven is known by what was shipped: there it is all or nothing.
+  // A ground with few executions is known mostly from the shipped set: there it is all or nothing.
   const bool near = over_noise.mean() < squared(kSame) * patterns;
   return near && (settled(b) || (over_doubt < kAsDoubted * patterns).all());
 }
@@ -370,12 +369,12 @@ std::optional<MultiModel::Stretch> MultiModel::stretch(const ContextEffects& eff
 
 void MultiModel::learn(size_t executed, const ConstTrajectory& measured, RuleNote& note) {
   const PatternPart& whole = model_->whole(executed);
-  // Few lengths of beginnings, so that what is measured of them stays together.
+  // Few different lengths of beginnings, so that their measurements can be combined.
   const Eigen::Index step = std::max<Eigen::Index>(1, whole.samples / kPartSteps);
   const Eigen::Index samples = measured.rows() >= whole.samples ? whole.samples
                                : measured.rows() >= step        ? measured.rows() / step * step
                                                                 : measured.rows();
-  // What lies before a change tells nothing of the ground behind it.
+  // The part before a change is uninformative about the ground after it.
   const Eigen::Index rows = std::min(measured.rows(), whole.samples);
   const bool decided = context_.changed_after >= 0 && context_.changed_after < rows;
   const Eigen::Index quarter = (context_.changed_after + step - 1) / step * step;
@@ -402,7 +401,8 @@ void MultiModel::learn(size_t executed, const ConstTrajectory& measured, RuleNot
   ++clock_;
   expectChange(decided ? kDecided : hazard(sample.part.metres));
   weigh(sample);
-  // Only a hypothesis that was sure is another ground: what moves one execution may be the context.
+  // Only a certain hypothesis counts as another ground: a deviation of a single execution may come
+  // from the context.
   if (change_probability_ < kSurelyChanged) effects_.learn(inputs, beyond, variance, ground_);
   context_ = {};
   noticed_ = noticed_ || decided;

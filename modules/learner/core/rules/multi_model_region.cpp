@@ -7,27 +7,27 @@
 
 #include "modules/learner/core/rules/multi_model.hpp"
 
-// How sure the rule is of a prediction: regions, and the factors that keep what they say.
+// The rule's uncertainty of a prediction: regions, and factors that keep their coverage.
 namespace tread::learner {
 namespace {
 
-/// What weighs less adds nothing to a region [1].
+/// Smaller weights are ignored in a region [1].
 constexpr double kLeastWeight = 1e-4;
-/// Scales of a ground that weigh less add nothing to its region either [1].
+/// Scales of a ground with smaller weights are ignored in its region [1].
 constexpr double kLeastInRegion = 0.003;
-/// Most probable change ahead that a region counts [1]: what is rarer than one in ten lies outside
-/// of 90 % anyway.
+/// Largest probability of a coming change that a region includes [1]: an event rarer than one in
+/// ten is outside of 90 % anyway.
 constexpr double kRegionHazard = 0.03;
 /// Chi-square of three degrees of freedom, 90 %.
 constexpr double kQuantile = 6.251;
 constexpr double kLevel = 0.9;
 /// Step of the factors, in logarithms of a deviation.
 constexpr double kCalibrationStep = 0.03;
-/// So probable must young ground be, for the rule to be searching [1].
+/// Probability of recent ground from which the rule is searching [1].
 constexpr double kSearching = 0.3;
 
-/// d2 of a component about the mixture's mean, in the region's shape: a gamma of its mean and
-/// variance (Wilson-Hilferty), so that a 90 % quantile can be found.
+/// Distribution of a component's d2 about the mixture's mean, in the region's shape: a gamma
+/// distribution of its mean and variance (Wilson-Hilferty), for computing a 90 % quantile.
 class Distance {
  public:
   Distance(double weight, double mean, double variance) : weight_(weight) {
@@ -36,7 +36,7 @@ class Distance {
     slope_ = steep / std::cbrt(mean);
     offset_ = steep * (1.0 - 1.0 / (9.0 * k));
   }
-  /// Share of the mixture that this component adds below the cube of `root`.
+  /// This component's share of the mixture below the cube of `root`.
   double below(double root) const { return weight_ * 0.5 * std::erfc(offset_ - slope_ * root); }
 
  private:
@@ -56,7 +56,7 @@ double quantileOf(const std::vector<Distance>& distances) {
   return std::exp(low);
 }
 
-/// One hypothesis of ground, about the mixture's mean.
+/// One hypothesis of ground, relative to the mixture's mean.
 struct Component {
   double weight;
   Moments moments;
@@ -72,7 +72,7 @@ struct Component {
   }
 };
 
-/// Covariance of the nearest components that weigh 90 % together. Sorts them.
+/// Covariance of the nearest components with a total weight of 90 %. Sorts them.
 Eigen::Matrix3d shapeOf(std::vector<Component>& components) {
   Eigen::Matrix3d all = Eigen::Matrix3d::Zero();
   for (const Component& component : components) all += component.weight * component.square();
@@ -104,7 +104,7 @@ void Calibration::follow(bool held) {
                           kNarrowest, kWidest);
 }
 
-/// Whether it may be on ground that it has just begun to learn.
+/// Whether it may be on ground that it has only begun to learn.
 bool MultiModel::searching() const {
   double young = 0.0;
   for (const Hypothesis& hypothesis : fresh_)
@@ -112,9 +112,10 @@ bool MultiModel::searching() const {
   return young > kSearching;
 }
 
-/// Mean of the mixture, and a covariance whose ellipsoid of 90 % holds the next execution in 90 %.
-/** Its shape is that of the components that make up the 90 %: what is rare and far, as new ground
- * ahead is, would stretch it in the direction in which new ground is least sure. */
+/// Mean of the mixture, and a covariance whose 90 % ellipsoid contains the next execution with 90
+/// %.
+/** Its shape is that of the components that make up the 90 %: rare and distant ones, like new
+ * ground ahead, would stretch it in the direction in which new ground is least certain. */
 Moments MultiModel::region(const PatternPart& part) const {
   const double h = std::min(hazard(part.metres), kRegionHazard);
   std::vector<Component> components;

@@ -5,7 +5,7 @@
 
 #include "modules/learner/core/rules/multi_model.hpp"
 
-// What the rule writes into the state file, and what it takes back from there.
+// Saving and restoring the rule's state.
 namespace tread::learner {
 
 std::vector<double> MultiModel::memory() const {

@@ -8,7 +8,7 @@
 namespace tread::learner {
 namespace {
 
-/// Where row i of a lower triangle begins that is stored by rows.
+/// Start of row i of a lower triangle stored by rows.
 size_t row(Eigen::Index i) {
   return static_cast<size_t>(i * (i + 1) / 2);
 }
@@ -35,7 +35,7 @@ void ScaleBank<kAxes, kKinds>::regress(const Grams& grams, const Eigen::VectorXd
     chunk.factor.resize(row(measured_));
     chunk.alpha.resize(n);
     for (size_t lane = 0; lane < kEach; ++lane) {
-      // Lanes that are left over repeat the last scale.
+      // Unused lanes repeat the last scale.
       const Scale& scale = scales_[std::min(c * kEach + lane, scales_.size() - 1)];
       const auto at = static_cast<Eigen::Index>(lane);
       for (size_t b = 0; b < kKinds; ++b) chunk.variance[b][at] = scale.variance[b];
@@ -81,7 +81,7 @@ void ScaleBank<kAxes, kKinds>::decompose(Chunk& chunk, const Grams& grams,
 
 template <int kAxes, int kKinds>
 auto ScaleBank<kAxes, kKinds>::solve(Chunk& chunk, const Eigen::VectorXd& y) const -> Lanes {
-  constexpr Eigen::Index kTogether = 8;  // factors of a product that is far from the largest number
+  constexpr Eigen::Index kTogether = 8;  // number of factors whose product stays far from overflow
   Lanes log = Lanes::Zero();
   Lanes product = Lanes::Ones();
   for (Eigen::Index i = 0; i < measured_; ++i) {

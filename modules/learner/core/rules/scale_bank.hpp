@@ -9,12 +9,13 @@
 
 namespace tread::learner {
 
-/// A regression whose width is not known: of each of several scales one, weighted by its evidence.
-/** Measured are means y of kAxes numbers each, y ~ N(0, sum_b s_b G_b + N), G_b the Gram matrix of
- * the b-th kind of spread, s_b what a scale says of it, N the (diagonal) noise. With K the sum of a
- * scale, its weight is its prior weight times N(y; 0, K + N); predictions are the mixture.
- * Scales are computed eight at a time, one in each lane of an array: the systems are small, and one
- * after the other most of the time would go into their set-up. */
+/// A regression of unknown width: one regression for each of several scales, weighted by its
+/// evidence.
+/** The measurements are means y of kAxes numbers each, y ~ N(0, sum_b s_b G_b + N), G_b the Gram
+ * matrix of the b-th kind of spread, s_b its value in a scale, N the (diagonal) noise. With K the
+ * sum for a scale, the weight of a scale is its prior weight times N(y; 0, K + N); predictions are
+ * the mixture. Scales are computed eight at a time, one in each lane of an array, because the
+ * systems are small and their set-up would dominate. */
 template <int kAxes, int kKinds>
 class ScaleBank {
  public:
@@ -32,27 +33,27 @@ class ScaleBank {
 
   explicit ScaleBank(const Scales& scales);
 
-  /// Reads the lower triangles of the Gram matrices only.
+  /// Reads only the lower triangles of the Gram matrices.
   void regress(const Grams& grams, const Eigen::VectorXd& y, const Eigen::VectorXd& noise);
 
-  /// What one scale expects to be added to a mean.
+  /// Expected change of a mean for one scale.
   struct Predicted {
     double weight;
     Vector mean;
     Block covariance;
-    double noise;  ///< [1] factor on the noise of what is measured
+    double noise;  ///< [1] factor on the noise of a measurement
   };
-  /// Of each scale that weighs at least `least`; `cross` to what was measured, `own` of the mean.
+  /// For each scale that weighs at least `least`; `cross` to the measurements, `own` of the mean.
   std::vector<Predicted> predict(const Cross& cross, const Blocks& own, double least) const;
 
-  /// Variance of what was added to each measured mean, known with the noise that was given.
-  /** Scales that weigh less than `least` do not count. */
+  /// Posterior variance of the change of each measured mean, given the noise.
+  /** Ignores scales that weigh less than `least`. */
   Eigen::VectorXd doubt(const Eigen::VectorXd& noise, double least) const;
 
-  /// sum over the scales of weight, s_b and (K + N)^-1 y: what a kind of spread adds is its cross
-  /// covariance times that.
+  /// sum over the scales of weight, s_b and (K + N)^-1 y: the contribution of a kind of spread is
+  /// its cross covariance times that.
   const Eigen::VectorXd& meanAlpha(size_t kind) const { return mean_alpha_[kind]; }
-  /// Expectation of the factor on the noise.
+  /// Expected factor on the noise.
   double meanNoise() const {
     double mean = 0.0;
     for (size_t s = 0; s < scales_.size(); ++s) mean += weight(s) * scales_[s].noise;
@@ -80,11 +81,11 @@ class ScaleBank {
   Scales scales_;
   Eigen::ArrayXd weights_;
   std::vector<Chunk> chunks_;
-  Eigen::Index measured_ = 0;  ///< numbers that were measured
+  Eigen::Index measured_ = 0;  ///< number of measured values
   std::array<Eigen::VectorXd, kKinds> mean_alpha_;
 };
 
-/// Gain, what turns do, residuals, lag and entry of the velocity.
+/// Gain, turn terms, residuals, lag and entry of the velocity.
 using VelocityBank = ScaleBank<2, 5>;
 /// Gain, bias, residuals, lag and entry of the turn rate.
 using YawBank = ScaleBank<1, 5>;

@@ -7,9 +7,10 @@
 namespace tread::learner {
 namespace {
 
-/// A box that no vehicle can drive [m, m, rad] must not become a prediction.
+/// A box beyond any vehicle's reach [m, m, rad] must not become a prediction.
 constexpr double kLargestBox = 1e6;
-/// Of a prediction's end where no covariance is known: [1] of x, y and yaw, and [m, m, rad] added.
+/// Standard deviation of a prediction's end without a covariance: [1] of x, y and yaw, plus [m, m,
+/// rad].
 constexpr double kRelativeNoise[3] = {0.03, 0.03, 0.08};
 constexpr double kAbsoluteNoise[3] = {0.02, 0.02, 0.02};
 

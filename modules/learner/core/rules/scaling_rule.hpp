@@ -10,8 +10,8 @@
 
 namespace tread::learner {
 
-/// What collective and telescoping scaling have in common: the executed pattern is smoothed by
-/// equation (2), all others are scaled by one factor an axis.
+/// Common part of collective and telescoping scaling: the executed pattern is smoothed by equation
+/// (2), all others are scaled by one factor per axis.
 class ScalingRule : public StoredPredictions {
  public:
   ScalingRule(const RuleConfig& config, const PatternSet& shipped);
@@ -27,13 +27,13 @@ class ScalingRule : public StoredPredictions {
   struct Boxes {
     Axes measured, before, after;
   };
-  /// What the others are scaled by; fills `note.scaling`.
+  /// The factors for the other patterns; fills `note.scaling`.
   virtual Axes factors(const Boxes& boxes, const PatternRole& role, RuleNote& note) const = 0;
 
   ScalingLimits limits_;
 
  private:
-  /// Fills the guards of `note`; true if a V may be computed from this measurement.
+  /// Sets the guards of `note`; true if a V may be computed from this measurement.
   bool allow(size_t executed, const ConstTrajectory& measured, const Pose2& predicted_end,
              RuleNote& note) const;
   bool opposite(size_t executed, int axis, double measured, double predicted) const;

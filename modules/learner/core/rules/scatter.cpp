@@ -9,7 +9,7 @@
 namespace tread::learner {
 namespace {
 
-/// Factors are kept to this: their digits stand in the state file [1].
+/// Resolution of factors, which limits their digits in the state file [1].
 constexpr double kFactorStep = 1e-3;
 
 }  // namespace

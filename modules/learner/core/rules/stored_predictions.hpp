@@ -8,7 +8,7 @@
 
 namespace tread::learner {
 
-/// Rules that know nothing but the predictions themselves: all that they learn is in a table.
+/// Rules whose whole knowledge is the table of predictions.
 class StoredPredictions : public LearningRule {
  public:
   StoredPredictions(const RuleConfig& config, const PatternSet& shipped)
@@ -21,7 +21,7 @@ class StoredPredictions : public LearningRule {
   void assign(const LearningRule& other) override {
     table_.copyNumbers(static_cast<const StoredPredictions&>(other).table_);
   }
-  /// Takes the predictions of another rule, not its memory.
+  /// Accepts the predictions of another rule, but not its memory.
   bool restore(const TrajectoryTable& predictions, const std::vector<double>&) override {
     if (!table_.sameShape(predictions)) return false;
     table_.copyNumbers(predictions);

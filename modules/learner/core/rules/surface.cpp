@@ -12,19 +12,19 @@ namespace tread::learner {
 namespace {
 
 constexpr double kLargestTwist = 100.0;
-/// A part whose mean is not met says at most so many variances of noise [1].
+/// Upper limit of a part's misfit, in variances of noise [1].
 constexpr double kMostMisfit = 25.0;
-/// Executions, also faded ones, from which on a part says how it scatters.
+/// Executions, including faded ones, from which a part has information about its scatter.
 constexpr double kRepeated = 2.0;
-/// What weighs less adds nothing: to a density, to the noise [1].
+/// Smaller weights are ignored in a density or in the noise [1].
 constexpr double kLeastInDensity = 1e-6;
 constexpr double kLeastInNoise = 0.01;
-/// [s] what every vehicle needs to settle.
+/// [s] that every vehicle needs to settle.
 constexpr double kSettles = 0.05;
-/// Executions that the class's own steady twist counts for in what is usual before its patterns
+/// Weight of the class's own steady twist in the usual entry before its patterns, in executions
 /// [1].
 constexpr double kUsualEntries = 0.5;
-/// No ground's corrections are beyond this.
+/// Upper limit of a ground's corrections.
 constexpr double kLargestCorrection = 1e9;
 
 /// Logarithm of the density of a mixture of Student's t with the same degrees of freedom.
@@ -142,7 +142,7 @@ void Surface::expect(const GroundConfig& config, const Eigen::Matrix3Xd& scatter
   follow(config);
 }
 
-/// What is usual before the patterns of each class.
+/// The usual entry before the patterns of each class.
 void Surface::followEntries() {
   std::vector<double> counts(model_->classes(), kUsualEntries);
   std::vector<Eigen::Vector3d> sums(counts.size(), Eigen::Vector3d::Zero());
@@ -186,7 +186,7 @@ void Surface::follow(const GroundConfig& config) {
 
 namespace {
 
-/// Covariances of what was measured with a part, by kind of spread.
+/// Covariances of the measurements with a part, by kind of spread.
 template <class Bank, class Measured, class Covariance>
 typename Bank::Cross crossOf(const std::vector<Measured>& measured, Covariance&& covariance) {
   constexpr Eigen::Index kAxes = Bank::Block::RowsAtCompileTime;
@@ -244,13 +244,13 @@ void Surface::regress() {
         yaw_grams[kind](i, j) = of_yaw[kind](0, 0);
     }
   }
-  // Decompositions read the lower triangle only.
+  // Decompositions read only the lower triangle.
   posterior->velocity.regress(velocity_grams, velocity, velocity_noise_.reshaped());
   posterior->yaw.regress(yaw_grams, yaw, yaw_noise_);
   posterior_ = std::move(posterior);
 }
 
-/// The expectation of all corrections: what each kind of spread adds.
+/// The expectation of all corrections: contributions of each kind of spread.
 void Surface::correct() {
   correction_ = expectation_.centre;
   const auto& spread = model_->spread();
@@ -298,12 +298,12 @@ void Surface::correct() {
   lasts_ = squared(GroundModel::kEntrySpread) * Eigen::Vector3d(lasts, lasts, turn_lasts);
 }
 
-/// What the squared errors of executions grow by as their entries count.
+/// Growth of the squared errors of executions due to their entries.
 Eigen::Vector3d Surface::growthByEntries(const Measured& measured,
                                          const Eigen::Vector3d& moved) const {
   const PatternPart& part = measured.part;
   const double n = measured.count;
-  // As what an entry beside the usual one adds, for each unit of it.
+  // Change of the twist per unit of an entry deviation.
   const Eigen::Vector3d adds = part.settling * (lasts_.array() + kSettles).matrix();
   const Eigen::Vector3d usual = inPath(part, entries_[part.entry_class].mean);
   const Eigen::Vector3d sum = measured.entries - n * usual;
@@ -322,8 +322,8 @@ void Surface::estimateNoise(const GroundConfig& config) {
     const Eigen::VectorXd velocity =
         posterior_->velocity.doubt(velocity_noise_.reshaped(), kLeastInNoise);
     const Eigen::VectorXd yaw = posterior_->yaw.doubt(yaw_noise_, kLeastInNoise);
-    // What executions of one part differ by is their noise, whatever ground does. Where their mean
-    // is not met by much more than that, ground is not met.
+    // Differences between executions of one part are noise, on any ground. Only if their mean is
+    // missed by much more than that, the ground's estimate is wrong.
     Eigen::Vector3d repeated = Eigen::Vector3d::Constant(a0);
     Eigen::Vector3d apart = b;
     for (const Measured& measured : measured_) {
@@ -358,7 +358,7 @@ void Surface::estimateNoise(const GroundConfig& config) {
   }
 }
 
-/// Squares of the deviations of a part about their mean, less what its entries explain of them.
+/// Squares of the deviations of a part about their mean, minus the part that its entries explain.
 Eigen::Vector3d Surface::squaresWithin(const Measured& measured) const {
   const double n = measured.count;
   Eigen::Vector3d squares = measured.squares - measured.sum.cwiseAbs2() / n;
@@ -413,7 +413,7 @@ Eigen::Vector3d Surface::usualNoise(const PatternPart& part) const {
 
 Eigen::Vector3d Surface::executionNoise(const PatternPart& part) const {
   Eigen::Vector3d noise = usualNoise(part);
-  // The variance of Student's t over its scale^2: freedom / (freedom - 2).
+  // Ratio of the variance of Student's t to its scale^2: freedom / (freedom - 2).
   noise.array() *= certainty_.array() / (certainty_.array() - 1.0);
   noise.head<2>() *= posterior_->velocity.meanNoise();
   noise[2] *= posterior_->yaw.meanNoise();

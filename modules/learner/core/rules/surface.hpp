@@ -15,17 +15,17 @@
 
 namespace tread::learner {
 
-/// No count of executions is beyond this; a double holds all whole numbers up to it.
+/// Upper limit of a count of executions; a double represents all integers up to it.
 inline constexpr double kMostExecutions = 9e15;
 
-/// Whether a number from a file is a whole one in [0, most]: only then it may become an integer.
+/// Whether a number from a file is an integer in [0, most]: only then it may be converted.
 inline bool isCount(double number, double most) {
   return number >= 0.0 && number <= most && number == std::floor(number);
 }
 
-/// What weighs less adds nothing to moments [1].
+/// Smaller weights are ignored in moments [1].
 inline constexpr double kLeastInMoments = 1e-3;
-/// Nothing is that much calmer or rougher than expected: factors on variances [1].
+/// Limits of noise below and above its expectation: factors on variances [1].
 inline constexpr double kLeastNoise = 0.05;
 inline constexpr double kMostNoise = 50.0;
 
@@ -33,7 +33,8 @@ inline constexpr double kMostNoise = 50.0;
 struct TwistSample {
   PatternPart part;
   Eigen::Vector3d mean_twist;  ///< measured, body frame [m/s, m/s, rad/s]
-  /// v_body before it less the steady one of the part's entry class, as shipped; NaN: not measured.
+  /// v_body before it minus the steady one of the part's entry class, as shipped; NaN: not
+  /// measured.
   Eigen::Vector3d entry = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 
   /// z - m, in the frame of the path.
@@ -56,13 +57,13 @@ struct SetCorrection {
   Eigen::Vector3d added(const PatternPart& part) const { return of(part.pattern).added(part); }
 };
 
-/// What is expected of a surface before anything was measured on it: corrections about a centre,
-/// how far is a mixture of scales; and how executions scatter.
+/// Expectation of a surface before any measurement on it: corrections about a centre, with a
+/// mixture of scales for their distance; and the scatter of executions.
 struct SurfacePrior {
   SetCorrection centre;
   VelocityBank::Scales velocity;
   YawBank::Scales yaw;
-  /// Variances along, across and of yaw over the model's, a column for each pattern [1].
+  /// Variances along, across and of yaw, divided by the model's, a column for each pattern [1].
   Eigen::Matrix3Xd scatter;
 };
 
@@ -72,44 +73,44 @@ struct Moments {
   Eigen::Matrix3d covariance;
 };
 
-/// One surface: all that was measured on it, and what follows from that.
-/** Measured: for each pattern (or beginning of one) the number n, sum and sum of squares of the
+/// One surface: all measurements on it and their consequences.
+/** Measurements: for each pattern (or beginning of one) the number n, sum and sum of squares of the
  * deviations z - m of its mean twist from the shipped one, along and across its path and in yaw.
- * From the means two banks of regressions (scale_bank.hpp), of velocity and of yaw; the noise of a
- * mean is q R / n, R the model's noise times what the expectation says of this pattern, q the
- * surface's own factor for each axis:
+ * The means feed two banks of regressions (scale_bank.hpp), of velocity and of yaw; the noise of a
+ * mean is q R / n, R the model's noise times this pattern's expected factor, q the surface's own
+ * factor for each axis:
  *    q = b / a,   a = a0 + sum n / 2,   b = a0 + sum E[(z - m - h' x)^2] / (2 R)
- * with a0 half the executions that the expected noise counts for; in the regression q is that of
- * the step before (one step of expectation-maximisation an execution).
- * What an execution is entered with lasts for a while: with d the twist before it less the usual
- * one on this surface before patterns of its class, it moves by
+ * with a0 half the weight of the expected noise in executions; the regression uses q of the
+ * previous step (one step of expectation-maximisation per execution).
+ * An entry deviation persists for a while: with d the twist before an execution minus the usual
+ * one on this surface before patterns of its class, the mean twist changes by
  *    (tau + x) d sigma,   sigma = (1 - exp(-T / 0.5 s)) / T
- * more, tau = 0.05 s what every vehicle needs to settle, x of velocity and of turn a part of the
- * two regressions: from what patterns differ by in their mean d. Within a pattern d is mostly the
- * noise of the INS, and a slope over that too flat. Predictions are for what is usual; how much
- * entries differ is in their regions. A next execution is expected from a mixture over the scales
- * of Student's t with 2 a degrees of freedom. */
+ * with tau = 0.05 s, which every vehicle needs to settle, and x for velocity and for turn a part
+ * of the two regressions: it is estimated from the differences between patterns in their mean d.
+ * Within a pattern d is mostly INS noise, which would flatten a slope over it. Predictions are for
+ * the usual entry; the regions include the variation of entries. The next execution is expected
+ * from a mixture over the scales of Student's t with 2 a degrees of freedom. */
 class Surface {
  public:
   Surface(std::shared_ptr<const GroundModel> model, const GroundConfig& config,
           SurfacePrior expectation);
 
-  /// Learns from an execution. The oldest fade beyond config.longest_memory executions.
+  /// Learns from an execution. The oldest ones fade beyond config.longest_memory executions.
   void add(const GroundConfig& config, const TwistSample& sample);
-  /// Executions are expected to scatter otherwise than when it began.
+  /// Changes the expected scatter of executions.
   void expect(const GroundConfig& config, const Eigen::Matrix3Xd& scatter);
-  /// Logarithm of the density of an execution; `returned`: variance beyond that, of each axis.
+  /// Logarithm of the density of an execution; `returned`: additional variance of each axis.
   double logDensity(const TwistSample& sample, const Eigen::Vector3d& returned) const;
-  /// The sample as if it had been entered as usual; x's part of it is a response of the part.
+  /// The sample as if its entry had been usual; the share of x remains as a response of the part.
   TwistSample asUsual(const TwistSample& sample) const;
-  /// Of the mean twist's correction, of which one execution scatters by executionNoise().
-  /** Scales that weigh less than `least` do not count. */
+  /// Of the mean twist's correction; single executions scatter about it by executionNoise().
+  /** Ignores scales that weigh less than `least`. */
   Moments expected(const PatternPart& part, double least = kLeastInMoments) const;
-  /// Variance of one execution's mean twist as most scatter, without tails.
+  /// Typical variance of one execution's mean twist, without tails.
   Eigen::Vector3d usualNoise(const PatternPart& part) const;
-  /// Variance of one execution's mean twist, along, across and of yaw, whatever it is entered with.
+  /// Variance of one execution's mean twist, along, across and of yaw, over all entries.
   Eigen::Vector3d executionNoise(const PatternPart& part) const;
-  /// E[(z - m - h' x)^2] of an execution over the model's noise.
+  /// E[(z - m - h' x)^2] of an execution, divided by the model's noise.
   Eigen::Vector3d squaredError(const TwistSample& sample) const;
 
   const SetCorrection& correction() const { return correction_; }
@@ -119,25 +120,25 @@ class Surface {
   const VelocityBank& velocity() const { return posterior_->velocity; }
   const YawBank& yaw() const { return posterior_->yaw; }
 
-  /// Numbers, all of them finite; restore() returns false if they do not fit.
+  /// Finite numbers; restore() returns false if they are invalid.
   void save(std::vector<double>& memory) const;
   bool restore(const GroundConfig& config, const std::vector<double>& memory, size_t& at);
 
  private:
-  /// Executions of a pattern, or of one beginning of it; those whose entry is known for themselves.
+  /// Executions of a pattern, or of one beginning of it; those with a known entry are counted
+  /// separately.
   struct Measured {
     PatternPart part;
     bool entered = false;
     double count = 0.0;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     Eigen::Vector3d squares = Eigen::Vector3d::Zero();
-    // Of the entries, in the frame of the path: sums, of their squares, of products with
-    // deviations.
+    // Of the entries, in the frame of the path: sums, squares, products with deviations.
     Eigen::Vector3d entries = Eigen::Vector3d::Zero();
     Eigen::Vector3d entry_squares = Eigen::Vector3d::Zero();
     Eigen::Vector3d products = Eigen::Vector3d::Zero();
   };
-  /// What is usual before the patterns of a class.
+  /// The usual entry twist before the patterns of a class.
   struct Entries {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();      ///< as TwistSample::entry
     Eigen::Vector3d variance = Eigen::Vector3d::Zero();  ///< about that
@@ -176,7 +177,7 @@ class Surface {
   Eigen::Vector3d certainty_;                                 ///< a
 };
 
-/// No vehicle's mean twist is beyond 100 m/s, 100 rad/s, whatever was measured.
+/// Clamps a mean twist to 100 m/s and 100 rad/s, beyond any vehicle.
 Eigen::Vector3d plausible(const Eigen::Vector3d& twist);
 
 }  // namespace tread::learner

@@ -8,12 +8,13 @@
 
 namespace tread::learner {
 
-/// Collective scaling without its drift: the others follow the change of the executed pattern.
+/// Collective scaling without its drift: the other patterns follow the change of the executed
+/// pattern.
 /** Own work after the paper's idea. With the guards of Collective:
  *    R*_new = (1 - w) M + w R*_old                                                equation (2)
  *    R_p <- R_p box(R*_new) / box(R*_old)   for every other pattern p, axis by axis
- * Over many executions the quotients telescope to box(R*_now) / box(R*_first): what the others got
- * is never more than what the executed pattern itself learned. */
+ * Over many executions the quotients telescope to box(R*_now) / box(R*_first): the others never
+ * change more than the executed pattern itself. */
 class Telescoping : public ScalingRule {
  public:
   using ScalingRule::ScalingRule;
