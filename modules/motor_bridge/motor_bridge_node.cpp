@@ -23,7 +23,7 @@ void readTimes(ConfigReader& reader, BridgeConfig& bridge) {
   bridge.gate.slot.step_us = bridge.step_us;
 }
 
-/// What the robot's description says of motion, and what the section adds.
+/// Limits from the robot's description, and from the section.
 MotionLimits readMotion(ConfigReader section, const RobotDescription& robot) {
   MotionLimits motion;
   const bool power = robot.drive.kind == CommandKind::kPower;
@@ -58,7 +58,7 @@ ManualLimits readManual(ConfigReader section, const RobotDescription& robot) {
   return manual;
 }
 
-/// Keeps MOTOR and EXECUTION below their size limits, whatever an operator wrote as his reason.
+/// Keeps MOTOR and EXECUTION below their size limits, for any operator's reason.
 constexpr size_t kMaxReason = 120;
 
 ProgramSlot fromMessage(const program_slot_t& message) {
@@ -72,7 +72,7 @@ ProgramSlot fromMessage(const program_slot_t& message) {
   slot.series.reserve(message.command.size());
   for (const std::vector<float>& values : message.command) {
     Command& command = slot.series.emplace_back();
-    // More channels than there can be are refused by their kinds.
+    // Surplus channels are refused by their kinds.
     for (size_t i = 0; i < std::min(values.size(), Command::kMaxChannels); ++i)
       command[i] = static_cast<double>(values[i]);
   }
@@ -110,9 +110,9 @@ constexpr int64_t kMotorPeriod = 50'000;       // 20 Hz, and on every change
 constexpr int64_t kExecutionPeriod = 200'000;  // 5 Hz, and on every change
 constexpr int64_t kCounterPeriod = 500'000;
 constexpr int64_t kStoppingPeriod = 1'000'000;
-/// A line that took no bytes is tried again after this time [us].
+/// A line that accepted no bytes is tried again after this time [us].
 constexpr int64_t kFullLinePause = 100'000;
-/// A device that floods us is cut off here until the next step.
+/// The bytes of a flooding device are cut off here until the next step.
 constexpr size_t kMaxBytesPerStep = 16384;
 constexpr int kShutdownZeros = 3;
 
@@ -395,7 +395,7 @@ void MotorBridgeNode::shutdown(int64_t utime) {
   bridge_.receive(ArmRequest{utime, false, kShutdown, "", StopReason::kBridgeEnds}, utime);
   readLink(utime);
   drive(utime);
-  // Whatever is thought of the controller: zero cannot hurt.
+  // In any state of the controller: zero is harmless.
   writeLink(controller_->zeros(kShutdownZeros), utime);
   next_motor_ = next_execution_ = utime;
   publishMotor(utime);

@@ -35,11 +35,11 @@ struct MotorBridgeConfig {
 };
 
 /// Reads the configuration; throws ConfigError with file:line.
-/** No value switches a safeguard off: the lease, the INS limit and the controller's watchdog can
-    only be made stricter than their defaults, or slightly longer where the hardware needs it. */
+/** No value disables a safeguard: the lease, the INS limit and the controller's watchdog can only
+ * be stricter than their defaults, or slightly longer where the hardware needs it. */
 MotorBridgeConfig readMotorBridgeConfig(ConfigReader& reader);
 
-/// The core's words for a message. Nothing is checked here: that is the gate's work.
+/// Conversion from a message to the core's types. Unchecked, because the gate checks them.
 Program fromMessage(const program_t& message);
 InsNotice fromMessage(const ins_t& message);
 ManualNotice fromMessage(const manual_t& message);
@@ -51,16 +51,16 @@ motor_t toMessage(const BridgeOutput& output, const MotorTelemetry& telemetry, s
 
 /// The motor_bridge process. PROGRAM, OPERATOR, MANUAL, ARM, ESTOP, INS in; the controller, MOTOR,
 /// EXECUTION, HEALTH, CONFIG out.
-/** The only process that may make the motors turn, and the only one that compares utime with the
-    host clock: give it a bus whose now() is CLOCK_MONOTONIC. It steps every 10 ms, so that series
-    of 50 ms begin, change and end on a step. */
+/** The only process that may move the motors, and the only one that compares utime with the host
+ * clock: its bus's now() must be CLOCK_MONOTONIC. It steps every 10 ms, so that series of 50 ms
+ * begin, change and end on a step. */
 class MotorBridgeNode : public Node {
  public:
   MotorBridgeNode(const MotorBridgeConfig& config, Bus& bus, Link& link);
 
   int64_t period() const override { return config_.bridge.step_us; }
   void step(int64_t utime) override;
-  /// Disarms and gives zero, several times: a lost byte must not leave the motors running.
+  /// Disarms and sends zero several times: a lost byte must not leave the motors running.
   void shutdown(int64_t utime) override;
 
   const Bridge& bridge() const { return bridge_; }

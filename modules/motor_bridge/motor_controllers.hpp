@@ -14,7 +14,7 @@ namespace tread::motor {
 
 using MakeMotorController = std::function<std::unique_ptr<MotorController>()>;
 
-/// Reads which controller the robot has (key `controller`, into `name`) and the section of that
+/// Reads the kind of the robot's controller (key `controller`, into `name`) and the section of that
 /// name.
 MakeMotorController readMotorController(ConfigReader& reader, const DriveDescription& drive,
                                         std::string& name);

@@ -13,10 +13,10 @@
 namespace tread::motor {
 namespace {
 
-/// Above usual processes, below the kernel's own threads (50).
+/// Above ordinary processes, below the kernel's own threads (50).
 constexpr int kPriority = 20;
 
-/// What is allocated later is locked, too, only where no limit can make that fail.
+/// Later allocations are locked, too, unless a limit could make that fail.
 bool lockMemory() {
   rlimit limit{};
   const bool unlimited = ::geteuid() == 0 || (::getrlimit(RLIMIT_MEMLOCK, &limit) == 0 &&
@@ -35,7 +35,7 @@ std::string becomeRealTime() {
   if (!lockMemory()) refused += "memory is not locked (" + reason() + ")";
   sched_param parameters{};
   parameters.sched_priority = kPriority;
-  // Threads and programs that are started later do not inherit it.
+  // Threads and programs started later do not inherit it.
   if (::sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameters) != 0)
     refused += (refused.empty() ? "" : ", ") + ("no fixed priority (" + reason() + ")");
   if (refused.empty()) return refused;

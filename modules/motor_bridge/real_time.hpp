@@ -7,8 +7,8 @@
 namespace tread::motor {
 
 /// Locks the process into memory and gives the calling thread a fixed priority (SCHED_FIFO), so
-/// that commands leave evenly on a busy host. What the system does not allow, with the remedy, in
-/// one line; empty = all was allowed.
+/// that commands leave regularly on a busy host. Returns one line with what the system does not
+/// allow and the remedy; empty = everything was allowed.
 std::string becomeRealTime();
 
 }  // namespace tread::motor

@@ -14,8 +14,8 @@ namespace {
 
 constexpr int64_t kKeepEvery = 1'000'000;  // [us]
 
-/// What plans keep free is the robot's; logs from before robots were described in a file of their
-/// own have it here.
+/// Plans keep the robot's footprint free; logs older than robot descriptions have it in this
+/// section.
 void readRobotInto(ConfigReader& reader, bool logged, PlannerConfig& config) {
   config.operators.lease_us = 0;
   if (reader.has("footprint")) {
@@ -64,34 +64,36 @@ void readSearch(ConfigReader reader, SearchConfig& search) {
   reader.number("top_speed", search.top_speed, {0.05, kNoLimit}, "m/s");
 }
 
-/// The limits can be made stricter, or a little wider; none can be switched off.
+/// The limits can be made stricter, or slightly wider; none can be disabled.
 void readAges(ConfigReader reader, bool logged, AgeLimits& ages) {
   reader.seconds("pose", ages.pose, {0.02, 0.3});
   reader.seconds("bridge", ages.bridge, {0.1, 1.0});
-  // What is logged may be of a time when the limits were wider.
+  // A log may be from a time with wider limits.
   const double widest = logged ? 10.0 : 1.0;
   reader.seconds("map_slow", ages.map_slow, {0.2, widest});
   reader.seconds("map_stop", ages.map_stop, {0.3, widest});
   reader.seconds("pattern_set", ages.pattern_set, {2.5, 30.0});
 }
 
-/// What is near and what is wide, in sizes of the robot: of 1.5 x .8 m it was measured.
+/// Distances in sizes of the robot, measured on one of 1.5 x .8 m.
 constexpr double kFrontier = 1.7;  // [1] lengths before the unknown where a plan may end
-constexpr double kWide = 1.7;      // [1] half widths of clearance from which on ground is open
+constexpr double kWide = 1.7;      // [1] half widths of clearance from which ground is open
 
-constexpr double kFarthest = 1e6;  // [m] a goal can be from the origin of map
+constexpr double kFarthest = 1e6;  // [m] largest distance of a goal from the origin of map
 constexpr int kMaxTileCells = 512;
 
-constexpr int64_t kMapForgotten = 3'000'000;    // [us] without a tile, until another map may come
-constexpr int64_t kOtherForgotten = 5'000'000;  // [us] without another set than the one in use
-constexpr int64_t kOtherLate = 1'000'000;       // [us] a message may be late
-/// So far a learner goes on at most while it lives, or comes back with its state [versions].
+constexpr int64_t kMapForgotten =
+    3'000'000;  // [us] without a tile, after which another map may come
+constexpr int64_t kOtherForgotten = 5'000'000;  // [us] without a set other than the one in use
+constexpr int64_t kOtherLate = 1'000'000;       // [us] by which a message may be late
+/// Largest advance of a learner's version while it lives, or after a restart with its state
+/// [versions].
 constexpr int64_t kMostJump = 100'000;
 constexpr int64_t kPlanRepeat = 200'000;    // [us]
 constexpr int64_t kTreeRepeat = 1'000'000;  // [us]
-constexpr size_t kTreeNodes = 600;          // drawn at most: 15 kB
+constexpr size_t kTreeNodes = 600;          // largest number drawn: 15 kB
 
-/// Nothing for an invalid message, as the next.
+/// nullopt for an invalid message; the same below.
 std::optional<Goal> goalFrom(const goal_t& message) {
   const double* pose = message.goal_pose;
   const bool finite =
@@ -112,7 +114,7 @@ std::optional<ShockKnowledge> shockFrom(const shock_t& message) {
   shock.model.covariance << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
   shock.model.variance = message.shock_variance;
   const Eigen::Vector3d& w = shock.model.mean;
-  // Ground that shakes less the rougher it is, or the faster one drives, is a forged one.
+  // A model in which rougher ground or a higher speed shakes less is forged.
   const bool possible = w.allFinite() && shock.model.covariance.allFinite() &&
                         std::abs(w[0]) < 10.0 && w[1] >= 0.0 && w[1] < 5.0 && w[2] >= 0.0 &&
                         w[2] < 10.0 && message.shock_variance >= 0.0 && c[0] >= 0.0 &&
@@ -180,7 +182,7 @@ PlannerConfig readConfig(ConfigReader& reader, bool logged) {
   map.field.inflation = map.footprint.half_width;
   map.field.wide = kWide * map.footprint.half_width;
   config.search.frontier = kFrontier * map.footprint.length();
-  // Open ground must be known as wide, whatever the robot's size.
+  // Open ground must be represented as wide, for any robot size.
   map.clearance.clearance_cap =
       std::max({map.clearance.clearance_cap, 1.5 * map.footprint.half_width, map.field.wide});
   readMargins(reader.section("margins"), map.margins);
@@ -243,7 +245,7 @@ void PlannerNode::subscribe() {
     supervisor_.setShock(*shock);
   });
   bus_.subscribe<grip_t>(kGrip, [this](const grip_t& message) {
-    // A learner that begins anew lifts no limit of the one before with the little that it felt.
+    // A restarted learner with little evidence lifts no limit of the earlier one.
     constexpr int kFew = 3;
     const GripKnowledge& known = supervisor_.grip();
     const bool begins = message.grip_signs < kFew && message.gave_way == 0;
@@ -273,7 +275,7 @@ void PlannerNode::recallFences() {
   fences_kept_ = fences_.revision();
 }
 
-/// After PROGRAM was sent, and not often: a slow disk must not stop the robot for want of it.
+/// After sending PROGRAM, and not often: a slow disk must not delay it and stop the robot.
 void PlannerNode::keepFences(int64_t utime) {
   if (store_ == nullptr || fences_kept_ == fences_.revision() || utime < next_keep_) return;
   next_keep_ = utime + kKeepEvery;
@@ -288,7 +290,7 @@ void PlannerNode::keepFences(int64_t utime) {
 void PlannerNode::take(const map_tile_t& message) {
   if (robot_.invalidTime(message.utime, "MAP")) return;
   std::optional<Tile> tile = tileFrom(message);
-  // A second mapping, or a forged tile, must not empty the map of the first.
+  // A second mapping, or a forged tile, must not empty the first one's map.
   const bool in_use = cell_size_ > 0.0 && bus_.now() - map_taken_ < kMapForgotten;
   if (tile && in_use && message.cell_size != cell_size_)
     return health_.addToCounter("MAP refused: another cell size than that of the map in use");
@@ -325,7 +327,7 @@ void PlannerNode::take(const health_t& message) {
       failed ? Reason(StopReason::kRangeFinder, "mapping: " + message.health_reason) : Reason();
 }
 
-/// Whoever arms again has looked at the robot.
+/// A person who arms again has checked the robot.
 void PlannerNode::disarm(const std::string& why) {
   auto message = blank<arm_t>();
   message.utime = bus_.now();
@@ -348,7 +350,7 @@ void PlannerNode::watchGoal(int64_t utime) {
   if (config_.operators.lost == OperatorLost::kGoBack) watchLink(utime);
 }
 
-/// With no operator there is no goal, and the way back may have one.
+/// Without an operator there is no goal, but the return may set one.
 void PlannerNode::watchLink(int64_t utime) {
   const OperatorLease& lease = robot_.operatorLease();
   LinkReading link;
@@ -373,7 +375,8 @@ void PlannerNode::take(const pattern_set_part_t& message) {
   inputs_.set_received = bus_.now();
   if (sets_.older() > older)
     return noteOtherSet(message.set_version, "PATTERN_SET ignored: older than the set in use");
-  // The first part of one far above does not say that the one in use goes on.
+  // The first part of a much higher version does not prove that the learner of the present set is
+  // alive.
   if (set || message.set_version <= set_version_ + kMostJump) set_heard_ = bus_.now();
   if (!set) return;
   set_version_ = set->version();
@@ -384,17 +387,18 @@ void PlannerNode::take(const pattern_set_part_t& message) {
   health_.setCounter("longest swap of a set [us]", longest_swap_);
 }
 
-/// Whether no learner can have come to a version: once in use it would stay for ever, as a learner
-/// goes above what others name, but not above what it cannot believe.
+/// Whether no learner can have reached a version: once in use it would stay forever, because a
+/// learner goes above versions that others name, but not above implausible ones.
 bool PlannerNode::outOfReach(int64_t version) const {
   if (set_version_ == 0) return version > PatternSet::kHighestVersion;
-  // A learner that has lost its state may begin far above, and then goes on no more below.
+  // A learner that has lost its state may start far above, and then the earlier one no longer
+  // publishes.
   const bool goes_on = bus_.now() - set_heard_ < kOtherForgotten;
   const int64_t from = goes_on ? set_version_ : std::max(set_version_, PatternSet::kHighestVersion);
   return version > from + kMostJump;
 }
 
-/// One may be late; a learner that goes on with other versions is a second one.
+/// A single one may be late; a learner that continues with other versions is a second one.
 void PlannerNode::noteOtherSet(int64_t version, const char* counter) {
   const int64_t now = bus_.now();
   if (now - other_heard_ > kOtherForgotten) other_since_ = now;

@@ -18,27 +18,24 @@ namespace tread::planner {
 /// Reads the configuration; throws ConfigError with file:line.
 PlannerConfig readPlannerConfig(ConfigReader& reader);
 
-/// The same from a CONFIG message in a log. Keys of older versions that are constants today are
-/// ignored.
+/// The same from a logged CONFIG message. Obsolete keys that are constants today are ignored.
 PlannerConfig readLoggedPlannerConfig(ConfigReader& reader);
 
-/// Plans towards GOAL on MAP with the newest PATTERN_SET, and tells the motor bridge in PROGRAM
-/// what to play.
-/** PROGRAM at 20 Hz whatever happens, empty when the robot shall stand; PLAN at 5 Hz and with each
- * plan; PLAN_TREE at most once a second. Comes up disarmed: it drives when ARM was seen after its
- * start and MOTOR says armed. */
+/// Plans towards GOAL on MAP with the newest PATTERN_SET, and orders patterns from the motor bridge
+/// by PROGRAM.
+/** PROGRAM at 20 Hz in any case, empty when the robot should stand; PLAN at 5 Hz and with each
+ * plan; PLAN_TREE at most once a second. Starts disarmed: it drives after an ARM that was received
+ * after its start, while MOTOR reports armed. */
 class PlannerNode : public Node {
  public:
-  /// `store` keeps the operators' fences from one start to the next and outlives this; null: they
-  /// end with it.
+  /// `store` keeps the operators' fences across restarts and outlives this; null: they are lost.
   PlannerNode(const PlannerConfig& config, Bus& bus, Store* store = nullptr);
 
   int64_t period() const override { return 50'000; }
   void step(int64_t utime) override;
   /// Empties the program.
   void shutdown(int64_t utime) override;
-  /// Ends searches by this instead of by the deadline: for replay, where a count of expansions
-  /// does.
+  /// Ends searches by this instead of the deadline: for replay, which uses a count of expansions.
   void setStop(StopPredicate stop) { stop_ = std::move(stop); }
 
   const Supervisor& supervisor() const { return supervisor_; }
@@ -70,9 +67,9 @@ class PlannerNode : public Node {
   RobotInputs robot_;
   FenceBook fences_;
   FenceExchange fence_exchange_;
-  int64_t fences_kept_ = 0;  ///< revision that is in the store
+  int64_t fences_kept_ = 0;  ///< revision that was stored
   int64_t next_keep_ = 0;    ///< [us]
-  std::string unkept_;       ///< why it is not, if it could not be written
+  std::string unkept_;       ///< why it was not stored
   GoalWatch goal_;
   WayBack way_back_;
   double position_std_ = 0.0;  ///< [m] of the newest INS; NaN unknown
@@ -80,10 +77,10 @@ class PlannerNode : public Node {
   PatternSetAssembler sets_;
   PlannerInputs inputs_;
   double cell_size_ = 0.0;   ///< [m] of the map in use; 0 = none yet
-  int64_t map_taken_ = 0;    ///< [us] the last tile of it
-  int64_t set_version_ = 0;  ///< newest that came whole; 0 = none yet
-  int64_t set_heard_ = 0;    ///< [us] when a part of it or of a next one came last
-  int64_t other_since_ = 0;  ///< [us] sets of versions that are not taken come since then
+  int64_t map_taken_ = 0;    ///< [us] of its last tile
+  int64_t set_version_ = 0;  ///< newest complete one; 0 = none yet
+  int64_t set_heard_ = 0;    ///< [us] when a part of it or of a newer one was last received
+  int64_t other_since_ = 0;  ///< [us] since when sets of refused versions arrive
   int64_t other_heard_ = 0;  ///< [us]
   int64_t other_version_ = 0;
   StopPredicate stop_;        ///< empty = the deadline

@@ -10,7 +10,7 @@
 namespace tread::motor {
 namespace {
 
-/// What runs when the operator is lost may go on for so long at most [us].
+/// Time limit of a running pattern after the loss of the operator [us].
 constexpr int64_t kLongestFinish = 15'000'000;
 
 std::string tenths(int64_t microseconds) {
@@ -18,7 +18,7 @@ std::string tenths(int64_t microseconds) {
   return std::to_string(rounded / 10) + "." + std::to_string(rounded % 10) + " s";
 }
 
-/// For people at a machine whose clock is another one.
+/// For people whose machine has another clock.
 std::string untimely(const std::string& what, int64_t utime, int64_t now) {
   if (utime > now)
     return what + " ignored: its time is ahead of the robot's clock; do the clocks differ?";
@@ -54,7 +54,7 @@ void Bridge::receive(const Program& program, int64_t now) {
   }
   if (admission.new_run) {
     player_.beginRun(program.run_id);
-    // Starts the second of good inputs anew: with two planners alive nobody can arm.
+    // Restarts the second of good inputs: with two planners running nobody can arm.
     since_.program_fault = StopReason::kOtherPlanner;
     count("planner runs");
   }
@@ -73,7 +73,7 @@ void Bridge::take(const Program& program, int64_t now) {
     count(std::string("PROGRAM ") + describe(offer));
   }
   since_.planner_stop = offer == Offer::kStop && player_.playing();
-  // Whoever moves must not live on the lease of a planner that believes in another motion.
+  // A moving robot must not live on the lease of a planner that assumes another motion.
   if (agrees(offer) || !player_.playing()) gate_.renew(program, now);
 }
 
@@ -119,7 +119,7 @@ void Bridge::receive(const OperatorNotice& notice, int64_t now) {
     count(std::string("OPERATOR ignored: ") + describe(receipt));
   const bool ends = receipt == OperatorLease::Receipt::kTaken && !notice.drives;
   if (!ends || !manual_.letGo(notice.station) || failsafe_.state() != State::kManual) return;
-  // Nobody has given the robot back: it must not go on to a goal by itself.
+  // The robot was not handed back: it must not continue to a goal by itself.
   since_.disarm = true;
   since_.request = ArmRequest{now, false, notice.name + ", whose program has ended", ""};
 }
@@ -152,7 +152,7 @@ void Bridge::receive(const FenceRequest& request, int64_t now) {
     count(std::string("FENCE refused: ") + describe(receipt));
 }
 
-/// An E-stop outlives the process that engaged it: the controller has kept it.
+/// An E-stop outlives the process that engaged it, because the controller holds it.
 void Bridge::adoptLatchedStop(int64_t now, const DeviceReport& device) {
   if (controller_met_ || !device.link_fault.empty()) return;
   controller_met_ = true;
@@ -191,7 +191,7 @@ Reason Bridge::stallFault(int64_t now) const {
                                          " ms: too much runs on this computer, or it was halted"};
 }
 
-/// Whether the robot may move although its operator has been lost for `silent` [us].
+/// Whether the robot may move although its operator has been silent for `silent` [us].
 bool Bridge::mayGoOn(int64_t silent) const {
   switch (config_.operators.lost) {
     case OperatorLost::kFinish:

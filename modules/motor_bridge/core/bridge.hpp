@@ -20,11 +20,11 @@
 
 namespace tread::motor {
 
-/// Everything the bridge can be told about its behaviour.
+/// Configuration of the bridge.
 struct BridgeConfig {
-  int64_t step_us = 10'000;              ///< step() is called this often [us]
-  int64_t command_interval_us = 20'000;  ///< a command is repeated this often [us]
-  int64_t idle_interval_us = 100'000;    ///< zero, a while after a stop [us]
+  int64_t step_us = 10'000;              ///< period of step() [us]
+  int64_t command_interval_us = 20'000;  ///< interval at which a command is repeated [us]
+  int64_t idle_interval_us = 100'000;    ///< of zero, some time after a stop [us]
   int64_t max_stall_us = 100'000;        ///< longest gap between steps [us]
   GateLimits gate;
   InsLimits ins;
@@ -39,22 +39,22 @@ struct BridgeConfig {
 struct BridgeOutput {
   FailsafeOutputs failsafe;
   Command command;                   ///< zero unless driving
-  bool send = false;                 ///< the command is to be given to the controller now
-  std::vector<CommandKind> kinds;    ///< of the series played, or of what is driven by hand
+  bool send = false;                 ///< send the command to the controller now
+  std::vector<CommandKind> kinds;    ///< of the series played, or of manual control
   int64_t run_id = 0;                ///< of the series played; 0 = none
   int64_t execution_id = 0;          ///< being played; 0 = none
   int32_t command_index = -1;        ///< in the series; -1 = none
-  bool hold_device_stop = false;     ///< the controller's own emergency stop is to be engaged
-  bool release_device_stop = false;  ///< ... and to be released
+  bool hold_device_stop = false;     ///< engage the controller's own emergency stop
+  bool release_device_stop = false;  ///< ... and release it
 };
 
-/// The last process before the motors, without its wires: messages in, commands out, time as an
+/// The last process before the motors, as a pure core: messages in, commands out, time as an
 /// argument.
 class Bridge {
  public:
   explicit Bridge(const BridgeConfig& config);
 
-  /// Messages as they are received, now [us] on the clock that step() uses.
+  /// Messages as received, now [us] on the clock of step().
   void receive(const Program& program, int64_t now);
   void receive(const ArmRequest& request, int64_t now);
   void receive(const EstopRequest& request, int64_t now);
@@ -76,7 +76,7 @@ class Bridge {
   const std::map<std::string, int64_t>& counters() const { return counters_; }
 
  private:
-  /// What happened since the last step.
+  /// Inputs since the last step.
   struct Since {
     bool arm = false;
     bool disarm = false;
@@ -109,7 +109,7 @@ class Bridge {
   FenceWatch fences_;
   StoppingTime stopping_;
   OperatorRequests requests_;
-  bool controller_met_ = false;  ///< it has answered since the start
+  bool controller_met_ = false;  ///< it has answered at least once
   OperatorLease operator_;
   ManualControl manual_;
   std::optional<int64_t> operator_lost_;  ///< [us] since when

@@ -5,7 +5,7 @@
 namespace tread::motor {
 namespace {
 
-/// A CRC of so many bits that is not reflected, bit by bit: lines are short.
+/// A non-reflected CRC of this many bits, bit by bit, because lines are short.
 uint32_t crc(std::string_view bytes, int bits, uint32_t polynomial) {
   const uint32_t top = 1U << (bits - 1);
   uint32_t value = 0;

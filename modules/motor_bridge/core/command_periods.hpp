@@ -9,12 +9,12 @@
 
 namespace tread::motor {
 
-/// Times between commands to the controller, the newest ones: how even the stream is.
+/// The most recent times between commands to the controller: how regular the stream is.
 class CommandPeriods {
  public:
   static constexpr size_t kMost = 512;
 
-  /// A command left at a time [us].
+  /// A command was sent at a time [us].
   void sent(int64_t utime) {
     if (last_ > 0 && utime > last_) periods_.push_back(utime - last_);
     last_ = utime;
@@ -26,7 +26,7 @@ class CommandPeriods {
     int64_t median = 0;
     int64_t longest = 0;
   };
-  /// All 0 until there were two commands.
+  /// All 0 until two commands were sent.
   Summary summary() const {
     if (periods_.empty()) return {};
     std::vector<int64_t> sorted(periods_.begin(), periods_.end());

@@ -9,9 +9,9 @@
 namespace tread::motor {
 namespace {
 
-constexpr int64_t kLineSpan = 5'000'000;  // [us] over which a line is judged
+constexpr int64_t kLineSpan = 5'000'000;  // [us] over which a line is evaluated
 constexpr int64_t kFewExchanges = 50;
-constexpr int64_t kWorstPercent = 5;  // of exchanges may fail on a sound line
+constexpr int64_t kWorstPercent = 5;  // of exchanges that may fail on a sound line
 
 }  // namespace
 
@@ -43,7 +43,7 @@ void ControllerConnection::fail(const std::string& problem, int64_t now,
   backoff_us_ = std::clamp(2 * backoff_us_, times_.backoff_min_us, times_.backoff_max_us);
   retry_at_ = now + backoff_us_;
   enter(Phase::kBackoff);
-  // Perhaps only its answers are lost: let it stand at once instead of waiting for its watchdog.
+  // Perhaps only its answers are lost: stop it at once instead of waiting for its watchdog.
   sendZero(now);
 }
 
@@ -60,7 +60,7 @@ std::string ControllerConnection::zeros(int times) const {
 
 void ControllerConnection::command(const Command& command, int64_t now) {
   if (!ready()) return;
-  // A fifth before the watchdog expires, because the line takes time, too.
+  // A fifth before the watchdog expires, because transmission takes time, too.
   const bool silent = 5 * (now - commanded_at_) > 4 * times_.watchdog_us;
   if (silent && !isZero(command)) ++counters_["zero before resuming"];
   commanded_at_ = now;

@@ -15,7 +15,7 @@ struct Fault {
   Reason reason;
 };
 
-/// Worst fault of the inputs, if any: StopReason ranks them.
+/// The most severe fault of the inputs, if any, ranked by StopReason.
 std::optional<Fault> worstFault(const FailsafeInputs& in) {
   if (in.estop)
     return Fault{State::kEstopped, {StopReason::kEstopEngaged, "E-stop: " + in.estop_reason}};
@@ -30,8 +30,9 @@ std::optional<Fault> worstFault(const FailsafeInputs& in) {
   return Fault{of_bridge ? State::kFault : State::kDisarmed, *worst};
 }
 
-/// Worst fault that stops what is driven now: a person sees where the robot is and what it does. A
-/// fence nobody sees, and with a wrong position it is not kept.
+/// The most severe fault that stops the present kind of driving: under manual control a person sees
+/// where the robot is and what it does. But nobody sees a fence, and it cannot be observed with a
+/// wrong position.
 std::optional<Fault> worstStop(const FailsafeInputs& in) {
   if (!in.hand) return worstFault(in);
   FailsafeInputs by_hand = in;
@@ -101,11 +102,11 @@ FailsafeOutputs Failsafe::update(const FailsafeInputs& in) {
   const Refusal refusal_before = refusal_;
   if (!zero_since_) zero_since_ = disarmed_at_ = in.now;
   watchHealth(in);
-  // Cleared is not armed; but people must see that it is cleared.
+  // Cleared does not mean armed; but people must see that it was cleared.
   if (state_ == State::kEstopped && !in.estop)
     enter(State::kDisarmed, StopReason::kEstopCleared, in.now);
-  // A fault or a request leaves nothing to decide: the next series waits for the next step, so that
-  // at least one zero lies between.
+  // A fault or a request is final for this step: the next series waits for the next step, so that
+  // at least one zero is sent in between.
   if (!stopOnFault(in) && !serveRequest(in) && !serveHand(in)) serveSeries(in);
   FailsafeOutputs out;
   out.state = state_;
@@ -121,12 +122,12 @@ FailsafeOutputs Failsafe::update(const FailsafeInputs& in) {
   return out;
 }
 
-/// Whether words() say it already.
+/// Whether words() already includes it.
 bool Failsafe::says(const Reason& reason) const {
   return reason.empty() || reason == reason_ || (refused() && reason == refusal_.why);
 }
 
-/// All that people should read of the state: each reason once.
+/// All that people should read about the state: each reason once.
 std::string Failsafe::words(const FailsafeInputs& in) const {
   std::string all = reason_.words;
   if (refused()) all += "; " + refusal_.words;
@@ -164,7 +165,8 @@ bool Failsafe::stopOnFault(const FailsafeInputs& in) {
 
 Failsafe::Refusal Failsafe::whyNotArm(const FailsafeInputs& in) const {
   if (!in.leased) return {in.unleased.words, in.unleased, false};
-  // Who holds the button means to drive by hand: it must not be armed for programs instead.
+  // A person who holds the button wants manual control: the robot must not be armed for programs
+  // instead.
   if (!in.hand_bar.empty()) return {in.hand_bar, {}, true};
   const int64_t healthy = healthy_since_ ? in.now - *healthy_since_ : 0;
   if (healthy >= kHealthyBeforeArm) return {};

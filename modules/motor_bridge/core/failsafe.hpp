@@ -23,25 +23,25 @@ struct InsLimits {
   int64_t maxAge() const { return std::max<int64_t>(3 * period_us, 100'000); }
 };
 
-/// One INS message as far as motion depends on it.
+/// The fields of an INS message that driving depends on.
 struct InsNotice {
   int64_t utime = 0;   ///< [us] of the measurement
   bool usable = true;  ///< position and heading are known
-  InsMotion motion{};  ///< NaN where it is not known
-  int64_t seq = 0;     ///< counts up from the start of the INS driver
+  InsMotion motion{};  ///< NaN if unknown
+  int64_t seq = 0;     ///< increases from the start of the INS driver
   InsTilt tilt{};
 };
 
-/// Watches that the INS goes on telling where the robot is.
-/** A message counts only if its utime is newer than the last one's: a source that repeats its last
-    measurement is as good as silent. */
+/// Checks that the INS keeps reporting the position.
+/** A message counts only if its utime is newer than the previous one's: a source that repeats its
+ * last measurement is as good as silent. */
 class InsWatch {
  public:
   explicit InsWatch(const InsLimits& limits) : limits_(limits) {}
 
   /// A message received at now [us]. Returns whether it counts.
   bool receive(const InsNotice& notice, int64_t now);
-  /// What is wrong at now [us]; none = nothing.
+  /// What is wrong at now [us]; no reason = nothing.
   Reason fault(int64_t now) const;
 
  private:
@@ -70,20 +70,20 @@ struct EstopRequest {
   std::string why;
 };
 
-/// Sorts the operator's requests: an old permission counts for nothing, a stop always counts.
+/// Sorts the operator's requests: an old permission does not count, a stop always counts.
 class OperatorRequests {
  public:
-  /// What a request to arm or disarm leads to.
+  /// Effect of a request to arm or disarm.
   enum class Effect { kIgnored, kUntimely, kArm, kDisarm };
-  /// Classifies a request received at now [us]; one to arm must have been given after disarmed_at
-  /// [us].
+  /// Classifies a request received at now [us]; a request to arm must have been given after
+  /// disarmed_at [us].
   Effect classify(const ArmRequest& request, int64_t now, int64_t disarmed_at);
-  /// A request to arm was served: its repetitions are worth nothing any more.
+  /// A request to arm was served: its repetitions no longer count.
   void consume(const ArmRequest& request) { served_utime_ = request.utime; }
 
   /// An E-stop message received at now [us]. Returns false if it was ignored.
   bool receive(const EstopRequest& request, int64_t now);
-  /// Whether a permission of this time counts for its age at now [us].
+  /// Whether a permission of this time is young enough at now [us].
   static bool timely(int64_t utime, int64_t now);
   bool estop() const { return engaged_; }
   /// Who stopped and why; empty if not engaged.
@@ -98,8 +98,8 @@ class OperatorRequests {
 
 /// States by rank: a worse input always wins over a better one.
 enum class State : int {
-  kDriving = 0,   ///< armed, a series is played
-  kManual = 1,    ///< armed, in a person's hand: no series is played
+  kDriving = 0,   ///< armed, a series is being played
+  kManual = 1,    ///< armed, under manual control: no series is played
   kArmed = 2,     ///< may drive, standing
   kStopping = 3,  ///< armed; a series ended normally, zero is repeated at the command rate
   kDisarmed = 4,  ///< needs ARM: not armed yet, disarmed, or stopped by the failsafe
@@ -112,73 +112,73 @@ inline bool isArmed(State state) {
   return state <= State::kStopping;
 }
 
-/// What the failsafe looks at. No reason: nothing is wrong.
+/// Inputs of the failsafe. No reason = nothing wrong.
 struct FailsafeInputs {
-  int64_t now = 0;            ///< [us]
-  bool estop = false;         ///< an emergency stop is engaged
-  std::string estop_reason;   ///< by whom and why
-  Reason link_fault;          ///< no controller that was started up and answers
-  Reason device_fault;        ///< the controller reports a fault
-  Reason bridge_fault;        ///< the bridge itself was held up
-  Reason program_fault;       ///< a program broke its limits, or the planner changed
-  Reason operator_fault;      ///< the operator is lost
-  Reason lease_fault;         ///< no program within the lease
-  Reason ins_fault;           ///< no usable INS within its limit
-  Reason tilt_fault;          ///< a limit of roll, pitch or their rates was passed
-  Reason fence_fault;         ///< only a zero now keeps the outline within a fence
-  Reason motion_fault;        ///< the robot moves otherwise than its commands explain
-  bool fenced = false;        ///< there are fences to keep
-  bool hand = false;          ///< a person takes or keeps the robot, or wants it armed for the hand
-  std::string hand_words;     ///< who does, and why it stands, if it does
-  std::string hand_bar;       ///< why a hand that holds the button does not take the robot
-  bool playing = false;       ///< a series is being played and goes on
-  bool start_wanted = false;  ///< a series is offered to a standing robot
-  Reason program_bar;         ///< why no series may start, though a person may drive by hand
+  int64_t now = 0;           ///< [us]
+  bool estop = false;        ///< an emergency stop is engaged
+  std::string estop_reason;  ///< its sender and reason
+  Reason link_fault;         ///< no controller that was started up and answers
+  Reason device_fault;       ///< the controller reports a fault
+  Reason bridge_fault;       ///< the bridge itself was delayed
+  Reason program_fault;      ///< a program violated its limits, or the planner changed
+  Reason operator_fault;     ///< the operator is lost
+  Reason lease_fault;        ///< no program within the lease
+  Reason ins_fault;          ///< no usable INS within its limit
+  Reason tilt_fault;         ///< a limit of roll, pitch or their rates was exceeded
+  Reason fence_fault;        ///< only zero, given now, keeps the outline inside the fences
+  Reason motion_fault;       ///< the commands do not explain the robot's motion
+  bool fenced = false;       ///< there are fences to observe
+  bool hand = false;  ///< a person takes or keeps manual control, or wants the robot armed for it
+  std::string hand_words;     ///< who, and why the robot stands, if it does
+  std::string hand_bar;       ///< why manual control does not start although the button is held
+  bool playing = false;       ///< a series is being played and continues
+  bool start_wanted = false;  ///< a series is offered while the robot stands
+  Reason program_bar;         ///< why no series may start, although manual control may
   Reason series_end;          ///< why the series ended, if it did in this step
-  bool leased = false;        ///< an operator is there; without one nothing moves
+  bool leased = false;        ///< an operator is present; without one nothing moves
   Reason unleased;            ///< why not
-  bool unattended = false;    ///< no operator was there for longer than an armed robot waits
+  bool unattended = false;    ///< no operator was present for longer than an armed robot may wait
   bool arm = false;           ///< a new request to arm arrived in this step
   bool disarm = false;        ///< a request to disarm arrived in this step
-  std::string requested_by;   ///< who sent the request
+  std::string requested_by;   ///< sender of the request
   StopReason disarm_code = StopReason::kDisarmed;  ///< of a request to disarm
-  std::string refusal;  ///< why a request counts for nothing, where people must know it
+  std::string refusal;  ///< why a request does not count, if people must know
 };
 
-/// What the bridge has to do.
+/// What the bridge must do.
 struct FailsafeOutputs {
   State state = State::kDisarmed;
-  bool may_drive = false;  ///< false: the command is zero, whatever is played
-  bool zero_fast = true;   ///< zero is to be repeated at the command rate, else at the idle rate
+  bool may_drive = false;  ///< false: the command is zero, whatever is being played
+  bool zero_fast = true;   ///< repeat zero at the command rate, not at the idle rate
   bool changed = false;    ///< the state or its reason changed in this step
   bool arm_refused = false;
-  Reason cause;               ///< why it is in this state
-  std::string reason;         ///< for people: the same, and what was refused
-  Reason standing_fault;      ///< worst fault of this step; none = inputs are good
-  bool standing_said = true;  ///< `reason` says that fault
+  Reason cause;               ///< why the failsafe is in this state
+  std::string reason;         ///< for people: the same, with refusals
+  Reason standing_fault;      ///< most severe fault of this step; no reason = inputs are good
+  bool standing_said = true;  ///< `reason` states that fault
 };
 
 /// The ranked state machine that decides whether the motors may turn. Pure: time is an input.
-/** Of faults that stand together the first in StopReason counts. A series can only start from a
-   state that gave zero in the step before, and only while an operator is there and nothing bars
-   programs. Everything but the normal end of a series needs ARM, and ARM needs an operator and
-   inputs that were good for a second. */
+/** Of simultaneous faults the first in StopReason counts. A series can start only from a state that
+ * gave zero in the previous step, and only while an operator is present and nothing bars programs.
+ * Everything but the normal end of a series requires ARM, and ARM requires an operator and inputs
+ * that were good for a second. */
 class Failsafe {
  public:
   FailsafeOutputs update(const FailsafeInputs& in);
 
   State state() const { return state_; }
   const Reason& reason() const { return reason_; }
-  /// When it last left the armed states, or was first updated [us]; a request given before counts
-  /// for nothing.
+  /// When it last left the armed states, or was first updated [us]; an earlier request does not
+  /// count.
   int64_t disarmedAt() const { return disarmed_at_; }
 
  private:
-  /// Why a request counts for nothing.
+  /// Why a request does not count.
   struct Refusal {
     std::string words;     ///< empty = none
-    Reason why;            ///< where a fault or the operator is why
-    bool by_hand = false;  ///< a hand holds the button
+    Reason why;            ///< if a fault or the operator is the cause
+    bool by_hand = false;  ///< the button of manual control is held
   };
   void enter(State state, const Reason& reason, int64_t now);
   bool refused() const { return !refusal_.words.empty() && !isArmed(state_); }

@@ -10,12 +10,12 @@
 namespace tread::motor {
 namespace {
 
-constexpr double kStep = 0.1;                // [s] between the poses that are looked at
-constexpr double kMuchTurn = 0.7;            // [1] of a commanded turn that is made at most
-constexpr double kSlack = 0.05;              // [m] by which a pose outside may seem farther out
-constexpr double kStillTwist = 0.03;         // [m/s, rad/s] of a standing robot
-constexpr double kMostAge = 0.5;             // [s] of a pose; an older one is a fault of its own
-constexpr int64_t kBlindStands = 1'000'000;  // [us] for which it is
+constexpr double kStep = 0.1;         // [s] between the checked poses
+constexpr double kMuchTurn = 0.7;     // [1] upper limit of the executed share of a commanded turn
+constexpr double kSlack = 0.05;       // [m] by which a pose outside may appear farther out
+constexpr double kStillTwist = 0.03;  // [m/s, rad/s] of a robot at rest
+constexpr double kMostAge = 0.5;      // [s] of a pose; an older one is a fault of its own
+constexpr int64_t kBlindStands = 1'000'000;  // [us] for which the fault stays
 
 std::string centimetres(double metres) {
   const auto rounded = std::lround(100.0 * std::abs(metres));
@@ -27,7 +27,7 @@ double effort(const Command& motion) {
   return std::abs(motion[0]) + std::abs(motion[1]) + std::abs(motion[kSideways]);
 }
 
-/// Adds what moves and is not there yet.
+/// Adds a twist that is not zero and not yet in the list.
 void add(const Twist2& twist, std::vector<Twist2>& twists) {
   if (std::hypot(twist.v_x, twist.v_y) < kStillTwist && std::abs(twist.omega) < kStillTwist) return;
   for (const Twist2& other : twists)
@@ -40,13 +40,13 @@ void add(const Twist2& twist, std::vector<Twist2>& twists) {
 void FenceWatch::receive(const InsMotion& ins) {
   const double known = ins_.position_std;
   ins_ = ins;
-  // A device that tells its accuracy no more has not become better.
+  // A device that no longer reports its accuracy has not become more accurate.
   if (!std::isfinite(ins_.position_std)) ins_.position_std = known;
 }
 
 void FenceWatch::command(const Command& motion, int64_t now) {
   if (given_.empty() || given_.back().motion != motion) given_.push_back({now, motion});
-  // The last one before the window holds in it, too.
+  // The last one before the window acts in it, too.
   const int64_t begin = now - toMicroseconds(motion_.delay);
   while (given_.size() > 1 && given_[1].utime <= begin) given_.pop_front();
   if (motion[0] > 0.0 || motion[1] > 0.0) ahead_ = now;
@@ -56,8 +56,8 @@ void FenceWatch::command(const Command& motion, int64_t now) {
 }
 
 std::vector<Eigen::Vector2d> FenceWatch::velocities(int64_t now) const {
-  // By then what was commanded last has begun and ended: the stopping time is learned on this
-  // ground, lag and braking are in it.
+  // By then the last command has begun and ended: the stopping time, learned on this ground,
+  // includes lag and braking.
   const int64_t begin = now - toMicroseconds(motion_.delay + limits_.stopping_time);
   const auto possible = [&](double measured, const std::optional<int64_t>& plus,
                             const std::optional<int64_t>& minus) -> std::vector<double> {
@@ -102,7 +102,7 @@ std::vector<Twist2> FenceWatch::twists(int64_t now) const {
 Reason FenceWatch::faultOfFence(const Fence& fence, double& best, const Ways& ways) const {
   const Pose2 here{ins_.x, ins_.y, ins_.yaw};
   const FootprintSize grown = limits_.outline.widened(positionMargin(ins_.position_std));
-  // Nothing that lies farther away needs the closer look, which costs a hundred times as much.
+  // Fences farther away need no exact check, which costs a hundred times as much.
   const bool far = roomAt(fence, here.position()) > reachOf(grown) + ways.farthest;
   const double room = far ? 0.0 : roomAt(fence, here, grown);
   best = room < 0.0 ? std::max(best, room) : -std::numeric_limits<double>::infinity();

@@ -9,9 +9,8 @@
 
 namespace tread::motor {
 
-/// Cuts a controller's bytes into lines of printable characters.
-/** Other bytes below space and above '~' are dropped; an overlong line is discarded up to its
-    end. */
+/// Splits a controller's bytes into lines of printable characters.
+/** Bytes below space and above '~' are dropped; an overlong line is discarded up to its end. */
 class LineCutter {
  public:
   static constexpr size_t kMaxLine = 128;
@@ -19,7 +18,7 @@ class LineCutter {
   /// `end`: CR or LF; the other of the two is ignored.
   explicit LineCutter(char end = '\r') : end_(end) {}
 
-  /// Complete lines, empty ones left out.
+  /// Complete lines, without empty ones.
   std::vector<std::string> push(std::string_view bytes);
   void clear();
   int64_t overlong() const { return overlong_; }

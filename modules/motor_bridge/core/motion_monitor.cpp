@@ -12,31 +12,31 @@
 namespace tread::motor {
 namespace {
 
-constexpr double kWindows[] = {1.0, 3.0};  // [s]: the long one for what is slow
+constexpr double kWindows[] = {1.0, 3.0};  // [s]: the long one for slow deviations
 constexpr int64_t kSuspicion = 100'000;    // [us] for which a window must stay suspicious
-constexpr int64_t kStands = 1'300'000;     // [us] for which a verdict stands
-constexpr double kRepeats = 0.4;           // [s] of the same pose, bit by bit
-constexpr double kRepeatedMotion = 0.05;   // [m], [rad] that must have changed it
+constexpr int64_t kStands = 1'300'000;     // [us] for which a fault stays
+constexpr double kRepeats = 0.4;           // [s] of the same pose, bit for bit
+constexpr double kRepeatedMotion = 0.05;   // [m], [rad] that should have changed it
 constexpr double kPositionSlack = 0.15;    // [m] of a window
 constexpr double kYawSlack = 0.12;         // [rad] of a window
-constexpr double kCreep = 0.25;            // [rad] that it turns back once zero is commanded
+constexpr double kCreep = 0.25;            // [rad] by which it turns back after zero is commanded
 constexpr double kWander = 0.2;            // [1] of the INS's standard deviation in a window
 constexpr double kFade = 0.99;             // [1] of the last standard deviation, per measurement
-constexpr double kStill = 0.04;            // [m], [rad] within which a robot stands
-constexpr double kStillTracks = 0.12;      // [m] of the tracks that must have moved it
+constexpr double kStill = 0.04;            // [m], [rad] limit of a standstill
+constexpr double kStillTracks = 0.12;      // [m] of the tracks that should have moved it
 constexpr double kPositionJump = 0.3;      // [m] of a step
 constexpr double kYawJump = 0.25;          // [rad] of a step
-constexpr double kDoubts = 1.5;            // [1] unreachable poses that are one too many
-constexpr double kForgiven = 0.05;         // [1] of them by each good one
+constexpr double kDoubts = 1.5;            // [1] limit of unreachable poses
+constexpr double kForgiven = 0.05;         // [1] reduction of that count per good one
 constexpr double kVelocityError = 0.12;    // [1] of the INS's velocity, latency included
 constexpr double kRateError = 0.12;        // [1] of its rate
 constexpr double kSideways = 0.25;         // [1] of the travel: sideslip
 constexpr double kSwing = 0.5;             // [m/rad] sideways by turning about another point
 constexpr int64_t kTrackStands = 700'000;  // [us] against its command
 constexpr double kStandingTrack = 0.1;     // [1] of the commanded speed: blocked
-constexpr double kDepartureWindow = 0.7;   // [s] compared with what is usual
+constexpr double kDepartureWindow = 0.7;   // [s] compared with the usual motion
 constexpr double kLearnedWindow = 1.0;     // [s]
-constexpr double kLearnedAfter = 1.5;      // [s] by when a fault in it would have been told
+constexpr double kLearnedAfter = 1.5;      // [s] by which a fault in it would have been detected
 
 const std::string kTracks = "tracks";
 const std::string kWheels = "wheels";
@@ -63,17 +63,18 @@ std::string words(std::string_view pattern, std::initializer_list<double> values
   return text;
 }
 
-/// What lies outside of [min, max], with its sign; 0 inside.
+/// Excess over [min, max], with its sign; 0 inside.
 double beyond(double value, double min, double max) {
   return value < min ? value - min : std::max(0.0, value - max);
 }
 
-/// Nearest to zero of what the commands explain.
+/// The value in [min, max] closest to zero.
 double leastOf(double min, double max) {
   return min > 0.0 ? min : std::min(0.0, max);
 }
 
-/// Commanded and not done: what the motors say names it. `least` [m] of the tracks' way.
+/// Commanded but not executed: the motors' data name the fault. `least` [m] of the tracks'
+/// distance.
 Reason tooLittle(const MotionSums& sums, const MotorTelemetry& motors, double least,
                  const std::string& what) {
   const double left = std::abs(motors.measured[0]), right = std::abs(motors.measured[1]);
@@ -81,7 +82,7 @@ Reason tooLittle(const MotionSums& sums, const MotorTelemetry& motors, double le
   const std::string told =
       words("%2 m, %0 deg in %1 s where " + what + " make %2 m at least",
             {sums.position.norm(), toDegrees(sums.turned), sums.seconds(), least});
-  // Of a wheel on rollers no share of the motion is known from these two alone.
+  // For a wheel with rollers these two alone determine no share of the motion.
   if (what == kTracks && std::min(left, right) > 0.5 * asked)
     return {StopReason::kStuck, "tracks spin or pose frozen: " + told + "; look, then ARM"};
   if (std::isfinite(motors.current[0]) && std::isfinite(motors.current[1]))
@@ -91,16 +92,16 @@ Reason tooLittle(const MotionSums& sums, const MotorTelemetry& motors, double le
   return {StopReason::kStuck, "stuck or pose frozen: " + told + "; look, then ARM"};
 }
 
-/// One window and what it takes to judge it.
+/// One window and the data for evaluating it.
 struct Judge {
   const MotionSums& sums;
-  const MotionSums& half;  ///< its newer half: in which direction it goes now
+  const MotionSums& half;  ///< its newer half: the present direction of motion
   const MotorTelemetry& motors;
   const MotionLimits& limits;
-  double wander;     ///< [m] of a standing position
+  double wander;     ///< [m] of a position at rest
   double slack;      ///< [m] of a position's change
   double yaw_slack;  ///< [rad] of a heading's
-  bool stands;       ///< commanded to zero all the time
+  bool stands;       ///< commanded to zero throughout
 
   Reason verdict() const {
     Reason verdict = ownRate();
@@ -113,7 +114,7 @@ struct Judge {
   }
 
  private:
-  /// What a wrong time makes of a path that is driven unevenly [rad].
+  /// Effect of a time error on an unevenly driven path [rad].
   double lateRate(double path) const { return 2.0 * limits.time_error * path / sums.seconds(); }
 
   Reason ownRate() const {
@@ -134,7 +135,7 @@ struct Judge {
                   "INS, then ARM",
                   {off, sums.seconds(), sums.ins_path})};
   }
-  /// Slip makes less of a command, but not nothing.
+  /// Slip reduces a command's motion, but not to zero.
   Reason still() const {
     const bool still = std::max(sums.position.norm(), half.position.norm()) < kStill + wander &&
                        std::max(std::abs(sums.turned), std::abs(half.turned)) < kStill;
@@ -197,7 +198,7 @@ struct Judge {
                   "check, then ARM",
                   {sums.left, sums.seconds(), allowed})};
   }
-  /// Of what is commanded to the side, too.
+  /// Including sideways commands.
   Reason besideCommand(double off) const {
     const double expected = leastOf(sums.side_min, sums.side_max);
     if (off * expected < 0.0 && sums.left * expected >= 0.0)
@@ -214,12 +215,12 @@ struct Judge {
 }  // namespace
 
 void MotionMonitor::receive(const InsMotion& ins) {
-  // One broken message among good ones does not stop the robot; two do, or one of a few.
+  // A single broken message among good ones does not stop the robot; two do, or one of a few.
   const bool good = track_.reachable(ins, kPositionJump + position_std_, kYawJump);
   doubts_ = good ? std::max(0.0, doubts_ - kForgiven) : doubts_ + 1.0;
   if (!good && doubts_ < kDoubts) return;
   if (!track_.add(ins)) return;
-  // A fix that becomes better moves by the error that it had before.
+  // An improving fix moves by its earlier error.
   const double position_std = std::isfinite(ins.position_std) ? ins.position_std : 0.0;
   position_std_ = std::max(position_std, kFade * position_std_);
   if (track_.empty()) return;
@@ -335,7 +336,7 @@ Reason MotionMonitor::departure() const {
   if (!window) return {};
   const std::optional<TrackFault> fault = response_.fault(*window);
   if (!fault) return {};
-  // What turns round passes through zero.
+  // A reversal passes through zero.
   const MotionSums half = *track_.window(0.5 * kDepartureWindow);
   const bool backwards = half.forward * fault->travel < 0.0 && std::abs(half.forward) > kStill;
   const bool mirrored = half.turned * fault->turn < 0.0 && std::abs(half.turned) > kStill;

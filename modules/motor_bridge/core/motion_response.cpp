@@ -11,19 +11,19 @@ namespace tread::motor {
 namespace {
 
 // Chosen on every other recorded session (tests/motor_bridge/test_motion_recordings.cpp).
-constexpr double kMemory = 15.0;       // [1] windows that are remembered
-constexpr double kLeastReach = 0.15;   // [m] of a window to learn from
+constexpr double kMemory = 15.0;       // [1] remembered windows
+constexpr double kLeastReach = 0.15;   // [m] of an informative window
 constexpr double kLeastNoise = 0.05;   // [1] standard deviation of a window
-constexpr double kPriorNoise = 0.15;   // [1] the same, before any is known
-constexpr double kPriorWeight = 3.0;   // [1] windows that it counts as
+constexpr double kPriorNoise = 0.15;   // [1] the same, before any window
+constexpr double kPriorWeight = 3.0;   // [1] weight in windows
 constexpr double kSigmas = 2.5;        // [1] that are usual
 constexpr double kTravelSlack = 0.08;  // [m] beside those
 constexpr double kTurnSlack = 0.08;    // [rad]
 constexpr double kBandShare = 0.6;     // [1] middle part of the bands: their ends are rare
-constexpr double kNearer = 0.4;        // [1] of its distance to the usual: as near to the fault
-constexpr double kHardlyAny = 0.25;    // [1] the same where nothing is left: ice leaves a little
-constexpr double kDriven = 0.2;        // [m] least way of a track that drives
-constexpr double kTurned = 0.1;        // [m] least way of the tracks against each other in a turn
+constexpr double kNearer = 0.4;  // [1] of its distance from the usual motion: close to the fault
+constexpr double kHardlyAny = 0.25;  // [1] the same for zero remaining motion: ice leaves a little
+constexpr double kDriven = 0.2;      // [m] least distance of a driving track
+constexpr double kTurned = 0.1;      // [m] least difference of the tracks' distances in a turn
 
 }  // namespace
 
@@ -48,7 +48,7 @@ double ForgettingRegression::deviation(const Eigen::Vector2d& x, double scale) c
   return std::sqrt(noise() * (scale * scale + x.dot(normal().inverse() * x)));
 }
 
-/// Ranges of a window's travel and turn [m], and how far beyond them is usual.
+/// Ranges of a window's travel and turn [m], and the usual excess over them.
 struct MotionResponse::Expected {
   double travel_min = 0.0, travel_max = 0.0, turn_min = 0.0, turn_max = 0.0;
   double travel_margin = 0.0, turn_margin = 0.0;
@@ -73,7 +73,7 @@ MotionResponse::Expected MotionResponse::expected(const MotionSums& window, doub
   const Eigen::Array2d middle = 0.5 * share * (window.low + window.high);
   const Eigen::Array2d half = 0.5 * kBandShare * share * (window.high - window.low);
   const Eigen::Vector2d x(0.5 * middle.sum(), 0.5 * (middle[1] - middle[0]));
-  // Each track is anywhere within its band: the largest of a linear form is at the corners.
+  // Each track is anywhere within its band: a linear form is largest at the corners.
   const auto spread = [&half](const Eigen::Vector2d& parameters) {
     return 0.5 * (std::abs(parameters[0] - parameters[1]) * half[0] +
                   std::abs(parameters[0] + parameters[1]) * half[1]);
@@ -104,7 +104,7 @@ std::optional<TrackFault> MotionResponse::fault(const MotionSums& window) const 
   const Expected usual = expected(window, 1.0, 1.0);
   const double off = usual.distance(travel, turn);
   if (off < 1.0) return std::nullopt;
-  double nearest = 1.0;  // in distances to the usual
+  double nearest = 1.0;  // in distances from the usual motion
   std::optional<Kind> kind;
   const auto compare = [&](Kind candidate, const Expected& left_over, double limit) {
     const double distance = left_over.distance(travel, turn) / off;
@@ -112,7 +112,7 @@ std::optional<TrackFault> MotionResponse::fault(const MotionSums& window) const 
     nearest = distance;
     kind = candidate;
   };
-  // What a track does that need not drive tells nothing of it.
+  // A track that may stand still is uninformative.
   const double way = std::max(kDriven, limits_.dead_band * limits_.full_speed * window.seconds());
   if (window.low.max(-window.high).minCoeff() > way) {
     compare(Kind::kLeftDead, expected(window, 0.0, 1.0), kNearer);

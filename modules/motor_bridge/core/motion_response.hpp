@@ -10,17 +10,17 @@
 
 namespace tread::motor {
 
-/// y = parameters . x, with a prior; old samples are forgotten. Nothing in it has a unit.
+/// y = parameters . x, with a prior; old samples are forgotten. All quantities are dimensionless.
 class ForgettingRegression {
  public:
   ForgettingRegression(const Eigen::Vector2d& mean, const Eigen::Vector2d& std)
       : mean_(mean), information_(std.cwiseInverse().cwiseAbs2().asDiagonal()) {}
 
-  /// Adds a sample of `weight` that was predicted with `error`; the sums before it keep the share
+  /// Adds a sample of `weight` that was predicted with `error`; the previous sums are multiplied by
   /// `kept`.
   void add(const Eigen::Vector2d& x, double y, double error, double weight, double kept);
   Eigen::Vector2d parameters() const;
-  /// Standard deviation of a single sample from parameters . x, that of the parameters included;
+  /// Standard deviation of a single sample about parameters . x, including the parameters' own;
   /// both are scaled: x = scale * (x of a sample).
   double deviation(const Eigen::Vector2d& x, double scale) const;
 
@@ -43,31 +43,34 @@ struct TrackFault {
   double travel = 0.0, turn = 0.0;  ///< [m, rad] usual for these commands
 };
 
-/// Learns what the robot makes of its commands on the ground below, and tells dead tracks by it.
-/** MotionTrack's bands hold on all grounds, hence they are wide. This learns, over 15 s of motion,
-    which share of the commanded travel and turn arrives, how far the robot pulls aside, and how
-    much all that varies; before that it knows no more than the bands do. A fault is told where the
-    motion is far from the usual one and near to what one dead track, two blocked ones or mirrored
-    turns would leave of it. So another ground alone is none: it leaves less of both tracks. */
+/// Learns the robot's response to its commands on the present ground, and detects dead tracks by
+/// it.
+/** MotionTrack's bands hold on all grounds, so they are wide. This class learns, over 15 s of
+ * motion, which share of the commanded travel and turn arrives, how far the robot pulls to one
+ * side, and how much these vary; before that it knows no more than the bands. A fault is reported
+ * if the motion is far from the usual one and close to that of one dead track, two blocked ones or
+ * mirrored turns. So a change of ground alone is no fault: it reduces both tracks. */
 class MotionResponse {
  public:
   explicit MotionResponse(const MotionLimits& limits) : limits_(limits) {}
 
-  /// Learns from a window of good driving that counts as `weight` [1] windows.
+  /// Learns from a window of faultless driving with a weight of `weight` [1] windows.
   void learn(const MotionSums& window, double weight);
-  /// What explains the window; nothing where it is usual, or unlike all faults.
+  /// The fault that explains the window; nullopt if it is usual, or unlike all faults.
   std::optional<TrackFault> fault(const MotionSums& window) const;
 
  private:
   struct Expected;
-  /// What is expected if the tracks make these shares of their ways.
+  /// Expectation if the tracks move these shares of their commanded distances.
   Expected expected(const MotionSums& window, double left, double right) const;
   double turnWay(const MotionSums& window) const { return 0.5 * limits_.gauge * window.turned; }
 
   MotionLimits limits_;
-  // Of x = (mean, half the difference) of the tracks' ways, over that of the faster track.
+  // For x = (mean, half the difference) of the tracks' distances, divided by that of the faster
+  // track.
   ForgettingRegression travel_{{0.85, 0.0}, {0.2, 0.1}};
-  ForgettingRegression turn_{{0.0, 0.55}, {0.1, 0.2}};  ///< as way of a track, 0.5 gauge from it
+  ForgettingRegression turn_{{0.0, 0.55},
+                             {0.1, 0.2}};  ///< as distance of a track, 0.5 gauge from the centre
 };
 
 }  // namespace tread::motor

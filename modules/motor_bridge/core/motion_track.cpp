@@ -12,23 +12,24 @@ namespace tread::motor {
 namespace {
 
 constexpr int64_t kKept = 3'500'000;      // [us] of history: longer than the longest window
-constexpr int64_t kPiece = 20'000;        // [us] in which the bands are moved
-constexpr int64_t kMaxGap = 300'000;      // [us] beyond which windows begin anew
-constexpr int64_t kSettling = 3'000'000;  // [us] in which the bands forget what was before
-constexpr double kBrokenSpeed = 10.0;     // [1] of full speed: not a measurement
+constexpr int64_t kPiece = 20'000;        // [us] integration step of the bands
+constexpr int64_t kMaxGap = 300'000;      // [us] beyond which windows restart
+constexpr int64_t kSettling = 3'000'000;  // [us] in which the bands forget earlier commands
+constexpr double kBrokenSpeed = 10.0;     // [1] of full speed: no valid measurement
 constexpr double kMostTravel = 1.25;      // [1] of the commanded: slopes, tyres, calibration
 constexpr double kMostTurn = 1.4;         // [1]
-constexpr double kTurnToTravel = 0.25;    // [1] travel that turning explains, of half the gauge
+constexpr double kTurnToTravel = 0.25;    // [1] travel caused by turning, of half the gauge
 
-/// The least of what a speed may become if a share of it beyond `dead`, or `most` of it, arrives.
+/// Lower bound of a speed if a share of it beyond `dead`, or `most` of it, is executed.
 double atLeast(double speed, double dead, double share, double most) {
   return speed > 0.0 ? share * std::max(0.0, speed - dead) : most * speed;
 }
 
-/// [1] of the motion to the side that a holonomic base makes forward, and the other way round: its
-/// wheels do not all slip alike.
+/// [1] cross-coupling between sideways and forward motion of a holonomic base: its wheels do not
+/// slip equally.
 constexpr double kAskew = 0.25;
-constexpr double kRounding = 1e-9;  // [m/s] of a holonomic base's wheels, made a motion
+constexpr double kRounding =
+    1e-9;  // [m/s] rounding error of a holonomic base's wheels, converted to a motion
 
 }  // namespace
 
@@ -36,7 +37,7 @@ Command MotionLimits::motion(const Command& command) const {
   if (isOmni()) {
     const Twist2 twist = wheels.twist(command);
     const double turn = 0.5 * gauge * twist.omega;
-    // What only rounding makes of it is no direction in which it was commanded.
+    // Rounding errors are no commanded direction.
     const auto exact = [](double value) { return std::abs(value) < kRounding ? 0.0 : value; };
     Command motion(exact(twist.v_x - turn), exact(twist.v_x + turn));
     motion[kSideways] = exact(twist.v_y);
@@ -214,7 +215,7 @@ double MotionTrack::beyondDeadBand(double low, double high) const {
 
 double MotionTrack::least(size_t wheel) const {
   if (!limits_.isOmni()) return beyondDeadBand(bands_[wheel].low(), bands_[wheel].high());
-  // Forward speed, sideways speed and turn lie anywhere in their bands.
+  // Forward speed, sideways speed and turn are anywhere in their bands.
   const Eigen::Vector3d row = limits_.wheels.row(wheel);
   const double turning = row[2] / limits_.gauge;
   const double weights[] = {0.5 * row[0] - turning, 0.5 * row[0] + turning, row[1]};

@@ -16,7 +16,7 @@
 
 namespace tread::motor {
 
-/// One INS measurement as far as motion in the plane goes; NaN = not measured.
+/// One INS measurement of planar motion; NaN = not measured.
 struct InsMotion {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -27,44 +27,45 @@ struct InsMotion {
   double v_forward = kUnknown;     ///< [m/s] body velocity, the INS's own
   double v_left = kUnknown;        ///< [m/s]
   double yaw_rate = kUnknown;      ///< [rad/s] gyro
-  double position_std = kUnknown;  ///< [m] of an axis
+  double position_std = kUnknown;  ///< [m] per axis
 };
 
-/// What a robot makes of its commands, at least and at most.
-/** Shares of slip were chosen on recordings of a 470 kg skid-steer (tests/motor_bridge); its delay
- * and acceleration are its own. A robot that slips more or answers later needs wider limits: that
- * makes the monitor slower, nothing ends it. */
+/// Limits of a robot's response to its commands.
+/** Shares of slip were chosen on recordings of a 470 kg skid-steer (tests/motor_bridge); delay and
+ * acceleration are the robot's own. A robot that slips more or responds later needs wider limits,
+ * which make the monitor slower but never disable it. */
 struct MotionLimits {
-  double gauge = 0.6;              ///< [m] between the middles of the tracks
-  double wheelbase = 0.0;          ///< [m] of a car, which counts as its rear wheels; 0 = tracks
-  OmniWheels wheels;               ///< of a holonomic base; else none
-  double full_speed = 1.1;         ///< [m/s] of a track: no command makes it faster
+  double gauge = 0.6;       ///< [m] between the middles of the tracks
+  double wheelbase = 0.0;   ///< [m] of a car, which is treated as its rear wheels; 0 = tracks
+  OmniWheels wheels;        ///< of a holonomic base; otherwise empty
+  double full_speed = 1.1;  ///< [m/s] of a track: upper limit for any command
   double speed_per_command = 1.1;  ///< [m/s] of a track or a wheel's rim at command 1
-  double dead_band = 0.15;         ///< [1] share of full_speed that need not move anything
+  double dead_band = 0.15;         ///< [1] share of full_speed that may move nothing
   double delay = 0.25;             ///< [s] longest time from a command to its first effect
   double lag = 0.45;               ///< [s] slowest time constant of the tracks
-  double acceleration = 2.0;       ///< [m/s2] of a track that is commanded far off, at least
-  double least_travel = 0.4;       ///< [1] of the commanded travel that is made at least
-  double least_turn = 0.2;         ///< [1] of the commanded turn that is made at least
-  double pull = 0.25;        ///< [1] turn that uneven ground explains, as a share of speed / gauge
-  double time_error = 0.05;  ///< [s] of the INS's measurement times, position against rates, too
+  double acceleration = 2.0;       ///< [m/s2] of a track far from its commanded speed, at least
+  double least_travel = 0.4;       ///< [1] of the commanded travel, at least
+  double least_turn = 0.2;         ///< [1] of the commanded turn, at least
+  double pull = 0.25;  ///< [1] turn caused by uneven ground, as a share of speed / gauge
+  double time_error =
+      0.05;  ///< [s] of the INS's measurement times, also between position and rates
 
   bool isOmni() const { return !wheels.empty(); }
-  /// What a command means, in its unit: for the left and the right track, or a car's rear wheels,
-  /// and at kSideways to the left.
-  /** A holonomic base counts as two tracks, as far apart as its wheels are wide, that go forward
-   * and turn as it does; it alone is commanded to the side. */
+  /// A command in its unit as track commands: of the left and the right track, or a car's rear
+  /// wheels, and at kSideways to the left.
+  /** A holonomic base is treated as two tracks, as far apart as its wheels, with the same forward
+   * motion and turn; only its command has a sideways part. */
   Command motion(const Command& command) const;
 };
 
-/// Where a motion has its sideways part, beside left and right.
+/// Index of the sideways part of a motion, after left and right.
 inline constexpr size_t kSideways = 2;
 
-/// The speeds of a track [m/s] that its commands explain.
-/** It may answer at once, or after the whole delay and lag: the band holds both. */
+/// The speeds of a track [m/s] that are consistent with its commands.
+/** It may respond at once, or after the full delay and lag: the band contains both. */
 class TrackBand {
  public:
-  /// Follows for dt [s] commands that lay between `least` and `most` [m/s] within the delay.
+  /// Advances by dt [s] with commands between `least` and `most` [m/s] within the delay.
   void follow(double least, double most, const MotionLimits& limits, double dt);
   double low() const { return low_; }
   double high() const { return high_; }
@@ -74,8 +75,8 @@ class TrackBand {
   double high_ = 0.0;
 };
 
-/// Sums since the first measurement, or over a window: what was measured, and what the commands
-/// explain.
+/// Sums since the first measurement, or over a window: the measured motion, and the motion that the
+/// commands explain.
 struct MotionSums {
   int64_t utime = 0;                                   ///< [us]
   double forward = 0.0, left = 0.0;                    ///< [m] steps of the pose, body's frame
@@ -83,50 +84,52 @@ struct MotionSums {
   double turned = 0.0;                                 ///< [rad] of the heading
   double travel_min = 0.0, travel_max = 0.0;           ///< [m] explained, slip included
   double turn_min = 0.0, turn_max = 0.0;               ///< [rad]
-  Eigen::Array2d low = Eigen::Array2d::Zero();         ///< [m] left, right track, at least, no slip
-  Eigen::Array2d high = Eigen::Array2d::Zero();        ///< [m] at most
-  double travel = 0.0, turn = 0.0;        ///< [m, rad] of ideal tracks that answer at once
-  double side_min = 0.0, side_max = 0.0;  ///< [m] explained to the left, of a holonomic base
-  double tracks_min = 0.0;  ///< [m] mean way of both tracks, or sideways, at least, slip left out
-  double reach = 0.0;       ///< [m] of the faster track, at most
+  Eigen::Array2d low = Eigen::Array2d::Zero();   ///< [m] left, right track, lower bound, no slip
+  Eigen::Array2d high = Eigen::Array2d::Zero();  ///< [m] at most
+  double travel = 0.0, turn = 0.0;               ///< [m, rad] of ideal tracks without delay
+  double side_min = 0.0, side_max = 0.0;         ///< [m] explained to the left, of a holonomic base
+  double tracks_min =
+      0.0;             ///< [m] mean distance of both tracks, or sideways, lower bound without slip
+  double reach = 0.0;  ///< [m] of the faster track, at most
   double turn_reach = 0.0;  ///< [rad] at most, without slip
-  Eigen::Vector2d ins_way = Eigen::Vector2d::Zero();  ///< [m] in map, by the INS's velocity
-  double ins_path = 0.0;                              ///< [m] length of that
-  double gyro = 0.0, gyro_path = 0.0;                 ///< [rad] by the INS's yaw rate
-  double turned_with_gyro = 0.0;            ///< [rad] by the heading, while that rate was measured
-  double no_velocity = 0.0, no_rate = 0.0;  ///< [s] in which it was not measured
+  Eigen::Vector2d ins_way =
+      Eigen::Vector2d::Zero();              ///< [m] in map, integrated from the INS's velocity
+  double ins_path = 0.0;                    ///< [m] length of that
+  double gyro = 0.0, gyro_path = 0.0;       ///< [rad] integrated from the INS's yaw rate
+  double turned_with_gyro = 0.0;            ///< [rad] by the heading, while the rate was measured
+  double no_velocity = 0.0, no_rate = 0.0;  ///< [s] for which it was not measured
 
   double seconds() const { return 1e-6 * static_cast<double>(utime); }
   MotionSums operator-(const MotionSums& start) const;
 };
 
-/// Brings commands and measurements together in time.
+/// Combines commands and measurements in time.
 class MotionTrack {
  public:
   explicit MotionTrack(const MotionLimits& limits) : limits_(limits), given_(1) {}
 
-  /// What MotionLimits::motion() makes of the command that holds from now [us] on.
+  /// Result of MotionLimits::motion() for the command that acts from now [us] on.
   void command(const Command& motion, int64_t now);
-  /// Whether a robot in full drive could be at a pose after the last one, with `slack` [m] and
-  /// `yaw_slack` [rad]; true where there is none to compare with.
+  /// Whether a robot at full speed could have reached this pose since the last one, with `slack`
+  /// [m] and `yaw_slack` [rad]; true without a previous pose.
   bool reachable(const InsMotion& ins, double slack, double yaw_slack) const;
   /// Adds a measurement with a pose; false if it is not newer than the last one.
   bool add(const InsMotion& ins);
-  /// Forgets the windows; the next measurement begins them anew.
+  /// Forgets the windows; the next measurement starts them again.
   void forget() { history_.clear(); }
 
   bool empty() const { return history_.size() < 2; }
-  /// From the last measurement but one to the last.
+  /// From the second last measurement to the last.
   MotionSums step() const;
-  /// The window at least this long [s] that ended `ago` [s], or the last one; nothing while the
-  /// history is shorter.
+  /// The window of at least this length [s] that ended `ago` [s] before the last measurement;
+  /// nullopt while the history is too short.
   std::optional<MotionSums> window(double seconds, double ago = 0.0) const;
-  /// From the first measurement with the last pose, the same bit by bit.
+  /// From the first measurement whose pose equals the last one bit by bit.
   MotionSums repeats() const;
-  /// Commanded to zero for so long [s] at the last measurement.
+  /// How long zero had been commanded at the last measurement [s].
   double zeroFor() const;
-  /// The slowest speed [m/s] that the commands explain, of the left (0) or right (1) track, or of a
-  /// wheel's rim.
+  /// The slowest speed [m/s] consistent with the commands, of the left (0) or right (1) track, or
+  /// of a wheel's rim.
   double least(size_t wheel) const;
   int64_t utime() const { return last_.utime; }
   const MotionLimits& limits() const { return limits_; }
@@ -143,7 +146,7 @@ class MotionTrack {
   double beyondDeadBand(double low, double high) const;
 
   MotionLimits limits_;
-  std::deque<Given> given_;  ///< oldest first; it begins with zero
+  std::deque<Given> given_;  ///< oldest first; starts with zero
   TrackBand bands_[3];       ///< left, right, sideways
   std::deque<MotionSums> history_;
   std::optional<MotionSums> repeats_;

@@ -9,26 +9,26 @@
 
 namespace tread::motor {
 
-/// What was sent to a controller and not answered yet, in the order sent.
-/** A controller answers in that order, so an answer shows which ones before it were lost. */
+/// Messages to a controller that are not answered yet, in the order sent.
+/** A controller answers in that order, so an answer shows which earlier ones were lost. */
 class PendingReplies {
  public:
   /// A command was sent at now [us]: an acknowledgement is due.
   void commandSent(int64_t now);
-  /// A query was sent at now [us]; its reply is known by this key, which is not empty.
+  /// A query was sent at now [us]; its reply is identified by this non-empty key.
   void querySent(const std::string& key, int64_t now);
-  /// What waits longer than this [us] is missing.
+  /// Messages that wait longer than this [us] count as missing.
   void expire(int64_t now, int64_t timeout_us);
   void clear() { pending_.clear(); }
 
-  /// An acknowledgement came. False if no command waits for one.
+  /// An acknowledgement arrived. False if no command waits for one.
   bool acknowledged();
-  /// The value of a query came. False if nobody asked.
+  /// The value of a query arrived. False if there was no such query.
   bool answered(const std::string& key);
   enum class Refused { kNothing, kCommand, kQuery };
-  /// What the refusal that came was for.
+  /// The message to which an incoming refusal belongs.
   Refused refused();
-  /// Whether a query that was sent less than this ago [us] is not answered yet.
+  /// Whether a query sent less than this ago [us] is still unanswered.
   bool waitsForQuery(int64_t now, int64_t patience_us) const;
 
   /// By name: sent, missing, refused, unexpected.

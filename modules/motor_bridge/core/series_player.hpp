@@ -13,10 +13,10 @@
 
 namespace tread::motor {
 
-/// How an execution went; the numbers are those of execution_record_t.
+/// Outcome of an execution; the numbers are those of execution_record_t.
 enum class ExecutionOutcome : int16_t { kRunning = 0, kCompleted = 1, kAborted = 2 };
 
-/// One execution as it really took place.
+/// One execution as it took place.
 struct ExecutionRecord {
   int64_t run_id = 0;
   int64_t execution_id = 0;
@@ -24,26 +24,26 @@ struct ExecutionRecord {
   int64_t set_version = 0;
   int64_t start_utime = 0;      ///< [us] when the first command was due
   int64_t end_utime = -1;       ///< [us] end of the last period, or of the abort; -1 = running
-  int32_t commands_played = 0;  ///< that were really given to the controller
+  int32_t commands_played = 0;  ///< actually given to the controller
   int32_t commands_total = 0;
   ExecutionOutcome outcome = ExecutionOutcome::kRunning;
-  Reason reason;  ///< why aborted; none else
+  Reason reason;  ///< why aborted; otherwise none
 };
 
-/// The last executions, oldest first.
+/// The most recent executions, oldest first.
 class ExecutionLog {
  public:
   static constexpr size_t kCapacity = 8;
 
-  /// A new execution begins; the oldest record leaves if the log is full.
+  /// Starts a new execution; if the log is full, the oldest record is dropped.
   void begin(int64_t run_id, const ProgramSlot& slot, int64_t start_utime);
   /// One more command of the running execution was given to the controller.
   void countCommand();
-  /// The running execution is over. Nothing happens if none is running.
+  /// Ends the running execution. Does nothing if none is running.
   void close(ExecutionOutcome outcome, int64_t end_utime, const Reason& reason);
 
   const std::deque<ExecutionRecord>& records() const { return records_; }
-  /// Counts up whenever an execution begins or ends.
+  /// Increases whenever an execution begins or ends.
   uint64_t revision() const { return revision_; }
 
  private:
@@ -55,59 +55,59 @@ class ExecutionLog {
   uint64_t revision_ = 0;
 };
 
-/// What became of a program that was offered to the player.
+/// The player's verdict on an offered program.
 enum class Offer {
   kAccepted,         ///< continues, replaces the next slot, or may start
   kStop,             ///< empty running slot: the planner wants to stand
-  kPlannerAhead,     ///< names the pending slot as running shortly before the switch: tolerated
-  kPlannerBehind,    ///< names the slot just ended as running shortly after the switch: tolerated
-  kAlreadyExecuted,  ///< refused: idle, and the running slot was played before
-  kRunningUnknown,   ///< refused: neither what is played nor what is pending
+  kPlannerAhead,     ///< names the pending slot as running, shortly before the switch: tolerated
+  kPlannerBehind,    ///< names the slot just ended as running, shortly after the switch: tolerated
+  kAlreadyExecuted,  ///< refused: the player is idle, and the running slot was played before
+  kRunningUnknown,   ///< refused: the running slot is neither played nor pending
   kRunningAltered,   ///< refused: same execution id, other commands
   kNextOutOfOrder,   ///< refused: the next slot's id is not above the running one's
 };
 
-/// True if the planner and the player agree about what is played.
-/** A moving robot whose planner talks about something else must not live on that planner's lease.
- */
+/// Whether the planner and the player agree on what is being played.
+/** If they disagree, the program must not renew the lease of a moving robot. */
 bool agrees(Offer offer);
 /// The verdict in words, e.g. "running slot is neither played nor pending".
 const char* describe(Offer offer);
 
-/// Plays command series at their fixed period and joins the next one without a gap.
+/// Plays command series at their fixed period and continues with the next one without a gap.
 /** The schedule is start + T * period, never "now", so that a chain of series does not drift.
-    1. offer() takes programs as they come; 2. advance() moves the schedule to now;
-    3. start() begins an offered series on an idle player; 4. give() is the command of now. */
+ *   1. offer() takes programs as they arrive; 2. advance() moves the schedule to now;
+ *   3. start() begins an offered series on an idle player; 4. give() returns the command of now. */
 class SeriesPlayer {
  public:
-  /// A planner may name a switch this much too early or too late [us]: two of its cycles.
+  /// A planner may announce a switch this much too early or too late [us]: two of its cycles.
   static constexpr int64_t kSwitchTolerance = 100'000;
 
-  /// What happened while the schedule moved.
+  /// Events while the schedule advanced.
   struct Advance {
-    bool ended = false;     ///< the last series ended and nothing was pending
+    bool ended = false;     ///< the last series ended without a pending one
     bool switched = false;  ///< the pending series began
     int32_t skipped = 0;    ///< commands whose whole period passed between two calls
   };
 
-  /// Executions of this run follow; only while idle. Returning to one of the last runs is harmless:
-  /// what it had executed stays executed.
+  /// Executions of this run follow; only while idle. Returning to a recent run is harmless: its
+  /// executions are not repeated.
   void beginRun(int64_t run_id);
   std::optional<int64_t> runId() const { return run_id_; }
 
   /// Takes a checked program of the current run, received at now [us].
   Offer offer(const Program& program, int64_t now);
-  /// Moves the schedule to now [us].
+  /// Advances the schedule to now [us].
   Advance advance(int64_t now);
-  /// True if the newest offer may start on this idle player.
+  /// Whether the newest offer may start on this idle player.
   bool startable() const { return !playing() && !candidate_.running.empty(); }
   /// Starts the offered series at now [us]; needs startable().
   void start(int64_t now);
-  /// A series starts only with the step its program arrived in: later it would be an old opinion.
+  /// A series starts only in the step in which its program arrived: later the program would be
+  /// outdated.
   void dropCandidate() { candidate_ = Program{}; }
-  /// Ends the running series at now [us] and forgets what was pending.
+  /// Ends the running series at now [us] and drops the pending one.
   void abort(int64_t now, const Reason& reason);
-  /// Command of the current period, counted as given to the controller; needs playing().
+  /// Command of the current period, counted as given to the controller; requires playing().
   Command give();
 
   bool playing() const { return !current_.empty(); }
@@ -125,9 +125,9 @@ class SeriesPlayer {
   static constexpr size_t kRunsRemembered = 8;
 
   std::optional<int64_t> run_id_;
-  std::map<int64_t, int64_t> executed_by_run_;  ///< highest execution id of former runs
-  int64_t last_executed_ = 0;                   ///< highest execution id begun in this run
-  int64_t previous_id_ = 0;  ///< execution that the current one was joined to; 0 = none
+  std::map<int64_t, int64_t> executed_by_run_;  ///< highest execution id of earlier runs
+  int64_t last_executed_ = 0;                   ///< highest execution id started in this run
+  int64_t previous_id_ = 0;  ///< the execution before the current one without a gap; 0 = none
   ProgramSlot current_;
   ProgramSlot pending_;
   Program candidate_;

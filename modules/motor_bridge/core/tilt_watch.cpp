@@ -9,8 +9,8 @@
 namespace tread::motor {
 namespace {
 
-constexpr int64_t kBump = 100'000;           // [us] for which a limit may be passed
-constexpr int kBumpMeasurements = 3;         // at least so many must say it
+constexpr int64_t kBump = 100'000;           // [us] for which a limit may be exceeded
+constexpr int kBumpMeasurements = 3;         // fewest measurements that must exceed it
 constexpr int64_t kWithin = 500'000;         // [us] of good measurements that end it
 constexpr double kRelief = 0.05;             // [rad, rad/s] below the limit that counts as good
 constexpr int64_t kSilent = 300'000;         // [us] without a measurement
@@ -54,7 +54,7 @@ void TiltWatch::receive(const InsTilt& tilt, int64_t now) {
   bad_.utime = bad_.utime.value_or(tilt.utime);
   ++bad_.count;
   if (!beyond_.empty()) {
-    // Just below the limit it stays said by how much it was passed.
+    // Just below the limit the message keeps the excess.
     const Reason passed = worst(tilt, 0.0);
     if (!passed.empty()) beyond_ = passed;
   } else if (bad_.count >= kBumpMeasurements && tilt.utime - *bad_.utime >= kBump) {

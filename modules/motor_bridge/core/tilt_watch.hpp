@@ -12,7 +12,7 @@
 
 namespace tread::motor {
 
-/// Attitude of the body as the INS measured it; NaN = not measured.
+/// Attitude of the body measured by the INS; NaN = not measured.
 struct InsTilt {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -23,22 +23,23 @@ struct InsTilt {
   double pitch_rate = kUnknown;  ///< [rad/s]
 };
 
-/// Watches roll, pitch and their rates against the robot's hard limits.
-/** A value counts as beyond its limit when measurements have said so for 100 ms and three times: a
- * bump does not stop the robot. It counts as within again 3 degrees (degrees a second) below the
- * limit, after half a second. Roll and pitch that are not measured count as beyond: who cannot see
- * a limit must not drive by it. Rates that the device does not measure are passed over. */
+/// Checks roll, pitch and their rates against the robot's hard limits.
+/** A value counts as exceeded after 100 ms and three measurements beyond its limit, so that a bump
+ * does not stop the robot. It counts as within the limit again half a second after falling 3
+ * degrees (degrees a second) below it. Roll and pitch that are not measured count as exceeded,
+ * because an unobserved limit must not be relied on. Rates that the device does not measure are
+ * ignored. */
 class TiltWatch {
  public:
   explicit TiltWatch(const std::optional<TiltLimits>& limits) : limits_(limits) {}
 
-  /// A measurement received at now [us]; one that is not newer than the last is passed over.
+  /// A measurement received at now [us]; ignored if it is not newer than the last.
   void receive(const InsTilt& tilt, int64_t now);
-  /// What stops the robot at now [us]: it has just come beyond a limit. Stands for a second, so
-  /// that arming by hand is needed, and is possible, while the robot is still beyond: only a person
-  /// drives it out of there. Call it in each step: silence counts as beyond, too.
+  /// Stop reason at now [us]: a limit has just been exceeded. It stands for a second, so that
+  /// arming for manual control is required, and is possible while the limit is still exceeded: only
+  /// a person drives the robot out of there. Call it in each step: silence counts as exceeded, too.
   Reason fault(int64_t now);
-  /// Why no program may drive: it is beyond a limit still; none = within.
+  /// Why no program may drive: a limit is still exceeded; no reason = within limits.
   const Reason& beyond() const { return beyond_; }
 
  private:
@@ -63,7 +64,7 @@ class TiltWatch {
   Since bad_;
   std::optional<int64_t> good_since_;  ///< [us]
   Reason beyond_;
-  int64_t began_ = 0;  ///< [us] when it came beyond
+  int64_t began_ = 0;  ///< [us] when the limit was exceeded
 };
 
 }  // namespace tread::motor

@@ -11,7 +11,7 @@ namespace tread::motor {
 
 // Packet serial of a Kangaroo x2 motion controller (Dimension Engineering, Packet Serial
 // Reference): address 128..135, command, length, data, checksum of 14 bits. Only the address has
-// its highest bit set, so that it begins a packet wherever it comes.
+// its highest bit set, so it always begins a packet.
 
 /// Commands, and the one kind of reply.
 enum class KangarooCommand : uint8_t {
@@ -22,7 +22,7 @@ enum class KangarooCommand : uint8_t {
   kStatus = 0x43
 };
 
-/// Errors that a status tells; the numbers are the protocol's.
+/// Error codes in a status, as in the protocol.
 enum class KangarooError : int32_t {
   kNotStarted = 1,
   kNotHomed = 2,
@@ -37,27 +37,27 @@ std::string describe(KangarooError error);
 
 /// One whole packet; data of at most 32 bytes, each below 128.
 std::string kangarooPacket(int address, KangarooCommand command, std::string_view data);
-/// A number as it stands in data: the sign in the lowest bit, 6 bits a byte, lowest first. At most
-/// +-(2^29 - 1); what is beyond is cut.
+/// A number encoded for the data: the sign in the lowest bit, 6 bits per byte, lowest first.
+/// Clamped to +-(2^29 - 1).
 std::string kangarooNumber(int64_t value);
 
-/// Starts a channel ('1' or '2'), which takes no command before; clears what has stopped it.
+/// Starts a channel ('1' or '2'), which accepts no command before; clears the cause of its stop.
 std::string kangarooStart(int address, char channel);
-/// A channel is to hold a speed [units/s].
+/// Sets a channel's speed [units/s].
 std::string kangarooSpeed(int address, char channel, int64_t speed);
-/// A channel is asked for its speed.
+/// Queries a channel's speed.
 std::string kangarooGetSpeed(int address, char channel);
-/// Without a packet for so long [s/16] the controller stops; 0 and below: never.
+/// The controller stops after this time without a packet [s/16]; 0 and below: never.
 std::string kangarooTimeout(int address, int sixteenths);
 
-/// What a channel answered.
+/// A channel's answer.
 struct KangarooStatus {
   char channel = 0;
   bool error = false;  ///< value is a KangarooError, else the speed [units/s]
   int32_t value = 0;
 };
 
-/// Cuts a byte stream into packets of one address; what is damaged is counted and dropped.
+/// Splits a byte stream into packets of one address; damaged ones are counted and dropped.
 class KangarooPackets {
  public:
   struct Packet {
@@ -70,7 +70,7 @@ class KangarooPackets {
   std::vector<Packet> push(std::string_view bytes);
   void clear() { packet_.clear(); }
   int64_t badChecksums() const { return bad_checksums_; }
-  /// Bytes outside of packets, and of packets that were cut off.
+  /// Bytes outside of packets, and of truncated packets.
   int64_t garbageBytes() const { return garbage_bytes_; }
 
  private:
@@ -80,12 +80,12 @@ class KangarooPackets {
   int64_t garbage_bytes_ = 0;
 };
 
-/// Reads the data of a status. False if it is none of a speed.
+/// Reads the data of a status. False if it is not that of a speed.
 bool readKangarooStatus(const KangarooPackets::Packet& packet, KangarooStatus& status);
-/// Reads a number at an offset and moves behind it. False if the data end within it.
+/// Reads a number at an offset and advances the offset. False if the data end within it.
 bool readKangarooNumber(std::string_view data, size_t& offset, int32_t& value);
 
-/// What Get and Move call a speed.
+/// Code of a speed in Get and Move.
 inline constexpr char kKangarooSpeed = 2;
 
 }  // namespace tread::motor

@@ -16,12 +16,12 @@
 
 namespace tread::motor {
 
-/// A Kangaroo x2 on a Sabertooth: it holds the speeds of both tracks by itself.
+/// A Kangaroo x2 on a Sabertooth: it controls the speeds of both tracks itself.
 struct KangarooConfig {
   int address = 128;             ///< 128..135
-  double units_per_metre = 0.0;  ///< of its speeds, on the track [1/m]
-  double full_speed = 0.0;       ///< of a track [m/s]; faster is never asked for
-  int left_channel = 1;          ///< 1 or 2; the right track has the other one
+  double units_per_metre = 0.0;  ///< of its speeds, along the track [1/m]
+  double full_speed = 0.0;       ///< of a track [m/s]; upper limit of commands
+  int left_channel = 1;          ///< 1 or 2; the right track uses the other
   bool invert_left = false;
   bool invert_right = false;
   ConnectionTimes times;
@@ -31,11 +31,11 @@ struct KangarooConfig {
 KangarooConfig readKangarooConfig(ConfigReader& reader, const DriveDescription& drive);
 
 /// The connection to a Kangaroo.
-/** Start-up: serial timeout, which is its watchdog, and start of each channel until it tells a
-    speed; zero. The timeout does not outlive a power cycle and is not told: it is repeated every
-    half second. Only Get is answered: both channels are asked in turn, 20 times a second in all.
-    A channel that is not started any more was restarted or timed out: start-up again, and it stands
-    until then. Lost control is a fault of the device until the stop is released. */
+/** Start-up: serial timeout, which is its watchdog, and start of each channel until it reports a
+ * speed; zero. The timeout is lost in a power cycle and cannot be read: it is repeated every half
+ * second. Only Get is answered: both channels are queried in turn, 20 times a second in all. A
+ * channel that is no longer started was restarted or timed out: the start-up is repeated, and the
+ * robot stands until then. Lost control is a fault of the device until the stop is released. */
 class KangarooConnection : public ControllerConnection {
  public:
   explicit KangarooConnection(const KangarooConfig& config)
@@ -50,7 +50,7 @@ class KangarooConnection : public ControllerConnection {
  private:
   enum Step { kFirst, kSecond, kZero, kSteps };
 
-  /// What a channel last told.
+  /// A channel's latest answer.
   struct Channel {
     int64_t heard_at = 0;  ///< [us]
     KangarooStatus told;
@@ -72,7 +72,7 @@ class KangarooConnection : public ControllerConnection {
   std::string commandBytes(const TrackCommand& command) const;
   std::string setUp() const;
   void take(const KangarooStatus& status, int64_t now);
-  /// Of a track [m/s]; NaN while it is not known.
+  /// Of a track [m/s]; NaN while unknown.
   double speedOf(bool left) const;
 
   KangarooConfig config_;
@@ -82,8 +82,8 @@ class KangarooConnection : public ControllerConnection {
   std::string output_;
   int64_t asked_at_ = 0;
   int64_t set_up_at_ = 0;
-  size_t next_ = 0;       ///< channel to be asked next
-  bool stopped_ = false;  ///< a channel is not started any more
+  size_t next_ = 0;       ///< channel to query next
+  bool stopped_ = false;  ///< a channel is no longer started
   int64_t commands_ = 0;
 };
 

@@ -9,21 +9,21 @@
 namespace tread::motor {
 namespace {
 
-/// Faults older than this are unknown [us].
+/// Older faults count as unknown [us].
 constexpr int64_t kFaultsMaxAge = 1'000'000;
-/// The controller's emergency stop and its release are repeated this often, and released this long
-/// [us].
+/// The controller's emergency stop and its release are repeated at this interval, the release for
+/// this long [us].
 constexpr int64_t kStopRepeat = 100'000;
 constexpr int64_t kReleaseSpan = 1'000'000;
 
-/// A count of the controller; NaN becomes zero: this is the last place that can look.
+/// A count of the controller; NaN becomes zero: this is the last check.
 double countsOf(double value, bool invert, const LineDescription& line) {
   const double share = value / line.full_scale;
   if (!std::isfinite(share)) return 0.0;
   return (invert ? -1.0 : 1.0) * std::clamp(share, -1.0, 1.0) * line.full_command;
 }
 
-/// Of a car's steering angle [rad]; NaN goes straight.
+/// From a car's steering angle [rad]; NaN becomes straight ahead.
 double steeringCounts(double angle, const LineDescription& line) {
   const double share =
       std::isfinite(angle) ? std::clamp(angle / line.max_steering, -1.0, 1.0) : 0.0;
@@ -85,7 +85,7 @@ std::string LineConnection::startupRequest(int step) const {
   const LineExchange* exchange = exchangeOf(step);
   if (exchange != nullptr)
     return line_.framed(exchange->send.format({{"watchdog", line_.watchdogCounts()}}));
-  // The end of a line in front: a killed predecessor may have left half a command.
+  // Preceded by an end of line: a killed predecessor may have left half a command.
   return (step == 0 ? line_.end : "") + zero();
 }
 
@@ -97,7 +97,7 @@ std::string LineConnection::startupName(int step) const {
 
 bool LineConnection::isAnswered(int step) const {
   if (exchangeOf(step) != nullptr) return true;
-  // The first zero goes to a controller that may not be set up for answers yet.
+  // The first zero goes to a controller that may not be configured for answers yet.
   return step > 0 && !line_.acknowledge.empty();
 }
 
@@ -185,7 +185,7 @@ void LineConnection::takeReply(const std::string& line, int64_t now) {
   ++unreadable_;
 }
 
-/// Whether a reply has the watchdog's setting, as its form can say it.
+/// Whether a reply contains the watchdog's setting, at its format's resolution.
 bool LineConnection::isWatchdog(const LineTemplate& reply, double counts) const {
   const auto wanted = reply.match(reply.format({{"watchdog", line_.watchdogCounts()}}));
   return wanted && wanted->at("watchdog") == counts;
@@ -219,7 +219,7 @@ void LineConnection::takeValues(const LineTemplate& reply, const LineValues& val
   }
   const auto watchdog = values.find("watchdog");
   if (watchdog == values.end()) return;
-  // One broken line may lie; two in a row mean that the controller forgot its setting.
+  // A single line may be corrupt; two in a row mean that the controller lost its setting.
   watchdog_mismatches_ = isWatchdog(reply, watchdog->second) ? 0 : watchdog_mismatches_ + 1;
   if (watchdog_mismatches_ >= 2) problem_ = "its watchdog setting was lost";
 }

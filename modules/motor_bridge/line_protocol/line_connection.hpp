@@ -16,8 +16,8 @@
 namespace tread::motor {
 
 /// The connection to a controller whose line protocol is described in YAML.
-/** Start-up: zero, the described requests, zero. A reply that reads the watchdog back must have the
-    configured value. */
+/** Start-up: zero, the described requests, zero. A reply that reads the watchdog back must contain
+ * the configured value. */
 class LineConnection : public ControllerConnection {
  public:
   explicit LineConnection(const LineDescription& line);

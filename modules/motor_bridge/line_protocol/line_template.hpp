@@ -10,28 +10,29 @@
 
 namespace tread::motor {
 
-/// Numbers in a line by their names.
+/// Numbers in a line by name.
 using LineValues = std::map<std::string, double>;
 
-/// One line of a protocol with named numbers in it, to write and to read.
-/** Text stands for itself, {{ and }} for braces. A number is {NAME} or {NAME:FORM}; FORM is
+/// One line of a protocol with named numbers in it, for writing and reading.
+/** Text is literal, {{ and }} are braces. A number is {NAME} or {NAME:FORM}; FORM is
  *
- *      [+][0WIDTH]d    decimal integer; + writes a sign always, 0WIDTH fills up with zeros
- *      [+][0WIDTH].Nf  decimals with N digits behind the point, N = 0..9
- *      [+][0WIDTH]x    hexadecimal (X: capitals), unsigned; with + two's complement of WIDTH digits
+ *      [+][0WIDTH]d    decimal integer; + always writes a sign, 0WIDTH pads with zeros
+ *      [+][0WIDTH].Nf  decimals with N digits after the point, N = 0..9
+ *      [+][0WIDTH]x    hexadecimal (X: capitals), unsigned; with + two's complement of WIDTH
+ *      digits
  *
- * Without FORM it is d. WIDTH is 1..9 digits, for + with x 1..8. A line is read as it is written,
- * except that leading zeros and signs may be there or not; hexadecimals of a WIDTH take exactly
- * so many digits. {_} reads any text up to what follows it; it cannot be written. */
+ * The default FORM is d. WIDTH is 1..9 digits, for + with x 1..8. Reading is the inverse of
+ * writing, except that leading zeros and signs are optional; hexadecimals of a WIDTH need exactly
+ * that many digits. {_} reads any text up to the next literal; it cannot be written. */
 class LineTemplate {
  public:
   LineTemplate() = default;
-  /// Throws std::invalid_argument with what is wrong.
+  /// Throws std::invalid_argument with the error.
   explicit LineTemplate(const std::string& text);
 
-  /// The line with these values; each is clamped to what its form can hold. What is missing is 0.
+  /// The line with these values; each is clamped to the range of its form. Missing values are 0.
   std::string format(const LineValues& values) const;
-  /// The values of a line; nothing if it is another line.
+  /// The values of a line; nullopt if it is a different line.
   std::optional<LineValues> match(std::string_view line) const;
 
   const std::string& text() const { return text_; }
@@ -40,7 +41,7 @@ class LineTemplate {
   bool has(const std::string& name) const;
   /// Whether a negative value of this name can be written.
   bool takesNegative(const std::string& name) const;
-  /// Whether it can be written: there is no {_}.
+  /// Whether it can be written: it contains no {_}.
   bool isWritable() const;
 
  private:

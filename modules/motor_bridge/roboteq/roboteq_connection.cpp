@@ -7,7 +7,7 @@
 namespace tread::motor {
 namespace {
 
-/// Fault flags older than this are unknown [us]; they are read about thirty times a second.
+/// Older fault flags count as unknown [us]; they are read about thirty times a second.
 constexpr int64_t kFlagsMaxAge = 1'000'000;
 
 ConnectionTimes timesOf(const RoboteqConfig& config) {
@@ -51,7 +51,7 @@ void RoboteqConnection::takeLine(const std::string& line, int64_t now) {
   const RoboteqReply reply = parseReply(line);
   if (isEcho(line)) {
     count("echoed lines");
-    // We switched the echo off: it was switched on anew and has its default watchdog again.
+    // We switched the echo off: the controller was restarted and has its default watchdog again.
     if (ready()) fail("it was restarted", now);
   } else if (reply.kind == RoboteqReply::Kind::kOther) {
     count("unreadable lines");
@@ -80,8 +80,8 @@ std::string RoboteqConnection::startupName(int step) const {
 std::string RoboteqConnection::startupRequest(int step) const {
   if (step == kZero) return zero();
   // Zero also follows the very first line: it may complete half a command that a killed predecessor
-  // left in the controller. Its acknowledgement is mistaken for that of the watchdog's setting,
-  // which is read back anyway.
+  // left in the controller. Its acknowledgement is taken for that of the watchdog's setting, which
+  // is read back anyway.
   return startupName(step) + "\r" + (step == kEcho ? zero() : "");
 }
 

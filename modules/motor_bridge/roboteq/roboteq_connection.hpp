@@ -17,7 +17,7 @@ namespace tread::motor {
 /// robot's.
 RoboteqConfig readRoboteqConfig(ConfigReader& reader, const DriveDescription& drive);
 
-/// The connection to a Roboteq controller: starts it up, talks to it, notices when it is gone.
+/// The connection to a Roboteq controller: start-up, dialogue, detection of its loss.
 /** Start-up: echo off, watchdog set and read back, zero, firmware id. */
 class RoboteqConnection : public ControllerConnection {
  public:

@@ -24,7 +24,7 @@ std::optional<long> parseNumber(const std::string& text) {
   return whole ? std::optional<long>(number) : std::nullopt;
 }
 
-/// Numbers separated by colons; empty if one of them is none.
+/// Numbers separated by colons; empty if one of them is invalid.
 std::vector<long> parseNumbers(const std::string& text) {
   std::vector<long> numbers;
   size_t begin = 0;
@@ -57,8 +57,8 @@ constexpr FlagName kStatusNames[] = {{kPowerStageOff, "power stage off"},
 constexpr FlagName kMotorNames[] = {
     {kMotorStall, "stall"}, {kLoopError, "loop error"}, {kSafetyStop, "safety stop"}};
 
-/// The controller's emergency stop and its release are repeated this often, and released this long
-/// [us].
+/// The controller's emergency stop and its release are repeated at this interval, the release for
+/// this long [us].
 constexpr int64_t kStopRepeat = 100'000;
 constexpr int64_t kReleaseSpan = 1'000'000;
 
@@ -69,13 +69,13 @@ std::pair<double, double> toSides(const std::vector<long>& values, const Roboteq
   return layout.left_channel == 1 ? std::pair(one, two) : std::pair(two, one);
 }
 
-/// Flags are at most 16 bits: what is beyond them is a garbled line, and cut off could read as "no
+/// Flags have at most 16 bits: larger values are a corrupt line, and truncated they could mean "no
 /// fault".
 bool areFlags(const std::vector<long>& values) {
   return values.size() == 1 && values[0] >= 0 && values[0] <= 0xffff;
 }
 
-/// The same of both motors.
+/// The same for both motors.
 bool areMotorFlags(const std::vector<long>& values) {
   return values.size() >= 2 && areFlags({values[0]}) && areFlags({values[1]});
 }
@@ -254,7 +254,7 @@ void RoboteqSession::pollStop(int64_t now) {
 }
 
 void RoboteqSession::pollQuery(int64_t now) {
-  // One that got lost must not hold up the look at the faults until its timeout.
+  // A lost query must not delay the check of the faults until its timeout.
   const bool waiting = pending_.waitsForQuery(now, config_.query_patience_us);
   if (waiting || now - queried_at_ < config_.query_interval_us) return;
   ask("?FF", "FF", now);  // faults stop the robot
@@ -309,7 +309,7 @@ std::map<std::string, int64_t> RoboteqSession::counters() const {
 
 void RoboteqSession::checkWatchdog(const RoboteqReply& reply) {
   const bool good = reply.values == std::vector<long>{static_cast<long>(config_.watchdog_ms)};
-  // One broken line may lie; two in a row mean that the controller forgot its setting.
+  // A single line may be corrupt; two in a row mean that the controller lost its setting.
   watchdog_mismatches_ = good ? 0 : watchdog_mismatches_ + 1;
   if (watchdog_mismatches_ >= 2) problem_ = "its watchdog setting was lost";
 }

@@ -14,25 +14,25 @@
 
 namespace tread::motor {
 
-/// How the two tracks hang on a Roboteq dual-channel controller.
+/// How the two tracks are connected to a Roboteq dual-channel controller.
 struct RoboteqLayout {
   bool both_in_one_line = true;  ///< "!M l r" moves both tracks at once; false: two "!G cc n" lines
-  int left_channel = 1;          ///< 1 or 2; the right track has the other one
-  bool invert_left = false;      ///< the left motor is mounted the other way round
+  int left_channel = 1;          ///< 1 or 2; the right track uses the other
+  bool invert_left = false;      ///< the left motor is mounted in reverse
   bool invert_right = false;
   double full_scale = 1.0;   ///< command that is 1000 per mille, in the units of the command kind
   double rpm_per_mps = 0.0;  ///< motor revolutions per minute at 1 m/s of track; 0 = no encoders
 };
 
-/// Command in per mille of full scale by channel, clamped to what the controller takes.
+/// Command in per mille of full scale by channel, clamped to the controller's range.
 struct ChannelCommand {
   int channel_1 = 0;
   int channel_2 = 0;
 };
 
-/// Track command to channels. NaN becomes zero: this is the last place that can look.
+/// Track command to channels. NaN becomes zero: this is the last check.
 ChannelCommand toChannels(const TrackCommand& command, const RoboteqLayout& layout);
-/// Lines (each without its CR) that give a command to the controller.
+/// Lines (without CR) that give a command to the controller.
 std::vector<std::string> commandLines(const TrackCommand& command, const RoboteqLayout& layout);
 
 /// One reply of the controller.
@@ -41,12 +41,12 @@ struct RoboteqReply {
   Kind kind = Kind::kOther;
   std::string key;           ///< e.g. "A" of "A=100:200"
   std::vector<long> values;  ///< empty if the value is text, as in FID
-  std::string text;          ///< everything behind the equals sign
+  std::string text;          ///< everything after the equals sign
 };
 
-/// True if a line is one of ours coming back: the controller's own lines never begin like this.
+/// Whether a line is an echo of ours: the controller's own lines never begin like this.
 bool isEcho(const std::string& line);
-/// Reads one line; what it cannot read is kOther.
+/// Parses one line; unknown ones are kOther.
 RoboteqReply parseReply(const std::string& line);
 
 /// Runtime fault flags of query ?FF (Roboteq manual, maintenance and runtime queries).
@@ -61,7 +61,7 @@ enum FaultFlag : int32_t {
   kDefaultConfiguration = 128,
 };
 
-/// Status flags of query ?FS that matter here; the others tell how it is commanded.
+/// Relevant status flags of query ?FS; the others describe the command mode.
 enum StatusFlag : int32_t {
   kPowerStageOff = 8,
   kStallDetected = 16,
@@ -71,7 +71,7 @@ enum StatusFlag : int32_t {
 /// Status flags that stop the robot.
 inline constexpr int32_t kStoppingStatus = kPowerStageOff | kStallDetected;
 
-/// Flags of one motor (query ?FM) that stop the robot; the others are limits that it is at.
+/// Flags of one motor (query ?FM) that stop the robot; the others report active limits.
 enum MotorFlag : int32_t {
   kMotorStall = 2,
   kLoopError = 4,
@@ -84,7 +84,7 @@ std::string describeMotorFaults(const std::string& side, int32_t motor_flags);
 /// Flags in words, e.g. "controller: overheat, undervoltage"; empty if nothing stops the robot.
 std::string describeFaults(int32_t fault_flags, int32_t status_flags);
 
-/// What the controller last told about itself; nothing = unknown.
+/// The controller's latest data about itself; nullopt = unknown.
 struct RoboteqTelemetry : MotorTelemetry {
   int32_t fault_flags = 0;       ///< ?FF
   int32_t status_flags = 0;      ///< ?FS
@@ -93,43 +93,43 @@ struct RoboteqTelemetry : MotorTelemetry {
   std::optional<int64_t> faults_read_at;  ///< [us]
   std::optional<int64_t> status_read_at;  ///< [us]
 
-  /// Takes the reply to a query, received at now [us]. False if it is not one of these or
-  /// malformed.
+  /// Takes the reply to a query, received at now [us]. False for other replies and malformed ones.
   bool take(const RoboteqReply& reply, const RoboteqLayout& layout, int64_t now);
 };
 
-/// How to talk to the controller.
+/// Settings of the dialogue with the controller.
 struct RoboteqConfig {
   RoboteqLayout layout;
-  int64_t watchdog_ms = 250;              ///< of the controller, set and read back [ms]
-  ConnectionTimes times;                  ///< but for the watchdog
-  int64_t query_interval_us = 20'000;     ///< between two queries [us]
-  int64_t query_patience_us = 50'000;     ///< until the next query does not wait for a reply [us]
-  int64_t check_interval_us = 1'000'000;  ///< between two looks at the watchdog's setting [us]
+  int64_t watchdog_ms = 250;           ///< of the controller, set and read back [ms]
+  ConnectionTimes times;               ///< except for the watchdog
+  int64_t query_interval_us = 20'000;  ///< between two queries [us]
+  int64_t query_patience_us =
+      50'000;  ///< after which the next query does not wait for a reply [us]
+  int64_t check_interval_us = 1'000'000;  ///< between two checks of the watchdog's setting [us]
 };
 
-/// The talk with a controller that was started up: commands as they come, queries between them: the
-/// fault flags each time, and one of the others in turn.
-/** After the watchdog's expiry the controller resumes its old speed with the next command (Roboteq
-    manual v1.8 p. 286), therefore the connection gives zero first. */
+/// The dialogue after the start-up: commands as given, queries in between: each time the fault
+/// flags, and one of the others in turn.
+/** After its watchdog has expired the controller resumes its old speed with the next command
+ * (Roboteq manual v1.8 p. 286), so the connection gives zero first. */
 class RoboteqSession {
  public:
   explicit RoboteqSession(const RoboteqConfig& config);
 
-  /// The controller has just acknowledged zero, at now [us].
+  /// The controller has acknowledged zero, at now [us].
   void begin(int64_t now);
   /// A reply received at now [us].
   void take(const RoboteqReply& reply, int64_t now);
-  /// A command to be given now [us].
+  /// A command to send now [us].
   void give(const TrackCommand& command, int64_t now);
-  /// Holds the controller's own emergency stop (!EX) as long as true.
+  /// Holds the controller's own emergency stop (!EX) while true.
   void holdStop(bool hold);
-  /// Releases the controller's emergency stop (!MG), repeated for a second while it is seen.
+  /// Releases the controller's emergency stop (!MG), repeated for a second while it is reported.
   void releaseStop(int64_t now);
-  /// Timeouts and queries; returns all bytes to be written now [us].
+  /// Timeouts and queries; returns all bytes to write now [us].
   std::string poll(int64_t now);
 
-  /// Why the controller must be started up anew; empty = all is well.
+  /// Why the start-up must be repeated; empty = no reason.
   const std::string& problem() const { return problem_; }
   bool stopLatched() const { return (telemetry_.fault_flags & kEmergencyStop) != 0; }
   const RoboteqTelemetry& telemetry() const { return telemetry_; }

@@ -18,7 +18,7 @@ namespace tread::motor {
 struct SabertoothConfig {
   int address = 128;        ///< 128..135, of its switches
   double full_scale = 1.0;  ///< command that is full power
-  int left_motor = 1;       ///< 1 or 2; the right track has the other one
+  int left_motor = 1;       ///< 1 or 2; the right track uses the other
   bool invert_left = false;
   bool invert_right = false;
   ConnectionTimes times;
@@ -30,11 +30,11 @@ SabertoothConfig readSabertoothConfig(ConfigReader& reader, const DriveDescripti
 /// A packet: address, command, value 0..127, and the sum of the three modulo 128.
 std::string sabertoothPacket(int address, int command, int value);
 
-/// The connection to a Sabertooth. It never answers: nothing of it can be verified.
+/// The connection to a Sabertooth. It never answers: nothing can be verified.
 /** Commands 0/1 and 4/5 drive motors 1 and 2 forwards/backwards (127 = full), 14 sets the serial
-    timeout, its watchdog, in steps of 0.1 s. The timeout does not outlive a power cycle, and a
-    controller that was restarted waits for the bauding character 170; both are repeated every half
-    second. A 170 in front of a packet is not part of it. */
+ * timeout, its watchdog, in steps of 0.1 s. The timeout is lost in a power cycle, and a restarted
+ * controller waits for the bauding character 170; both are repeated every half second. A 170
+ * before a packet is not part of it. */
 class SabertoothConnection : public ControllerConnection {
  public:
   explicit SabertoothConnection(const SabertoothConfig& config)

@@ -37,8 +37,8 @@ double int32At(std::string_view bytes, size_t at) {
   return static_cast<int32_t>(wordAt(bytes, at, 4));
 }
 
-/// A packet at the front of a buffer: its header's and its whole size; nothing while the header is
-/// incomplete, size 0 if there is none.
+/// A packet at the front of a buffer: size of its header and of the whole; nullopt while the header
+/// is incomplete, size 0 if there is none.
 struct Framing {
   size_t header = 0;
   size_t payload = 0;
@@ -123,7 +123,7 @@ std::vector<std::string> VescPackets::push(std::string_view bytes) {
     if (good) payloads.emplace_back(payload);
     bad_checksums_ += framing->header > 0 && !good;
     garbage_ += !good;
-    // A wrong start may hide the next packet: only its first byte is dropped.
+    // A false start may hide the next packet: only its first byte is dropped.
     at += good ? body + 3 : 1;
   }
   buffer_.erase(0, at);
@@ -147,8 +147,8 @@ std::string vescForwarded(int id, std::string_view payload) {
 }
 
 std::optional<VescReading> vescValues(std::string_view payload) {
-  // Offsets behind the command byte: temperatures 0 and 2 [0.1 degC], motor current 4 [0.01 A],
-  // erpm 22, battery 26 [0.1 V], fault 52, id 57.
+  // Offsets after the command byte: temperatures 0 and 2 [0.1 degC], motor current 4 [0.01 A], erpm
+  // 22, battery 26 [0.1 V], fault 52, id 57.
   constexpr size_t kSmallest = 59;
   if (payload.size() < kSmallest || payload[0] != kCommGetValues) return std::nullopt;
   const std::string_view body = payload.substr(1);

@@ -12,15 +12,15 @@ namespace tread::motor {
 
 /// A command to one VESC motor controller.
 /** Numbers of the VESC firmware (datatypes.h, commands.c, comm_can.c): duty in 1e-5, brake current
-    in mA, speed in electrical revolutions per minute, position of the servo output in 1e-3 of its
-    range. */
+ * in mA, speed in electrical revolutions per minute, position of the servo output in 1e-3 of its
+ * range. */
 struct VescCommand {
   enum class Kind { kDuty, kBrakeCurrent, kRpm, kServo };
   Kind kind = Kind::kDuty;
   int32_t value = 0;
 };
 
-/// What a controller told; nothing = not in this message.
+/// A controller's data; nullopt = not in this message.
 struct VescReading {
   int id = -1;
   std::optional<double> temperature;    ///< the hotter of power stage and motor [degC]
@@ -30,9 +30,9 @@ struct VescReading {
   std::optional<int> fault;             ///< mc_fault_code
 };
 
-/// Fault codes in words; "fault 77" for one that is not known.
+/// Fault codes in words; "fault 77" for an unknown one.
 std::string vescFault(int code);
-/// Whether it is the battery's voltage, too high or too low.
+/// Whether it concerns the battery's voltage, too high or too low.
 bool isVoltageFault(int code);
 
 // Over UART: packets.
@@ -45,7 +45,7 @@ class VescPackets {
  public:
   static constexpr size_t kMaxPayload = 1024;
 
-  /// No payload is longer than this from now on: a false start then hides little of what follows.
+  /// Upper limit of payloads from now on: limits the bytes lost after a false start.
   void expectAtMost(size_t payload) { most_ = payload; }
   /// Payloads of the packets that these bytes complete.
   std::vector<std::string> push(std::string_view bytes);
@@ -73,24 +73,24 @@ enum VescComm : uint8_t {
 
 /// Payload of a command.
 std::string vescPayload(const VescCommand& command);
-/// The payload for the controller with this CAN id, behind the one on the line.
+/// The payload for the controller with this CAN id, forwarded by the one on the line.
 std::string vescForwarded(int id, std::string_view payload);
-/// Reads a reply to COMM_GET_VALUES; nothing if it is another one, or of a firmware that does not
-/// say the controller's id (before 3.40).
+/// Reads a reply to COMM_GET_VALUES; nullopt for another reply, or a firmware that does not send
+/// the controller's id (before 3.40).
 std::optional<VescReading> vescValues(std::string_view payload);
 
 /// Beginning of a controller's app configuration.
 struct VescTimeout {
   int id = -1;
-  int64_t timeout_ms = 0;  ///< without a command until it lets the motor go; 0 = never
+  int64_t timeout_ms = 0;  ///< time without a command until it releases the motor; 0 = never
 };
 /// Reads a reply to COMM_GET_APPCONF: signature (4 bytes), id, timeout (4 bytes), and the rest.
 std::optional<VescTimeout> vescTimeout(std::string_view payload);
 
 // Over CAN: extended frames with the identifier command << 8 | id.
 
-/// One frame as SocketCAN has it in struct can_frame: 16 bytes, identifier in the host's order
-/// (little-endian on all hosts that Tread runs on).
+/// A frame in SocketCAN's struct can_frame: 16 bytes, identifier in the host's order (little-endian
+/// on all supported hosts).
 std::string vescFrame(int id, const VescCommand& command);
 
 /// Finds frames in a stream of such structures.
@@ -98,10 +98,10 @@ class VescFrames {
  public:
   static constexpr size_t kFrameSize = 16;
 
-  /// What the STATUS (9), STATUS_4 (16) and STATUS_5 (27) frames among these bytes say.
+  /// The data in the STATUS (9), STATUS_4 (16) and STATUS_5 (27) frames among these bytes.
   std::vector<VescReading> push(std::string_view bytes);
   void clear() { buffer_.clear(); }
-  /// Bytes that are no frame, and frames of others.
+  /// Bytes outside of frames, and foreign frames.
   int64_t garbageBytes() const { return garbage_; }
   int64_t otherFrames() const { return others_; }
 

@@ -13,9 +13,9 @@
 
 namespace tread::motor {
 
-/// What the connections to VESC controllers over UART and over CAN have in common.
+/// Common part of the connections to VESC controllers over UART and over CAN.
 /** Only commands feed the controllers' timeout, which is their watchdog: COMM_ALIVE, which would
-    keep motors running without commands, is not used. They have no emergency stop to latch. */
+ * keep motors running without commands, is not used. They have no latching emergency stop. */
 class VescConnection : public ControllerConnection {
  public:
   void holdStop(bool /*hold*/) override {}
@@ -28,7 +28,7 @@ class VescConnection : public ControllerConnection {
   explicit VescConnection(const VescConfig& config)
       : ControllerConnection(config.times), config_(config), group_(config) {}
 
-  /// A command on its way to one controller.
+  /// A command addressed to one controller.
   virtual std::string addressed(int id, const VescCommand& command) const = 0;
 
   std::string commandBytes(const Command& command) const;
@@ -44,9 +44,9 @@ class VescConnection : public ControllerConnection {
   int64_t commands_ = 0;
 };
 
-/// VESC controllers behind one UART; those that are not on the line are reached through it.
-/** Start-up: zero, firmware of each, timeout of each (COMM_GET_APPCONF): it must be set, and at
-    most the configured watchdog, in VESC Tool. */
+/// VESC controllers behind one UART; the others are reached through the one on the line.
+/** Start-up: zero, firmware of each, timeout of each (COMM_GET_APPCONF): it must be set in VESC
+ * Tool, at most to the configured watchdog. */
 class VescUart : public VescConnection {
  public:
   explicit VescUart(const VescConfig& config) : VescConnection(config) {}
@@ -65,7 +65,7 @@ class VescUart : public VescConnection {
   std::string addressed(int id, const VescCommand& command) const override;
 
   int count() const { return static_cast<int>(config_.ids().size()); }
-  /// The controller of a step of the start-up that is answered.
+  /// The controller of an answered step of the start-up.
   int idOf(int step) const { return config_.ids()[static_cast<size_t>((step - 1) % count())]; }
   std::string toController(int id, std::string_view payload) const;
   void takeStartup(const std::string& payload, int64_t now);
@@ -78,8 +78,8 @@ class VescUart : public VescConnection {
   int64_t unreadable_ = 0;
 };
 
-/// VESC controllers on a CAN bus, as a stream of struct can_frame. They must send STATUS, STATUS_4
-/// and STATUS_5 by themselves (VESC Tool: CAN Status Messages), at 20 Hz or more.
+/// VESC controllers on a CAN bus, as a stream of struct can_frame. They must be configured to send
+/// STATUS, STATUS_4 and STATUS_5 (VESC Tool: CAN Status Messages), at 20 Hz or more.
 class VescCan : public VescConnection {
  public:
   explicit VescCan(const VescConfig& config) : VescConnection(config) {}

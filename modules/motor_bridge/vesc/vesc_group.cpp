@@ -14,7 +14,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDutyUnit = 1e-5;
 constexpr double kLargestRpm = 1e6;  // electrical [1/min]
 
-/// `second`: 0 where usually there is only one.
+/// `second`: 0 where normally there is only one.
 std::vector<int> readIds(ConfigReader& reader, const std::string& key, std::vector<double> ids,
                          size_t count) {
   reader.numbers(key, ids, count, {0.0, 253.0}, "");
@@ -73,7 +73,7 @@ void readTrackIds(ConfigReader& reader, const DriveDescription& drive, VescConfi
   config.right = readIds(reader, "right", 3 - left, four ? 5 - left : 0);
 }
 
-/// One for each wheel, in the order of robot.yaml; usually 1, 2, 3, ...
+/// One for each wheel, in the order of robot.yaml; normally 1, 2, 3, ...
 void readWheelIds(ConfigReader& reader, const DriveDescription& drive, VescConfig& config) {
   std::vector<double> usual;
   while (usual.size() < drive.wheels.size()) usual.push_back(static_cast<double>(usual.size() + 1));
@@ -178,7 +178,7 @@ bool VescGroup::take(const VescReading& reading, int64_t now) {
   const auto member = std::find_if(members_.begin(), members_.end(),
                                    [&](const Member& m) { return m.id == reading.id; });
   if (member == members_.end()) return false;
-  // Over CAN only the first status frame proves that the motor is watched.
+  // Over CAN only the first status frame proves that the motor is monitored.
   if (reading.erpm) {
     member->heard = true;
     member->heard_at = now;

@@ -19,7 +19,7 @@ Preconditions waiting(Level level, const Reason& reason) {
   return {level, PlanStatus::kWaiting, reason};
 }
 
-/// What empties the program at once, except what the bridge and the operator say.
+/// Problems that empty the program at once, except those of the bridge and the operator.
 Preconditions checkSensors(const PlannerInputs& s, const MapAndSet& supplies,
                            const AgeLimits& limits) {
   if (!s.bar.empty()) return waiting(Level::kStop, s.bar);
@@ -35,7 +35,7 @@ Preconditions checkSensors(const PlannerInputs& s, const MapAndSet& supplies,
   return {};
 }
 
-/// What lets the vehicle finish its pattern and stop.
+/// Problems after which the vehicle finishes its pattern and stops.
 Preconditions checkSupplies(const PlannerInputs& s, const MapAndSet& supplies,
                             const AgeLimits& limits, OperatorLost lost) {
   const bool at_once = !s.goal_lost.empty() && lost != OperatorLost::kFinish;
@@ -65,7 +65,7 @@ Preconditions checkPermission(const PlannerInputs& s, const MapAndSet& supplies,
   return {};
 }
 
-/// So much motion may be noise or a moment's disturbance [m, rad].
+/// Motion that may be noise or a short disturbance [m, rad].
 constexpr double kWayDoubt = 0.3;
 constexpr double kTurnDoubt = 0.15;
 constexpr double kLeastRatio = 0.6;
@@ -74,7 +74,7 @@ constexpr double kMostRatio = 1.6;
 /// Why the running or the next pattern ends at rest; none if neither does.
 Reason stopAhead(const PlannedExecution& running, const CurrentPlan& plan,
                  const PatternTable& table) {
-  size_t after = 0;  // index in the plan of what begins when the vehicle stands
+  size_t after = 0;  // index in the plan of the first step after standstill
   if (!leadsToRest(running, table)) {
     if (plan.steps.empty() || plan.steps.front().exit_class != table.restClass()) return {};
     after = 1;
@@ -109,7 +109,7 @@ MotionRatio motionRatio(const Pose2& T_start_now, double time, const TablePatter
     return std::clamp((measured + doubt) / (promised + doubt), kLeastRatio, kMostRatio);
   };
   MotionRatio so_far;
-  // Along the way that was expected: sideways slip is not more way.
+  // Along the expected path: sideways slip does not lengthen it.
   const double length = std::hypot(expected.x, expected.y);
   const double along =
       length > 0.0 ? (T_start_now.x * expected.x + T_start_now.y * expected.y) / length : 0.0;
@@ -168,8 +168,9 @@ bool ActiveSet::offer(const PatternSet& set, const ExecutionTracker& tracker) {
 }
 
 double ActiveSet::topSpeedOf(const PatternSet& set) const {
-  constexpr double kDrives = 0.05;   // [m/s] slower is no driving
-  constexpr double kRoom = 1.2;      // [1] the learner may make a pattern faster than its class
+  constexpr double kDrives = 0.05;  // [m/s] slower is not driving
+  constexpr double kRoom =
+      1.2;  // [1] by which the learner may make a pattern faster than its class
   std::optional<double> slowest[2];  // forwards and backwards
   for (const MotionPattern& pattern : set.patterns()) {
     const MotionClass& to = set.classNamed(pattern.exit_class);
@@ -183,7 +184,7 @@ double ActiveSet::topSpeedOf(const PatternSet& set) const {
 }
 
 bool ActiveSet::limitSpeed(double speed) {
-  constexpr double kSame = 0.1;  // [1] of itself: less is not worth another table
+  constexpr double kSame = 0.1;  // [1] of itself: smaller changes do not justify another table
   if (std::abs(speed - limit_) <= kSame * limit_) return false;
   const double before = std::exchange(limit_, speed);
   bool changed = false;
@@ -196,7 +197,7 @@ bool ActiveSet::limitSpeed(double speed) {
     limit_ = speed;
     if (same) continue;
     auto limited = std::make_shared<const PatternTable>(set, sweep_, sigma_, top);
-    // One that nobody can drive with would stop the vehicle.
+    // An unusable one would stop the vehicle.
     if (!limited->defect().empty()) continue;
     *table = std::move(limited);
     changed = true;
@@ -207,7 +208,7 @@ bool ActiveSet::limitSpeed(double speed) {
 bool ActiveSet::retry(const ExecutionTracker& tracker) {
   if (!waiting_) return false;
   refusal_ = tracker.conflictWith(waiting_->set());
-  // Such a set would stop the vehicle, and nobody could tell why.
+  // Such a set would stop the vehicle without an apparent reason.
   const std::string defect = waiting_->defect();
   if (refusal_.empty() && !tracker.running().empty() && !defect.empty())
     refusal_ =
@@ -219,9 +220,9 @@ bool ActiveSet::retry(const ExecutionTracker& tracker) {
 }
 
 const TablePattern* DrivingState::runningPattern() const {
-  if (tracker.running().empty()) return nullptr;  // whose id 0 a set may have
+  if (tracker.running().empty()) return nullptr;  // a set may have id 0
   const TablePattern* newest = table().find(tracker.running().pattern_id);
-  // The learner bends trajectories, never commands: another length is another pattern.
+  // The learner changes trajectories, never commands: another length is another pattern.
   const bool same = newest != nullptr &&
                     newest->pattern->commands.size() == tracker.running().pattern().commands.size();
   return same ? newest : nullptr;

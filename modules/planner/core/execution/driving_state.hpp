@@ -20,16 +20,16 @@
 
 namespace tread::planner {
 
-/// Everything the planner knows at one moment, apart from map and patterns.
+/// Everything the planner knows at one instant, except map and patterns.
 struct PlannerInputs : RobotReadings {
   std::optional<Goal> goal;
-  Reason goal_lost;          ///< why the last goal has ended; none if its operator took it back
-  Reason bar;                ///< why nothing may drive before a person has looked
-  int64_t set_received = 0;  ///< [us] when a part of a pattern set came last; 0 = never
-  Reason map_fault;          ///< why mapping does not believe a range finder; none if it does
+  Reason goal_lost;          ///< why the last goal has ended; none if its operator cancelled it
+  Reason bar;                ///< why the robot may not drive until a person has checked it
+  int64_t set_received = 0;  ///< [us] when the last part of a pattern set arrived; 0 = never
+  Reason map_fault;          ///< why mapping distrusts a range finder; none if it does not
 };
 
-/// How the planner stands to its goal; the numbers are those of plan_t.
+/// State of the planner with respect to its goal; the numbers are those of plan_t.
 enum class PlanStatus : int16_t {
   kIdle = 0,
   kDriving = 1,
@@ -40,7 +40,7 @@ enum class PlanStatus : int16_t {
   kStopped = 6
 };
 
-/// What the planner intends, for those who look on.
+/// The planner's intentions, for viewers.
 struct PlanReport {
   PlanStatus status = PlanStatus::kIdle;
   Reason reason;
@@ -48,9 +48,9 @@ struct PlanReport {
   int64_t goal_id = 0;
   int64_t set_version = 0;
   double time_to_go = 0.0;  ///< [s]; NaN unknown
-  PlanRisk risk;            ///< of the steps that have not begun
+  PlanRisk risk;            ///< of the steps that have not started
   int expansions = 0;
-  std::vector<int64_t> execution_ids;  ///< as many as steps; 0 = not yet given to the bridge
+  std::vector<int64_t> execution_ids;  ///< as many as steps; 0 = not handed over yet
   std::vector<PlanStep> steps;
 };
 
@@ -58,17 +58,17 @@ struct PlanReport {
 struct AgeLimits {
   int64_t pose = 150'000;      ///< older: the program is emptied
   int64_t bridge = 500'000;    ///< older: the same
-  int64_t map_slow = 450'000;  ///< older: no new patterns but one that stops
+  int64_t map_slow = 450'000;  ///< older: no new patterns except one that stops
   int64_t map_stop = 500'000;  ///< older: the program is emptied
   int64_t pattern_set =
-      5'000'000;  ///< older: the learner is lost, no new patterns but one that stops
+      5'000'000;  ///< older: the learner is lost, no new patterns except one that stops
 };
 
-/// Whether the inputs allow to drive.
+/// Whether the inputs permit driving.
 struct Preconditions {
   enum class Level {
     kGo,
-    kFinish,  ///< no new pattern but one that stops
+    kFinish,  ///< no new pattern except one that stops
     kStop     ///< the program is emptied now
   };
   Level level = Level::kGo;
@@ -76,14 +76,14 @@ struct Preconditions {
   Reason reason;                             ///< none if kGo
 };
 
-/// What map and patterns are like, beside the inputs.
+/// State of map and patterns, in addition to the inputs.
 struct MapAndSet {
   int64_t map_utime = 0;                          ///< [us] of the newest scan in the map; 0 = none
-  std::string set_defect = "no PATTERN_SET yet";  ///< why the set is of no use; empty = good
-  bool was_armed = false;                         ///< the bridge was armed since the start
+  std::string set_defect = "no PATTERN_SET yet";  ///< why the set is unusable; empty = good
+  bool was_armed = false;                         ///< the bridge has been armed since the start
 };
 
-/// Judges the inputs: the worst of what is wrong decides.
+/// Evaluates the inputs: the most severe problem decides.
 Preconditions checkPreconditions(const PlannerInputs& inputs, const MapAndSet& supplies,
                                  const AgeLimits& limits, OperatorLost lost = OperatorLost::kStop);
 
@@ -93,57 +93,56 @@ struct ExpectedPose {
   double time = 0.0;  ///< [s] from the measurement that it is based on
 };
 
-/// What is left of a pattern, laid on the newest measured pose.
+/// The rest of a pattern, predicted from the newest measured pose.
 struct Prediction {
-  std::vector<ExpectedPose> ahead;  ///< poses still to come, the end last
+  std::vector<ExpectedPose> ahead;  ///< remaining poses, the end last
   Pose2 T_map_end;
   double time_left = 0.0;   ///< [s] from the measurement to the end
   Uncertainty uncertainty;  ///< of the end, in map axes
 };
 
-/// Whether a pattern leads elsewhere than was expected when the plan behind it was made.
-/** Its end as it is expected now lies more than three standard deviations from where it was
- * expected then, and more than 10 cm or .1 rad: less is not worth a plan. */
+/// Whether a pattern's end has moved away from where the plan after it expects it.
+/** The end is now expected more than three standard deviations from the place expected then, and
+ * more than 10 cm or .1 rad: smaller differences do not justify a new plan. */
 bool leftCorridor(const Prediction& then, const Prediction& now);
 
-/// How much of what a running pattern promised has come true so far, each about 1.
+/// Ratio of measured to expected motion of a running pattern so far, each about 1.
 struct MotionRatio {
   double way = 1.0;
   double turn = 1.0;
 };
 
-/// Compares the motion since the start of a running pattern with what was expected of it up to
-/// `time` [s].
-/** Little motion tells little: the ratios are drawn towards 1 by as much motion as INS noise and a
- * moment's disturbance may make. Within 0.6 and 1.6. */
+/// Compares the motion since the start of a running pattern with the expected one up to `time` [s].
+/** Little motion is uninformative: the ratios are drawn towards 1 with a weight of as much motion
+ * as INS noise and a short disturbance may cause. Within 0.6 and 1.6. */
 MotionRatio motionRatio(const Pose2& T_start_now, double time, const TablePattern& pattern,
                         double period);
 
-/// What is left of a pattern that has been running for `time` [s] when the vehicle was measured at
-/// a pose.
-/** What is left is scaled by what has come true so far: on ground that turns the vehicle more than
- * expected it will go on to do so. A negative time: it will begin that much later; until then the
+/// The rest of a pattern that had been running for `time` [s] when the vehicle was measured at a
+/// pose.
+/** The rest is scaled by the motion ratio: ground that has turned the vehicle more than expected
+ * will continue to do so. With a negative time the pattern starts that much later; until then the
  * vehicle keeps the twist of its entry class. */
 Prediction predict(const Pose2& T_map_body, double time, const TablePattern& pattern,
                    const PatternTable& table, const MotionRatio& so_far = {});
 
-/// Time until the first of the poses that is not free with a margin level [s]; nothing if all are
+/// Time until the first of the poses that is not free at a margin level [s]; nullopt if all are
 /// free.
 std::optional<double> firstConflict(const CollisionChecker& collision_checker,
                                     const std::vector<ExpectedPose>& poses, int level);
 
 /// Periods, waiting times and numbers of tries.
 struct PolicyConfig {
-  int64_t plan_period = 200'000;      ///< [us] between two plans while driving
-  int64_t blocked_period = 500'000;   ///< [us] between two plans while standing with nothing free
-  int64_t freeze = 130'000;           ///< [us] before its start the next pattern is not replaced
-  int64_t stop_lead = 700'000;        ///< [us] before a collision the vehicle is stopped
-  double coast_time = 0.3;            ///< [s] at its speed the vehicle coasts on after a stop
+  int64_t plan_period = 200'000;     ///< [us] between plans while driving
+  int64_t blocked_period = 500'000;  ///< [us] between plans while standing without a free pattern
+  int64_t freeze = 130'000;  ///< [us] before its start, in which the next pattern is not replaced
+  int64_t stop_lead = 700'000;        ///< [us] before a collision, at which the vehicle is stopped
+  double coast_time = 0.3;            ///< [s] at its speed that the vehicle coasts after a stop
   int64_t settle_limit = 3'000'000;   ///< [us] after which a stopped vehicle counts as standing
-  int64_t patience = 25'000'000;      ///< [us] without progress until a way is given up
-  int64_t recovery_wait = 1'500'000;  ///< [us] with nothing free until a recovery is tried
-  int recoveries = 4;                 ///< tries until the goal counts as blocked
-  int detours = 6;                    ///< ways given up until it counts as blocked
+  int64_t patience = 25'000'000;      ///< [us] without progress until a path is given up
+  int64_t recovery_wait = 1'500'000;  ///< [us] without a free pattern until a recovery is tried
+  int recoveries = 4;                 ///< attempts until the goal counts as blocked
+  int detours = 6;                    ///< paths given up until it counts as blocked
   int driving_expansions = 2000;      ///< per plan
   int standing_expansions = 15000;    ///< per plan
 };
@@ -156,24 +155,24 @@ struct PlannerConfig {
   SideHysteresisConfig side_hysteresis;
   AgeLimits ages;
   SweepResolution sweep;
-  DefaultSigma default_sigma;       ///< errors at the end of a pattern of unknown covariance
+  DefaultSigma default_sigma;       ///< end errors of a pattern of unknown covariance
   std::optional<double> max_slope;  ///< [rad] of the ground that plans may use
-  OperatorRules operators;          ///< lease 0: a log from before there were leases
-  int64_t lease = 200'000;          ///< [us] the motors stop when nothing newer came for this long
-  int64_t deadline = 30'000;        ///< [us] after which a search is cut off on the robot
-  std::string store;                ///< folder of what is kept over a restart; empty = none
+  OperatorRules operators;          ///< lease 0: a log older than leases
+  int64_t lease = 200'000;          ///< [us] without a newer program, after which the motors stop
+  int64_t deadline = 30'000;        ///< [us] limit of a search on the robot
+  std::string store;                ///< folder for data kept across restarts; empty = none
   std::string effective;            ///< the whole as YAML, for CONFIG
 };
 
-/// What the ground gives a vehicle that stops.
+/// The learner's estimate of the available deceleration.
 struct GripKnowledge {
   double deceleration = kNoLimit;  ///< [m/s2]
-  bool gave_way = false;           ///< it gave less than was asked of it
-  int signs = kSure;               ///< executions that told of it since the learner began
+  bool gave_way = false;           ///< the ground gave less than requested
+  int signs = kSure;               ///< executions with evidence since the learner started
 
   static constexpr int kSure = 6;  ///< fewer are few
-  /// [s] in which it must be able to stop the vehicle. Where it gives way the vehicle does not
-  /// steer; what few signs say may be more than it gives.
+  /// [s] in which the vehicle must be able to stop. A vehicle that slides cannot steer; an estimate
+  /// from few executions may be too high.
   double stopWithin() const { return gave_way ? 0.8 : signs > 0 && signs < kSure ? 1.0 : 1.2; }
   /// [s] at its speed that a vehicle slides on, where the ground gave way.
   double slidingTime(double speed) const { return gave_way ? speed / (2.0 * deceleration) : 0.0; }
@@ -185,11 +184,11 @@ class ActiveSet {
   ActiveSet(const SweepResolution& sweep, const DefaultSigma& sigma, double top_speed = kNoLimit)
       : sweep_(sweep), sigma_(sigma), top_speed_(top_speed) {}
 
-  /// Offers a set; true if it is in use from now on.
+  /// Offers a set; true if it is now in use.
   bool offer(const PatternSet& set, const ExecutionTracker& tracker);
-  /// Tries the waiting set again; true if it is in use from now on.
+  /// Tries the waiting set again; true if it is now in use.
   bool retry(const ExecutionTracker& tracker);
-  /// From now on only patterns up to that speed [m/s] are begun, but always those of the slowest
+  /// From now on starts only patterns up to this speed [m/s], but always those of the slowest
   /// classes that drive forwards and backwards. True if another table is in use or waits.
   bool limitSpeed(double speed);
   /// Why the newest set waits; empty if none does.
@@ -202,28 +201,28 @@ class ActiveSet {
   DefaultSigma sigma_;
   double topSpeedOf(const PatternSet& set) const;
 
-  double top_speed_;         ///< [m/s] of what is used of a set
-  double limit_ = kNoLimit;  ///< [m/s] as limitSpeed() says
+  double top_speed_;         ///< [m/s] of the patterns used from a set
+  double limit_ = kNoLimit;  ///< [m/s] set by limitSpeed()
   std::shared_ptr<const PatternTable> table_;
   std::shared_ptr<const PatternTable> waiting_;
   std::string refusal_;
 };
 
-/// [s] a PROGRAM, its way to the motors, and the next measurement.
+/// [s] for a PROGRAM, its transport to the motors, and the next measurement.
 inline constexpr double kReactionDelay = 0.2;
 
-/// The plan that is followed, from the end of the running pattern on.
+/// The plan being followed, from the end of the running pattern on.
 struct CurrentPlan {
   std::vector<PlanStep> steps;
   SearchEnd end = SearchEnd::kNothing;
   double time_to_go = 0.0;             ///< [s]; NaN unknown
   PlanRisk risk;                       ///< of the steps when it was made
   int expansions = 0;                  ///< of the last search
-  std::optional<int64_t> made;         ///< [us] when it was searched for; nothing = search again
-  std::optional<Prediction> based_on;  ///< of the running pattern when it was made
+  std::optional<int64_t> made;         ///< [us] of the search; nullopt = search again
+  std::optional<Prediction> based_on;  ///< prediction of the running pattern at that time
 
   bool due(int64_t now, int64_t period) const { return !made || now - *made >= period; }
-  /// Makes a search due.
+  /// Makes a new search due.
   void expire() {
     made.reset();
     based_on.reset();
@@ -238,7 +237,7 @@ class StatusLine {
     status_ = status;
     reason_ = reason;
   }
-  /// Takes precedence over other reasons while driving, until a time [us].
+  /// Overrides other reasons while driving, until a time [us].
   void note(const Reason& reason, int64_t until) { note_ = Note{reason, until}; }
   void clearNote() { note_.reset(); }
   void sayDriving(int64_t now, const Reason& reason) {
@@ -264,7 +263,7 @@ bool leadsToRest(const PlannedExecution& slot, const PatternTable& table);
 
 enum class DrivingMode { kStanding, kDriving, kSettling };
 
-/// What the supervisor and its two controllers share.
+/// State shared by the supervisor and its two controllers.
 struct DrivingState {
   DrivingState(const PlannerConfig& planner_config, int64_t run_id)
       : config(planner_config),
@@ -276,13 +275,13 @@ struct DrivingState {
   const PatternTable& table() const { return *set.table(); }
   /// The running pattern with its newest prediction; nullptr if it is not in the set.
   const TablePattern* runningPattern() const;
-  /// Plans from `start`, and notes what came of it.
+  /// Plans from `start`, and notes the result.
   PlannedWay search(int64_t now, const PlanStep& start, int expansions);
-  /// [s] that a vehicle goes on at its twist after a stop.
+  /// [s] that a vehicle continues at its twist after a stop.
   double coastTime(const Twist2& twist) const;
-  /// The prices of the ground for the set in use; nullptr where shock costs nothing.
+  /// The ground's costs for the set in use; nullptr if shock costs nothing.
   const GroundCost* groundCost();
-  /// Says so if the goal is unreachable on the known map.
+  /// Reports it if the goal is unreachable on the known map.
   bool sayUnreachable();
   void sayDriving(int64_t now);
   /// Empties the program.
@@ -304,9 +303,10 @@ struct DrivingState {
   StatusLine status;
   std::map<std::string, int64_t> counters;  ///< of events, by their name in words
   DrivingMode mode = DrivingMode::kSettling;
-  int64_t settling_since = 0;        ///< [us]
-  ShockKnowledge shock;              ///< newest
-  std::optional<GroundCost> ground;  ///< of that and of ground_table; made anew when either changes
+  int64_t settling_since = 0;  ///< [us]
+  ShockKnowledge shock;        ///< newest
+  std::optional<GroundCost>
+      ground;  ///< of `shock` and ground_table; recomputed when either changes
   std::shared_ptr<const PatternTable> ground_table;
   GripKnowledge grip;
   bool steep = false;  ///< it may slide where it stands: no time to lose

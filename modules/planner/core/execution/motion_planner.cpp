@@ -9,16 +9,16 @@
 namespace tread::planner {
 namespace {
 
-/// The vehicle may leave the middle of the window this far before it is cut anew [m].
+/// Distance of the vehicle from the window's middle at which it is extracted again [m].
 constexpr double kWindowSlack = 2.0;
-/// The distance field must reach this far around the vehicle [m].
+/// Least extent of the distance field around the vehicle [m].
 constexpr double kFieldSlack = 5.0;
-/// Nearer to fences by this than allowed, the distance field still finds its way [m].
+/// Tolerance by which the distance field may pass closer to fences than allowed [m].
 constexpr double kFenceNear = 0.3;
-/// How far down the way to the goal the narrowest place is looked for [m].
+/// Distance along the path to the goal within which the narrowest place is searched [m].
 constexpr double kDetourLook = 3.0;
 constexpr double kDetourStep = 0.2;
-/// Nearer than this to the vehicle nothing is made a detour [m].
+/// Least distance of a detour from the vehicle [m].
 constexpr double kDetourNear = 0.8;
 
 std::vector<int> idsOf(const std::vector<PlanStep>& plan) {
@@ -56,7 +56,7 @@ void PlanningMap::assumeFreeUnder(const Pose2& T_map_body) {
 }
 
 void PlanningMap::setPositionStd(double std) {
-  constexpr double kStep = 0.05;  // [m] finer changes are not worth another look at the map
+  constexpr double kStep = 0.05;  // [m] smaller changes do not justify another check of the map
   const double wanted = positionMargin(std);
   if (wanted <= position_growth_ && wanted > position_growth_ - 2.0 * kStep) return;
   position_growth_ = kStep * std::ceil(wanted / kStep);
@@ -64,7 +64,8 @@ void PlanningMap::setPositionStd(double std) {
 }
 
 void PlanningMap::setSlowness(const std::array<float, kCostMax + 1>& slowness) {
-  constexpr float kSame = 0.1F;  // of itself: less is not worth a new distance to the goal
+  constexpr float kSame =
+      0.1F;  // of itself: smaller changes do not justify a new distance to the goal
   std::vector<float>& used = config_.field.slowness;
   const auto same = [](float a, float b) { return std::abs(a - b) <= kSame * b; };
   if (std::equal(slowness.begin(), slowness.end(), used.begin(), used.end(), same)) return;
@@ -141,7 +142,7 @@ void PlanningMap::updateDistance(const Pose2& T_map_body, const Goal& goal, int6
   if (field_goal_ && field_goal_->id != goal.id) forgetDetours();
   const Eigen::Vector2d p = T_map_body.position();
   const bool same = sameGoal(goal);
-  // Over a fence, or much too near to it, there is no way but back, which the search knows.
+  // Beyond a fence, or much too close to it, the only path is back, which the search handles.
   const bool fenced =
       !fenced_.empty() &&
       fenced_.room(p).metres >= fenced_.growth() + config_.field.inflation - kFenceNear;
@@ -186,8 +187,8 @@ void PlanningMap::substituteGoal(const Eigen::Vector2d& p_vehicle,
 
 void PlanningMap::computeDistance(const Goal& goal, const Eigen::Vector2d& p_vehicle) {
   const FencedClearance fenced(*map_, field_fenced_ ? fenced_ : no_fences_);
-  // Where no search may go there is no way. The middle of a gap may lie half a cell beside the
-  // centre of one.
+  // There is no path where no search may go. The middle of a gap may be half a cell beside a cell's
+  // centre.
   DistanceFieldConfig field = config_.field;
   field.inflation += std::max(0.0, config_.margins.least() - map_->cellSize() / 2.0);
   distance_to_goal_.compute(fenced, goal, p_vehicle, detours_, field);
@@ -253,7 +254,7 @@ std::vector<int> SideHysteresis::opposedBy(const std::vector<PlanStep>& plan,
 bool SideHysteresis::isWorth(const SearchResult& fresh, const SearchResult& along_branch) const {
   if (along_branch.end == SearchEnd::kNothing) return true;
   if (isCutOff(fresh) != isCutOff(along_branch)) return isCutOff(along_branch);
-  // What was cut off ends anywhere: only how near it comes to the goal can be compared.
+  // A plan that was cut off ends anywhere: only its remaining distance to the goal can be compared.
   if (isCutOff(fresh)) return fresh.expected + config_.gain < along_branch.expected;
   return fresh.cost + fresh.expected + config_.gain < along_branch.cost + along_branch.expected;
 }
@@ -280,7 +281,7 @@ SearchResult MotionPlanner::search(const PlanRequest& request, int expansions, C
   if (searched_table_ != request.table)
     counters["cycles driven until a plan with the newest set"] = cycles_with_old_set_;
   searched_table_ = request.table;
-  // Whoever stops a step counts all expansions in it, so that a replay stops at the same one.
+  // A stop condition counts all expansions of a step, so that a replay stops at the same one.
   int before = 0;
   bool late = false;
   const StopPredicate enough = [&](int count) {
@@ -304,7 +305,7 @@ SearchResult MotionPlanner::search(const PlanRequest& request, int expansions, C
   return result;
 }
 
-/// The best plan along problem.branch; it and the fresh one know the expansions of both.
+/// The best plan along problem.branch; both results include the expansions of both.
 SearchResult MotionPlanner::alongBranch(const SearchProblem& problem, const StopPredicate& stop,
                                         SearchResult& fresh) {
   SearchResult along = branch_search_.run(problem, stop);
@@ -313,11 +314,11 @@ SearchResult MotionPlanner::alongBranch(const SearchProblem& problem, const Stop
   return along;
 }
 
-/// The fresh plan, or the last one where that still leads on and does not cost more.
-/** A search takes the first plan that it finds: the next one may be as long, and begin otherwise. A
- * vehicle that always follows the newest turns to and fro where the room is little. And a plan that
- * backs out of a dead end is found at its end; a little way out the search is cut off before, and
- * what it has seen by then leads back in. */
+/// The fresh plan, or the last one if that still leads on and does not cost more.
+/** A search takes the first plan that it finds: the next one may be as long, but begin differently.
+ * A vehicle that always follows the newest oscillates in tight places. And a plan that backs out
+ * of a dead end is found at its end; after backing a little, the search is cut off earlier, and
+ * its partial result leads back in. */
 SearchResult MotionPlanner::keepPlan(SearchProblem& problem, SearchResult fresh,
                                      const StopPredicate& stop, Counters& counters) {
   const bool found = leadsOn(fresh.end);
@@ -335,7 +336,7 @@ SearchResult MotionPlanner::keepPlan(SearchProblem& problem, SearchResult fresh,
   return along;
 }
 
-/// Where no plan with all the room that is asked for leads on, one with the least.
+/// If no plan with the full margin leads on, one with the least margin.
 SearchResult MotionPlanner::withLittleRoom(SearchProblem& problem, SearchResult fresh,
                                            const StopPredicate& stop, Counters& counters) {
   if (problem.collision_checker->margins().narrow <= 0.0) return fresh;
@@ -352,7 +353,8 @@ SearchResult MotionPlanner::withLittleRoom(SearchProblem& problem, SearchResult 
   return narrow;
 }
 
-/// The fresh plan, or the best along the branch if that turns to the other side and is as good.
+/// The fresh plan, or the best along the branch if the fresh one turns to the other side and is not
+/// better enough.
 SearchResult MotionPlanner::keepSide(SearchProblem& problem, SearchResult fresh,
                                      const StopPredicate& stop, Counters& counters) {
   problem.branch = side_.opposedBy(fresh.steps, *problem.patterns);

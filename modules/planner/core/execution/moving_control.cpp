@@ -10,9 +10,9 @@ namespace tread::planner {
 namespace {
 
 constexpr double kMicro = 1e-6;
-/// Poses this far apart are still interpolated [us].
+/// Longest gap between interpolated poses [us].
 constexpr int64_t kTrackGap = 150'000;
-/// Steps in which coasting on is checked [s].
+/// Time step of the coasting check [s].
 constexpr double kCoastStep = 0.1;
 
 /// Poses of a vehicle that keeps its twist for `duration` [s] from `begin` [s] on.
@@ -29,7 +29,7 @@ std::vector<ExpectedPose> coasting(const Pose2& T_map_body, const Twist2& twist,
 void MovingControl::drive(const PlannerInputs& s, const Preconditions& ready) {
   if (state_.runningPattern() == nullptr) return state_.halt(s.now, StopReason::kPatternGone);
   state_.prediction = predictRunning(s);
-  // The rest was planned from another place than the vehicle will come to: plan again now.
+  // The rest was planned from a place that the vehicle will not reach: plan again now.
   if (state_.plan.based_on && leftCorridor(*state_.plan.based_on, *state_.prediction)) {
     state_.plan.expire();
     ++state_.counters["left the predicted corridor"];
@@ -62,7 +62,7 @@ std::optional<double> MovingControl::conflict(const Pose2& here,
   const CollisionChecker& around = state_.map.collisionChecker();
   const int level = around.freeLevel(here, CollisionChecker::kCheck);
   if (level >= 0) return firstConflict(around, poses, level);
-  // On blocked ground already: it must not become worse.
+  // Already on blocked ground: it must not become worse.
   const Overlap now = around.overlap(here);
   for (const ExpectedPose& at : poses)
     if (!around.overlap(at.T_map_body).within(now)) return at.time;
@@ -74,7 +74,7 @@ std::vector<ExpectedPose> MovingControl::posesAfter(const Prediction& running) c
   const TablePattern* next = state_.tracker.next().empty()
                                  ? nullptr
                                  : state_.table().find(state_.tracker.next().pattern_id);
-  // Where the ground gave way a pattern that stops is none: the vehicle slides on.
+  // Where the ground gave way a stopping pattern does not stop: the vehicle slides on.
   const bool slides =
       state_.grip.gave_way && next != nullptr && next->exit == state_.table().restClass();
   if (next != nullptr && !slides) {
@@ -105,7 +105,7 @@ void MovingControl::planNext(const PlannerInputs& s, const Preconditions& ready,
   state_.status.say(ready.status, ready.reason);
 }
 
-/// Where the running pattern is expected to end, as the start of what follows.
+/// The expected end of the running pattern, as the start of the next one.
 PlanStep MovingControl::endOf(const Prediction& running) const {
   return {state_.runningPattern()->id(), running.T_map_end, state_.runningPattern()->exit, 0.0,
           running.uncertainty};
@@ -151,7 +151,7 @@ bool MovingControl::stopNext(const Prediction& running) {
       if (free) best = stop;
     }
   }
-  // A stop is no plan that leads on, which a later search would keep.
+  // A stop is no plan that leads on and that a later search would keep.
   state_.plan.end = SearchEnd::kNothing;
   state_.plan.risk = {};
   state_.plan.steps.clear();
@@ -164,9 +164,9 @@ bool MovingControl::stopNext(const Prediction& running) {
   return true;
 }
 
-/// Whether a stop now keeps more margin than going on. What is nearer than the stopping distance
-/// may be reached either way; then the better way is the one that keeps clear, and at equal margin
-/// to stand is better.
+/// Whether stopping now keeps more margin than continuing. Obstacles within the stopping distance
+/// may be reached either way; then the option with more clearance is better, and at equal margin
+/// stopping is.
 bool MovingControl::stoppingIsBetter(const PlannerInputs& s,
                                      const std::vector<ExpectedPose>& poses) const {
   if (!s.pose->twist) return true;
@@ -181,12 +181,12 @@ bool MovingControl::stoppingIsBetter(const PlannerInputs& s,
                         state_.coastTime(*s.pose->twist))) >= worst(poses);
 }
 
-/// In the first moment on ground that gives way, before the learner says so. True if another answer
-/// than what is under way was given.
+/// For the first moment on ground that gives way, before the learner reports it. True if the
+/// present motion was replaced.
 bool MovingControl::answerSlide(const PlannerInputs& s, const Preconditions& ready,
                                 const Prediction& running) {
   if (state_.grip.gave_way || !s.pose->twist || !state_.tracker.confirmed()) return false;
-  constexpr double kUnknown = 1.0;  // [m/s2] as the learner's, before anything is known
+  constexpr double kUnknown = 1.0;  // [m/s2] the learner's value before any evidence
   const TablePattern& pattern = *state_.runningPattern();
   const double period = state_.table().set().periodSeconds();
   const double time = static_cast<double>(s.pose->utime - state_.tracker.started()) * kMicro;
@@ -209,7 +209,7 @@ bool MovingControl::answerSlide(const PlannerInputs& s, const Preconditions& rea
     state_.halt(s.now, StopReason::kGroundGivesWay);
     return true;
   }
-  // No plan that leads on, which a later search would keep.
+  // No plan that leads on and that a later search would keep.
   state_.plan.end = SearchEnd::kNothing;
   state_.plan.steps = {stepAfter(endOf(running), *answer.follower)};
   state_.plan.made = s.now;

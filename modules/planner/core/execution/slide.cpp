@@ -12,9 +12,9 @@ constexpr double kLeastSlide = 0.25;  // [m/s] as the learner's
 constexpr double kSlideShare = 0.15;  // [1] of the speed
 constexpr double kSlideStep = 0.1;    // [s]
 constexpr double kStands = 0.05;      // [m/s]
-constexpr double kBetter = 0.1;       // [m/s] less is no better
+constexpr double kBetter = 0.1;       // [m/s] smaller differences are no improvement
 
-/// Moves it on for a step; false if it then touches something.
+/// Advances it by a step; false if it then hits something.
 bool slideOn(const CollisionChecker& around, const Twist2& asked, Sliding& vehicle, double dt) {
   const Pose2& at = vehicle.T_map_body;
   const Eigen::Vector2d wanted = Pose2{0.0, 0.0, at.yaw} * Eigen::Vector2d(asked.v_x, asked.v_y);

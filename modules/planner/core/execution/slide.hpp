@@ -15,33 +15,33 @@ namespace tread::planner {
 struct Sliding {
   Pose2 T_map_body;
   Eigen::Vector2d v_map{0.0, 0.0};  ///< [m/s]
-  double deceleration = 0.0;        ///< [m/s2] the most by which this ground changes its velocity
+  double deceleration = 0.0;        ///< [m/s2] largest change of its velocity on this ground
 };
 
-/// A motion that the drive asks for, for a while [s].
+/// A motion requested by the drive for a while [s].
 struct AskedMotion {
   Twist2 v_body;
   double seconds = 0.0;
 };
 
-/// Whether a vehicle slides: it goes sideways, or on, where its pattern does not.
+/// Whether a vehicle slides: it moves sideways or onwards although its pattern does not.
 bool slides(const Twist2& measured, const Twist2& asked);
 
-/// What it asks for in the rest of a pattern from a time on [s].
+/// The motions requested in the rest of a pattern from a time on [s].
 std::vector<AskedMotion> askedFrom(const MotionPattern& pattern, double period, double time);
 
-/// The speed at which a sliding vehicle touches something that is not free [m/s]; 0 if it does not
-/// within what is asked and the stop that follows.
-/** Its velocity goes towards what is asked no faster than the ground changes it: a locked track
- * slides straight on. Its heading follows the drive, which needs much less of the ground. */
+/// The speed at which a sliding vehicle hits a cell that is not free [m/s]; 0 if it does not during
+/// the requested motions and the stop after them.
+/** Its velocity approaches the requested one no faster than the ground allows: a locked track
+ * slides straight on. Its heading follows the drive, which needs much less grip. */
 double impactSpeed(const CollisionChecker& around, Sliding vehicle,
                    const std::vector<AskedMotion>& asked);
 
-/// What a sliding vehicle can do: go on, stop at once, or let another pattern follow.
+/// Options of a sliding vehicle: continue, stop at once, or replace the next pattern.
 struct SlideChoices {
   std::vector<AskedMotion> rest;               ///< of the running pattern
-  const TablePattern* next = nullptr;          ///< that follows it; nullptr = it stops
-  std::vector<const TablePattern*> followers;  ///< that may take its place
+  const TablePattern* next = nullptr;          ///< that follows; nullptr = it stops
+  std::vector<const TablePattern*> followers;  ///< alternatives to it
 };
 
 /// The answer that was chosen.
@@ -49,10 +49,11 @@ struct SlideAnswer {
   enum class Kind { kGoOn, kStop, kFollow };
   Kind kind = Kind::kGoOn;
   const TablePattern* follower = nullptr;  ///< of kFollow
-  double impact = 0.0;                     ///< [m/s] with which it touches something; 0 = nothing
+  double impact = 0.0;                     ///< [m/s] at the first contact; 0 = no contact
 };
 
-/// Chooses what touches nothing, or most slowly; what is under way unless another answer is better.
+/// Chooses the option without contact, or with the slowest one; keeps the present motion unless
+/// another option is better.
 SlideAnswer answerToSlide(const CollisionChecker& around, const Sliding& vehicle,
                           const SlideChoices& choices, double period);
 

@@ -9,14 +9,16 @@
 namespace tread::planner {
 namespace {
 
-constexpr int64_t kSteep = 60'000;  // [us] for which it must be: a stone under a track is no slope
-constexpr double kRelief = 0.035;   // [rad] below the limit it is good again; above what was told
-                                    // it is worse
+constexpr int64_t kSteep =
+    60'000;  // [us] for which it must be too steep: a stone under a track is no slope
+constexpr double kRelief =
+    0.035;  // [rad] below the limit it is good again; above the reported slope it is worse
 constexpr double kTrailStep = 0.1;  // [m]
 constexpr size_t kTrail = 40;       // places
-constexpr double kGrowth = 0.5;     // [m] of the trail that tells how the slope grows
-constexpr double kGentle = 0.5;     // [1] of the limit: on less steep ground nothing is expected
-constexpr double kBack = 0.8;       // [m] back on the trail, over which the slope grew
+constexpr double kGrowth = 0.5;     // [m] of the trail from which the slope's growth is derived
+constexpr double kGentle =
+    0.5;                       // [1] of the limit: on gentler ground the slope is not extrapolated
+constexpr double kBack = 0.8;  // [m] back on the trail, over which the slope grew
 constexpr double kBegins = 0.3;     // [m] ahead of the body's origin
 constexpr double kEnds = 2.0;       // [m]
 constexpr double kHalfWidth = 1.0;  // [m]
@@ -51,7 +53,7 @@ std::optional<Fence> SlopeGuard::take(const PoseReading& pose) {
     trail_.push_back({p_map, slope_});
   if (trail_.size() > kTrail) trail_.pop_front();
   if (slope_ < *max_slope_ - kRelief) told_ = 0.0;
-  // On its way back it is steep still, and must not be stopped for that.
+  // While driving back the ground is still steep, which must not stop the robot.
   const double limit = told_ > 0.0 ? told_ + kRelief : *max_slope_;
   if ((told_ > 0.0 ? slope_ : expected(pose)) <= limit) {
     steep_since_.reset();
@@ -66,7 +68,7 @@ std::optional<Fence> SlopeGuard::take(const PoseReading& pose) {
 
 Fence SlopeGuard::aheadOf(const Pose2& T_map_body, double slope) const {
   const Eigen::Vector2d p_map = T_map_body.position();
-  // From the newest place that is far enough back and was less steep.
+  // From the newest position that is far enough back and was less steep.
   Eigen::Vector2d axis(std::cos(T_map_body.yaw), std::sin(T_map_body.yaw));
   for (auto at = trail_.rbegin(); at != trail_.rend(); ++at) {
     if ((p_map - at->p_map).norm() < kBack || at->slope >= slope) continue;

@@ -13,22 +13,22 @@
 
 namespace tread::planner {
 
-/// Knows when the robot stands on steeper ground than plans may use, and where that lies.
-/** It counts as too steep where it will be by the time the robot stands, if the slope goes on to
- * grow as it did on the last half metre. A level range finder sees what rises before it, not what
- * falls: an edge downwards is felt first. What lies ahead, in the direction in which the slope
- * grew, then becomes ground to keep out of; the way back is the one that it came. */
+/// Detects ground steeper than plans may use under the robot, and where it lies.
+/** The ground counts as too steep if it will be when the robot has stopped, assuming that the slope
+ * keeps growing as on the last half metre. A level range finder sees rising ground ahead, but not
+ * falling ground: a downward edge is first felt. The ground ahead, in the direction in which the
+ * slope grew, then becomes forbidden; the path back is the one on which the robot came. */
 class SlopeGuard {
  public:
-  /// `max_slope` [rad]; nothing: no such rule.
+  /// `max_slope` [rad]; nullopt: no limit.
   explicit SlopeGuard(std::optional<double> max_slope) : max_slope_(max_slope) {}
 
-  /// [s] at its speed until the robot stands, learned from its stops; never less than at first.
+  /// [s] at its speed until the robot stands, learned from its stops; never less than the initial
+  /// value.
   void setStoppingTime(double seconds) { stop_time_ = std::max(kStopTime, seconds); }
-  /// Takes the newest pose. Returns the ground to keep out of from now on, if it has just become
-  /// too steep.
+  /// Takes the newest pose. Returns ground to keep out of, if it has just become too steep.
   std::optional<Fence> take(const PoseReading& pose);
-  /// Whether it stands on ground that is too steep, or nearly: there it may slide.
+  /// Whether it stands on ground that is too steep, or nearly so: it may slide there.
   bool steep() const;
   /// "tilts 17 deg, plans allow 15"
   std::string words() const;
@@ -50,9 +50,9 @@ class SlopeGuard {
   double stop_time_ = kStopTime;        ///< [s]
   int64_t newest_ = INT64_MIN;          ///< [us]
   std::optional<int64_t> steep_since_;  ///< [us]
-  double told_ = 0.0;                   ///< [rad] slope that was told last; 0 = on good ground
+  double told_ = 0.0;                   ///< [rad] slope last reported; 0 = on good ground
   double slope_ = 0.0;                  ///< [rad] newest
-  std::deque<Place> trail_;             ///< where it has been, oldest first
+  std::deque<Place> trail_;             ///< recent positions, oldest first
 };
 
 }  // namespace tread::planner

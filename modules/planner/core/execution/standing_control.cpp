@@ -13,7 +13,7 @@ struct Move {
   Pose2 end;  // relative to the start
 };
 
-/// Moves of one or two patterns that lead from rest to rest.
+/// Moves of one or two patterns from rest to rest.
 std::vector<Move> movesFromRest(const PatternTable& table) {
   std::vector<Move> moves;
   for (const TablePattern* first : table.from(table.restClass())) {
@@ -27,7 +27,7 @@ std::vector<Move> movesFromRest(const PatternTable& table) {
   return moves;
 }
 
-/// How welcome a move is in the try of that number; the greatest is taken.
+/// Preference of a move in this attempt; the largest is taken.
 double worth(const Move& move, int number) {
   switch (number % 3) {
     case 0:
@@ -39,7 +39,7 @@ double worth(const Move& move, int number) {
   }
 }
 
-/// Whether a move is free; if `regains`, only with more and more margin on its way.
+/// Whether a move is free; with `regains`, only if the margin increases along it.
 bool isFree(const Move& move, const CollisionChecker& around, const Pose2& start, bool regains) {
   int level = around.freeLevel(start, CollisionChecker::kPlan);
   Overlap overlap = around.overlap(start);
@@ -59,7 +59,7 @@ bool isFree(const Move& move, const CollisionChecker& around, const Pose2& start
   return true;
 }
 
-/// After so many patterns in a row a recovery has helped.
+/// Patterns in a row after which a recovery has succeeded.
 constexpr int kRecovered = 6;
 
 }  // namespace
@@ -142,7 +142,7 @@ void StandingControl::stand(const PlannerInputs& s, const Preconditions& ready,
     ++state_.counters["arrived"];
   }
   if (arrived_) return state_.status.say(PlanStatus::kArrived, {});
-  // The map may change: it goes on as soon as there is a way.
+  // The map may change: it continues as soon as there is a path.
   if (!state_.map.goalSubstitutionReason().empty() &&
       isWithin(state_.map.target(), s.pose->T_map_body)) {
     progress.restart(s.now);

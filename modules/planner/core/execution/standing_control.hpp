@@ -14,14 +14,14 @@
 
 namespace tread::planner {
 
-/// While a pattern runs: checks it against the newest map, and hands over the next one.
+/// Control while a pattern runs: checks it against the newest map, and hands over the next one.
 class MovingControl {
  public:
   explicit MovingControl(DrivingState& state) : state_(state) {}
 
   void drive(const PlannerInputs& s, const Preconditions& ready);
   Prediction predictRunning(const PlannerInputs& s) const;
-  /// Hands over the quickest free pattern that stops; false if the vehicle will not come to rest.
+  /// Hands over the fastest free pattern that stops; false if the vehicle will not come to rest.
   bool stopNext(const Prediction& running);
 
  private:
@@ -39,13 +39,12 @@ class MovingControl {
   DrivingState& state_;
 };
 
-/// Knows when the vehicle has come to a stand: by its twist, or by its poses where no twist is
-/// measured.
+/// Detects standstill by the vehicle's twist or, if it is not measured, by its poses.
 class StandstillDetector {
  public:
-  /// Takes the newest pose; the same again is no news.
+  /// Takes the newest pose; repetitions are ignored.
   void take(const PoseReading& pose);
-  /// Whether the vehicle has stood for a moment, judged by poses measured after `since` [us] only.
+  /// Whether the vehicle has been at rest for a moment, by poses measured after `since` [us] only.
   bool stands(int64_t since) const;
 
  private:
@@ -55,17 +54,17 @@ class StandstillDetector {
   std::deque<PoseReading> poses_;
 };
 
-/// Knows when the vehicle does not come nearer to its goal any more.
+/// Detects that the vehicle no longer approaches its goal.
 class ProgressMonitor {
  public:
   /// `patience` [us] without progress is too long.
   explicit ProgressMonitor(int64_t patience) : patience_(patience) {}
 
   void restart(int64_t now);
-  /// Takes the distance to the goal [m]. Returns true if there was no progress for too long, and
-  /// begins anew.
-  /** A way that has become much longer is a dead end that was seen: patience begins anew, but only
-   * so often. */
+  /// Takes the distance to the goal [m]. Returns true after too long without progress, and
+  /// restarts.
+  /** A path that has become much longer means a detected dead end: the patience restarts, but only
+   * a few times. */
   bool stuck(double distance_to_go, int64_t now);
 
  private:
@@ -80,12 +79,12 @@ class ProgressMonitor {
   int dead_ends_ = 0;
 };
 
-/// Moves for a vehicle that stands and finds no way on: back a little, or turn and look.
+/// Moves for a vehicle that stands without a path: back a little, or turn and look.
 class Recovery {
  public:
-  /// Ids of patterns that lead from rest to rest over free ground; empty if there are none.
-  /** Every call prefers another kind: backing out, turning one way, turning the other way. On
-   * blocked ground only moves that overlap no more than the vehicle does already. */
+  /// Ids of patterns from rest to rest over free ground; empty if there are none.
+  /** Each call prefers another kind: backing out, turning one way, turning the other way. On
+   * blocked ground only moves that overlap no more than the vehicle already does. */
   std::vector<int> propose(const PatternTable& table, const CollisionChecker& collision_checker,
                            const Pose2& T_map_body);
   int tries() const { return tries_; }
@@ -95,8 +94,8 @@ class Recovery {
   int tries_ = 0;
 };
 
-/// While the vehicle stands: sets off, and where nothing is free waits, tries to get out, and gives
-/// a way up.
+/// Control at standstill: sets off or, if no pattern is free, waits, tries recoveries, and gives a
+/// path up.
 class StandingControl {
  public:
   StandingControl(DrivingState& state, MovingControl& moving) : state_(state), moving_(moving) {}
@@ -110,7 +109,7 @@ class StandingControl {
     recovery_.restart();
   }
   void forgetBlocked() { blocked_since_.reset(); }
-  /// The vehicle has joined another pattern: after some in a row a recovery has helped.
+  /// The vehicle has continued with another pattern: several in a row end a recovery.
   void noteJoined();
 
  private:
@@ -124,7 +123,7 @@ class StandingControl {
   Recovery recovery_;
   bool arrived_ = false;
   int joined_ = 0;                        ///< patterns since the last recovery
-  std::optional<int64_t> blocked_since_;  ///< [us] standing, with nothing free
+  std::optional<int64_t> blocked_since_;  ///< [us] standing, without a free pattern
 };
 
 }  // namespace tread::planner

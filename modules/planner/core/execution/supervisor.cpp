@@ -9,15 +9,15 @@
 namespace tread::planner {
 namespace {
 
-/// A way that was given up is mentioned for so long [us].
+/// How long a path that was given up is reported [us].
 constexpr int64_t kNoteTime = 5'000'000;
-/// On a slope a vehicle may creep for ever, and does not come to a stand [us].
+/// On a slope a vehicle may creep endlessly without coming to a stand [us].
 constexpr int64_t kSettleOnSlope = 600'000;
 
-/// A turn of 1 rad/s is as far from another motion as a speed of so much [m/s].
+/// Weight of a turn of 1 rad/s as a speed [m/s].
 constexpr double kTurnWeight = 0.5;
 
-/// The motion class that is nearest to a twist.
+/// The motion class closest to a twist.
 int nearestClass(const PatternTable& table, const Twist2& twist) {
   const std::vector<MotionClass>& classes = table.set().content().classes;
   const auto distance = [&twist](const MotionClass& motion) {
@@ -40,7 +40,7 @@ Supervisor::Supervisor(const PlannerConfig& config, int64_t run_id)
       slopes_(config.max_slope) {}
 
 void Supervisor::setStoppingTime(double seconds) {
-  // A PROGRAM, its way to the motors, and what the robot does until the next measurement.
+  // A PROGRAM, its transport to the motors, and the robot's motion until the next measurement.
   constexpr int64_t kDelay = 200'000;  // [us]
   state_.map.setStoppingTime(seconds);
   state_.config.policy.coast_time = seconds;
@@ -92,7 +92,7 @@ Decision Supervisor::step(const PlannerInputs& s, const StopPredicate& stop) {
   return {state_.status.changed, halted_, report(s)};
 }
 
-/// What it would do from here on, without handing it over.
+/// Plans from here on, without handing over.
 void Supervisor::shadow(const PlannerInputs& s, const Preconditions& ready) {
   state_.tracker.stop();
   state_.mode = DrivingMode::kSettling;

@@ -11,56 +11,56 @@
 
 namespace tread::planner {
 
-/// What a step decided beside the program.
+/// Result of a step beside the program.
 struct Decision {
-  bool planned = false;  ///< a new plan was made, or something changed that viewers want to know
-  Reason halted;  ///< why it was stopped by its preconditions in this step; none = it was not
+  bool planned = false;  ///< a new plan was made, or something that viewers show has changed
+  Reason halted;         ///< why the preconditions stopped it in this step; none = they did not
   PlanReport report;
 };
 
-/// The planner without its wires: what to hand over to the motor bridge, from all that is known.
-/** Call takeSet() and map().put() as things come, then step() at 20 Hz. It
-    1. learns from MOTOR and EXECUTION what became of what it handed over;
-    2. checks the preconditions, and empties the program or lets the vehicle come to rest;
-    3. checks what is under way against the newest map: a running pattern that will hit something is
-   stopped in time, a next one is replaced;
-    4. plans from where the running pattern is expected to end, and hands over the next one; with no
-   plan the next one is the one that stops;
-    5. standing, plans from where it stands; with no plan waits, tries to get out, and says that it
-   is blocked.
-   While a person drives by hand it goes on planning from where the robot is, and hands over
-   nothing. */
+/// The planner's core: decides what to hand over to the motor bridge, from all inputs.
+/** Call takeSet() and map().put() as messages arrive, then step() at 20 Hz. It
+ *   1. follows the handed-over patterns by MOTOR and EXECUTION;
+ *   2. checks the preconditions, and empties the program or lets the vehicle come to rest;
+ *   3. checks the handed-over patterns against the newest map: stops a running pattern in time
+ *      before a collision, and replaces a next one;
+ *   4. plans from the expected end of the running pattern, and hands over the next one, which
+ *      without a plan is one that stops;
+ *   5. at standstill, plans from the present pose; without a plan waits, tries recoveries, and
+ *      reports that it is blocked.
+ * Under manual control it keeps planning from the present pose, but hands nothing over. */
 class Supervisor {
  public:
   Supervisor(const PlannerConfig& config, int64_t run_id);
   Supervisor(const Supervisor&) = delete;  // its parts refer to each other
   Supervisor& operator=(const Supervisor&) = delete;
 
-  /// From the next step on plans are made with this set; what is handed over keeps its version.
-  /** A set with other commands for what runs or comes next, or one that cannot be driven with while
-   * something runs, is refused: false, and setRefusal() says why. It waits, and is taken in the
-   * first step in which it fits, which may be when the vehicle stands. */
+  /// Uses this set for plans from the next step on; handed-over patterns keep their version.
+  /** A set with other commands for the running or the next pattern, or an unusable one while a
+   * pattern runs, is refused: returns false, and setRefusal() gives the reason. It waits, and is
+   * used from the first step in which it fits, possibly at standstill. */
   bool takeSet(const PatternSet& set);
   const std::string& setRefusal() const { return state_.set.refusal(); }
   PlanningMap& map() { return state_.map; }
-  /// [s] at its speed that the vehicle goes on after a zero command, learned from its stops.
+  /// [s] at its speed that the vehicle continues after a zero command, learned from its stops.
   void setStoppingTime(double seconds);
-  /// What the ground gives, as the learner knows it by now.
+  /// The learner's present estimate of the available deceleration.
   void setGrip(const GripKnowledge& grip);
   const GripKnowledge& grip() const { return state_.grip; }
-  /// How hard ground shakes, as the learner knows it by now.
+  /// The learner's present estimate of shock.
   void setShock(const ShockKnowledge& shock) {
     state_.shock = shock;
     state_.ground.reset();
   }
   const DistanceToGoal& distanceToGoal() const { return state_.map.distanceToGoal(); }
 
-  /// `stop` may end a search early (a deadline); the configured expansions end it in any case.
+  /// `stop` may end a search early (a deadline); the configured number of expansions ends it in any
+  /// case.
   Decision step(const PlannerInputs& inputs, const StopPredicate& stop);
 
   const ExecutionTracker& program() const { return state_.tracker; }
   const PatternSearch& search() const { return state_.planner.search(); }
-  /// How often something noteworthy happened, by its name in words.
+  /// How often noteworthy events happened, by name in words.
   const std::map<std::string, int64_t>& counters() const { return state_.counters; }
 
  private:

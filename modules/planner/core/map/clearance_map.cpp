@@ -9,8 +9,8 @@
 namespace tread::planner {
 namespace {
 
-/// One field serves all changed tiles if their bounding rectangle has at most so many times as
-/// many.
+/// One field serves all changed tiles if their bounding rectangle has at most this many times as
+/// many tiles.
 constexpr size_t kTogether = 2;
 /// Smaller changes of clearance are ignored [m].
 constexpr float kSameClearance = 0.005F;
@@ -129,7 +129,7 @@ void ClearanceMap::refreshClearances(const std::vector<std::pair<int, int>>& key
            std::max(box.top, y)};
   const size_t tiles =
       static_cast<size_t>(box.right - box.left + 1) * static_cast<size_t>(box.top - box.bottom + 1);
-  // A tile of its own needs a wide ring: where many lie close together one field serves them all.
+  // A separate tile needs a wide ring: many tiles close together share one field.
   const bool together = tiles <= kTogether * keys.size();
   const ClearanceField shared = together ? fieldOver(box) : ClearanceField();
   for (const auto& key : keys) {
@@ -168,7 +168,7 @@ bool ClearanceMap::refreshUnknown(const Tile& tile, ClearanceTile& coarse_tile) 
   return true;
 }
 
-/// Clearance to obstacles in a rectangle of tiles, and in as wide a ring around it as counts.
+/// Clearance to obstacles in a rectangle of tiles, including a ring as wide as the cap around it.
 ClearanceField ClearanceMap::fieldOver(const TileBox& box) const {
   const int ring = static_cast<int>(std::ceil(config_.clearance_cap / cellSize()));
   const CellIndex lower{box.left * tileCells() - ring, box.bottom * tileCells() - ring};
@@ -255,7 +255,7 @@ void CoarseClearance::flood(int x, int y, int number, float radius) {
   while (!open.empty()) {
     const CellIndex cell = open.back();
     open.pop_back();
-    // Corners count as connected: what is told apart is apart.
+    // Corners count as connected, so that separate areas are really separate.
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
         if (!contains(cell.x + dx, cell.y + dy)) continue;
@@ -280,11 +280,11 @@ int CoarseClearance::areaAt(const Eigen::Vector2d& p_map) const {
 std::vector<int> CoarseClearance::areasNear(const Eigen::Vector2d& p_map, double distance) const {
   std::vector<int> areas;
   const auto clamped = [this](double coordinate, int lower, int size) {
-    // In this order what is no number counts as outside.
+    // In this order NaN counts as outside.
     const double cell = std::floor(coordinate / size_) - lower;
     return lower + static_cast<int>(std::min(static_cast<double>(size), std::max(-1.0, cell)));
   };
-  // A cell's corner may be near enough although its centre is not.
+  // A cell's corner may be close enough although its centre is not.
   const double reach = distance + 0.71 * size_;
   const int x_to = clamped(p_map.x() + reach, cells_.lower_x, cells_.width);
   const int y_to = clamped(p_map.y() + reach, cells_.lower_y, cells_.height);

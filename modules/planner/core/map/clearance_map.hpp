@@ -13,31 +13,31 @@
 
 namespace tread::planner {
 
-/// What is remembered of the map, and how coarsely.
+/// How much of the map is kept, and its coarse resolution.
 struct ClearanceMapConfig {
   double keep_radius = 40.0;   ///< [m] tiles farther from the vehicle are forgotten
-  double clearance_cap = 0.8;  ///< [m] greater clearances are stored as this
+  double clearance_cap = 0.8;  ///< [m] larger clearances are stored as this
   int coarse = 2;              ///< cells of the map per side of a coarse cell
 };
 
 /// Coarse cells of one tile.
 struct ClearanceTile {
-  std::vector<float> clearance;  ///< [m] greatest distance to an obstacle in the cell, capped
+  std::vector<float> clearance;  ///< [m] largest distance to an obstacle in the cell, capped
   std::vector<uint8_t> unknown;  ///< 1 where at least half of the cell is unknown
-  std::vector<Cell> roughness;   ///< the greatest cost of the free cells in it
+  std::vector<Cell> roughness;   ///< the largest cost of the free cells in it
 };
 
-/// All tiles seen so far, also those that mapping has forgotten, and the clearance in coarse cells.
-/** Dead ends stay known after the local map has moved on. Unknown counts as passable: it may be
- * free. */
+/// All tiles seen so far, including those that mapping has forgotten, and the clearance in coarse
+/// cells.
+/** Dead ends stay known after the local map has moved on. Unknown counts as passable, because it
+ * may be free. */
 class ClearanceMap : public ClearanceSource {
  public:
   ClearanceMap(double cell_size, int tile_cells, const ClearanceMapConfig& config);
 
-  /// Takes a tile. What it does not know keeps what was known before. Returns whether anything
-  /// changed.
+  /// Takes a tile. Its unknown cells keep their earlier values. Returns whether anything changed.
   bool put(Tile tile);
-  /// Makes unknown cells free: the vehicle stands on them.
+  /// Makes unknown cells free, because the vehicle stands on them.
   void assumeFree(const std::vector<CellIndex>& cells);
   void forgetBeyond(const Eigen::Vector2d& p_map);
   /// Updates the clearance in the tiles that changed, and in their neighbours.
@@ -51,9 +51,9 @@ class ClearanceMap : public ClearanceSource {
   int tileCells() const { return tiles_.tileCells(); }
   double coarseSize() const override { return cellSize() * coarse_; }
   void fill(ClearanceWindow& window) const override;
-  /// Counts up whenever a cell changes.
+  /// Increases whenever a cell changes.
   int64_t revision() const { return revision_; }
-  /// Counts up whenever the clearance or what is unknown changes in a coarse cell.
+  /// Increases whenever the clearance or the unknown flag of a coarse cell changes.
   int64_t clearanceRevision() const { return clearance_revision_; }
   /// [us] of the newest scan in any tile; 0 before the first.
   int64_t newestUtime() const { return newest_utime_; }
@@ -65,7 +65,7 @@ class ClearanceMap : public ClearanceSource {
   /// What a new tile changes.
   enum class Change { kNone, kKnowledge, kObstacles };
   Change merge(Tile& tile) const;
-  /// Tiles from left to right and from bottom to top, all included.
+  /// Tiles from left to right and from bottom to top, inclusive.
   struct TileBox {
     int left;
     int bottom;
@@ -89,24 +89,24 @@ class ClearanceMap : public ClearanceSource {
   int64_t newest_utime_ = 0;
 };
 
-/// Clearance in coarse cells of a static map, and the areas that are connected for a disc.
+/// Clearance in coarse cells of a static map, and the areas connected for a disc.
 class CoarseClearance : public ClearanceSource {
  public:
-  /// `coarse` cells of the grid make one side of a coarse cell; its clearance is the
-  /// greatest at their centres, and 0 outside the grid.
+  /// A coarse cell has `coarse` cells of the grid per side; its clearance is the largest at their
+  /// centres, and 0 outside the grid.
   CoarseClearance(const Grid& grid, const ClearanceField& field, int coarse);
 
   double coarseSize() const override { return size_; }
   std::optional<ClearanceWindow> bounds() const override { return cells_; }
   void fill(ClearanceWindow& window) const override;
 
-  /// Numbers the areas in which a disc of this radius [m] can move; afterwards areaAt() answers.
+  /// Numbers the areas in which a disc of this radius [m] can move, for areaAt().
   void label(double radius);
-  /// Number of the area that a point lies in; 0 = no clearance for the disc, or outside.
+  /// Number of the area that contains a point; 0 = no clearance for the disc, or outside.
   int areaAt(const Eigen::Vector2d& p_map) const;
   /// Numbers of the areas within a distance of a point [m].
   std::vector<int> areasNear(const Eigen::Vector2d& p_map, double distance) const;
-  /// Centre of the coarse cell of these areas that is nearest to a point; nothing if there is none.
+  /// Centre of the coarse cell of these areas that is nearest to a point; nullopt if there is none.
   std::optional<Eigen::Vector2d> nearestIn(const std::vector<int>& areas,
                                            const Eigen::Vector2d& p_map) const;
 

@@ -7,7 +7,7 @@
 namespace tread::planner {
 namespace {
 
-/// Beyond the footprint nobody needs to know how far off things are [m].
+/// Distances beyond this outside of the footprint are not needed [m].
 constexpr double kFarthestLook = 1.5;
 
 /// A pose of a pattern that begins at `start`.
@@ -40,7 +40,7 @@ CollisionChecker::CollisionChecker(Grid grid, const FootprintSize& size, const M
   }
   for (const double margin : level_margins_) {
     levels_.emplace_back(size, margin);
-    // The least that makes plan + growth * sigma reach the margin.
+    // The smallest variance for which plan + growth * sigma reaches the margin.
     const double sigma = std::max(0.0, margin - margins.plan) / std::max(1e-9, margins.growth);
     level_variances_.push_back(static_cast<float>(sigma * sigma));
   }
@@ -53,7 +53,7 @@ int CollisionChecker::levelWithin(double margin) const {
 }
 
 int CollisionChecker::level(const Uncertainty& uncertainty) const {
-  // A lower bound that needs no root; often it is enough.
+  // A lower bound without a square root; often sufficient.
   const auto arm = static_cast<float>(arm_);
   const float least = std::max(uncertainty.xx, uncertainty.yy) + arm * arm * uncertainty.yawyaw;
   if (level_variances_.back() <= least) return kLevels - 1;
@@ -83,7 +83,7 @@ int CollisionChecker::freeLevel(const Pose2& T_map_body, int wanted) const {
 
 bool CollisionChecker::isFarFromAll(const TurnedPose& at, const TablePattern& pattern,
                                     int level) const {
-  // The whole pattern is one look into the field.
+  // The whole pattern in one lookup.
   const double around = pattern.radius + levels_[static_cast<size_t>(level)].circumscribed();
   const double x = at.x + at.cos_yaw * pattern.centre.x() - at.sin_yaw * pattern.centre.y();
   const double y = at.y + at.sin_yaw * pattern.centre.x() + at.cos_yaw * pattern.centre.y();
@@ -99,11 +99,11 @@ bool CollisionChecker::sweepFree(const TurnedPose& start, const TablePattern& pa
 
 bool CollisionChecker::sweptFootprintFree(const TurnedPose& start, const SweptFootprint& cover,
                                           const Footprint& footprint) const {
-  // The end first: patterns that hit something mostly hit it with their end.
+  // The end first: patterns that hit something mostly do so at their end.
   for (auto pose = cover.poses.rbegin(); pose != cover.poses.rend(); ++pose)
     if (!footprint.isFree(field_, alongFrom(start, pose->at))) return false;
   const auto inset = static_cast<float>(cover.front - footprint.size().front);
-  int free_way = -1;  // the last one that was checked in full
+  int free_way = -1;  // the last one checked completely
   for (const CornerDisc& disc : cover.discs) {
     const auto x = static_cast<double>(disc.x - inset * disc.out_x);
     const auto y = static_cast<double>(disc.y - inset * disc.out_y);

@@ -11,13 +11,14 @@ namespace tread::planner {
 namespace {
 
 constexpr float kOpenGround = 1e6F;
-/// Cells whose lengths differ by less than this may be settled in any order [m].
+/// Cells whose lengths differ by less may be settled in any order [m].
 constexpr float kBucket = 0.05F;
-/// No step from a neighbour is shorter, in slowness times size of a cell: half a diagonal.
+/// Shortest step from a neighbour, in slowness times cell size: half a diagonal.
 constexpr float kLeastStep = 0.707F;
-/// Around vehicle and goal there is at least so much of the area, however far apart they are [m].
+/// Least margin of the area around vehicle and goal, however far apart they are [m].
 constexpr double kLeastMargin = 8.0;
-/// Where the vehicle's own cell is too near to something, the best cell this near counts [m].
+/// If the vehicle's own cell is too close to an obstacle, the best cell within this distance counts
+/// [m].
 constexpr double kNearby = 0.5;
 
 float slownessOf(float clearance, const DistanceFieldConfig& config) {
@@ -42,7 +43,7 @@ void chooseArea(const Eigen::Vector2d& p_goal, const Eigen::Vector2d& p_vehicle,
   cells.height = static_cast<int>(std::ceil(2.0 * half.y() / cells.size));
 }
 
-/// The cells of the whole map if it has an end, else of an area.
+/// The cells of the whole map if it is bounded, otherwise of an area.
 RimmedCells cellsFor(const ClearanceSource& map, const Eigen::Vector2d& p_goal,
                      const Eigen::Vector2d& p_vehicle, double margin,
                      const DistanceFieldConfig& config) {
@@ -80,18 +81,18 @@ class MarchFront {
     waiting_ -= taken_.size();
     return taken_;
   }
-  /// [m] All that is shorter was taken.
+  /// [m] All shorter lengths were taken.
   float reached() const { return static_cast<float>(current_) * kBucket; }
 
  private:
-  static constexpr size_t kBuckets = 256;  // a power of two: their number is found without division
+  static constexpr size_t kBuckets = 256;  // a power of two, to avoid a division
   std::array<std::vector<uint32_t>, kBuckets> buckets_;
   std::vector<uint32_t> taken_;
   size_t current_ = 0;
   size_t waiting_ = 0;
 };
 
-/// One fast marching from the goal over the cells that were laid out and painted.
+/// One fast marching from the goal over the prepared cells.
 class DistanceToGoal::March {
  public:
   explicit March(DistanceToGoal& of)
@@ -99,7 +100,7 @@ class DistanceToGoal::March {
 
   /// False if no cell of the goal is passable.
   bool seed(const Goal& goal);
-  /// Whether there is a way from the vehicle, or the march was interrupted.
+  /// Whether there is a path from the vehicle, or the march was interrupted.
   bool run(const Eigen::Vector2d& p_vehicle, float further, const Interruption& interruption);
   bool touchedBorder() const { return touched_border_; }
 
@@ -241,7 +242,8 @@ void DistanceToGoal::March::settle(size_t cell) {
   Slope& slope = of_.slopes_[cell];
   slope = Slope{};
   slope.step = of_.slowness_[cell] * static_cast<float>(cells_.size);
-  const float slowness = std::exchange(of_.slowness_[cell], kNoWay);  // relax() looks no more at it
+  const float slowness =
+      std::exchange(of_.slowness_[cell], kNoWay);  // relax() skips it from now on
   const float x = std::min(left, right);
   const float y = std::min(below, above);
   const float along_x = x < own ? (left < right ? x - own : own - x) : 0.0F;
@@ -275,7 +277,7 @@ void DistanceToGoal::March::relax(size_t cell) {
     const float nearer = std::min(a, b);
     if (nearer + kLeastStep * step >= tentative[next]) continue;
     const float apart = std::min(std::max(a, b) - nearer, step);
-    // Upwind solution of |grad| = slowness; one-sided where the two sides are too far apart.
+    // Upwind solution of |grad| = slowness; one-sided if the two neighbours differ too much.
     const float value = nearer + 0.5F * (apart + std::sqrt(2.0F * step * step - apart * apart));
     if (value >= tentative[next]) continue;
     tentative[next] = value;
@@ -330,7 +332,7 @@ double DistanceToGoal::lengthNearby(const Eigen::Vector2d& p_map) const {
   for (int y = std::max(1, own_y - reach); y <= std::min(cells_.height, own_y + reach); ++y) {
     for (int x = std::max(1, own_x - reach); x <= std::min(cells_.width, own_x + reach); ++x) {
       const auto cell = static_cast<size_t>(y * cells_.stride + x);
-      // What is passable and was not filled in is as far as the longest way that was.
+      // Passable cells that were not computed get the longest computed length.
       const float open = cut_short_ && slowness_[cell] != kNoWay ? cut_ : kNoWay;
       const float way = std::min(settled_[cell], open);
       if (way == kNoWay) continue;
@@ -381,7 +383,7 @@ std::optional<Eigen::Vector2d> DistanceToGoal::nearestWithinReach(
   while (!waiting.empty()) {
     const size_t cell = waiting.back();
     waiting.pop_back();
-    // Those that were settled are on the goal's side.
+    // Settled ones are on the goal's side.
     if (slowness_[cell] == kNoWay) continue;
     const Eigen::Vector2d centre = cells_.centreOf(cell);
     if (!nearest || (centre - p_goal).norm() < (*nearest - p_goal).norm()) nearest = centre;

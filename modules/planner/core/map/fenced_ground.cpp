@@ -7,19 +7,19 @@
 namespace tread::planner {
 namespace {
 
-/// Clearances from there on are not told apart [m].
+/// Larger clearances are not distinguished [m].
 constexpr float kFar = 1.5F;
 
-/// Cells of a rectangle, half open.
+/// Cells of a rectangle, half-open.
 struct CellBox {
   int x_from, y_from, x_to, y_to;
 
   bool single() const { return x_to - x_from == 1 && y_to - y_from == 1; }
 };
 
-/// Visits the cells of a box whose room is less than `far` [m], each with the room of its centre;
-/// boxes that certainly have more, or less than `near`, are not divided.
-/** Room changes by no more than a metre a metre: a box is judged from its middle. */
+/// Visits the cells of a box whose clearance is less than `far` [m], each with the clearance of its
+/// centre; boxes that certainly have more, or less than `near`, are not divided.
+/** Clearance changes by at most a metre per metre: a box is classified from its middle. */
 template <class Room, class Visit>
 void visitNear(const CellBox& box, double size, double near, double far, const Room& room,
                const Visit& visit) {

@@ -10,11 +10,11 @@
 
 namespace tread::planner {
 
-/// Ground that fences forbid, and so much around it as plans must not come nearer than.
+/// Ground forbidden by fences, enlarged by the distance that plans must keep from it.
 class FencedGround {
  public:
   FencedGround() = default;
-  /// `growth` [m]: what the robot needs to stop, and what its position may be off by.
+  /// `growth` [m]: the robot's stopping distance and position error.
   FencedGround(std::vector<Fence> fences, double growth)
       : fences_(std::move(fences)), growth_(growth) {}
 
@@ -22,13 +22,13 @@ class FencedGround {
   double growth() const { return growth_; }
   const std::vector<Fence>& fences() const { return fences_; }
 
-  /// Makes obstacles of all cells that come nearer to forbidden ground than the growth.
+  /// Makes obstacles of all cells closer to forbidden ground than the growth.
   void stamp(Grid& grid) const;
-  /// Lowers the clearance of coarse cells of this side [m] to the distance from that ground.
+  /// Lowers the clearance of coarse cells of this size [m] to the distance from that ground.
   void stamp(ClearanceWindow& window, double size) const;
-  /// [m] by which a footprint comes nearer than the growth; 0 = it does not.
+  /// [m] by which a footprint comes closer than the growth; 0 = it does not.
   double depth(const Pose2& T_map_body, const FootprintSize& footprint) const;
-  /// From a point; less than the growth, or even negative, is too near.
+  /// For a point; less than the growth, or even negative, is too close.
   FenceRoom room(const Eigen::Vector2d& p_map) const { return roomAt(fences_, p_map); }
 
  private:
@@ -36,7 +36,7 @@ class FencedGround {
   double growth_ = 0.0;
 };
 
-/// A map's clearance with fences in it.
+/// A map's clearance combined with fences.
 class FencedClearance : public ClearanceSource {
  public:
   /// Both must outlive this.

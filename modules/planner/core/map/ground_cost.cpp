@@ -8,10 +8,10 @@
 namespace tread::planner {
 namespace {
 
-/// A pattern that gets on less than this turns rather than drives [m].
+/// A pattern with a shorter path turns rather than drives [m].
 constexpr double kLeastLength = 0.2;
 
-/// Of a second on a cell; where no roughness was seen the ground is taken to be as it is here.
+/// Rate on a cell; where no roughness was observed, that of the local ground is assumed.
 float rateOf(const ShockCostConfig& config, const ShockKnowledge& shock, Cell cell, double speed) {
   if (cell == kFree && !std::isfinite(shock.here)) return 0.0F;
   const double square = cell == kFree ? shock.model.meanSquareLike(shock.here, speed)
@@ -68,7 +68,7 @@ GroundCost::GroundCost(const ShockCostConfig& config, const ShockKnowledge& shoc
       slowness = std::min(slowness, (1.0F + rate) * static_cast<float>(table.bestSpeed() / speed));
     }
   }
-  // What was felt here says nothing about ground far away.
+  // Shock felt here is uninformative about distant ground.
   slowness_[kFree] = 1.0F;
 }
 

@@ -7,16 +7,16 @@ namespace {
 
 constexpr float kUnreachable = std::numeric_limits<float>::infinity();
 constexpr double kBin = 2.0 * kPi / HeadingAwareHeuristic::kHeadings;
-/// A pattern that goes less than this per radian of its turn turns on the spot [m/rad].
+/// A pattern with a shorter path per radian turns on the spot [m/rad].
 constexpr double kOnTheSpot = 0.05;
-/// Shorter patterns go nowhere [m].
+/// Shorter patterns count as no motion [m].
 constexpr double kNowhere = 1e-3;
 /// Side of a square as a share of the radius of the disc inside the footprint.
 constexpr double kSizeShare = 0.9;
-/// A cell's corner may have so much more clearance than its centre, in cells.
+/// A cell's corner may have this much more clearance than its centre, in cells.
 constexpr double kCorner = 0.71;
 
-/// Cells that a move along each heading of the first quarter goes, about as long as the next.
+/// Cell steps of a move along each heading of the first quadrant, of similar length.
 constexpr int kSteps[4][2] = {{1, 0}, {2, 1}, {1, 1}, {1, 2}};
 
 struct Step {
@@ -117,8 +117,8 @@ MotionRates motionRates(const PatternTable& patterns) {
   return rates;
 }
 
-/// States waiting, by cost and what is left to the start at least, in buckets as wide as the
-/// cheapest move.
+/// States to be expanded, by cost plus the least remaining cost to the start, in buckets as wide as
+/// the cheapest move.
 struct HeadingAwareHeuristic::Front {
   explicit Front(float width) : per_width(1.0F / width) {}
 
@@ -236,7 +236,7 @@ void HeadingAwareHeuristic::fill(const Pose2& start, double beyond, Front& front
       if (!reached_) return;
       break;
     }
-    // A move may come back into its own bucket.
+    // A move may end in its own bucket.
     for (size_t i = 0; i < front.buckets[front.current].size(); ++i) {
       const Front::Entry entry = front.buckets[front.current][i];
       if (cost_[entry.state] == entry.cost) relax(entry.state, front);
@@ -270,7 +270,7 @@ void HeadingAwareHeuristic::relax(size_t state, Front& front) {
         !configurations_->passable(static_cast<size_t>(square + move.between)) &&
         !configurations_->passable(static_cast<size_t>(square + move.between_too)))
       continue;
-    // The vehicle stands at the start, whatever it is like there.
+    // The vehicle stands at the start, whether or not it is free.
     if (next != start_ && !configurations_->isFree(before, turned)) continue;
     cost_[next] = value;
     front.add(next, value, fromStart(before));

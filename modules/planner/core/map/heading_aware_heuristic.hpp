@@ -15,18 +15,18 @@
 
 namespace tread::planner {
 
-/// The poses on a coarse grid in which the footprint is free: the states of HeadingAwareHeuristic.
-/** A square is free in a heading if the footprint is free at the cell of the square with most
- * clearance. Computed on demand and cached for all goals on the same map. */
+/// The poses on a coarse grid at which the footprint is free: the states of HeadingAwareHeuristic.
+/** A square is free in a heading if the footprint is free at the cell of the square with the
+ * largest clearance. Computed on demand and cached for all goals on the same map. */
 class FreeConfigurations {
  public:
   static constexpr int kHeadings = 16;
-  /// Squares of blocked ground around the map: no move goes farther.
+  /// Squares of blocked ground around the map, which stop every move.
   static constexpr int kRim = 2;
 
   /// `radius`: of the disc inside the footprint [m]; a square's side is a little less, so that no
-  /// wall is lost between two squares. `grown`: by so much obstacles were grown before [m], which
-  /// makes walls thicker. `checker` must outlive this.
+  /// wall falls between two squares. `grown`: earlier inflation of obstacles [m], which makes walls
+  /// thicker. `checker` must outlive this.
   FreeConfigurations(const CollisionChecker& collision_checker, double radius, double grown = 0.0);
 
   double size() const { return size_; }
@@ -38,7 +38,7 @@ class FreeConfigurations {
     return static_cast<size_t>(row + kRim) * static_cast<size_t>(stride()) +
            static_cast<size_t>(column + kRim);
   }
-  /// Column and row of the square that a point of map lies in; may be outside.
+  /// Column and row of the square that contains a point of map; may be outside.
   int column(double x) const { return static_cast<int>(std::floor((x - lower_.x()) / size_)); }
   int row(double y) const { return static_cast<int>(std::floor((y - lower_.y()) / size_)); }
   Eigen::Vector2d centre(int column, int row) const {
@@ -66,48 +66,48 @@ class FreeConfigurations {
   int width_ = 0;
   int height_ = 0;
   std::vector<Headings> headings_;
-  std::vector<CellIndex> best_;  // cell with most clearance, in map
+  std::vector<CellIndex> best_;  // cell with the largest clearance, in map
   std::vector<uint16_t> asked_;
   std::vector<uint16_t> free_;
 };
 
-/// What driving and turning cost, as little as any pattern of a set can do it for.
+/// Least cost of driving and turning with any pattern of a set.
 struct MotionRates {
-  /// Cost of a way and of a turn made together: the greater of two sums.
+  /// Cost of a path combined with a turn: the larger of two sums.
   struct Rate {
     LeastCost by_way;
     LeastCost by_turn;
-    bool any = false;    ///< whether the set has such patterns at all
+    bool any = false;    ///< whether the set has such patterns
     bool turns = false;  ///< whether any of them turns
     float cost(double way, double turn) const;
   };
-  /// By direction: those that go ahead, 22.5 degrees to the left of that, and so on.
+  /// By direction: straight ahead, 22.5 degrees to the left of that, and so on.
   std::array<Rate, FreeConfigurations::kHeadings> along;
   Rate turn;  ///< of patterns that turn on the spot
 };
 
 MotionRates motionRates(const PatternTable& patterns);
 
-/// Cost to the goal by position and heading on a coarse grid: it knows what turns cost.
-/** The vehicle drives along its heading, ahead or back, and turns on the way or on the spot, each
- * for the least that the set's patterns do it for, but with no least radius. A* from the goal over
- * positions and headings towards the start; filled in until that is reached, and some further. See
- * SearchProblem::heading_heuristic for who uses it. */
+/// Cost to the goal by position and heading on a coarse grid, including the cost of turns.
+/** The vehicle drives along its heading, ahead or back, and turns while driving or on the spot,
+ * each at the least cost of the set's patterns, but with no minimum radius. A* from the goal over
+ * positions and headings towards the start; expanded until the start is reached, and somewhat
+ * further. See SearchProblem::heading_heuristic for its users. */
 class HeadingAwareHeuristic {
  public:
   static constexpr int kHeadings = FreeConfigurations::kHeadings;
 
   HeadingAwareHeuristic() = default;
-  /// `beyond`: share of the start's cost [1] by which more is filled in. `configurations` must
-  /// outlive this. Interrupted, it does not reach the start.
+  /// `beyond`: share of the start's cost [1] by which it is expanded further. `configurations` must
+  /// outlive this. If interrupted, it does not reach the start.
   HeadingAwareHeuristic(FreeConfigurations& configurations, const Goal& goal,
                         const Pose2& T_map_start, const MotionRates& rates, double beyond,
                         const Interruption& interruption = {});
 
   bool empty() const { return cost_.empty(); }
-  /// Cost from a pose to the goal, yaw within half a turn; infinite where there is no way. What was
-  /// not filled in costs, with the way there from the start, more than what was: there it is the
-  /// least that it can be.
+  /// Cost from a pose to the goal, yaw within half a turn; infinite if there is no path. A state
+  /// that was not expanded costs, together with the path to it from the start, more than any
+  /// expanded one: it gets the least such cost.
   float at(double x, double y, float yaw) const {
     const double column = (x - lower_.x()) * per_size_;
     const double row = (y - lower_.y()) * per_size_;
@@ -118,7 +118,7 @@ class HeadingAwareHeuristic {
     const int r = static_cast<int>(row);
     const float value =
         cost_[configurations_->number(c, r) * kHeadings + static_cast<size_t>(binOf(yaw))];
-    // A cost that was found but not settled may be more than the least.
+    // A cost that was found but not settled may exceed the minimum.
     return std::min(value, std::max(0.0F, cut_ - fromStart(c, r)));
   }
   /// Whether the start can be reached from the goal.
@@ -129,10 +129,10 @@ class HeadingAwareHeuristic {
  private:
   struct Front;
   struct Move {
-    int offset = 0;   // [squares] from a square to the one before it
-    int between = 0;  // a square that is passed; 0 = none
+    int offset = 0;   // [squares] from a square to its predecessor
+    int between = 0;  // a square passed on the way; 0 = none
     int between_too = 0;
-    int turn = 0;  // [bins] from the heading before to this one
+    int turn = 0;  // [bins] from the predecessor's heading to this one
     float cost = 0.0F;
   };
 

@@ -9,15 +9,15 @@
 namespace tread::planner {
 namespace {
 
-/// A coarse cell is at most this share of the disc inside the footprint, so that walls stay walls.
+/// A coarse cell is at most this share of the disc inside the footprint, so that walls stay closed.
 constexpr double kCoarseShare = 0.5;
-/// Room that a cell may have beyond that at its centre, in cells, as a rule.
+/// Usual excess of a cell's clearance over that at its centre, in cells.
 constexpr double kUsualSlack = 0.25;
-/// So often the cells of the search are halved where all was seen and no plan found.
+/// How often the search's cells are halved after an exhausted search without a plan.
 constexpr int kFiner = 2;
-/// Goals with more cells than that across are judged by coarse ones.
+/// Goals with more cells across are checked with coarse cells.
 constexpr double kLargeGoal = 100.0;
-/// Goals beyond lie on no map, and their cells have no numbers [m].
+/// More distant goals are on no map, and their cells have no indices [m].
 constexpr double kFarthest = 1e7;
 
 PathAnswer refused(const std::string& reason) {
@@ -102,7 +102,7 @@ DistanceToGoal PathPlanner::distanceTo(const SearchProblem& problem,
   DistanceToGoal way;
   for (const double slack : {kUsualSlack, kMostSlack}) {
     config.inflation = std::max(0.0, inscribed_ - slack * checker_.grid().cellSize());
-    // At last a coarse cell counts as in the goal if any point of it may be.
+    // Finally a coarse cell counts as in the goal if any point of it may be.
     Goal goal = problem.goal;
     if (slack == kMostSlack) goal.position_tolerance += kMostSlack * coarse_clearance_.coarseSize();
     way.compute(coarse_clearance_, goal, p_start, {}, config, interruption);
@@ -131,11 +131,11 @@ PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop
   if (events.search_begins) events.search_begins();
   PathAnswer answer;
   answer.search = search_.run(problem, stop);
-  // Where the vehicle has to manoeuvre in little space, cells may hide the moves that it takes.
+  // If the vehicle must manoeuvre in little space, cells may hide the necessary moves.
   for (int finer = 0; finer < kFiner && isWanting(answer.search); ++finer) {
     const int before = answer.search.expansions;
     if (stop(before)) {
-      answer.search.exhausted = false;  // finer cells were not looked at
+      answer.search.exhausted = false;  // finer cells were not searched
       break;
     }
     problem.cell = (problem.cell > 0.0 ? problem.cell : config_.search.cell) / 2.0;
@@ -148,7 +148,7 @@ PathAnswer PathPlanner::answer(const PathQuery& query, const StopPredicate& stop
   return answer;
 }
 
-/// Whether the search solved the query, and why not.
+/// Whether the search solved the query, and if not, why.
 void PathPlanner::classify(PathAnswer& answer) {
   if (answer.search.end == SearchEnd::kGoal)
     answer.end = PathEnd::kSolved;
@@ -181,7 +181,7 @@ std::optional<PathAnswer> PathPlanner::refusalOfAreas(const PathQuery& query) co
   const bool connected = std::any_of(from.begin(), from.end(), [&](int area) {
     return std::find(to.begin(), to.end(), area) != to.end();
   });
-  // Nothing needs to be worked out for a start that no pattern can leave.
+  // No computation is needed for a start that no pattern can leave.
   if (connected && (isWithin(query.goal(), query.T_map_start, config_.search.goal_share) ||
                     anyBegins(query.T_map_start)))
     return std::nullopt;
@@ -197,7 +197,7 @@ std::optional<PathAnswer> PathPlanner::refusalOfAreas(const PathQuery& query) co
   return answer;
 }
 
-/// Numbers of the areas in which the disc inside the footprint may be after the start was left.
+/// Numbers of the areas that the disc inside the footprint may reach from the start.
 std::vector<int> PathPlanner::areasFrom(const Pose2& start) const {
   const int own = coarse_clearance_.areaAt(start.position());
   if (own != 0 && isFree(start)) return {own};
@@ -208,7 +208,8 @@ std::vector<int> PathPlanner::areasFrom(const Pose2& start) const {
 }
 
 /// Numbers of the areas in which the disc inside the footprint may be in the goal.
-/** Cell by cell: what the coarse ones say is too kind to goals on walls, unless these are large. */
+/** Cell by cell, because coarse cells are too optimistic for goals at walls, unless these are
+ * large. */
 std::vector<int> PathPlanner::areasAround(const Eigen::Vector2d& p_goal, double tolerance) const {
   const Grid& grid = checker_.grid();
   if (!(tolerance < kLargeGoal * grid.cellSize()))
@@ -237,7 +238,7 @@ std::vector<int> PathPlanner::areasAround(const Eigen::Vector2d& p_goal, double 
   return areas;
 }
 
-/// Whether a pattern may be driven from the start, and the vehicle stopped after it.
+/// Whether any pattern can be driven from the start, with a stop after it.
 bool PathPlanner::anyBegins(const Pose2& start) const {
   const CollisionChecker& around = checker_;
   const bool is_free = isFree(start);
@@ -258,7 +259,7 @@ bool PathPlanner::anyBegins(const Pose2& start) const {
   });
 }
 
-/// The disc inside the footprint finds no way though its area reaches to the goal: all but certain.
+/// The disc inside the footprint finds no path although its area reaches the goal: nearly certain.
 PathAnswer PathPlanner::answerWithoutWay(const PathQuery& query, const DistanceToGoal& way,
                                          const StopPredicate& stop, const PathEvents& events) {
   PathAnswer answer;
@@ -278,9 +279,8 @@ PathAnswer PathPlanner::comeClose(const PathQuery& query, const PathAnswer& refu
   nearer.T_map_goal = {refusal.closest->x(), refusal.closest->y(), query.T_map_goal.yaw};
   nearer.yaw_tolerance = kPi;
   nearer.come_close = false;
-  // The inscribed disc has room there; the vehicle may not be able to turn so. A plan that ends
-  // anywhere around is there soon; then nearer ones are looked for, the last as long as there is
-  // time.
+  // The inscribed disc fits there; the vehicle may not be able to turn. A plan that ends anywhere
+  // around is found soon; then closer ones are searched for, the last with all the remaining time.
   bool found = false;
   int before = 0;
   PathEvents noted = events;
@@ -288,7 +288,7 @@ PathAnswer PathPlanner::comeClose(const PathQuery& query, const PathAnswer& refu
     found = true;
     if (events.better_plan) events.better_plan(cost, before + expansions);
   };
-  // Of the coarse cell that is nearest a corner may be all that is free.
+  // Possibly only a corner of the nearest coarse cell is free.
   const double corner = kMostSlack * (coarse_clearance_.coarseSize() + checker_.grid().cellSize());
   const double widest =
       std::max({query.position_tolerance, checker_.circumscribedRadius(), corner});

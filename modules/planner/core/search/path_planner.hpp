@@ -11,51 +11,52 @@
 
 namespace tread::planner {
 
-/// How plans are made on a map that does not change.
+/// Settings of planning on a static map.
 struct PathConfig {
   FootprintSize footprint;
   SearchConfig search = pathSearch();
-  double heuristic_beyond = 0.15;  ///< [1] of the cost at the start that it is filled in beyond it
+  double heuristic_beyond =
+      0.15;  ///< [1] of the cost at the start by which the heuristic is expanded further
   DistanceFieldConfig field = pathDistanceField();
   bool unknown_blocks = true;
-  double grown = 0.0;  ///< [m] by which obstacles were grown already: for a round robot, a point
-  /// The whole way at once, the cheapest there is, and nothing but time and turns counts.
+  double grown = 0.0;  ///< [m] earlier inflation of obstacles: for a round robot treated as a point
+  /// The complete path at once, of least cost, with only time and turns counted.
   static SearchConfig pathSearch();
   static DistanceFieldConfig pathDistanceField();
 };
 
-/// From where to where; all in the frame of the map.
+/// Start and goal of a query, in the frame of the map.
 struct PathQuery {
   Pose2 T_map_start;
   Pose2 T_map_goal;
   double position_tolerance = 0.25;  ///< [m] > 0
   double yaw_tolerance = 0.26;       ///< [rad] > 0; pi or more = any heading
-  /// An unreachable goal is replaced by the place nearest to it where the disc inside the footprint
-  /// fits, with any heading; if the vehicle does not get there, by the circle around it that its
-  /// outermost corner describes (the paper's "come as close as possible").
+  /// Replaces an unreachable goal by the place nearest to it where the disc inside the footprint
+  /// fits, with any heading; if the vehicle does not get there, by the circle around it described
+  /// by its outermost corner (the paper's "come as close as possible").
   bool come_close = false;
 
   Goal goal() const { return {1, T_map_goal, position_tolerance, yaw_tolerance}; }
 };
 
-/// What became of a query.
+/// Result of a query.
 enum class PathEnd {
   kSolved,
-  kUnreachable,  ///< it is certain that there is none: see PathPlanner
-  kNoneInTime    ///< none was found before the search was told to stop, or at its resolution
+  kUnreachable,  ///< certainly no plan: see PathPlanner
+  kNoneInTime    ///< no plan before the search was stopped, or at its resolution
 };
 
-/// Called while a query is answered, for those who measure.
+/// Callbacks during a query, for measurements.
 struct PathEvents {
   std::function<void()> search_begins;  ///< the heuristics are computed
-  /// A plan, or a better one; one that comes closer to a goal that cannot be reached may cost more.
+  /// A plan, or a better one; one that comes closer to an unreachable goal may cost more.
   std::function<void(double cost, int expansions)> better_plan;
 };
 
 struct PathAnswer {
   PathEnd end = PathEnd::kNoneInTime;
-  std::string reason;   ///< why there is none to the goal itself, in words; empty if there is one
-  SearchResult search;  ///< its steps lead to the goal, or as near to it as was found
+  std::string reason;  ///< why there is no plan to the goal itself, in words; empty if there is one
+  SearchResult search;  ///< its steps lead to the goal, or as close to it as was found
   /// Where the vehicle could stand nearest to an unreachable goal, in p_map.
   std::optional<Eigen::Vector2d> closest;
 };
@@ -63,20 +64,20 @@ struct PathAnswer {
 inline constexpr const char* kNoneBeginsReason =
     "the start has no legal successor: each pattern would leave the map or hit something";
 inline constexpr const char* kStoppedReason = "none was found before the search was stopped";
-/// Why a search that saw all states found no plan.
+/// Why a search found no plan although it expanded all states.
 std::string exhaustedReason(const SearchResult& result);
 
-/// Plans on a map that does not change, for one vehicle and one set of patterns.
+/// Plans on a static map, for one vehicle and one set of patterns.
 /** Clearance, free configurations and connected areas are computed once for all queries.
- * Unreachable is only what is certain: the goal lies outside the map or where not even the disc
- * inside the footprint fits, that disc cannot be moved from start to goal, or no pattern can begin
- * at the start. A start on blocked ground counts as connected to every area that
+ * Unreachable means certainty: the goal lies outside the map or where not even the disc inside the
+ * footprint fits, that disc cannot be moved from start to goal, or no pattern can begin at the
+ * start. A start on blocked ground counts as connected to every area that
  * SearchConfig::escape_patterns patterns may reach. */
 class PathPlanner {
  public:
   PathPlanner(const Grid& grid, const PatternTable& patterns, const PathConfig& config);
 
-  /// `stop` is asked with 0 expansions while the way is worked out, too.
+  /// `stop` is also polled, with 0 expansions, while the distance is computed.
   PathAnswer answer(const PathQuery& query, const StopPredicate& stop,
                     const PathEvents& events = {});
   /// Only the first part of answer(): whether the goal is certainly unreachable, and why.
@@ -99,7 +100,7 @@ class PathPlanner {
   static void classify(PathAnswer& answer);
   DistanceToGoal distanceTo(const SearchProblem& problem, const Interruption& interruption) const;
 
-  /// A cell's corner may have so much more room than its centre, in cells.
+  /// A cell's corner may have this much more clearance than its centre, in cells.
   static constexpr double kMostSlack = 0.71;
 
   const PatternTable& patterns_;

@@ -8,16 +8,16 @@
 namespace tread::planner {
 namespace {
 
-/// The predicate is asked once per so many expansions.
+/// The predicate is polled once per this many expansions.
 constexpr int kAskEvery = 16;
-/// Where progress is slow the search looks so many times the horizon ahead.
+/// If progress is slow, the search looks this many horizons ahead.
 constexpr float kLookAhead = 2.0F;
-/// Patterns so short that they do not leave a cell in so many repetitions lead nowhere.
+/// Patterns that do not leave a cell in this many repetitions lead nowhere.
 constexpr int kMostRepeats = 32;
-/// A robot chooses so many patterns in the time of a horizon.
+/// Patterns that a robot chooses within a horizon.
 constexpr double kPatternsAhead = 6.0;
 constexpr double kLeastHorizon = 1.0;  // [s]
-/// What is cheaper by less than this share is not cheaper.
+/// Differences below this share count as equal.
 constexpr float kSame = 1e-6F;
 /// Share of the cost that counts against a leaf when the search is cut off.
 constexpr float kLeafCost = 0.25F;
@@ -50,7 +50,7 @@ SearchResult PatternSearch::run(const SearchProblem& problem, const StopPredicat
   for (int number = 0; number <= config_.improvements && end == RunEnd::kBetterPlan; ++number) {
     beginAgain(weightsOf(number));
     end = search(stop);
-    // An exact search goes on until nothing better can be left; the others leave off at a plan.
+    // An exact search continues until nothing better remains; the others stop at a plan.
     while (end == RunEnd::kBetterPlan && costs_.weights().exact()) end = search(stop);
   }
   SearchResult result = plan_.leaf >= 0 ? finish(plan_.leaf, plan_.end)
@@ -77,7 +77,7 @@ void PatternSearch::begin(const SearchProblem& problem) {
 }
 
 SearchWeights PatternSearch::weightsOf(int number) const {
-  // From the greedy ones to 1 and 0, in equal ratios and equal steps.
+  // From the greedy weights to 1 and 0, in equal ratios and equal steps.
   const double share = config_.improvements == 0
                            ? 0.0
                            : std::min(1.0, static_cast<double>(number) / config_.improvements);
@@ -109,7 +109,7 @@ void PatternSearch::beginAgain(const SearchWeights& weights) {
   const CostModel::Heuristic to_go = costs_.heuristic(root, root.level < 0);
   root.admissible = to_go.admissible;
   root.inflated = inflated_at_start_ = to_go.inflated;
-  // Estimates hardly fall below that at the start.
+  // Estimates hardly fall below the one at the start.
   open_.clear(std::isfinite(root.inflated) ? 0.5F * root.inflated : 0.0F);
   NodeTable::Entry& slot = best_[grid_.keyOf(root)];
   slot.cost = 0.0F;
@@ -118,7 +118,7 @@ void PatternSearch::beginAgain(const SearchWeights& weights) {
   open_.push(0.0F, slot.node, 0.0F);
 }
 
-/// Of what was searched before only the best plan is kept, at the front.
+/// Of the earlier search only the best plan is kept, at the front.
 void PatternSearch::keepBestBranch() {
   kept_ = 0;
   if (plan_.leaf < 0) return nodes_.clear();
@@ -155,7 +155,7 @@ PatternSearch::RunEnd PatternSearch::search(const StopPredicate& stop) {
   while (!open_.empty()) {
     const OpenList::Entry entry = open_.take();
     const Node& node = nodes_[static_cast<size_t>(entry.node)];
-    // What was replaced since it was put in, or cannot be part of a better plan any more.
+    // Skips entries that were replaced since, or cannot be part of a better plan any more.
     if (node.expanded() || node.cost != entry.cost) continue;
     if (node.cost + node.admissible >= plan_.cost * (1.0F - kSame)) continue;
     const bool is_better = visit(entry.node);
@@ -198,14 +198,14 @@ void PatternSearch::expand(int parent) {
     Child child{nodeAfter(node, *pattern), 0};
     child.node.parent = parent;
     child.key = grid_.keyOf(child.node);
-    // The table is larger than the caches: it is fetched while the others are worked out.
+    // The table is larger than the caches: prefetched while other children are computed.
     best_.prefetch(child.key);
     children_.push_back(child);
   }
   for (Child& child : children_) addChild(child.node, child.key);
 }
 
-/// The node after a pattern, as far as it is cheap to know.
+/// The node after a pattern, as far as it is cheap to compute.
 PatternSearch::Node PatternSearch::nodeAfter(const Node& from, const TablePattern& pattern) const {
   const SweptPose& end = pattern.end();
   const auto c = static_cast<double>(from.cos_yaw);
@@ -231,7 +231,7 @@ PatternSearch::Node PatternSearch::nodeAfter(const Node& from, const TablePatter
 void PatternSearch::addChild(Node& node, uint64_t key) {
   const int parent = node.parent;
   if (key == from_key_) {
-    // It would be no better than where it came from: it is repeated until it leaves the cell.
+    // It would be no better than its parent: it is repeated until it leaves the cell.
     if (!leaveCell(nodes_[static_cast<size_t>(parent)], node)) return;
     key = grid_.keyOf(node);
   }
@@ -239,7 +239,7 @@ void PatternSearch::addChild(Node& node, uint64_t key) {
   if (slot.node >= 0 && slot.cost <= node.cost * (1.0F + kSame)) return;
   const Node& from = nodes_[static_cast<size_t>(parent)];
   const DistanceToGoal* const way = problem_->distance_to_goal;
-  // Where the way takes long to find out the ground is blocked more often than not.
+  // Where the distance takes long to compute, the ground is mostly blocked.
   const bool is_slow = way != nullptr && !way->isSettled(node.x, node.y);
   if (is_slow && node.repeats == 1 && !checker_.admit(from, node)) return;
   const CostModel::Heuristic to_go = costs_.heuristic(node, from.level < 0);
@@ -299,7 +299,7 @@ SearchResult PatternSearch::finish(int leaf, SearchEnd end) {
   }
   result.end = end;
   for (int i = leaf; i >= 0; i = nodes_[static_cast<size_t>(i)].parent) leaf_to_root_.push_back(i);
-  // Nodes are kept in single precision in part: the plan's poses are composed anew.
+  // Nodes are partly in single precision: the plan's poses are recomputed.
   PlanStep step;
   step.T_map_end = problem_->T_map_start;
   step.uncertainty = problem_->start_uncertainty;

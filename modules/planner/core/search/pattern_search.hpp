@@ -16,7 +16,7 @@ class StateGrid {
   StateGrid(double cell, int heading_bins);
 
   int headingBin(const SearchNode& node) const {
-    // A node's yaw is within half a turn: from half of the bins to one and a half times as many.
+    // Yaw is within half a turn, so bins run from half of the number to one and a half times it.
     int bin = static_cast<int>(node.yaw * bins_per_radian_ + first_bin_);
     while (bin >= heading_bins_) bin -= heading_bins_;
     return bin;
@@ -38,31 +38,31 @@ class StateGrid {
   double per_cell_ = 1.0;
   int heading_bins_ = 1;
   float bins_per_radian_ = 0.0F;
-  float first_bin_ = 0.0F;  // so that bins are numbered around 0 rad, rounded and never negative
+  float first_bin_ = 0.0F;  // numbers bins around 0 rad, rounded and never negative
 };
 
-/// Anytime A* over joinable patterns that collide with nothing.
+/// Anytime A* over joinable, collision-free patterns.
 /** 1. A node is a continuous pose, an exit class and a time; of the nodes in one cell, heading bin
- * and class the cheapest is kept; a pattern too short to leave its cell is repeated. It takes the
- * other's place while that one waits, and joins it when that one has been expanded.
- *  2. A node is made only if its pattern's sweep is free, with a margin that grows with the
- * pattern's uncertainty, and if, unless at rest, a pattern to stop is free from there. So whatever
- * is returned can stop after each of its patterns.
- *  3. Cost is time and penalties; the admissible heuristic is the distance to the goal at the least
- * cost of a metre, and the turn to the goal's heading at the least cost of a radian.
- *  4. The first search is greedy (heuristic_weight, turn_weight). Each of the `improvements` that
- * follow begins anew with weights nearer to 1 and keeps out of what cannot become cheaper than the
- * best plan; the last one ends with the cheapest plan there is at the resolution.
- *  5. It ends at the goal (at rest), at the horizon, near the unknown, or when it is told to.
- *  6. From a start that is not free only patterns that never overlap more than the start does are
- * taken. */
+ *    and class the cheapest is kept; a pattern too short to leave its cell is repeated. A cheaper
+ *    node replaces one that waits, and is added beside one that has been expanded.
+ *  2. A node is created only if its pattern's sweep is free, with a margin that grows with the
+ *     pattern's uncertainty, and if, unless at rest, a pattern to stop is free from there. So
+ *     every returned plan can stop after each of its patterns.
+ *  3. Cost is time and penalties; the admissible heuristic is the distance to the goal at the
+ *     least cost of a metre, and the turn to the goal's heading at the least cost of a radian.
+ *  4. The first search is greedy (heuristic_weight, turn_weight). Each of the `improvements` after
+ *     it restarts with weights closer to 1 and prunes what cannot become cheaper than the best
+ *     plan; the last one ends with the cheapest plan at the resolution.
+ *  5. It ends at the goal (at rest), at the horizon, near the unknown, or when it is stopped.
+ *  6. From a start that is not free only patterns are used that never overlap more than the start
+ *     does. */
 class PatternSearch {
  public:
   explicit PatternSearch(const SearchConfig& config) : config_(config) {}
 
   SearchResult run(const SearchProblem& problem, const StopPredicate& stop);
 
-  /// The nodes that were expanded in the last run, best branch included, at most `count`.
+  /// The nodes that were expanded in the last run, including the best branch, at most `count`.
   std::vector<TreeNode> tree(size_t count) const;
   /// Indices in that tree of the last result's branch, root first.
   const std::vector<int>& branch() const { return branch_; }
@@ -80,7 +80,7 @@ class PatternSearch {
     SearchEnd end = SearchEnd::kNothing;
     float cost = kNever;  // with the admissible heuristic of the leaf
   };
-  /// Where to go if there is no plan: the expanded node with the least value.
+  /// Fallback without a plan: the expanded node with the least value.
   struct Progress {
     int leaf = -1;
     float value = 0.0F;
@@ -110,7 +110,7 @@ class PatternSearch {
   NodeChecker checker_;
   StateGrid grid_;
   BlockList<Node> nodes_;
-  std::vector<Child> children_;  // of the node that is being expanded
+  std::vector<Child> children_;  // of the node being expanded
   uint64_t from_key_ = 0;        // of that node
   OpenList open_;
   NodeTable best_;

@@ -8,10 +8,10 @@
 namespace tread::planner {
 namespace {
 
-/// Slower than this counts as standing [m/s, rad/s].
+/// Slower counts as standing [m/s, rad/s].
 constexpr double kStanding = 0.02;
 
-/// Smallest disc around the middle of the positions that holds them all.
+/// Smallest disc around the middle of the positions that contains them all.
 void addDisc(TablePattern& entry) {
   Eigen::Vector2d lower(0.0, 0.0), upper(0.0, 0.0);
   for (const SweptPose& at : entry.swept_poses) {
@@ -31,8 +31,8 @@ Uncertainty uncertaintyOf(const DefaultSigma& sigma) {
   return result;
 }
 
-/// Velocity at the end of a trajectory, in the axes of its end: at least that of the class in which
-/// it ends, where the vehicle still becomes faster.
+/// Velocity at the end of a trajectory, in the axes of its end: at least that of its exit class,
+/// where the vehicle still accelerates.
 Eigen::Vector2d endVelocity(const std::vector<Pose2>& poses, double period,
                             const MotionClass& exit) {
   constexpr double kWindow = 0.15;  // [s]
@@ -40,7 +40,7 @@ Eigen::Vector2d endVelocity(const std::vector<Pose2>& poses, double period,
   const size_t steps = std::min(poses.size(), static_cast<size_t>(wanted));
   const Pose2 before = steps < poses.size() ? poses[poses.size() - 1 - steps] : Pose2{};
   const Pose2& end = poses.back();
-  // As the body saw it half-way: turned back by the middle heading.
+  // In the body frame halfway: rotated back by the middle heading.
   const Pose2 middle{0.0, 0.0, 0.5 * (before.yaw + end.yaw)};
   const Eigen::Vector2d way = end.position() - before.position();
   const Eigen::Vector2d v =
@@ -49,7 +49,7 @@ Eigen::Vector2d endVelocity(const std::vector<Pose2>& poses, double period,
   return v.norm() < steady.norm() ? steady : v;
 }
 
-/// What all patterns have: their path, and what is checked along it.
+/// Common part of all patterns: their path, and the poses to check along it.
 TablePattern swept(const std::vector<Pose2>& poses, double period, const SweepResolution& step) {
   TablePattern entry;
   entry.length = lengthOfPath(poses);
@@ -64,7 +64,7 @@ TablePattern swept(const std::vector<Pose2>& poses, double period, const SweepRe
 
 std::array<LeastCost, 2> leastCostsOf(const std::vector<const TablePattern*>& patterns) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  double most_metres = 0.0;  // per cost, as the next
+  double most_metres = 0.0;  // per cost, like the next
   double most_radians = 0.0;
   for (const TablePattern* p : patterns) {
     most_metres = std::max(most_metres, p->length / p->cost);
@@ -81,7 +81,7 @@ std::array<LeastCost, 2> leastCostsOf(const std::vector<const TablePattern*>& pa
       by_turn.per_metre =
           std::min(by_turn.per_metre, (p->cost - by_turn.per_radian * turn) / p->length);
   }
-  // Rounding can leave a little below nothing; what never turns or moves leaves no bound.
+  // Rounding can give slightly negative values; without turns or motion there is no bound.
   for (double* value : {&by_way.per_radian, &by_turn.per_metre})
     *value = std::isfinite(*value) ? std::max(0.0, *value) : 0.0;
   return {by_way, by_turn};
@@ -115,7 +115,7 @@ bool PatternTable::isTooFast(const TablePattern& pattern, double top_speed) cons
     return std::hypot(v_body.v_x, v_body.v_y);
   };
   if (speed(pattern.exit) > top_speed) return true;
-  // One that slows the vehicle down is never too fast where the vehicle is too fast already.
+  // A pattern that slows the vehicle down is allowed if the vehicle is already too fast.
   return speed(pattern.entry) <= top_speed && fast;
 }
 

@@ -15,64 +15,65 @@
 
 namespace tread::planner {
 
-/// A pose along a pattern, relative to its start, with its turn worked out.
+/// A pose along a pattern, relative to its start, with the sine and cosine of its yaw.
 struct SweptPose {
   Pose2 pose;
   double cos_yaw = 1.0;
   double sin_yaw = 0.0;
   double time = 0.0;   ///< [s] from the start of the pattern
-  double reach = 0.0;  ///< [m] that a point of the outline has moved since then, about
+  double reach = 0.0;  ///< [m] that a point of the outline has moved since then, approximately
 };
 
 /// How finely a pattern is sampled for collision checks.
 struct SweepResolution {
   double distance = 0.10;  ///< [m]
   double turn = 0.105;     ///< [rad]
-  /// [m] The footprint's sweep over so much of a straight way is the footprint at both ends, if it
-  /// is at least so long: the search checks no more poses than that, and as many as turns need.
+  /// [m] The footprint's sweep over this distance of a straight path is covered by the footprint at
+  /// both ends, if it is at least this long: the search checks no more poses than that, and as many
+  /// as turns need.
   double covered = 0.3;
-  /// The largest footprint that is asked about, margins included: how far its corners swing.
+  /// The largest footprint used, margins included: determines how far its corners swing.
   FootprintSize outline;
 };
 
-/// A step for a footprint that is asked about with at most such a margin [m].
-/** No coarser than `step`, and so fine that a short vehicle jumps over nothing. */
+/// A step for a footprint with at most this margin [m].
+/** No coarser than `step`, and fine enough that a short vehicle skips nothing. */
 SweepResolution resolutionFor(const FootprintSize& size, double margin, SweepResolution step);
 
-/// A disc around ground that a corner of the outline passes over between two poses that are checked
-/// and that lies under neither of these; in the axes of the sweep's start.
+/// A disc around ground that a corner of the outline passes over between two checked poses and that
+/// neither of these covers; in the axes of the sweep's start.
 struct CornerDisc {
   float x = 0.0F;       ///< [m] its centre
   float y = 0.0F;       ///< [m]
-  float out_x = 0.0F;   ///< [m per m] how far the centre moves for each metre of margin
+  float out_x = 0.0F;   ///< [m per m] displacement of the centre per metre of margin
   float out_y = 0.0F;   ///< [m per m]
   float radius = 0.0F;  ///< [m]
-  float spread = 0.0F;  ///< [m per m] what is to be added to it for each metre of other margin
-  int way = 0;          ///< the one that ends at the cover's pose of this number
+  float spread = 0.0F;  ///< [m per m] to be added per metre of other margin
+  int way = 0;          ///< the one that ends at the cover's pose with this number
 };
 
-/// A pose of a sweep that is always checked, and the way to it from the one before.
+/// A pose of a sweep that is always checked, and the path to it from the previous one.
 struct CheckedPose {
   SweptPose at;
-  /// What else to check if not all discs of the way are free: SweptFootprint::between from the
-  /// first.
+  /// First of the further poses to check if not all discs of the path are free: index into
+  /// SweptFootprint::between.
   size_t first_between = 0;
   size_t between_count = 0;
 };
 
-/// The poses of a sweep that a footprint needs, the start left out, the end last.
+/// The poses of a sweep to check for a footprint, without the start, the end last.
 struct SweptFootprint {
   std::vector<CheckedPose> poses;
   std::vector<CornerDisc> discs;
   std::vector<SweptPose> between;
-  double front = 0.0;  ///< [m] of the outline that they were worked out for
+  double front = 0.0;  ///< [m] of the outline for which they were computed
 };
 
-/// Poses along a trajectory of equal periods, the origin left out, neighbours at most a step apart.
+/// Poses along a trajectory of equal periods, without the origin, at most a step apart.
 std::vector<SweptPose> sampleSweep(const std::vector<Pose2>& trajectory, double period,
                                    const SweepResolution& step);
 
-/// Those poses of the sweep of a trajectory that are enough for a footprint.
+/// The poses of a trajectory's sweep that suffice for a footprint.
 SweptFootprint sweptFootprintOf(const std::vector<SweptPose>& sweep,
                                 const std::vector<Pose2>& trajectory, double period,
                                 const SweepResolution& step);
@@ -86,20 +87,20 @@ struct Uncertainty {
   float yy = 0.0F, yyaw = 0.0F;
   float yawyaw = 0.0F;
 
-  /// Larger variance of the position, in whatever direction it is [m2].
+  /// Largest variance of the position in any direction [m2].
   float position() const {
     const float half = 0.5F * (xx - yy);
     return 0.5F * (xx + yy) + std::sqrt(half * half + xy * xy);
   }
-  /// Variance of a point `arm` [m] away from the origin, at most [m2].
-  /** The sum of two standard deviations is the standard deviation of fully correlated errors. */
+  /// Upper bound of the variance of a point `arm` [m] away from the origin [m2].
+  /** The sum of two standard deviations is that of fully correlated errors. */
   float ofPoint(float arm) const {
     const float sigma = std::sqrt(position()) + arm * std::sqrt(yawyaw);
     return sigma * sigma;
   }
 };
 
-/// A covariance as sets carry it; `otherwise` where it is unknown (NaN).
+/// A covariance as in pattern sets; `otherwise` if it is unknown (NaN).
 inline Uncertainty uncertaintyOf(const PoseCovariance& c, const Uncertainty& otherwise) {
   for (const double value : c)
     if (!std::isfinite(value)) return otherwise;
@@ -132,7 +133,7 @@ inline Uncertainty compose(const Uncertainty& at, const Uncertainty& step, float
   return r;
 }
 
-/// A share [1] of an uncertainty, in axes that lie turned by a yaw [rad].
+/// A share [1] of an uncertainty, in axes rotated by a yaw [rad].
 inline Uncertainty scaled(const Uncertainty& u, double share, double yaw) {
   const auto k = static_cast<float>(share);
   const Uncertainty part{k * u.xx, k * u.xy, k * u.xyaw, k * u.yy, k * u.yyaw, k * u.yawyaw};
@@ -140,57 +141,59 @@ inline Uncertainty scaled(const Uncertainty& u, double share, double yaw) {
                  static_cast<float>(std::sin(yaw)));
 }
 
-/// A motion of another planner, from rest to rest, that is searched with like a pattern.
+/// A motion of another planner, from rest to rest, used in the search like a pattern.
 struct Primitive {
   int id = 0;
   std::vector<Pose2> poses;  ///< T_start_pose, without the start, the end last
   double duration = 0.0;     ///< [s] > 0
-  double cost = 0.0;         ///< [s, or whatever unit the plan's cost is to have] > 0
+  double cost = 0.0;         ///< [s, or the unit of the plan's cost] > 0
 };
 
-/// A pattern as the search wants it.
+/// A pattern prepared for the search.
 struct TablePattern {
-  const MotionPattern* pattern = nullptr;  ///< nullptr = made of a Primitive
+  const MotionPattern* pattern = nullptr;  ///< nullptr = made from a Primitive
   int number = 0;                          ///< its id
   int entry = 0;                           ///< index of the entry class in the set
   int exit = 0;                            ///< index of the exit class
   double duration = 0.0;                   ///< [s]
-  double cost = 0.0;                       ///< [s] as a part of a plan's cost: its duration
+  double cost = 0.0;                       ///< [s] contribution to a plan's cost: its duration
   double length = 0.0;                     ///< [m] of its path
   bool reverses = false;                   ///< ends behind its start
   std::vector<SweptPose> swept_poses;  ///< poses to check, without the start, at most a step apart
-  SweptFootprint swept_footprint;      ///< those of them that are enough for a footprint
-  Eigen::Vector2d centre{0.0, 0.0};  ///< of a disc that holds all positions, relative to the start
-  double radius = 0.0;               ///< [m] of that disc
-  Uncertainty uncertainty;           ///< of its end, in the axes of its start
+  SweptFootprint swept_footprint;      ///< those of them that suffice for a footprint
+  Eigen::Vector2d centre{0.0,
+                         0.0};  ///< of a disc that contains all positions, relative to the start
+  double radius = 0.0;          ///< [m] of that disc
+  Uncertainty uncertainty;      ///< of its end, in the axes of its start
   Eigen::Vector2d v_exit{0.0, 0.0};  ///< [m/s] at its end, in the axes of its end
 
   int id() const { return number; }
   const SweptPose& end() const { return swept_poses.back(); }
 };
 
-/// Standard deviations of the end of a pattern whose covariance nobody has stated.
+/// Standard deviations of the end of a pattern without a covariance.
 struct DefaultSigma {
   double position = 0.05;  ///< [m] in both directions
   double yaw = 0.03;       ///< [rad]
 };
 
-/// What a metre of way and a radian of turn cost at least, taken together.
+/// Least cost of a metre of path and a radian of turn, combined.
 /** No pattern of the set costs less than per_metre * length + per_radian * |turn|. */
 struct LeastCost {
   double per_metre = 0.0;   ///< [s/m]
   double per_radian = 0.0;  ///< [s/rad]
 };
 
-/// Two bounds of what some patterns cost: with as much as possible per metre, and per radian.
+/// Two lower bounds of the cost of some patterns: with the largest possible part per metre, and per
+/// radian.
 std::array<LeastCost, 2> leastCostsOf(const std::vector<const TablePattern*>& patterns);
 
-/// All patterns of a set prepared for searching: sampled once, turned and moved while searching.
-/** Nothing is assumed about where patterns end: the learner may bend them at will. */
+/// All patterns of a set prepared for searching: sampled once, then rotated and moved.
+/** Nothing is assumed about the ends of patterns: the learner may change them arbitrarily. */
 class PatternTable {
  public:
   /// `top_speed` [m/s]: faster patterns, and those that enter or leave a faster class, are not
-  /// begun; those that slow the vehicle down or stop it remain.
+  /// started, except those that slow the vehicle down or stop it.
   PatternTable(PatternSet set, const SweepResolution& step, const DefaultSigma& sigma,
                double top_speed = std::numeric_limits<double>::infinity());
   /// Of primitives; the only class is rest.
@@ -198,7 +201,7 @@ class PatternTable {
   PatternTable(const PatternTable&) = delete;  // its lists point into itself
   PatternTable& operator=(const PatternTable&) = delete;
 
-  /// The set that it was made of; none if it was made of primitives.
+  /// The set it was made from; none if it was made from primitives.
   const PatternSet& set() const { return *set_; }
   const std::vector<TablePattern>& patterns() const { return patterns_; }
   /// Patterns that begin in a class, in the order of the set.
@@ -211,7 +214,7 @@ class PatternTable {
   }
   /// The pattern of that id or nullptr.
   const TablePattern* find(int id) const;
-  /// Index of the class in which the vehicle stands; -1 if the set has none.
+  /// Index of the class in which the vehicle is at rest; -1 if the set has none.
   int restClass() const { return rest_class_; }
   int classCount() const { return static_cast<int>(from_.size()); }
   const MotionClass& motionClass(int index) const {
@@ -220,11 +223,11 @@ class PatternTable {
   int classIndex(const std::string& name) const;
   /// Greatest path length over duration of a pattern within the top speed [m/s].
   double bestSpeed() const { return best_speed_; }
-  /// [s] median of the patterns that join others at both ends; of all if none does.
+  /// [s] median of the patterns that can be joined at both ends; of all if there are none.
   double usualDuration() const { return usual_duration_; }
   /// leastCostsOf() all patterns.
   const std::array<LeastCost, 2>& leastCosts() const { return least_costs_; }
-  /// Why nobody can drive with this set, in words; empty if one can.
+  /// Why the set is unusable for driving, in words; empty if it is usable.
   std::string defect() const;
 
  private:

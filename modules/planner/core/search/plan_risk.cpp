@@ -9,16 +9,16 @@
 namespace tread::planner {
 namespace {
 
-/// Obstacles farther off than so many standard deviations are never touched.
+/// Obstacles farther away, in standard deviations, are never touched.
 constexpr double kFarthestSigmas = 5.0;
-/// Chances of the front, the rear and both sides.
+/// Probabilities for the front, the rear and both sides.
 using Sides = std::array<double, 4>;
 
 double sum(const Sides& sides) {
   return std::min(1.0, sides[0] + sides[1] + sides[2] + sides[3]);
 }
 
-/// Variance along a direction of a point of the body, both in map axes [m2].
+/// Variance of a point of the body along a direction, both in map axes [m2].
 double varianceOf(const Uncertainty& u, const Eigen::Vector2d& along,
                   const Eigen::Vector2d& from_origin) {
   const double arm = along.y() * from_origin.x() - along.x() * from_origin.y();
@@ -32,13 +32,13 @@ double varianceOf(const Uncertainty& u, const Eigen::Vector2d& along,
   return std::max(0.0, variance);
 }
 
-/// The footprint at one pose, and what it may be off by there.
+/// The footprint at one pose, and its possible error there.
 class PoseRisk {
  public:
   PoseRisk(const CollisionChecker& around, const TurnedPose& pose, const Uncertainty& uncertainty)
       : around_(around), size_(around.footprint()), pose_(pose), uncertainty_(uncertainty) {}
 
-  /// Raises the chances of the sides to those at this pose.
+  /// Raises the probabilities of the sides to those at this pose.
   void raise(Sides& sides) const {
     const auto arm = static_cast<float>(around_.circumscribedRadius());
     const double sigma = std::sqrt(static_cast<double>(uncertainty_.ofPoint(arm)));
@@ -47,7 +47,7 @@ class PoseRisk {
     if (around_.field().quick(pose_.x, pose_.y) > reach) return;
     const CellIndex first = grid.indexOf({pose_.x - reach, pose_.y - reach});
     const CellIndex last = grid.indexOf({pose_.x + reach, pose_.y + reach});
-    // Beyond the grid nothing is known, however far the vehicle may be off.
+    // Beyond the grid nothing is known, however large the error may be.
     const CellIndex lower = grid.lower();
     for (int y = std::max(first.y, lower.y); y <= std::min(last.y, lower.y + grid.height() - 1);
          ++y)
@@ -68,17 +68,17 @@ class PoseRisk {
     const Eigen::Vector2d x_map(c, s);
     const Eigen::Vector2d y_map(-s, c);
     const Eigen::Vector2d arm = nearest.x() * x_map + nearest.y() * y_map;
-    // What lies off a corner is touched only by who moves that far both ways.
+    // An obstacle off a corner is touched only by a motion that far in both directions.
     const double lengthwise = chanceOf(way.x(), x_map, arm);
     const double sideways = chanceOf(way.y(), y_map, arm);
     const size_t side = lengthwise < sideways ? (way.x() < 0.0 ? 1 : 0) : (way.y() < 0.0 ? 3 : 2);
     sides[side] = std::max(sides[side], std::min(lengthwise, sideways));
   }
 
-  /// That a point of the body moves so far along an axis.
+  /// Probability that a point of the body moves this far along an axis.
   double chanceOf(double way, const Eigen::Vector2d& axis, const Eigen::Vector2d& arm) const {
     if (way == 0.0) return 1.0;
-    // What was seen lies anywhere in the cell.
+    // An observed obstacle may be anywhere in its cell.
     const double cell = around_.grid().cellSize();
     const double variance = cell * cell / 12.0 + varianceOf(uncertainty_, axis, arm);
     return 0.5 * std::erfc(std::abs(way) / std::sqrt(2.0 * variance));
@@ -90,12 +90,12 @@ class PoseRisk {
   Uncertainty uncertainty_;
 };
 
-/// Follows the patterns of a plan, with what the newest of them may be off by.
+/// Follows the patterns of a plan, with the error of the newest of them.
 class RiskAlong {
  public:
   explicit RiskAlong(const RiskQuestion& question) : question_(question) {}
 
-  /// Chance in a step that begins at a pose.
+  /// Probability in a step that begins at a pose.
   double of(size_t step, const Pose2& T_map_start) const {
     const TablePattern& pattern = *question_.patterns.find(question_.steps[step].pattern_id);
     const TurnedPose start = turned(T_map_start);
@@ -116,14 +116,14 @@ class RiskAlong {
   }
 
  private:
-  /// Of so many seconds of a pattern, in map axes.
+  /// Of this many seconds of a pattern, in map axes.
   static Uncertainty partOf(const TablePattern& pattern, double seconds, double yaw) {
     return scaled(pattern.uncertainty, std::min(1.0, seconds / pattern.duration), yaw);
   }
   Pose2 startOf(size_t step) const {
     return step == 0 ? question_.start.T_map_end : question_.steps[step - 1].T_map_end;
   }
-  /// Of the last seconds before a step begins.
+  /// Of the last seconds before a step.
   Uncertainty before(size_t step, double seconds) const {
     if (seconds <= 0.0) return {};
     if (step == 0) return question_.start.uncertainty;

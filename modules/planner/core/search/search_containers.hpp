@@ -14,7 +14,8 @@
 
 namespace tread::planner {
 
-/// A list that grows without moving what is in it: no push takes long, however long the list is.
+/// A list that grows without moving its elements: every push takes constant time, however long the
+/// list is.
 template <class T>
 class BlockList {
  public:
@@ -37,10 +38,10 @@ class BlockList {
   size_t size_ = 0;
 };
 
-/// Nodes waiting to be expanded, in buckets of nearly equal estimate: constant time per node.
-/** A bucket holds estimates that differ by less than a 2048th, whatever their unit. Within a bucket
- * the newest comes first, which goes deep. What is taken may be stale: the caller knows by the cost
- * that was put in with it. */
+/// Nodes to be expanded, in buckets of nearly equal estimate: constant time per node.
+/** A bucket holds estimates that differ by less than a 2048th, in any unit. Within a bucket the
+ * newest comes first, which leads to depth-first search. An entry may be stale: the caller detects
+ * this by its stored cost. */
 class OpenList {
  public:
   struct Entry {
@@ -49,7 +50,7 @@ class OpenList {
     int next;
   };
 
-  /// Empties it; smaller estimates than `least` > 0 will share the first bucket.
+  /// Empties it; estimates below `least` > 0 share the first bucket.
   void clear(float least) {
     least_ = std::max(1e-6F, least);
     heads_.clear();
@@ -89,9 +90,9 @@ class OpenList {
   size_t bytes() const { return heads_.capacity() * sizeof(int) + entries_.bytes(); }
 
  private:
-  /// Bits of a float that tell no buckets apart.
+  /// Low bits of a float that do not distinguish buckets.
   static constexpr uint32_t kFineBits = 12;
-  /// The bits of floats that are not negative rise as the floats do.
+  /// The bits of non-negative floats are ordered like the floats.
   static uint32_t bitsOf(float value) {
     uint32_t bits = 0;
     std::memcpy(&bits, &value, sizeof(bits));
@@ -109,12 +110,12 @@ class OpenList {
 };
 
 /// The node that holds each cell of the search space: an open-addressed hash table that is emptied
-/// in no time, and that moves to a larger place bit by bit, so that no call takes long.
+/// in constant time, and that moves to a larger array bit by bit, so that no call takes long.
 class NodeTable {
  public:
-  /// What is kept for a key of at most 56 bits.
+  /// The value for a key of at most 56 bits.
   struct Entry {
-    uint64_t key;  // with the generation above it
+    uint64_t key;  // with the generation in its upper bits
     float cost;
     int node;
   };
@@ -145,7 +146,7 @@ class NodeTable {
     ++used_;
     return entry;
   }
-  /// Says that a key will be asked for soon.
+  /// Announces that a key will be looked up soon.
   void prefetch(uint64_t key) const {
 #if defined(__GNUC__)
     __builtin_prefetch(&entries_.at[hashed(marked(key)) & (entries_.count - 1)]);
@@ -157,13 +158,13 @@ class NodeTable {
 
  private:
   static constexpr size_t kLeast = 1U << 12;
-  /// Entries that are moved at a time: all are before the table has to grow again.
+  /// Entries moved at a time: all are moved before the table grows again.
   static constexpr size_t kMoved = 16;
 
   struct Release {
     void operator()(Entry* entries) const { std::free(entries); }
   };
-  /// A power of two of empty entries; none is touched before it is used, as that takes long.
+  /// A power of two of empty entries; none is touched before it is used, because that is slow.
   struct Entries {
     explicit Entries(size_t wanted) : count(wanted) {
       if (count == 0) return;
@@ -181,7 +182,7 @@ class NodeTable {
     const uint64_t hash = marked * 0x9E3779B97F4A7C15ULL;
     return static_cast<size_t>(hash ^ hash >> 29U);
   }
-  /// Where a marked key is, or where it would go.
+  /// The slot of a marked key, existing or free.
   size_t place(const Entries& entries, uint64_t marked) const {
     const size_t mask = entries.count - 1;
     size_t at = hashed(marked) & mask;
@@ -200,7 +201,7 @@ class NodeTable {
       const Entry& entry = outgrown_.at[moved_];
       if (entry.key >> 56U != generation_) continue;
       Entry& place_now = entries_.at[place(entries_, entry.key)];
-      // What was asked for since then has moved already, and may have changed.
+      // Entries looked up since then have moved already, and may have changed.
       if (place_now.key != entry.key) place_now = entry;
     }
     if (moved_ == outgrown_.count) outgrown_ = Entries(0);
@@ -208,7 +209,7 @@ class NodeTable {
 
   Entries entries_{kLeast};
   Entries outgrown_{0};
-  size_t moved_ = 0;  // of the outgrown ones
+  size_t moved_ = 0;  // of the old array
   uint8_t generation_ = 1;
   size_t used_ = 0;
 };

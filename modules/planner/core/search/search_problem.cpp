@@ -8,11 +8,11 @@
 namespace tread::planner {
 namespace {
 
-/// Nearer to the goal than this its heading counts, farther off that of the way [m].
+/// Closer to the goal its heading counts, farther away that of the path [m].
 constexpr double kNearGoal = 1.0;
-/// Steps in which sliding to a stop is checked, and ways too short to be checked [m].
+/// Step of the check of a slide to a stop, and distances too short to check [m].
 constexpr double kSlideStep = 0.1;
-/// Where the guide knows no way it may be wrong, but not often [1].
+/// Factor where the heuristic has no path: it may be wrong, but rarely [1].
 constexpr float kUnlikely = 100.0F;
 
 /// Arc cosine to within 7e-5 rad (Abramowitz and Stegun 1964, 4.4.45), clamped.
@@ -23,7 +23,7 @@ float arcCosine(float x) {
   return x < 0.0F ? static_cast<float>(kPi) - value : value;
 }
 
-/// [m] in a straight line.
+/// [m] straight-line distance.
 float distanceTo(const Goal& goal, const SearchNode& node) {
   const double dx = goal.T_map_goal.x - node.x;
   const double dy = goal.T_map_goal.y - node.y;
@@ -93,7 +93,7 @@ float CostModel::switchPenalty(const SearchNode& parent, const TablePattern& pat
   return static_cast<float>(config_.switch_penalty * std::exp2(-parent.depth));
 }
 
-/// There is no way over blocked ground; who leaves it may go straight.
+/// There is no path over blocked ground; a vehicle that leaves it may head straight for the goal.
 CostModel::Heuristic CostModel::heuristic(const SearchNode& node, bool on_blocked_ground) const {
   const Goal& goal = problem_->goal;
   DistanceToGoal::Sample at;
@@ -111,7 +111,7 @@ CostModel::Heuristic CostModel::heuristic(const SearchNode& node, bool on_blocke
   float way = std::max(0.0F, admissible_share_ * at.length - slack_);
   float expected_way = std::max(0.0F, distance_share_ * at.length - slack_);
   if (at.length < kNearGoal) {
-    // The distance ends at the rim of the goal's tolerance; less than that is aimed for.
+    // The distance ends at the edge of the goal's tolerance; the target is inside of it.
     const float straight = distanceTo(goal, node) - aimed_;
     way = std::max(way, straight);
     expected_way = std::max(expected_way, straight);
@@ -159,7 +159,7 @@ bool NodeChecker::admit(const SearchNode& parent, SearchNode& node) const {
 bool NodeChecker::freeFromParent(const SearchNode& parent, SearchNode& node) const {
   const CollisionChecker& around = *problem_->collision_checker;
   if (parent.level < 0) {
-    // The way back over a fence may be long.
+    // The path back over a fence may be long.
     if (parent.depth >= escape_patterns_ && parent.overlap.fenced <= 0.0F) return false;
     const std::optional<Overlap> left = around.escape(parent.plainPose(), parent.overlap, *node.by);
     if (!left) return false;

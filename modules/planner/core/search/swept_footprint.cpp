@@ -9,29 +9,29 @@
 namespace tread::planner {
 namespace {
 
-/// An arc may bulge so much between two poses that are checked [m].
+/// Largest sagitta of an arc between two checked poses [m].
 constexpr double kSagitta = 0.0015;
 
-/// What a radian of turn counts of the reach [m/rad].
+/// Weight of a radian of turn in the reach [m/rad].
 constexpr double kReachOfTurn = 0.7;
 
-/// A vehicle's neighbouring poses overlap by more than half of its length [1].
+/// A vehicle's consecutive poses overlap by more than half of its length [1].
 constexpr double kLengthShare = 0.45;
 
-/// A corner that swings out by less than this is not worth more poses [m].
+/// Smaller swings of a corner do not justify more poses [m].
 constexpr double kSwing = 0.005;
 
-/// One disc for so much of a corner's path, about [m].
+/// Length of a corner's path per disc, about [m].
 constexpr double kDisc = 0.25;
 
-/// Parts of a way for which the swing of its corners is worked out.
+/// Number of parts of a path for computing the swing of its corners.
 constexpr int kParts = 8;
 
 SweptPose sweptPose(const Pose2& pose, double time) {
   return {pose, std::cos(pose.yaw), std::sin(pose.yaw), time, 0.0};
 }
 
-/// A pose between two: the twist that joins them, followed for a part of the way.
+/// A pose between two: a part of the twist that joins them.
 Pose2 partOf(const Pose2& from, const Pose2& to, double share) {
   return from * integrate(twistTo(between(from, to), 1.0), share);
 }
@@ -53,7 +53,7 @@ Eigen::Vector2d pointOf(const SweptPose& body, const Eigen::Vector2d& p_body) {
           body.pose.y + body.sin_yaw * p_body.x() + body.cos_yaw * p_body.y()};
 }
 
-/// Point of an outline at a pose that is nearest to another point.
+/// Point of an outline at a pose that is closest to another point.
 Eigen::Vector2d nearestOn(const SweptPose& body, const FootprintSize& outline,
                           const Eigen::Vector2d& p) {
   const double dx = p.x() - body.pose.x;
@@ -64,7 +64,7 @@ Eigen::Vector2d nearestOn(const SweptPose& body, const FootprintSize& outline,
        std::clamp(body.cos_yaw * dy - body.sin_yaw * dx, -outline.half_width, outline.half_width)});
 }
 
-/// Poses that divide a way into equal times, both ends included.
+/// Poses that divide a path into equal times, both ends included.
 Way divided(const SweptPose& from, const SweptPose& to, const std::vector<Pose2>& trajectory,
             double period) {
   Way way;
@@ -77,7 +77,7 @@ Way divided(const SweptPose& from, const SweptPose& to, const std::vector<Pose2>
   return way;
 }
 
-/// A corner on its way, and where the outlines at both ends are nearest to it.
+/// A corner's path, and the nearest points of the outlines at both ends.
 struct CornerPath {
   CornerPath(const Way& way, const FootprintSize& outline, const Eigen::Vector2d& p_corner) {
     double to_last = 0.0;  // from the part's beginning
@@ -85,7 +85,7 @@ struct CornerPath {
       at[k] = pointOf(way[k], p_corner);
       on_first[k] = nearestOn(way.front(), outline, at[k]);
       on_last[k] = nearestOn(way.back(), outline, at[k]);
-      // It leaves the first outline and nears the last, also within a part.
+      // It leaves the first outline and approaches the last, also within a part.
       const double from_first = (at[k] - on_first[k]).norm();
       if (k > 0) swing = std::max(swing, std::min(from_first, to_last));
       to_last = (at[k] - on_last[k]).norm();
@@ -99,10 +99,11 @@ struct CornerPath {
   Points on_last;
   double most_first = 0.0;  // [m] from the first outline
   double most_last = 0.0;
-  double swing = 0.0;  // [m] out of both, at most
+  double swing = 0.0;  // [m] out of both, upper bound
 };
 
-/// The ground that a corner passes over outside of both outlines lies between its path and either.
+/// The ground that a corner passes over outside of both outlines is between its path and either
+/// outline.
 void addDiscs(const CornerPath& path, const SweptPose& middle, const Eigen::Vector2d& p_corner,
               double turn, int number, SweptFootprint& cover) {
   const Points& side = path.most_first < path.most_last ? path.on_first : path.on_last;
