@@ -44,7 +44,7 @@ void readHeadings(ConfigReader& reader, InsConfig& ins) {
   reader.flag("drives_backward", ins.drives_backward);
 }
 
-/// The kind of message that ends each epoch; "none" where the order is not known.
+/// The kind of message that ends each epoch; "none" if the order is unknown.
 template <size_t count>
 void readLastKind(ConfigReader& reader, const std::string& key, const char* const (&kinds)[count],
                   InsConfig& ins) {
@@ -123,7 +123,7 @@ InsConfig readSingleMessageConfig(ConfigReader& reader, const RobotDescription& 
   InsConfig ins = readInsConfig(reader, robot);
   readOriginStd(reader, ins);
   readGpsConventions(reader, ins);
-  ins.last_type = 0;  // a message is an epoch
+  ins.last_type = 0;  // each message is an epoch
   return ins;
 }
 

@@ -8,11 +8,12 @@
 
 namespace tread::ins {
 
-/// Read what each kind of device adds to the driver's configuration; its mounting is the robot's.
+/// Read the keys that each kind of device adds to the driver's configuration; the mounting is the
+/// robot's.
 InsConfig readNmeaConfig(ConfigReader& reader, const RobotDescription& robot);
 InsConfig readNovatelConfig(ConfigReader& reader, const RobotDescription& robot);
 InsConfig readUbloxConfig(ConfigReader& reader, const RobotDescription& robot);
-/// Of a VectorNav or an Xsens, each of which sends all of an epoch in one message.
+/// Of a VectorNav or an Xsens, which send each epoch in one message.
 InsConfig readSingleMessageConfig(ConfigReader& reader, const RobotDescription& robot);
 
 }  // namespace tread::ins

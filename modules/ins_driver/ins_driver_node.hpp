@@ -18,25 +18,25 @@ namespace tread::ins {
 /// Configuration of ins_driver, with its defaults.
 struct InsDriverConfig {
   std::string address = "tty:/dev/ttyUSB0?baud=115200";  ///< of the device
-  std::string store = "state/ins_driver";                ///< folder that keeps the map's origin
-  std::string source = "nmea";                           ///< the kind that the configuration names
+  std::string store = "state/ins_driver";                ///< folder that stores the map's origin
+  std::string source = "nmea";                           ///< the configured kind
   MakeInsSource make_source;                             ///< of that kind
   std::optional<GeoOrigin> origin;      ///< of the map; absent: stored, or the first good fix
   std::optional<FillInConfig> fill_in;  ///< by scan matching; absent: nothing is filled in
-  double silence = 1.0;                 ///< [s] without what is expected after which health says so
-  int64_t period_us = 5'000;            ///< [us] between looks at the link
+  double silence = 1.0;                 ///< [s] without expected data after which HEALTH reports it
+  int64_t period_us = 5'000;            ///< [us] between polls of the link
   std::string effective;                ///< the whole as YAML, for CONFIG
 };
 
 /// Reads the configuration; throws ConfigError with file:line.
 InsDriverConfig readInsDriverConfig(ConfigReader& reader);
 
-/// Where the map frame lies on Earth, as text for the Store, and back.
+/// The map frame's origin on Earth as text for the Store, and back.
 std::string originText(const GeoOrigin& origin);
-/// Throws ConfigError if the text is no origin.
+/// Throws ConfigError if the text is not an origin.
 GeoOrigin originFrom(const std::string& text);
 
-/// Entry of the Store that keeps the map's place on Earth, so that a restart keeps the map frame.
+/// Entry of the Store that keeps the map's origin on Earth, so that a restart keeps the map frame.
 inline constexpr const char* kOriginEntry = "ins_origin";
 
 /// Publishes INS from a device, and HEALTH with every refusal and its reason.
@@ -52,7 +52,7 @@ class InsDriverNode : public Node {
   const InsSource& source() const { return *source_; }
 
  private:
-  /// Returns the time at which it had read.
+  /// Returns the time of reading.
   int64_t readLink(int64_t utime);
   void loseLink();
   void hear(const ins_t& message);
@@ -69,16 +69,16 @@ class InsDriverNode : public Node {
   Bus& bus_;
   Link& link_;
   Store& store_;
-  std::string origin_problem_;  ///< before source_: filled while that is made
+  std::string origin_problem_;  ///< declared before source_, because making that fills it
   std::unique_ptr<InsSource> source_;
   std::optional<FillIn> fill_in_;
   HealthReporter health_;
   bool origin_kept_;
   bool was_open_ = false;
-  bool heard_ = false;  ///< bytes came since the start
+  bool heard_ = false;  ///< bytes have arrived since the start
   int64_t link_losses_ = 0;
   int64_t seq_ = 0;
-  int64_t too_far_before_ = 0;  ///< refused positions at the time of the last good one
+  int64_t too_far_before_ = 0;  ///< number of refused positions at the time of the last good one
   int64_t silence_us_;
   int64_t start_;
   int64_t last_bytes_;

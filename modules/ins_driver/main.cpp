@@ -8,7 +8,7 @@ int main(int argc, char** argv) {
   using namespace tread;
   const auto prepare = [](ConfigReader& reader) -> ShellBody {
     const ins::InsDriverConfig config = ins::readInsDriverConfig(reader);
-    parseLinkAddress(config.address);  // throws where it makes no sense
+    parseLinkAddress(config.address);  // throws if it is invalid
     return [config](BusAccess access, const std::atomic<bool>& stop) {
       LcmBus bus(std::move(access), TimeSource::kHost);
       const std::unique_ptr<Link> link = makeLink(config.address);

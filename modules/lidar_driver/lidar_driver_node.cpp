@@ -51,7 +51,7 @@ LidarDriverNode::LidarDriverNode(const LidarDriverConfig& config, Bus& bus, Link
   add(config.address, config.mounting, line);
   if (config.ground_mounting) add(config.ground_address, *config.ground_mounting, *ground_line);
   health_.watchNamesakes();
-  // Both are of one kind.
+  // Both are of the same kind.
   const std::string shortcomings = finders_.front().connection.shortcomings();
   if (shortcomings.empty()) return;
   health_.setCounter("not promised by " + shortcomings, 1);
@@ -118,8 +118,8 @@ void LidarDriverNode::reportHealth(int64_t utime) {
   }
 }
 
-/// The line of a problem grows older by the second: it is said when it begins, when its reason
-/// tells more than before, and when it ends.
+/// The line of a problem changes every second with its age: it is reported when it begins, when its
+/// reason becomes more significant, and when it ends.
 void LidarDriverNode::sayOnce(const NotedReason& problem) {
   const bool ended = problem.rank == Rank::kNone && said_.rank != Rank::kNone;
   if (!ended && problem.rank <= said_.rank) return;
@@ -127,7 +127,7 @@ void LidarDriverNode::sayOnce(const NotedReason& problem) {
   said_ = problem;
 }
 
-/// Why nothing comes from a range finder, in one line; kNone if it does.
+/// Why a range finder sends no scans, in one line; kNone if it does.
 NotedReason LidarDriverNode::silenceOf(const Finder& finder, int64_t utime) const {
   const double silent = static_cast<double>(utime - finder.last_scan) * 1e-6;
   if (silent < config_.silence) return {};

@@ -16,13 +16,13 @@ namespace tread::lidar {
 
 /// Configuration of lidar_driver, with its defaults.
 struct LidarDriverConfig {
-  DeviceChoice device;                             ///< the kind that the configuration names
+  DeviceChoice device;                             ///< the configured kind
   std::string address = "tcp:192.168.0.10:10940";  ///< of the device
   Mounting mounting;                               ///< of the sensor in body
-  std::string ground_address;                      ///< of one more that looks at the ground ahead
-  std::optional<Mounting> ground_mounting;         ///< nothing: there is none
-  double latency = 0.002;  ///< [s] from the last beam to the arrival of its bytes
-  double silence = 1.0;    ///< [s] without a scan after which the device counts as silent
+  std::string ground_address;               ///< of a second one that looks at the ground ahead
+  std::optional<Mounting> ground_mounting;  ///< nullopt: there is none
+  double latency = 0.002;                   ///< [s] from the last beam to the arrival of its bytes
+  double silence = 1.0;  ///< [s] without a scan after which the device counts as silent
   ScanLimits limits;
   std::string effective;  ///< the whole as YAML, for CONFIG
 };
@@ -31,12 +31,12 @@ struct LidarDriverConfig {
 LidarDriverConfig readLidarDriverConfig(ConfigReader& reader);
 
 /// Publishes SCAN from one or two range finders, and HEALTH with every refusal and its reason.
-/** What the device cannot promise is a counter in HEALTH and, once, a line for `say`; so is each
- * change between scanning and not, and each reason that tells more than the one before. */
+/** The device's limitations are counters in HEALTH and, once, a line for `say`; so is each start
+ * and end of scanning, and each more significant reason. */
 class LidarDriverNode : public Node {
  public:
   using Say = std::function<void(const std::string& line)>;
-  /// `ground_line`: of the range finder that looks at the ground, where the configuration has one.
+  /// `ground_line`: of the range finder that looks at the ground, if configured.
   LidarDriverNode(const LidarDriverConfig& config, Bus& bus, Link& line,
                   Link* ground_line = nullptr, Say say = {});
 
@@ -50,8 +50,8 @@ class LidarDriverNode : public Node {
     Mounting mounting;
     ScanConnection connection;
     ScanCheck check;
-    int64_t last_scan;  ///< [us] when the last good one came
-    Reasons reasons{};  ///< why scans of the device were refused since then
+    int64_t last_scan;  ///< [us] of the last good one
+    Reasons reasons{};  ///< why scans were refused since then
   };
 
   void take(Finder& finder, int64_t utime);
@@ -63,9 +63,9 @@ class LidarDriverNode : public Node {
   LidarDriverConfig config_;
   Bus& bus_;
   Say say_;
-  NotedReason said_;  ///< the problem that was said last; kNone: it scans
+  NotedReason said_;  ///< the last reported problem; kNone: it scans
   HealthReporter health_;
-  std::vector<Finder> finders_;  ///< the second one looks at the ground, if there is one
+  std::vector<Finder> finders_;  ///< the second one looks at the ground, if present
   int64_t seq_ = 0;
   int64_t next_counters_ = 0;
 };

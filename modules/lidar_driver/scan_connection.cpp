@@ -7,9 +7,9 @@
 namespace tread::lidar {
 namespace {
 
-/// A device that floods us is cut off here until the next step.
+/// The bytes of a flooding device are cut off here until the next step.
 constexpr size_t kMaxBytesPerStep = 65536;
-/// [us] from a connection that brought no scan to the next: a peer may close each one at once.
+/// [us] between connections without a scan: a peer may close each one at once.
 constexpr int64_t kPause = 500'000;
 
 }  // namespace
@@ -59,7 +59,7 @@ void ScanConnection::read(int64_t utime) {
   }
 }
 
-/// Whoever asks has the address already.
+/// Callers already have the address.
 std::string ScanConnection::linkProblem() const {
   const std::string problem = link_->problem();
   const std::string address = link_->address() + ": ";
@@ -68,7 +68,7 @@ std::string ScanConnection::linkProblem() const {
 }
 
 NotedReason ScanConnection::reason(int64_t utime) const {
-  // What a file held does not grow old: nothing more comes of it.
+  // A file's data do not age: nothing more comes from it.
   const bool file = link_->address().rfind("file:", 0) == 0;
   NotedReason reason = device_->reason(file && !was_open_ ? last_open_ : utime);
   const std::string problem = was_open_ ? "" : linkProblem();

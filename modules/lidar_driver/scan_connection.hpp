@@ -12,9 +12,9 @@
 
 namespace tread::lidar {
 
-/// A range finder's bytes over its line: opens the line, opens it anew where the device is lost,
-/// and ends the device's scanning when this goes.
-/** The line is the owner's and outlives it. */
+/// A range finder's bytes over its line: opens the line, reopens it when the device is lost, and
+/// stops the device's scanning on destruction.
+/** The line belongs to the caller and must outlive this. */
 class ScanConnection {
  public:
   ScanConnection(Link& link, std::unique_ptr<ScanDevice> device)
@@ -23,12 +23,12 @@ class ScanConnection {
   ScanConnection(ScanConnection&&) = default;
   ScanConnection& operator=(ScanConnection&&) = default;
 
-  /// Scans that were completed since the last call, oldest first. Never blocks.
+  /// Scans completed since the last call, oldest first. Never blocks.
   std::vector<RangeScan> take(int64_t utime);
-  /// Why no scan comes.
+  /// Why there is no scan.
   NotedReason reason(int64_t utime) const;
   std::string shortcomings() const { return device_->shortcomings(); }
-  /// What was counted, by its name in words.
+  /// Counters by name, in words.
   std::map<std::string, int64_t> counters() const;
 
  private:

@@ -36,7 +36,7 @@ void carmen(ConfigReader& section, double /*latency*/, DeviceChoice& choice) {
   choice.make = [config] { return std::make_unique<CarmenPlayer>(config); };
 }
 
-/// A new range finder is one line here and a folder of its own.
+/// A new range finder needs one line here and a folder of its own.
 const std::map<std::string, DeviceKind>& kinds() {
   static const std::map<std::string, DeviceKind> kKinds{
       {"carmen", {{Kind::kFile}, "file:drive.log", carmen}},

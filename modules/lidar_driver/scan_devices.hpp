@@ -17,7 +17,7 @@ namespace tread::lidar {
 /// Makes a device's session.
 using MakeScanDevice = std::function<std::unique_ptr<ScanDevice>()>;
 
-/// What the configuration's key `device` may name, with what that one's reader wants to know.
+/// A device that the configuration's key `device` may name, with the data its reader needs.
 struct DeviceChoice {
   std::string name = "hokuyo";  ///< the key's value
   MakeScanDevice make;
@@ -26,7 +26,7 @@ struct DeviceChoice {
 /// Reads the key `device` and the section of that name; `latency` [s] is the driver's.
 DeviceChoice readScanDevice(ConfigReader& reader, double latency);
 
-/// Throws std::invalid_argument with one clear line if a device cannot be at such an address.
+/// Throws std::invalid_argument with one clear line if a device cannot have such an address.
 LinkAddress checkDeviceAddress(const std::string& device, const std::string& address);
 
 }  // namespace tread::lidar

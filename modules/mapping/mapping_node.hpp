@@ -23,19 +23,20 @@ namespace tread::mapping {
 /// Configuration of mapping, with its defaults.
 struct MappingConfig {
   OccupancyMapConfig map;
-  double publish_period = 0.2;  ///< [s] between cycles of MAP; changed tiles wait no longer
+  double publish_period =
+      0.2;  ///< [s] between cycles of MAP; changed tiles wait no longer than this
   double refresh_period = 2.0;  ///< [s] in which every tile is sent at least once
-  double max_ins_gap = 0.1;     ///< [s] between two poses that a beam's pose may lie between
-  double max_wait = 0.5;        ///< [s] that a scan waits for INS
-  double top_speed = 10.0;  ///< [m/s] of the robot; faster is a jump of the INS: a new map begins
-  double silence = 1.0;     ///< [s] without a scan taken after which mapping is not well
-  std::string effective;    ///< the whole as YAML, for CONFIG
+  double max_ins_gap = 0.1;  ///< [s] largest gap between INS poses for interpolating a beam's pose
+  double max_wait = 0.5;     ///< [s] for which a scan waits for INS
+  double top_speed = 10.0;   ///< [m/s] of the robot; more is a jump of the INS: a new map begins
+  double silence = 1.0;      ///< [s] without an accepted scan after which mapping reports a fault
+  std::string effective;     ///< the whole as YAML, for CONFIG
 };
 
 /// Reads the configuration; throws ConfigError with file:line.
 MappingConfig readMappingConfig(ConfigReader& reader);
 
-/// Makes MAP from SCAN and INS, and says in HEALTH what it refused and why.
+/// Makes MAP from SCAN and INS, and reports refusals with their reasons in HEALTH.
 class MappingNode : public Node {
  public:
   MappingNode(const MappingConfig& config, Bus& bus);
@@ -43,11 +44,11 @@ class MappingNode : public Node {
   int64_t period() const override { return 20'000; }
   void step(int64_t utime) override;
 
-  /// The present map, for tests and replay.
+  /// The current map, for tests and replay.
   const OccupancyMap& map() const { return *map_; }
 
  private:
-  /// What becomes of the first scan in the queue.
+  /// Result of handling the first scan in the queue.
   enum class Fate { kWaits, kDone };
 
   void startClock();
@@ -73,10 +74,10 @@ class MappingNode : public Node {
   TileSchedule turns_;
   int64_t next_cycle_ = 0;
   int64_t seq_ = 0;
-  bool heard_ = false;  // anything yet: only then the robot's time is known
-  int64_t last_scan_;   // [us] when the last SCAN came in
-  int64_t last_ins_;    // [us] when the last INS with a pose came in
-  int64_t last_taken_;  // [us] when the last scan went into the map
+  bool heard_ = false;  // any message: the robot's time is unknown before
+  int64_t last_scan_;   // [us] when the last SCAN arrived
+  int64_t last_ins_;    // [us] when the last INS with a pose arrived
+  int64_t last_taken_;  // [us] when the last scan was inserted into the map
   std::string last_refusal_;
 };
 

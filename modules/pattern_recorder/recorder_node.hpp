@@ -17,13 +17,13 @@
 
 namespace tread::pattern_recorder {
 
-/// Cuts the executions of one run out of INS, EXECUTION and MOTOR, as the learner does, and keeps
-/// the fair ones of each pattern.
-/** What is refused is told with its reason. Patterns are given by their place in the set. */
+/// Extracts the executions of one run from INS, EXECUTION and MOTOR, as the learner does, and keeps
+/// the valid ones of each pattern.
+/** Refusals are reported with their reasons. Patterns are indexed by their place in the set. */
 class ExecutionCollector {
  public:
-  /// `wanted` executions of each pattern are kept; `limits` as the learner's, max_speed 0 = the
-  /// set's largest.
+  /// Keeps `wanted` executions of each pattern; `limits` as the learner's, max_speed 0 = the set's
+  /// largest.
   ExecutionCollector(const PatternSet& set, int64_t run_id, int wanted, int give_up_after,
                      const MeasurementLimits& limits, Say say);
 
@@ -31,15 +31,15 @@ class ExecutionCollector {
   void take(const motor_t& message) { commands_.add(message); }
   void take(const execution_t& message, int64_t now) { executions_.add(message, now); }
 
-  /// Judges what has ended and is covered by the INS. Returns the execution ids of this run that
-  /// were judged.
+  /// Evaluates executions that have ended and are covered by the INS. Returns the ids of this run's
+  /// executions that were evaluated.
   std::vector<int64_t> judge(int64_t utime);
 
   const std::vector<std::vector<recordings::Execution>>& recorded() const { return recorded_; }
-  /// Executions still missing, by pattern; 0 = it has all.
+  /// Executions still missing, by pattern; 0 = complete.
   std::vector<int> missing() const;
   int64_t refused() const { return refused_; }
-  /// Why it is hopeless: a pattern was refused too often in a row; empty if it is not.
+  /// Why the recording cannot succeed: a pattern was refused too often in a row; empty if it can.
   const std::string& hopeless() const { return hopeless_; }
   const TrackHistory& track() const { return ins_.history(); }
 
@@ -67,27 +67,28 @@ class ExecutionCollector {
   std::string hopeless_;
 };
 
-/// What to record on a robot, and how patiently.
+/// What to record on a robot, and when to give up.
 struct RecordingConfig {
-  int executions = 10;                     ///< of each pattern, fair ones
-  double room = 8.0;                       ///< [m] around where it began; beyond it stops
-  int give_up_after = 10;                  ///< refusals of a pattern one after the other
-  int64_t lease_us = 200'000;              ///< [us] of each PROGRAM
-  std::string operator_name = "operator";  ///< for whom it holds the robot; ARM must be theirs
-  MeasurementLimits limits;  ///< of a fair measurement; max_speed 0 = the set's largest
+  int executions = 10;         ///< valid ones, of each pattern
+  double room = 8.0;           ///< [m] around the starting point; beyond it the robot stops
+  int give_up_after = 10;      ///< number of consecutive refusals of a pattern
+  int64_t lease_us = 200'000;  ///< [us] of each PROGRAM
+  std::string operator_name =
+      "operator";  ///< in whose name it holds the robot; ARM must come from the same operator
+  MeasurementLimits limits;  ///< of a valid measurement; max_speed 0 = the set's largest
 };
 
-/// Takes the planner's place, drives each pattern many times and measures what it did.
-/** PROGRAM at 20 Hz once the robot speaks, empty when the robot shall stand; EXECUTION, MOTOR and
- * INS in. Chains of joinable patterns bring it into the entry classes; an unfair measurement is
- * refused with its reason and driven again. Begins when ARM was seen after its start. It sees no
- * obstacles: the room must be free. No planner may run beside it; where one publishes PROGRAM, it
- * gives up and publishes nothing more. */
+/// Replaces the planner: drives each pattern many times and measures its motion.
+/** PROGRAM at 20 Hz once the robot sends messages, empty when the robot should stand; EXECUTION,
+ * MOTOR and INS in. Chains of joinable patterns lead to the entry classes; an invalid measurement
+ * is refused with its reason and repeated. Begins after an ARM that was received after its start.
+ * It does not detect obstacles: the room must be free. No planner may run at the same time; if one
+ * publishes PROGRAM, the recorder gives up and publishes nothing more. */
 class RecorderNode : public Node {
  public:
   using State = RecordingDrive::State;
 
-  /// `say` gets a line for everything worth telling. Throws std::runtime_error if the set cannot be
+  /// `say` receives a line for every notable event. Throws std::runtime_error if the set cannot be
   /// driven, see ExcitationPlanner.
   RecorderNode(const PatternSet& set, const RecordingConfig& config, Bus& bus, Say say);
 
@@ -99,7 +100,7 @@ class RecorderNode : public Node {
   State state() const { return drive_.state(); }
   /// Why it failed or what it waits for; empty while it drives.
   const std::string& reason() const { return drive_.reason(); }
-  /// Fair executions by pattern so far.
+  /// Valid executions so far, by pattern.
   const std::vector<std::vector<recordings::Execution>>& recorded() const {
     return collector_.recorded();
   }
@@ -107,7 +108,7 @@ class RecorderNode : public Node {
  private:
   void take(const program_t& message);
   bool stands() const;
-  /// Another planner would be stopped by a second publisher: listen for one first.
+  /// A second publisher would stop another planner's robot: listen for one first.
   bool listens(int64_t utime) const { return utime < begun_ + kListenFirst; }
   void publishProgram(int64_t utime, const RobotReadings& readings);
   void publishHealth(int64_t utime);
@@ -121,7 +122,7 @@ class RecorderNode : public Node {
   OperatorBeacon beacon_;
   RecordingDrive drive_;
   ExecutionCollector collector_;
-  int64_t begun_ = 0;    ///< [us] first step, or first after a jump of time
+  int64_t begun_ = 0;    ///< [us] first step, or first one after a jump of time
   bool silent_ = false;  ///< another planner publishes PROGRAM
   bool stepped_ = false;
   int64_t seq_program_ = 0;

@@ -12,11 +12,12 @@ constexpr double kMemory = 4.0;  // [s], longer than both latencies together
 constexpr size_t kMostRemembered = 1000;
 
 constexpr int kStepsPerNoise = 10;
-constexpr double kNoiseStep = 0.01;      // [s], of so many steps of the simulator
+constexpr double kNoiseStep = 0.01;      // [s], a multiple of the simulator's step
 constexpr double kFullCurrent = 11.0;    // [A] a motor at full power, see ModelVehicle
-constexpr double kLoadCurrent = 200.0;   // [A s/m] for each speed that the ground takes: 4000 N s/m
+constexpr double kLoadCurrent = 200.0;   // [A s/m] per speed lost to the ground: 4000 N s/m
 constexpr double kCurrentLimit = 125.0;  // [A] of the power stage
-constexpr uint64_t kModelStream = 20;    // of random numbers, beside those of robot and devices
+constexpr uint64_t kModelStream =
+    20;  // of random numbers, separate from those of robot and devices
 
 }  // namespace
 
@@ -93,7 +94,7 @@ void ModelVehicle::step(const MotorPower& power, const Ground& ground, double dt
   DriveContext context;
   context.session_time = session_time_;
   context.battery_drop = 1.0 - battery_.voltage / drive_.full_voltage;
-  // The attitude of a body on this plane, as poseOnGround() has it.
+  // The attitude of a body on this plane, as in poseOnGround().
   context.pitch = -std::atan(ground.slope_along);
   context.roll = std::atan(ground.slope_across / std::hypot(1.0, ground.slope_along));
   const Pose2 T_start_before = kernel_.pose();
@@ -119,7 +120,7 @@ void ModelVehicle::drawCurrent(const TrackCommand& command, double dt) {
   left_ = {power.left, speeds.left, kFullCurrent * power.left};
   right_ = {power.right, speeds.right, kFullCurrent * power.right};
   stepBattery(drive_, left_, right_, dt, battery_);
-  // What the tracks do not get onto the ground is load; what the drive does not give is none.
+  // Speed lost to the ground is load; speed that the drive does not give is none.
   const double per_speed = kFullCurrent / (takesSpeeds() ? full_command_ : model_.full_speed);
   const double forward = model_.forward_gain * (speeds.left + speeds.right) / 2.0 - v_body_.v_x;
   const double turning =

@@ -14,12 +14,12 @@
 
 namespace tread::sim {
 
-/// An INS that is late, askew or biased as the measurement part of a model file says.
-/** Position, heading and yaw rate are measuredAt()'s. The rest goes with them: height, attitude and
- * velocity are as old as the position; the velocity is that of the reported point, turned so that
- * its course in the map stays right under the heading that is said. A negative latency looks ahead
- * along the arc of the last two samples, as an INS does that predicts to make up for its own age.
- */
+/// An INS with the delays, misalignments and biases of the measurement part of a model file.
+/** Position, heading and yaw rate are those of measuredAt(). The other quantities are consistent
+ * with them: height, attitude and velocity are as old as the position; the velocity is that of the
+ * reference point, rotated so that its course in the map stays correct with the measured heading.
+ * A negative latency extrapolates along the arc of the last two samples, like an INS that predicts
+ * to compensate for its delay. */
 class ModelIns final : public InsErrors {
  public:
   ModelIns(const MeasurementModel& measurement, int64_t start_utime)
@@ -34,27 +34,27 @@ class ModelIns final : public InsErrors {
   MeasurementModel measurement_;
   int64_t start_utime_;
   std::vector<MotionSample> motion_;  ///< of the last seconds
-  std::vector<InsInput> truths_;      ///< at the same moments
+  std::vector<InsInput> truths_;      ///< at the same times
 };
 
-/// A vehicle that does what a model file says: how a named effect is seen at work.
-/** The kernel is stepped with the simulator; it hears power or track speeds, session time, attitude
- * and the fall of the battery's voltage. The world's surfaces do not touch it: a model file is one
- * ground. Its spread varies along the drive as the dynamic vehicle's does. The battery is the
- * dynamic vehicle's, loaded by the current that this one draws at the same power straight ahead on
- * grass. The motor currents that it reports are those at the speed that the drive gives, and more
- * for what the ground takes of it. */
+/// A vehicle that moves according to a model file: shows the influence of a named effect.
+/** The kernel is stepped with the simulator; its inputs are power or track speeds, session time,
+ * attitude and the drop of the battery's voltage. The world's surfaces have no influence: a model
+ * file describes one ground. Its spread varies along the drive like the dynamic vehicle's. The
+ * battery is the dynamic vehicle's, loaded by the current that this one draws at the same power
+ * straight ahead on grass. The reported motor currents are those at the drive's speed, plus a
+ * share for the speed lost to the ground. */
 class ModelVehicle final : public Plant {
  public:
   /// `noise_seed`: of the spread; without it every execution is the mean. `top_speed` [m/s]: for a
-  /// model of track speeds, the largest that it is asked for; `max_steering` [rad]: of a car.
+  /// model of track speeds, the largest command; `max_steering` [rad]: of a car.
   ModelVehicle(const ModelDocument& document, std::optional<uint64_t> noise_seed, double top_speed,
                double max_steering = 0.0);
 
   bool takesSpeeds() const override { return model_.kind == CommandKind::kTrackSpeed; }
   void step(const MotorPower& power, const Ground& ground, double dt) override;
 
-  /// Leads from pose to pose of the kernel in steps of constant velocity in the map.
+  /// Moves from pose to pose of the kernel in steps of constant velocity in the map.
   Twist2 velocity() const override { return v_body_; }
   const TrackDrive& left() const override { return left_; }
   const TrackDrive& right() const override { return right_; }
@@ -65,7 +65,7 @@ class ModelVehicle final : public Plant {
   }
   bool disturbedByGround() const override { return false; }
   std::string name() const override { return model_.name; }
-  /// What is asked for outside of the model's envelope, by the mean motion: chance asks nothing.
+  /// Demands outside of the model's envelope, for the mean motion without noise.
   std::string warning() const override;
 
  private:
@@ -90,8 +90,8 @@ class ModelVehicle final : public Plant {
   Battery battery_;
 };
 
-/// Vehicle and INS of a model file, for a robot of these settings.
-/** The INS part is null where the file says nothing of it. */
+/// Vehicle and INS of a model file, for a robot with these settings.
+/** The INS part is null if the file has no measurement effects. */
 RobotParts partsOf(const ModelDocument& document, const RobotSettings& settings);
 
 }  // namespace tread::sim

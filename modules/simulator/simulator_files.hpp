@@ -14,10 +14,10 @@
 
 namespace tread::sim {
 
-/// Reads a kind of ground: what it differs in from a built-in one (key `like`).
+/// Reads a kind of ground: its differences from a built-in one (key `like`).
 SurfaceParameters readSurface(ConfigReader& reader);
 
-/// Reads height, wavelengths and seed of bumps; what is not named stays as it is.
+/// Reads height, wavelengths and seed of bumps; missing keys keep their values.
 void readBumps(ConfigReader& reader, RoughRegion& region);
 
 /// Reads a world file (config/worlds); throws ConfigError with file:line.
@@ -28,33 +28,33 @@ WorldDescription readWorld(ConfigReader reader);
 WorldDescription parseWorld(const std::string& text, const std::string& name);
 
 /// Reads a dynamic vehicle in physical quantities. The ranges keep the integration stable at 1 ms.
-/** What is not named stays as it is; with `whole`, what is of this machine alone must be named. So
- * a drive that has lost power or a weak battery is hidden behind the serial lines. */
+/** Missing keys keep their values; with `whole`, all values that are specific to this machine are
+ * required. Used to hide a weak drive or battery behind the serial lines. */
 void readVehicle(ConfigReader reader, VehicleParameters& vehicle, bool whole = false);
 
 /// The simulated robot of a configuration: keys `robot` and `dynamics`, each a file or a map.
-/** Outline, mountings and, unless dynamics.yaml says otherwise, gauge and free speed are the
- * described robot's (robot.yaml), the rest of the vehicle stands in dynamics.yaml; both beside the
- * configuration if they are not named. Its map `laser` (beams, rate, field_of_view, range_max,
- * range_noise) replaces the laser's usual numbers. */
+/** Outline, mountings and, unless dynamics.yaml overrides them, gauge and free speed are the
+ * described robot's (robot.yaml), the rest of the vehicle is in dynamics.yaml; both are beside the
+ * configuration by default. Its map `laser` (beams, rate, field_of_view, range_max, range_noise)
+ * overrides the laser's defaults. */
 void readSimulatedRobot(ConfigReader& reader, RobotSettings& settings);
 
 /// The same from a robot's folder.
 RobotSettings readSimulatedRobot(const std::string& folder);
 
-/// What really happened, as CSV for reports and tests; the robot's processes never see it.
+/// The true motion as CSV for reports and tests; the robot's processes never read it.
 /** One row when the power on the motors changes, else every 20 ms:
  * utime_us,x_m,y_m,yaw_rad,v_mps,left,right,surface,contacts,distance_m. Yaw is unwrapped, power
- * is what the controller puts on the motors (-1..1); of a holonomic base, that of the first two
- * wheels stands there. */
+ * is the controller's output to the motors (-1..1); for a holonomic base, that of the first two
+ * wheels. */
 class TruthRecord {
  public:
-  /// Makes the file with its header; an earlier record becomes PATH.1 or the next free name. Throws
-  /// WriteError, as all do.
+  /// Creates the file with its header; an earlier record is renamed to PATH.1 or the next free
+  /// name. Throws WriteError, as all functions do.
   explicit TruthRecord(const std::string& path);
 
   void note(const RobotTruth& truth, const MotorValues& power);
-  /// Hands over the rows of the last moments, too.
+  /// Flushes all rows to the file.
   void flush() { out_.flush(); }
 
  private:
@@ -69,7 +69,7 @@ struct TruthRow {
   int64_t utime = 0;                      ///< [us]
   Pose2 T_map_body;                       ///< yaw unwrapped
   double speed = 0.0;                     ///< forward [m/s]
-  std::array<double, 2> power{0.0, 0.0};  ///< on the motors: left, right, -1..1
+  std::array<double, 2> power{0.0, 0.0};  ///< of the motors: left, right, -1..1
   std::string surface;
   int contacts = 0;       ///< so far
   double distance = 0.0;  ///< driven so far [m]
@@ -77,8 +77,8 @@ struct TruthRow {
   bool motorsAtZero() const { return power[0] == 0.0 && power[1] == 0.0; }
 };
 
-/// The whole rows that are in a record by now; a half written last one is left out. Throws
-/// std::runtime_error with one clear line if the file is not there or no such record.
+/// The complete rows of a record so far; an incomplete last one is left out. Throws
+/// std::runtime_error with one clear line if the file does not exist or is no such record.
 std::vector<TruthRow> readTruthRecord(const std::string& path);
 
 }  // namespace tread::sim

@@ -18,31 +18,31 @@ namespace tread::sim {
 /// Configuration of the simulator process (config/simulators).
 struct SimulatorConfig {
   std::string world;                   ///< path of a world file
-  SimulatorSettings settings;          ///< start_utime and utc_at_zero are the process's to set
-  std::optional<ModelDocument> model;  ///< drives in the place of the dynamic vehicle
+  SimulatorSettings settings;          ///< the process sets start_utime and utc_at_zero
+  std::optional<ModelDocument> model;  ///< replaces the dynamic vehicle
   std::string ins = "pty:devices/ins";
   std::string motor = "pty:devices/motor";
   std::string laser = "tcp-server:127.0.0.1:10940";
-  std::string ground_laser = "tcp-server:127.0.0.1:10941";  ///< of robots that have one
+  std::string ground_laser = "tcp-server:127.0.0.1:10941";  ///< for robots that have one
   std::string record = "none";                              ///< path of the truth as CSV, or none
 };
 
-/// Reads it strictly, the model file, too; throws ConfigError with file:line.
+/// Reads it strictly, including the model file; throws ConfigError with file:line.
 SimulatorConfig readSimulatorConfig(ConfigReader& reader);
 
 /// The devices' ends of the lines to the drivers.
 struct DeviceLines {
   Link& ins;
   Link& motor;
-  Link* laser = nullptr;         ///< null where nobody reads its scans
+  Link* laser = nullptr;         ///< null if its scans are not read
   Link* ground_laser = nullptr;  ///< the same
 };
 
-/// Steps the simulated robot and carries the devices' bytes over their lines.
-/** Devices and lines are the owner's and outlive the node. Bytes that a line does not take are
-   lost, as on a real one. Beside HEALTH and CONFIG nothing is published: the truth stays hidden,
-   but for a record that whoever starts the simulator may want. Where the vehicle's motion is not to
-   be relied on any more, HEALTH says why from then on, and `say` gets the line once. */
+/// Steps the simulated robot and transfers the devices' bytes over their lines.
+/** Devices and lines belong to the caller and outlive the node. Bytes that a line does not take are
+ * lost, as on a real one. Besides HEALTH and CONFIG nothing is published: the truth stays hidden,
+ * except for an optional record. If the vehicle's motion becomes unreliable, HEALTH reports why
+ * from then on, and `say` gets the line once. */
 class SimulatorNode : public Node {
  public:
   using Say = std::function<void(const std::string& line)>;

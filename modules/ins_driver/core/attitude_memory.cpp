@@ -9,7 +9,7 @@
 namespace tread::ins {
 namespace {
 
-/// Two headings further apart than this tell no rate: a tracked vehicle can have turned either way.
+/// Headings farther apart give no rate: a tracked vehicle can have turned either way.
 constexpr int64_t kMaxRateBaseUs = 250'000;
 
 }  // namespace

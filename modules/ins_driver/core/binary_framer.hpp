@@ -13,12 +13,12 @@
 
 namespace tread::ins {
 
-/// What a protocol sees at the front of the bytes.
+/// A protocol's result for the front of the bytes.
 struct FrameLook {
   enum class Verdict : uint8_t {
     kNoStart,   ///< no frame can start here
-    kNeedMore,  ///< the start of a frame, or of one perhaps
-    kRefused,   ///< looks like a frame and is none: `reason` says why
+    kNeedMore,  ///< the start of a frame, or possibly of one
+    kRefused,   ///< looks like a frame but is invalid: `reason` gives the cause
     kFrame      ///< a whole frame of `size` bytes with a good checksum
   };
   Verdict verdict = Verdict::kNoStart;
@@ -26,15 +26,15 @@ struct FrameLook {
   const char* reason = "";
 };
 
-/// A protocol's judgement of the bytes from a possible start on.
+/// A protocol's function that examines the bytes from a possible start on.
 using LookForFrame = FrameLook (*)(std::string_view bytes);
 
 /// Longest frame of any protocol [bytes]; a header that claims more is refused.
 inline constexpr size_t kMaxFrame = 4096;
 
-/// Cuts a byte stream into frames with a good checksum.
-/** After a bad one the search goes on one byte behind its start, so that a false start costs no
-   frame behind it. At most kMaxFrame bytes wait for the rest of a frame. */
+/// Splits a byte stream into frames with a good checksum.
+/** After a bad frame the search continues one byte after its start, so that a false start costs no
+ * frame after it. At most kMaxFrame bytes wait for the rest of a frame. */
 class BinaryFramer {
  public:
   struct Frame {
@@ -45,14 +45,14 @@ class BinaryFramer {
   explicit BinaryFramer(LookForFrame look) : look_(look) {}
 
   void push(std::string_view bytes, int64_t arrival);
-  /// The next frame; nothing until more bytes come.
+  /// The next frame; nullopt until more bytes arrive.
   std::optional<Frame> next();
-  /// No more bytes will come: what is incomplete is cut. next() then gives what stood behind its
-  /// start.
+  /// No more bytes will arrive: an incomplete frame is cut off. next() then returns the frames
+  /// after its start.
   void interrupt() { interrupted_ = true; }
 
   int64_t bytes() const { return bytes_; }
-  /// Bytes in no good frame.
+  /// Bytes outside of good frames.
   int64_t strayBytes() const { return stray_bytes_; }
   const ReasonCounts& refusals() const { return refusals_; }
   /// Bytes that wait for the rest of their frame.
@@ -64,9 +64,9 @@ class BinaryFramer {
 
   LookForFrame look_;
   std::string buffer_;
-  size_t at_ = 0;                                     ///< where the search stands in buffer_
+  size_t at_ = 0;                                     ///< position of the search in buffer_
   int64_t dropped_ = 0;                               ///< bytes of the stream before buffer_
-  std::deque<std::pair<int64_t, int64_t>> arrivals_;  ///< place in the stream, host time
+  std::deque<std::pair<int64_t, int64_t>> arrivals_;  ///< position in the stream, host time
   bool interrupted_ = false;
   int64_t bytes_ = 0;
   int64_t stray_bytes_ = 0;

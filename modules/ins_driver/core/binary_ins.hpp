@@ -12,13 +12,14 @@
 
 namespace tread::ins {
 
-/// What became of a frame.
+/// Result of reading a frame.
 struct Reading {
-  std::string name;          ///< of the message, as its maker calls it
+  std::string name;          ///< of the message, in its manufacturer's terms
   const char* refusal = "";  ///< why it was not used; empty if it was
 };
 
-/// From the bytes of a device with binary messages to estimates; what differs is its protocol.
+/// Converts the bytes of a device with binary messages to estimates; devices differ in their
+/// protocol.
 class BinaryIns : public PipelineIns {
  public:
   void push(std::string_view bytes, int64_t arrival) override;
@@ -27,9 +28,9 @@ class BinaryIns : public PipelineIns {
   InsTally tally() const override;
   NamedCounts counters() const override;
 
-  /// Frames that were decoded, by their name.
+  /// Decoded frames, by name.
   const std::map<std::string, int64_t>& decoded() const { return decoded_; }
-  /// Bytes that were refused and messages that were not used, by reason.
+  /// Refused bytes and unused messages, by reason.
   ReasonCounts reasons() const;
   const BinaryFramer& framer() const { return framer_; }
   int64_t frames() const { return frames_; }
@@ -38,7 +39,7 @@ class BinaryIns : public PipelineIns {
   BinaryIns(const InsConfig& config, LookForFrame look, int64_t cycle_us)
       : PipelineIns(config, cycle_us), framer_(look) {}
 
-  /// Reads a frame with a good checksum and gives the pipeline what it says.
+  /// Reads a frame with a good checksum and passes its content to the pipeline.
   virtual Reading read(std::string_view frame, int64_t arrival) = 0;
 
  private:

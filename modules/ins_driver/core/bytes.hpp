@@ -24,19 +24,20 @@ Number numberAt(std::string_view bytes, size_t offset) {
   return number;
 }
 
-/// A point from degrees; nothing if it is none on Earth.
+/// A point from degrees; nullopt if it is not on Earth.
 inline std::optional<GeoPoint> pointFromDegrees(double latitude, double longitude) {
   if (!(std::abs(latitude) <= 90.0) || !(std::abs(longitude) <= 360.0)) return std::nullopt;
   return GeoPoint{latitude * kRadPerDeg, wrapAngle(longitude * kRadPerDeg)};
 }
 
-/// Yaw counter-clockwise from east of an angle clockwise from north [deg]; nothing if it is none.
+/// Yaw counter-clockwise from east of an angle clockwise from north [deg]; nullopt if it is
+/// invalid.
 inline std::optional<double> yawFromAzimuth(double degrees) {
   if (!(std::abs(degrees) <= 360.0)) return std::nullopt;
   return wrapAngle(kPi / 2.0 - degrees * kRadPerDeg);
 }
 
-/// True for a number that is finite and at most so large.
+/// Whether a number is finite and its magnitude at most `limit`.
 inline bool within(double number, double limit) {
   return std::abs(number) <= limit;
 }

@@ -11,7 +11,7 @@ namespace {
 constexpr int64_t kEraUs = 1024 * kWeekUs;
 constexpr int64_t kHourUs = int64_t{3600} * 1000000;
 
-/// The time nearest to `near` that is `time` or whole cycles off.
+/// The time nearest to `near` among `time` plus whole cycles.
 int64_t nearest(int64_t time, int64_t near, int64_t cycle_us) {
   int64_t ahead = (time - near) % cycle_us;
   if (ahead > cycle_us / 2) ahead -= cycle_us;
@@ -74,7 +74,7 @@ int64_t GpsWeeks::timeOf(int64_t week, int64_t time_of_week) {
       ++rollovers_;
       shift_ += continued - time;
     } else {
-      shift_ = week < 1024 ? 2 * kEraUs : 0;  // the device's clock was set: count anew
+      shift_ = week < 1024 ? 2 * kEraUs : 0;  // the device's clock was set: restart the count
     }
     time = told + shift_;
   }

@@ -12,18 +12,18 @@
 
 namespace tread::ins {
 
-/// What a device says about its position: a fix, or that it has none.
+/// A device's report on its position: a fix, or that it has none.
 struct PositionReport {
   std::optional<GeoPoint> point;                                 ///< WGS84 [rad]; absent: no fix
   std::optional<double> altitude;                                ///< above mean sea level [m]
   Eigen::Vector3d std = Eigen::Vector3d::Constant(kUnmeasured);  ///< along east, north, up [m]
-  bool starts_map = true;   ///< precise enough to become the map's origin
-  bool complete = true;     ///< false: a report with the altitude may still come
-  bool at_antenna = false;  ///< of the GNSS antenna, not of the point that the INS reports
-  int rank = 0;             ///< of two reports of one instant the higher counts, else the later
+  bool starts_map = true;   ///< accurate enough to become the map's origin
+  bool complete = true;     ///< false: a report with the altitude may still follow
+  bool at_antenna = false;  ///< of the GNSS antenna, not of the INS's reference point
+  int rank = 0;  ///< of two reports of the same instant the higher rank counts, otherwise the later
 };
 
-/// Motion over ground of the point whose position the device reports.
+/// Motion over ground of the device's reference point.
 struct GroundVelocity {
   double speed = 0.0;  ///< horizontal, never negative [m/s]
   std::optional<double>
@@ -41,15 +41,16 @@ struct Heading {
   double std = kUnmeasured;  ///< [rad]
 };
 
-/// What a device said of one instant, in the words that all devices share. Also a part of it: what
-/// one message says.
-/** Axes of the device are forward, left, up; pitch is nose down positive, roll right side down. */
+/// A device's data of one instant, or the part of them in one message, in the common form of all
+/// devices.
+/** Axes of the device are forward, left, up; pitch is positive nose down, roll right side down. */
 struct DeviceEpoch {
-  int64_t arrival = 0;                 ///< host time of the first byte of the first message [us]
-  std::optional<int64_t> device_time;  ///< as DeviceClock counts [us]; absent if no message told it
-  int64_t device_utc = -1;             ///< [us] since 1970-01-01; -1 before the device told a date
-  bool clock_was_set = false;  ///< the device's clock was set, back or forth, before this epoch
-  uint32_t kinds = 0;          ///< bit n: a message of kind n is in it
+  int64_t arrival = 0;  ///< host time of the first byte of the first message [us]
+  std::optional<int64_t>
+      device_time;          ///< counted as in DeviceClock [us]; absent if no message contained it
+  int64_t device_utc = -1;  ///< [us] since 1970-01-01; -1 before the device sent a date
+  bool clock_was_set = false;  ///< the device's clock was set, forwards or back, before this epoch
+  uint32_t kinds = 0;          ///< bit n: contains a message of kind n
 
   std::optional<PositionReport> position;
   std::optional<GroundVelocity> velocity;
@@ -66,7 +67,7 @@ struct DeviceEpoch {
     return headings[static_cast<size_t>(source)];
   }
   bool holds(size_t kind) const { return (kinds >> kind & 1U) != 0; }
-  /// Adds what a message of the same instant says.
+  /// Adds the data of a message of the same instant.
   void take(const DeviceEpoch& part, size_t kind);
 };
 

@@ -5,14 +5,13 @@
 namespace tread::ins {
 namespace {
 
-/// Further back than this is no late message but a clock that was set.
+/// A larger step back is no late message but a clock that was set.
 constexpr int64_t kMaxLateUs = 2'000'000;
-/// So many late messages without one in time mean that the clock was set back a little.
+/// This many late messages without a timely one mean that the clock was set back slightly.
 constexpr int kLateLimit = 10;
-/// An epoch whose messages keep coming with an unchanged time ends after this.
+/// An epoch whose messages keep arriving with an unchanged time ends after this.
 constexpr int64_t kMaxEpochUs = 500'000;
-/// The device's time went on by so much more than the host's from one epoch to the next: it was set
-/// forward.
+/// Excess of the device's time step over the host's between epochs that means a clock set forward.
 constexpr int64_t kClockStepUs = 1'000'000;
 
 }  // namespace

@@ -11,34 +11,35 @@
 
 namespace tread::ins {
 
-/// Gathers the messages of one instant and hands them out together.
-/** An epoch ends when a message tells another time, when a message without a time comes a second
-   time, after the kind that is known to be the last, or when the line was quiet. Messages without a
-   time (NMEA: VTG, HDT, ROT) belong to the epoch in which they arrive. Messages older than what was
-   handed out are late; if that goes on, or if the device's time falls back by more than two
-   seconds, its clock was set and counting starts anew. */
+/// Collects the messages of one instant and returns them together.
+/** An epoch ends when a message has another time, when a message without a time repeats, after the
+ * kind that is known to be the last, or when the line was quiet. Messages without a time (NMEA:
+ * VTG, HDT, ROT) belong to the epoch in which they arrive. Messages older than the returned epochs
+ * are late; if that persists, or if the device's time goes back by more than two seconds, its
+ * clock was set and counting restarts. */
 class EpochCollector {
  public:
-  /// `last_kind`: of the message that ends each epoch, if the device keeps an order. `cycle_us`: of
-  /// the times that the device tells, as in DeviceClock.
+  /// `last_kind`: of the message that ends each epoch, if the device has a fixed order. `cycle_us`:
+  /// of the device's times, as in DeviceClock.
   explicit EpochCollector(int64_t quiet_us, std::optional<size_t> last_kind = {},
                           int64_t cycle_us = kDayUs)
       : quiet_us_(quiet_us), last_kind_(last_kind), clock_(cycle_us) {}
 
-  /// Takes what a message said whose first byte came at `arrival` [us]; false if it is late.
+  /// Takes the content of a message whose first byte arrived at `arrival` [us]; false if it is
+  /// late.
   /** `told`: its time as the device counts [us], if it has one. A device_utc in it is the UTC of
-     that time. */
+   * that time. */
   bool push(const DeviceEpoch& part, size_t kind, std::optional<int64_t> told, int64_t arrival);
-  /// Takes a message that tells only the date: it neither opens nor ends an epoch by its time,
-  /// because some devices tell the time of the next second with it.
+  /// Takes a message with only the date: it neither opens nor ends an epoch by its time, because
+  /// some devices send the time of the next second with it.
   void pushDate(int64_t utc, int64_t told, size_t kind);
-  /// The newest device time; nothing before the first.
+  /// The newest device time; nullopt before the first.
   const std::optional<int64_t>& newest() const { return clock_.newest(); }
-  /// Device time of a told time.
+  /// Device time of a reported time.
   int64_t timeOf(int64_t told) const { return clock_.timeOf(told); }
-  /// Says that bytes came at this time, be they a whole message or not.
+  /// Notes that bytes arrived at this time, whether or not they form a message.
   void noteBytes(int64_t utime) { last_bytes_ = utime; }
-  /// The oldest finished epoch; ends the open one if the line has been quiet.
+  /// The oldest complete epoch; ends the open one if the line has been quiet.
   std::optional<DeviceEpoch> next(int64_t now);
   /// Ends the open epoch: the link was closed, or the log is at its end.
   void finish() { close(); }
@@ -57,7 +58,7 @@ class EpochCollector {
   std::optional<DeviceEpoch> epoch_;
   std::deque<DeviceEpoch> finished_;
   int64_t last_bytes_ = 0;
-  std::optional<int64_t> last_device_time_;  ///< of the last epoch that told the time
+  std::optional<int64_t> last_device_time_;  ///< of the last epoch with a time
   int64_t last_arrival_ = 0;                 ///< of the same
   int late_in_a_row_ = 0;
   bool clock_was_set_ = false;

@@ -9,14 +9,16 @@ namespace tread::ins {
 namespace {
 
 constexpr int64_t kMaxGap = 300'000;  // [us] between poses of the device around one of a scan
-constexpr int64_t kScansMissing = 1'000'000;  // [us] without one: nothing is filled in any more
-constexpr int64_t kCarried = 150'000;  // [us] for which a pose of a scan is carried by its twist
+constexpr int64_t kScansMissing = 1'000'000;  // [us] without one, after which nothing is filled in
+constexpr int64_t kCarried =
+    150'000;  // [us] for which a scan's pose is extrapolated with its twist
 
 double square(double value) {
   return value * value;
 }
 
-/// A deviation that the device does not tell adds nothing: its own is then unknown, not the drift.
+/// A deviation that the device does not report adds nothing: its own is then unknown, not the
+/// drift.
 double told(double std) {
   return std::isfinite(std) ? std : 0.0;
 }
@@ -38,7 +40,7 @@ void FillIn::observe(const ScanPose& pose) {
   anchor();
 }
 
-/// Either of the two may come later.
+/// Either of the two may arrive later.
 void FillIn::anchor() {
   if (!scan_ || (anchor_ && anchor_->scan.utime == scan_->utime)) return;
   const auto T_map_body = device_.at(scan_->utime, kMaxGap);
@@ -60,7 +62,7 @@ std::optional<FillIn::Filled> FillIn::at(int64_t utime) const {
   Eigen::Vector3d drift;
   for (int i = 0; i < 3; ++i)
     drift[i] = std::sqrt(std::max(0.0, square(scan_->std[i]) - square(anchor_->scan.std[i])));
-  // The two frames are turned against each other, by any angle.
+  // The two frames are rotated relative to each other by an unknown angle.
   drift[0] = drift[1] = std::max(drift[0], drift[1]);
   if (drift[0] > config_.max_drift || drift[2] > config_.max_yaw_drift) return std::nullopt;
   const double swing = moved.position().norm() * told(anchor_->device_std[2]);
@@ -75,7 +77,8 @@ void FillIn::markFilled(int64_t utime) {
   ++filled_;
 }
 
-/// A whole pose of the device: the scans are laid onto it, or it onto them where it comes back.
+/// A complete pose of the device: the scan track is aligned with it or, after an outage, it is
+/// checked against the scan track.
 void FillIn::measured(InsEstimate& estimate) {
   const Pose2 T_map_body{estimate.p_map_body.x(), estimate.p_map_body.y(),
                          yawPitchRoll(estimate.R_map_body).yaw};
@@ -123,7 +126,8 @@ bool FillIn::complete(InsEstimate& estimate, int64_t now) {
     estimate.p_map_body = {filled->T_map_body.x, filled->T_map_body.y, anchor_->z};
     estimate.position_std = {filled->std[0], filled->std[1], kUnmeasured};
   } else {
-    // The device's point was taken for the body: now it is known which way the lever points.
+    // The device's reference point was used for the body: now the direction of the lever arm is
+    // known.
     estimate.p_map_body -= estimate.R_map_body * estimate.p_body_point;
     const double arm = estimate.p_body_point.head<2>().norm();
     const double gained = square(arm) * (1.0 - square(filled->std[2]));

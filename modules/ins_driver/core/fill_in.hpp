@@ -13,7 +13,7 @@
 
 namespace tread::ins {
 
-/// Where scan matching says that the body is, in a frame of its own that drifts.
+/// A pose of the body by scan matching, in its own drifting frame.
 struct ScanPose {
   int64_t utime = 0;  ///< [us]
   Pose2 T_scan_body;
@@ -23,43 +23,45 @@ struct ScanPose {
   bool new_track = false;  ///< not connected with the poses before
 };
 
-/// When and how far scan matching stands in for the device, with its defaults.
+/// When, and up to which drift, scan matching replaces the device, with defaults.
 struct FillInConfig {
-  int64_t after_us = 150'000;  ///< [us] of silence, after which the scans' own poses are given
-  double max_drift = 0.5;      ///< [m] told standard deviation since the device knew the pose
-  double max_yaw_drift = 0.1;  ///< [rad] the same: beyond, nothing is filled in
-  double jump = 0.2;           ///< [m] by which a pose of the device then is a jump, no correction
-  double yaw_jump = 0.1;       ///< [rad] the same
+  int64_t after_us = 150'000;  ///< [us] of silence after which scan poses are used
+  double max_drift = 0.5;  ///< [m] estimated standard deviation since the last pose of the device
+  double max_yaw_drift = 0.1;  ///< [rad] the same: beyond it nothing is filled in
+  double jump =
+      0.2;  ///< [m] difference from which a new pose of the device is a jump, not a correction
+  double yaw_jump = 0.1;  ///< [rad] the same
 };
 
-/// Gives the poses that the device does not: the motion since its last whole pose is measured by
-/// scan matching.
-/** Whenever the device knows position and heading, the two tracks are laid onto each other. From
- * there on a missing position or heading is completed; where the device is silent, each pose of
- * scan matching becomes an estimate. Their deviation is the device's, with what scan matching adds
- * on the way and what a wrong heading makes of the way. Roll, pitch and height are not measured by
- * scans: unknown, and as they were. */
+/// Fills in poses missing from the device: scan matching measures the motion since its last
+/// complete pose.
+/** Whenever the device has position and heading, the two tracks are aligned. From there a missing
+ * position or heading is completed; while the device is silent, each pose of scan matching becomes
+ * an estimate. Its standard deviation is the device's, plus the drift of scan matching and the
+ * effect of a heading error on the displacement. Scans do not measure roll, pitch and height: roll
+ * and pitch are unknown, the height is kept. */
 class FillIn {
  public:
   explicit FillIn(const FillInConfig& config) : config_(config) {}
 
   /// Takes a pose of scan matching.
   void observe(const ScanPose& pose);
-  /// Takes what the device gave at `now`, and completes it. Returns false if the estimate must be
-  /// left out, because a later one was filled in already.
+  /// Takes the device's estimate at `now` and completes it. Returns false if it must be left out,
+  /// because a later one was already filled in.
   bool complete(InsEstimate& estimate, int64_t now);
   /// The next estimate while the device is silent.
   std::optional<InsEstimate> next(int64_t now);
 
-  /// Estimates that were completed or filled in.
+  /// Number of estimates completed or filled in.
   int64_t filled() const { return filled_; }
-  /// [us] since when estimates have been filled in; nothing while the device gives them, or nobody.
+  /// [us] since when estimates have been filled in; nullopt while the device sends them, or if
+  /// there are none at all.
   std::optional<int64_t> since() const { return since_; }
   /// [us] of the newest pose of scan matching.
   std::optional<int64_t> newestScan() const;
 
  private:
-  /// The two tracks at the same instant.
+  /// Poses of both tracks at the same instant.
   struct Anchor {
     Pose2 T_map_body;
     Eigen::Vector3d device_std;  ///< of x, y, yaw
@@ -85,7 +87,7 @@ class FillIn {
   std::optional<ScanPose> scan_;  ///< the newest
   PoseTrack scans_{1'000'000};
   std::optional<Anchor> anchor_;
-  int64_t heard_ = 0;                  ///< [us] when the device gave something
+  int64_t heard_ = 0;                  ///< [us] of the device's last data
   std::optional<int64_t> last_utime_;  ///< [us] of the last estimate
   std::optional<int64_t> since_;
   int64_t filled_ = 0;

@@ -10,13 +10,13 @@
 namespace tread::ins {
 namespace {
 
-/// A longer pause between two velocities can hide a stop and a turn.
+/// A longer gap between two velocities can hide a stop and a turn.
 constexpr int64_t kMaxPauseUs = 500'000;
-/// Nearer than this to nose or tail the course is along the axis [rad].
+/// Within this angle of nose or tail the course is along the axis [rad].
 constexpr double kMaxOffAxis = kPi / 3.0;
-/// One sigma of the angle by which a vehicle drifts sideways while it drives straight [rad].
+/// Sideslip angle of straight driving, one sigma [rad].
 constexpr double kSideslip = 0.05;
-/// A better heading than this old keeps worse ones out [us].
+/// A better heading up to this age excludes worse ones [us].
 constexpr int64_t kRankHoldUs = 1'000'000;
 
 }  // namespace
@@ -79,7 +79,7 @@ std::optional<Attitude> HeadingChoice::attitudeOf(const DeviceEpoch& epoch, int6
   for (size_t rank = 0; rank < order_.size(); ++rank) {
     const HeadingSource source = order_[rank];
     const bool later = outranked(epoch, rank, utime);
-    if (later && source == HeadingSource::kCourse) break;  // the better one is carried instead
+    if (later && source == HeadingSource::kCourse) break;  // the better one is extrapolated instead
     const std::optional<Heading> heading = headingOf(epoch, source, yaw_rate);
     if (!heading) continue;
     if (later) {

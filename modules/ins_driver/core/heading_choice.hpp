@@ -12,47 +12,47 @@
 
 namespace tread::ins {
 
-/// The course over ground as a heading, where nothing better is measured.
-/** The course tells the vehicle's axis, not which end goes first. That is told by a reference: the
-   heading before, turned on with the measured yaw rate. Without a measured rate the reference holds
-   only while the vehicle keeps moving faster than course_min_speed, since it cannot turn its
-   direction of motion round without being slower in between. No reference, or a course more than 60
-   degrees off the axis on both sides (sliding, or turned unseen): no heading. A vehicle that never
-   drives backwards needs no reference. */
+/// Uses the course over ground as heading if nothing better is measured.
+/** The course gives the vehicle's axis, but not its direction of travel along it. A reference
+ * decides: the previous heading, updated with the measured yaw rate. Without a measured rate the
+ * reference is valid only while the vehicle moves faster than course_min_speed, because it cannot
+ * reverse its motion without slowing down. Without a reference, or for a course more than 60
+ * degrees off the axis in both directions (sliding, or an unseen turn), there is no heading. A
+ * vehicle that never drives backwards needs no reference. */
 class CourseHeading {
  public:
   explicit CourseHeading(const InsConfig& config) : config_(config) {}
 
-  /// Carries the reference on to an instant.
+  /// Updates the reference to an instant.
   void advance(int64_t utime, const std::optional<GroundVelocity>& velocity,
                const std::optional<double>& yaw_rate);
-  /// A heading of a better source is the reference from now on.
+  /// Sets the reference to a heading from a better source.
   void learn(double yaw);
   /// The heading of a moving vehicle.
-  /** The reported point may swing about the body's origin while the vehicle turns; the body itself
-     is taken to move along its nose. */
+  /** The reference point may swing about the body's origin while the vehicle turns; the body itself
+   * is assumed to move along its nose. */
   std::optional<Heading> of(const GroundVelocity& velocity, double yaw_rate);
   void clear() { reference_.reset(); }
-  /// Courses that could not be told to be the nose or the tail.
+  /// Courses for which nose and tail could not be distinguished.
   int64_t refused() const { return refused_; }
 
  private:
   InsConfig config_;
   std::optional<double> reference_;
   int64_t utime_ = 0;        ///< of the last instant
-  int64_t known_utime_ = 0;  ///< when the reference was last sure
+  int64_t known_utime_ = 0;  ///< when the reference was last certain
   int64_t refused_ = 0;
 };
 
 /// How often each heading was used.
 struct HeadingCounts {
   std::array<int64_t, 3> used{};  ///< in the order of HeadingSource
-  int64_t outranked = 0;          ///< left aside: a better one was measured shortly before
+  int64_t outranked = 0;          ///< not used: a better one was measured shortly before
 };
 
-/// Chooses the heading of an instant among its sources, by the order in the configuration.
-/** A worse heading with an instant of its own is left aside for a second after a better one:
-   otherwise two sources with different biases would take turns in the track. */
+/// Chooses the heading of an instant among its sources, in the configured order.
+/** A worse heading is ignored for a second after a better one: otherwise two sources with different
+ * biases would alternate in the track. */
 class HeadingChoice {
  public:
   explicit HeadingChoice(const InsConfig& config) : order_(config.headings), course_(config) {}

@@ -9,9 +9,9 @@
 namespace tread::ins {
 namespace {
 
-/// Of the poses that lack an input: fewer are messages that the line lost.
+/// Share of poses without an input that is attributed to messages lost on the line.
 constexpr double kTolerated = 0.1;
-constexpr double kLongestHold = 0.5;  // [s] that the configuration allows
+constexpr double kLongestHold = 0.5;  // [s] upper limit in the configuration
 
 std::string rounded(double value, int digits) {
   std::ostringstream text;
@@ -19,8 +19,8 @@ std::string rounded(double value, int digits) {
   return text.str();
 }
 
-/// How often an input came in a window, and whether mostly too late to be carried from the one
-/// before.
+/// How often an input arrived in a window, and whether mostly too late to extrapolate the previous
+/// one.
 struct Pace {
   double rate = 0.0;  ///< [Hz]
   bool slow = false;
@@ -44,7 +44,7 @@ std::string having(const char* what, int64_t some, int64_t all) {
 
 std::string InputRates::remedy(const std::string& input, double rate, double needed,
                                const std::string& key, int64_t hold_us) const {
-  // A fifth more than its period, so that a message that is late is still in time.
+  // A fifth more than its period, so that a late message is still in time.
   const double hold = std::ceil(120.0 / rate) / 100.0;
   const std::string text =
       "let the device send " + input + " " + rounded(needed, 0) + " times a second";
@@ -74,7 +74,7 @@ std::string InputRates::compare(const Counts& end) const {
     return having("a velocity", poses - no_velocity, poses) + messages(end) +
            remedy("velocities", velocities.rate, positions.rate, "position_hold",
                   config_.position_hold_us);
-  // Attitudes to which no position could be carried.
+  // Attitudes to which no position could be extrapolated.
   if (config_.attitude_epochs && positions.slow && manyOf(left_out, left_out + poses))
     return having("a position near the attitude", poses, left_out + poses) + messages(end) +
            remedy("positions", positions.rate, headings.rate, "position_hold",

@@ -12,13 +12,13 @@
 
 namespace tread::ins {
 
-/// Watches how often each input of a pose comes: a heading once a second under positions at 20 Hz
-/// leaves most poses without one, although nothing is silent.
+/// Monitors the rate of each input of a pose: a heading once a second with positions at 20 Hz
+/// leaves most poses without one, although no input is silent.
 class InputRates {
  public:
   explicit InputRates(const InsConfig& config) : config_(config) {}
 
-  /// Takes the counts as they are now; every 5 s they are compared with those before.
+  /// Takes the present counts; every 5 s they are compared with the previous ones.
   /** What is too slow, with the rates of all messages, and which key to set; empty if nothing is.
    */
   template <class Decoded>
@@ -33,7 +33,7 @@ class InputRates {
  private:
   static constexpr int64_t kWindowUs = 5'000'000;
 
-  /// The counts at the begin or end of a window.
+  /// The counts at the start or end of a window.
   struct Counts {
     int64_t utime;
     AssemblerCounts epochs;

@@ -11,11 +11,11 @@
 namespace tread::ins {
 namespace {
 
-/// After this time without a position message, instants with attitude alone are published, too.
+/// After this time without a position message, instants with only an attitude are published, too.
 constexpr int64_t kPositionsExpectedUs = 1'500'000;
 
-/// After so many fixes without an altitude over so long a time the device tells none: the origin
-/// need not wait for it.
+/// After this many fixes without an altitude over this long, the device is assumed to send none:
+/// the origin need not wait for it.
 constexpr int kIncompleteFixes = 10;
 constexpr int64_t kIncompleteUs = 1'200'000;
 
@@ -185,7 +185,7 @@ void InsAssembler::setVelocity(const std::optional<GroundVelocity>& ground,
   const double course_in_map = *ground->course - yawOf(frame_);
   const double angle = course_in_map - yawPitchRoll(estimate.R_map_body).yaw;
   const double rate = yawRateOf(estimate);
-  // The device's point swings about the body's origin: v_origin = v_point - omega x arm.
+  // The reference point swings about the body's origin: v_origin = v_point - omega x arm.
   estimate.v_body.x() = ground->speed * std::cos(angle) + rate * arm.y();
   estimate.v_body.y() = ground->speed * std::sin(angle) - rate * arm.x();
   // Up only where roll and pitch rates are measured: NaN in them stays NaN.
@@ -277,8 +277,8 @@ void InsAssembler::place(const PointInMap& point, InsEstimate& estimate) const {
   if (has_heading) estimate.p_map_body -= estimate.R_map_body * point.p_body;
   estimate.satellites = point.satellites;
   const double arm = point.p_body.head<2>().norm();
-  // Without a heading the lever arm points anywhere; with one its end moves by the error of the
-  // heading.
+  // Without a heading the lever arm's direction is unknown; with one its end moves by the heading's
+  // error.
   const double yaw_std = estimate.attitude_std.z();
   const double told_std = std::isfinite(yaw_std) ? arm * yaw_std : 0.0;
   const double arm_std = has_heading ? told_std : arm;

@@ -16,8 +16,8 @@
 
 namespace tread::ins {
 
-/// How often an input of a pose came, and how often so long after the one before that it had not
-/// been carried on until then.
+/// How often an input of a pose arrived, and how often so late that the previous one could not be
+/// extrapolated that far.
 struct InputCount {
   int64_t came = 0;
   int64_t apart = 0;
@@ -30,43 +30,43 @@ struct InputCount {
   }
 };
 
-/// What became of the epochs.
+/// Results of the epochs.
 struct AssemblerCounts {
   int64_t epochs = 0;             ///< taken
   int64_t published = 0;          ///< became an estimate
   int64_t attitude_only = 0;      ///< kept for the next position
-  int64_t carried = 0;            ///< positions with an attitude that was measured shortly before
-  int64_t positions_carried = 0;  ///< attitudes with a position that was measured shortly before
-  int64_t not_newer = 0;          ///< refused: their time is not after the last one
+  int64_t carried = 0;            ///< positions with an attitude measured shortly before
+  int64_t positions_carried = 0;  ///< attitudes with a position measured shortly before
+  int64_t not_newer = 0;          ///< refused: not newer than the last one
   int64_t too_far = 0;            ///< positions refused because they are too far from the origin
   int64_t gaps = 0;
   int64_t jumps = 0;
-  int64_t doubted = 0;      ///< not published: far from the position before
+  int64_t doubted = 0;      ///< not published: far from the previous position
   int64_t clock_steps = 0;  ///< the device's clock was set
-  InputCount positions;     ///< also where there is no fix
+  InputCount positions;     ///< including those without a fix
   InputCount headings;
   InputCount velocities;
-  int64_t without_heading = 0;   ///< published although no heading was measured near it
+  int64_t without_heading = 0;   ///< published without a heading measured near it
   int64_t without_velocity = 0;  ///< likewise
 };
 
-/// Makes an estimate of the body in the map from what the device said about one instant.
+/// Estimates the body's pose in the map from the device's data of one instant.
 class InsAssembler {
  public:
   explicit InsAssembler(const InsConfig& config);
 
-  /// Takes note of when an epoch arrived. To be called for all that are there before the first of
-  /// them is solved: after a pause the newest knows best how late the others are. Not beyond one
-  /// before which the device's clock was set.
+  /// Notes the arrival of an epoch. Call it for all available epochs before solving the first of
+  /// them: after a pause the newest reveals how late the others are. Not beyond an epoch before
+  /// which the device's clock was set.
   void observe(const DeviceEpoch& epoch);
-  /// The estimate of an observed epoch; nothing if only the attitude was measured and no position
-  /// can be carried to it, or if its time is not after the last one.
+  /// The estimate of an observed epoch; nullopt if it contains only an attitude and no position can
+  /// be extrapolated to it, or if it is not newer than the last one.
   std::optional<InsEstimate> solve(const DeviceEpoch& epoch);
-  /// Takes the rates of a device that tells them apart from its epochs, about the device's axes
-  /// [rad/s]. They count for epochs within attitude_hold of their device time.
+  /// Takes the rates of a device that sends them separately from its epochs, about the device's
+  /// axes [rad/s]. They are used for epochs within attitude_hold of their device time.
   void addRate(int64_t device_time, const Eigen::Vector3d& rate_device);
 
-  /// The map's place on Earth once there is one: configured, or the first good fix.
+  /// The map's origin on Earth, if known: configured, or the first good fix.
   std::optional<GeoOrigin> origin() const;
   const AssemblerCounts& counts() const { return counts_; }
   const HeadingChoice& headings() const { return headings_; }
@@ -81,16 +81,16 @@ class InsAssembler {
   void forget();
   void setRate(const DeviceEpoch& epoch, InsEstimate& estimate) const;
   void setOrientation(const std::optional<Attitude>& attitude, InsEstimate& estimate) const;
-  /// Measured, or told by the last two headings, else 0 [rad/s].
+  /// Measured, or from the last two headings, otherwise 0 [rad/s].
   double yawRateOf(const InsEstimate& estimate) const;
-  /// The last told velocity, its course turned on with the vehicle, within position_hold.
+  /// The last reported velocity, its course rotated with the vehicle, within position_hold.
   std::optional<GroundVelocity> velocityAt(const InsEstimate& estimate) const;
-  /// `arm`: the reported point in body [m].
+  /// `arm`: the reference point in body [m].
   void setVelocity(const std::optional<GroundVelocity>& ground, const Eigen::Vector3d& arm,
                    InsEstimate& estimate) const;
-  /// Of the reported point along map x and y.
+  /// Of the reference point along map x and y.
   std::optional<Eigen::Vector2d> velocityInMap(const GroundVelocity& ground) const;
-  /// False if the position is doubted: then nothing of the epoch is given.
+  /// False if the position is doubted: then the epoch gives nothing.
   bool setPosition(const DeviceEpoch& epoch, InsEstimate& estimate);
   void remember(const DeviceEpoch& epoch, const PointInMap& point, int64_t utime);
   Eigen::Vector3d armOf(const DeviceEpoch& epoch) const;
@@ -113,7 +113,7 @@ class InsAssembler {
   PositionMemory positions_;
   TrackMonitor monitor_;
   std::optional<Rate> rate_;
-  std::optional<GroundVelocity> velocity_;  ///< the last told one
+  std::optional<GroundVelocity> velocity_;  ///< the last reported one
   int64_t velocity_utime_ = 0;
   std::optional<int64_t> last_position_utime_;
   std::optional<int64_t> last_utime_;

@@ -16,13 +16,13 @@
 
 namespace tread::ins {
 
-/// What was counted, by its name in words.
+/// Counters by name, in words.
 using NamedCounts = std::vector<std::pair<std::string, int64_t>>;
 
 /// "GGA: field count 3, wrong checksum 12"; empty if there are none.
 std::string listed(const ReasonCounts& reasons);
 
-/// What every device's reader ends in: parts of epochs in, estimates out.
+/// Common last stage of all devices' readers: parts of epochs in, estimates out.
 class InsPipeline {
  public:
   /// `cycle_us`: of the device's times, as in DeviceClock.
@@ -36,7 +36,7 @@ class InsPipeline {
 
   /// As in InsSource.
   std::optional<InsEstimate> next(int64_t now);
-  /// Adds what became of the epochs, in the order of HEALTH.
+  /// Adds the results of the epochs, in the order of HEALTH.
   void addCounters(NamedCounts& counters) const;
 
  private:
@@ -48,7 +48,7 @@ class InsPipeline {
   size_t observed_ = 0;  ///< how many of them the assembler has observed
 };
 
-/// What all devices' readers share: whatever follows from the pipeline.
+/// Common part of all devices' readers: whatever follows from the pipeline.
 class PipelineIns : public InsSource {
  public:
   std::optional<InsEstimate> next(int64_t now) override { return pipeline_.next(now); }

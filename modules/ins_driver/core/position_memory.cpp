@@ -8,7 +8,7 @@ namespace tread::ins {
 namespace {
 
 constexpr int64_t kMaxBaseUs = 250'000;
-/// Of a velocity whose accuracy the device does not tell [m/s].
+/// Of a velocity whose accuracy the device does not report [m/s].
 constexpr double kUsualVelocityStd = 0.1;
 
 }  // namespace

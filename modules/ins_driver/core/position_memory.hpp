@@ -11,7 +11,7 @@
 
 namespace tread::ins {
 
-/// A measured or carried place of the reported point in the map.
+/// A measured or extrapolated position of the reference point in the map.
 struct PointInMap {
   Eigen::Vector3d p_map = Eigen::Vector3d::Constant(kUnmeasured);  ///< z NaN: no altitude [m]
   Eigen::Vector3d std = Eigen::Vector3d::Constant(kUnmeasured);    ///< along map axes [m]
@@ -19,16 +19,17 @@ struct PointInMap {
   int satellites = -1;                                             ///< -1 unknown
 };
 
-/// The last measured position, to bridge the short time to an attitude that was measured after it.
+/// The last measured position, to bridge the short time to a later attitude.
 class PositionMemory {
  public:
   explicit PositionMemory(int64_t hold_us) : hold_us_(hold_us) {}
 
-  /// `velocity`: of the point along map x and y [m/s], if the device told it; else it is taken from
-  /// the position before, if that is at most 250 ms old.
+  /// `velocity`: of the point along map x and y [m/s], if the device reported it; otherwise it is
+  /// derived from the previous position, if that is at most 250 ms old.
   void add(int64_t utime, const PointInMap& point, const std::optional<Eigen::Vector2d>& velocity,
            double velocity_std);
-  /// The point carried to a later time, at most the hold time, by its velocity; height is kept.
+  /// The point extrapolated to a later time, at most by the hold time, with its velocity; height is
+  /// kept.
   /** The standard deviation grows by that of the velocity times the age. */
   std::optional<PointInMap> at(int64_t utime) const;
   void clear() { newest_.reset(); }

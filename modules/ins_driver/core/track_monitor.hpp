@@ -12,27 +12,27 @@
 
 namespace tread::ins {
 
-/// What a position says of the track before it.
+/// Relation of a position to the track before it.
 enum class TrackStep : uint8_t {
   kNear,     ///< it goes on
-  kDoubted,  ///< the vehicle cannot have come here: perhaps a lie, the next position tells
-  kJump      ///< nor to the doubted one before, and that is near: so it was
+  kDoubted,  ///< the vehicle cannot have come here: possibly wrong, the next position decides
+  kJump      ///< nor to the doubted one before, but is close to it: so that was right
 };
 
-/// Tells gaps and jumps in a track: what the vehicle cannot have done, the measurement did.
+/// Detects gaps and jumps in a track: motion that the vehicle cannot have made is a measurement
+/// error.
 class TrackMonitor {
  public:
   explicit TrackMonitor(const InsConfig& config)
       : period_us_(config.period_us), max_speed_(config.max_speed), slack_(config.jump_slack) {}
 
-  /// True if this message comes more than three periods after the one before.
+  /// Whether this message comes more than three periods after the previous one.
   /** The period is the configured one, or the median of the last nine intervals once there are
    * three. */
   bool isGap(int64_t utime);
-  /** A single position far off is what a weak checksum let through: 8 bits pass one damaged message
-   * in 256. */
+  /** A single distant position passed a weak checksum: 8 bits accept one damaged message in 256. */
   TrackStep judge(int64_t utime, const Eigen::Vector3d& p_map_body);
-  /// The next position is not compared with those before.
+  /// The next position is not compared with earlier ones.
   void restart() { last_.reset(); }
 
  private:
@@ -52,17 +52,17 @@ class TrackMonitor {
   std::optional<Place> last_, doubted_;
 };
 
-/// Maps device time to host time so that the jitter of line, scheduler and polling stays out of the
-/// measurement time.
+/// Converts device time to host time so that jitter of line, scheduler and polling does not affect
+/// the measurement time.
 /** A message never arrives before it was sent: the smallest (arrival - device time) of a sliding
-   window is the best estimate of the clocks' offset plus the shortest way. The window bounds the
-   error of a drifting device clock: 10 s times 50 ppm is 0.5 ms. */
+ * window is the best estimate of the clocks' offset plus the minimum delay. The window bounds the
+ * error of a drifting device clock: 10 s times 50 ppm is 0.5 ms. */
 class ArrivalFilter {
  public:
   explicit ArrivalFilter(int64_t window_us) : window_us_(window_us) {}
 
-  /// Takes an arrival [us host] of a device time [us]. A device time before the last one means that
-  /// the device's clock was set: what was known is forgotten.
+  /// Adds an arrival [us host] of a device time [us]. A device time before the last one means that
+  /// the device's clock was set: the estimate restarts.
   void add(int64_t device_time, int64_t arrival) {
     if (!samples_.empty() && device_time < samples_.back().device_time) samples_.clear();
     const int64_t offset = arrival - device_time;
@@ -70,7 +70,7 @@ class ArrivalFilter {
     samples_.push_back({device_time, offset});
     while (samples_.front().device_time < device_time - window_us_) samples_.pop_front();
   }
-  /// Host time of a device time; for one that was added at most its arrival.
+  /// Host time of a device time; for an added one at most its arrival.
   int64_t hostTime(int64_t device_time) const { return device_time + offset(); }
   /// Smallest offset in the window, 0 before the first arrival [us].
   int64_t offset() const { return samples_.empty() ? 0 : samples_.front().offset; }
@@ -81,7 +81,7 @@ class ArrivalFilter {
     int64_t offset;
   };
   int64_t window_us_;
-  std::deque<Sample> samples_;  ///< offsets ascending from the front: the front is the minimum
+  std::deque<Sample> samples_;  ///< offsets in ascending order: the front is the minimum
 };
 
 }  // namespace tread::ins

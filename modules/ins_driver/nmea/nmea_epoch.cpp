@@ -24,7 +24,7 @@ double rangeError(FixQuality quality) {
   }
 }
 
-/// What each sentence says; the same name for all, for std::visit.
+/// Converts each sentence; the same function name for all, for std::visit.
 class Translator {
  public:
   explicit Translator(const InsConfig& config) : config_(config) {}

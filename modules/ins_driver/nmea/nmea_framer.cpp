@@ -41,13 +41,13 @@ std::optional<NmeaSentence> sentenceOf(std::string_view line) {
   return std::nullopt;
 }
 
-/// The lines of a burst before it has its place in time.
+/// The lines of a burst before its time is known.
 struct RawBurst {
   std::string_view bytes;
   std::optional<int64_t> time_of_day;
 };
 
-/// Cuts a log where the time changes or where a sentence without a time comes again.
+/// Splits a log where the time changes or where a sentence without a time repeats.
 std::vector<RawBurst> cutIntoBursts(std::string_view log) {
   std::vector<RawBurst> bursts;
   std::array<bool, kSentenceTypes> seen{};

@@ -12,7 +12,7 @@
 namespace tread::ins {
 namespace {
 
-/// True if the device left out, or marked as invalid, everything that the sentence is there for.
+/// Whether the device left empty, or marked as invalid, everything that the sentence is for.
 bool isEmpty(const NmeaSentence& sentence) {
   struct Visitor {
     bool operator()(const Gga& s) const { return !s.position; }
@@ -48,7 +48,7 @@ void NmeaIns::refuse(std::string_view type, SentenceRefusal reason) {
 
 void NmeaIns::take(std::string_view body) {
   const ParseResult result = parseNmea(body);
-  // Even a sentence that we do not know shows that the device is alive.
+  // Even an unknown sentence shows that the device is alive.
   last_sentence_ = arrival_;
   if (const auto* reason = std::get_if<SentenceRefusal>(&result)) {
     refuse(typeOf(body), *reason);
@@ -103,7 +103,7 @@ InsTally NmeaIns::tally() const {
   return tally;
 }
 
-/// Sentences that are there for a heading and hold none are named: they need not be asked for.
+/// Sentences that should contain a heading but do not are named: the device already sends them.
 std::string NmeaIns::headingAdvice() const {
   std::string names;
   for (const auto& [sentence, when] : {std::pair("HDT", ""), std::pair("PASHR", ""),
@@ -120,7 +120,7 @@ std::string NmeaIns::headingAdvice() const {
          ": is it aligned, does it see enough satellites with both antennas?";
 }
 
-/// Bytes of other instruments are refused for other reasons.
+/// Other instruments' bytes are refused for other reasons.
 std::string NmeaIns::checksumAdvice() const {
   const SentenceRefusals& refusals = framer_.refusals();
   const int64_t without = refusals[SentenceRefusal::kNoChecksum];

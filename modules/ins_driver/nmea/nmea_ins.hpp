@@ -13,7 +13,7 @@
 
 namespace tread::ins {
 
-/// What came over the line. Sentences = decoded + refused.
+/// Totals of received sentences. Sentences = decoded + refused.
 struct NmeaCounts {
   int64_t bytes = 0;
   int64_t stray_bytes = 0;  ///< in no sentence
@@ -21,14 +21,14 @@ struct NmeaCounts {
   int64_t decoded = 0;
   std::array<int64_t, kSentenceTypes> of_type{};  ///< decoded, in the order of kSentenceNames
   std::array<int64_t, kSentenceTypes>
-      empty{};  ///< of those: well-formed, but no measurement in them
+      empty{};  ///< of those: well-formed, but without a measurement
   SentenceRefusals refused;
-  /// The same by sentence where its checksum was good ("GGA: field count"), else by the bare
+  /// The same by sentence if its checksum was good ("GGA: field count"), otherwise by the bare
   /// reason.
   ReasonCounts reasons;
 };
 
-/// From the bytes of an NMEA 0183 device to estimates: framer, parser, epochs, assembler.
+/// Converts the bytes of an NMEA 0183 device to estimates: framer, parser, epochs, assembler.
 class NmeaIns : public PipelineIns {
  public:
   explicit NmeaIns(const InsConfig& config) : PipelineIns(config, kDayUs) {}

@@ -27,7 +27,7 @@ std::optional<double> decimal(std::string_view text) {
   const bool plus = !text.empty() && text.front() == '+';
   if (plus) text.remove_prefix(1);
   const size_t first = !plus && !text.empty() && text.front() == '-' ? 1 : 0;
-  // std::from_chars would also take "inf" and "nan".
+  // std::from_chars would also accept "inf" and "nan".
   if (first >= text.size() || (!isDigit(text[first]) && text[first] != '.')) return std::nullopt;
   double value = 0.0;
   const char* end = text.data() + text.size();
@@ -45,7 +45,7 @@ int digits(std::string_view text) {
 
 constexpr double kMpsPerKnot = 1852.0 / 3600.0;
 constexpr double kMpsPerKmh = 1.0 / 3.6;
-constexpr double kMaxKnots = 1000.0;              // the limit of civil receivers
+constexpr double kMaxKnots = 1000.0;              // limit of civil receivers
 constexpr double kMaxTurn = 36000.0;              // [deg/min], 100 turns a minute
 constexpr std::string_view kModes = "ADEFMNPRS";  // NMEA 0183 v4.11 mode indicator
 
@@ -54,7 +54,7 @@ bool usable(FixQuality quality) {
          quality != FixQuality::kSimulator;
 }
 
-/// Not valid, typed in by hand, or simulated by the receiver.
+/// Not valid, entered manually, or simulated by the receiver.
 bool usableMode(char mode) {
   return mode != 'N' && mode != 'M' && mode != 'S';
 }
@@ -70,7 +70,7 @@ NmeaSentence readGga(NmeaFields& fields) {
   fields.letter(10, "M");
   fields.number(11, -200.0, 200.0);  // geoid separation: heights stay above mean sea level
   fields.letter(12, "M");
-  fields.number(13, 0.0, 1e6);  // age of corrections: read only to refuse what is not a number
+  fields.number(13, 0.0, 1e6);  // age of corrections: parsed only to refuse non-numbers
   if (!usable(gga.quality)) gga.position.reset();
   if (!gga.position) gga.altitude.reset();
   return gga;
@@ -101,7 +101,7 @@ NmeaSentence readVtg(NmeaFields& fields) {
   fields.letter(6, "N");
   const auto speed_kmh = fields.number(7, 0.0, kMaxKnots * 1.852, kMpsPerKmh);
   fields.letter(8, "K");
-  // With the same number of decimals km/h are the finer of the two.
+  // At the same number of decimals km/h have the finer resolution.
   vtg.speed = speed_kmh ? speed_kmh : speed_knots;
   return usableMode(fields.letter(9, kModes)) ? vtg : Vtg{};
 }
@@ -111,7 +111,7 @@ NmeaSentence readHdt(NmeaFields& fields) {
   return Hdt{fields.yawFromHeading(1)};
 }
 
-/// A heading without a mode is not known to be measured.
+/// A heading without a mode may not be measured.
 NmeaSentence readThs(NmeaFields& fields) {
   const auto yaw = fields.yawFromHeading(1);
   const char mode = fields.letter(2, "ADEFMNPRSV");
@@ -129,7 +129,7 @@ NmeaSentence readPashr(NmeaFields& fields) {
   pashr.roll_std = fields.number(7, 0.0, 360.0, kRadPerDeg);
   pashr.pitch_std = fields.number(8, 0.0, 360.0, kRadPerDeg);
   pashr.yaw_std = fields.number(9, 0.0, 360.0, kRadPerDeg);
-  fields.integer(10, 0, 9);  // of GNSS and of the IMU: the makers do not agree what they mean
+  fields.integer(10, 0, 9);  // of GNSS and of the IMU: manufacturers disagree about their meaning
   fields.integer(11, 0, 9);
   return pashr;
 }
@@ -140,13 +140,13 @@ NmeaSentence readRot(NmeaFields& fields) {
 }
 
 NmeaSentence readZda(NmeaFields& fields) {
-  fields.number(5, -13.0, 13.0);  // local zone: UTC is what counts
+  fields.number(5, -13.0, 13.0);  // local zone: only UTC is used
   fields.integer(6, 0, 59);
   return Zda{fields.timeOfDay(1), fields.date(2)};
 }
 
-/// Some devices leave out the last field, the reference station: certain only while both units
-/// stand where they belong.
+/// Some devices omit the last field, the reference station: certain only if both units are in their
+/// places.
 bool endsBeforeStation(const NmeaFields& fields) {
   return fields.count() == 13 && fields.text(10) == "M" && fields.text(12) == "M";
 }

@@ -25,18 +25,17 @@ enum class FixQuality : uint8_t {
   kEstimated = 6,
   kManual = 7,
   kSimulator = 8,
-  kAugmented = 9,  ///< not of the standard: NovAtel's word for a fix with SBAS corrections
+  kAugmented = 9,  ///< not in the standard: NovAtel's code for a fix with SBAS corrections
 };
 
-// All times are UTC, microseconds since midnight. A field that the device left empty, or that it
-// marks as invalid, is absent. Angles are in the house's sense: yaw counter-clockwise from east,
-// nose down positive.
+// All times are UTC, microseconds since midnight. Fields that are empty or marked invalid are
+// absent. Angles follow our convention: yaw counter-clockwise from east, nose down positive.
 
 /// Position fix.
 struct Gga {
   std::optional<int64_t> time_of_day;
   FixQuality quality = FixQuality::kNone;
-  std::optional<GeoPoint> position;  ///< absent without a fix, and for typed-in or simulated ones
+  std::optional<GeoPoint> position;  ///< absent without a fix, and for manual or simulated ones
   std::optional<double> altitude;    ///< above mean sea level [m]; absent with the position
   std::optional<double> hdop;        ///< horizontal dilution of precision [1]
   std::optional<int> satellites;
@@ -45,7 +44,7 @@ struct Gga {
 /// Recommended minimum: position, speed, course, date.
 struct Rmc {
   std::optional<int64_t> time_of_day;
-  std::optional<GeoPoint> position;  ///< this and the following only if the status is A
+  std::optional<GeoPoint> position;  ///< this and the following only for status A
   std::optional<double> speed;       ///< over ground [m/s]
   std::optional<double> course;      ///< direction of motion as a yaw [rad]
   std::optional<CivilDate> date;
@@ -62,13 +61,14 @@ struct Hdt {
   std::optional<double> yaw;  ///< [rad]
 };
 
-/// Inertial attitude; the form of OxTS, NovAtel, Applanix, Trimble and Hemisphere, not Ashtech's
+/// Inertial attitude; the format of OxTS, NovAtel, Applanix, Trimble and Hemisphere, not Ashtech's
 /// own.
 struct Pashr {
   std::optional<int64_t> time_of_day;
-  std::optional<double> yaw;    ///< [rad]
-  std::optional<double> roll;   ///< right side down positive, about x forward [rad]
-  std::optional<double> pitch;  ///< nose down positive, about y left [rad]; the device says nose up
+  std::optional<double> yaw;   ///< [rad]
+  std::optional<double> roll;  ///< right side down positive, about x forward [rad]
+  std::optional<double>
+      pitch;  ///< nose down positive, about y left [rad]; the sentence has nose up
   std::optional<double> roll_std;   ///< [rad]
   std::optional<double> pitch_std;  ///< [rad]
   std::optional<double> yaw_std;    ///< [rad]
@@ -77,7 +77,7 @@ struct Pashr {
 /// Rate of turn.
 struct Rot {
   std::optional<double>
-      yaw_rate;  ///< [rad/s], counter-clockwise positive; the device says clockwise
+      yaw_rate;  ///< [rad/s], counter-clockwise positive; the sentence has clockwise
 };
 
 /// Time and date.
@@ -99,21 +99,22 @@ inline constexpr size_t kSentenceTypes = std::variant_size_v<NmeaSentence>;
 inline constexpr const char* kSentenceNames[kSentenceTypes] = {"GGA",   "RMC", "VTG", "HDT",
                                                                "PASHR", "ROT", "ZDA", "THS"};
 
-/// UTC time of day of the measurement in a sentence, where it tells one [us].
-/** Not of ZDA: it measures nothing, and some devices send it with the time of the next second. */
+/// UTC time of day of the measurement in a sentence, if it has one [us].
+/** Not for ZDA, which contains no measurement and which some devices send with the time of the next
+ * second. */
 std::optional<int64_t> timeOfDay(const NmeaSentence& sentence);
 
 /// Why a sentence was not used.
 enum class SentenceRefusal : uint8_t {
-  kCut,              ///< a new '$' came before the end of the line
+  kCut,              ///< a new '$' before the end of the line
   kNotPrintable,     ///< a byte that NMEA 0183 does not allow in a sentence
   kTooLong,          ///< no line end within the length limit
   kNoChecksum,       ///< the line does not end in '*' and two hexadecimal digits
   kWrongChecksum,    ///< the digits are not the exclusive-or of the sentence
-  kUnknownSentence,  ///< well-formed, but not one of ours
+  kUnknownSentence,  ///< well-formed, but not supported
   kFieldCount,       ///< more or fewer fields than this sentence has
-  kBadField,         ///< a field that is not empty and not of its form
-  kOutOfRange,       ///< a number or date that cannot be
+  kBadField,         ///< a non-empty field in a wrong format
+  kOutOfRange,       ///< an impossible number or date
   kLate,             ///< its epoch has already been published
   kCount
 };
@@ -142,15 +143,14 @@ struct SentenceRefusals {
   }
 };
 
-/// The comma-separated fields of one sentence, read strictly.
-/** Every reader returns nothing for an empty field. A field that is not empty and not of its form,
-   or not within its range, also yields nothing and is remembered: refusal() then names the first
-   such reason. */
+/// The comma-separated fields of one sentence, parsed strictly.
+/** Every reader returns nullopt for an empty field. For a field in a wrong format or out of range
+ * it also returns nullopt, and refusal() keeps the first such reason. */
 class NmeaFields {
  public:
   static constexpr size_t kMaxFields = 32;
 
-  /// Splits what stands between '$' and '*'.
+  /// Splits the text between '$' and '*'.
   explicit NmeaFields(std::string_view body);
 
   std::string_view address() const { return fields_[0]; }
@@ -173,7 +173,7 @@ class NmeaFields {
   std::optional<GeoPoint> point(size_t index);
   /// Degrees clockwise from north in [0, 360] as a yaw in (-pi, pi] [rad].
   std::optional<double> yawFromHeading(size_t index);
-  /// ddmmyy; 80 to 99 are of the last century.
+  /// ddmmyy; 80 to 99 are in the last century.
   std::optional<CivilDate> shortDate(size_t index);
   /// Day, month and year in the three fields from `index` on.
   std::optional<CivilDate> date(size_t index);
@@ -189,16 +189,16 @@ class NmeaFields {
   std::optional<SentenceRefusal> refusal_;
 };
 
-/// A sentence in SI units and the house's frames, or why it is none.
+/// A sentence in SI units and our frames, or the reason for its refusal.
 using ParseResult = std::variant<NmeaSentence, SentenceRefusal>;
 
-/// The name in kSentenceNames of what stands between '$' and '*'; empty if it is none of ours.
+/// The name in kSentenceNames for the text between '$' and '*'; empty if it is not supported.
 std::string_view typeOf(std::string_view body);
 
-/// Reads what stands between '$' and '*' (checksum already verified).
+/// Parses the text between '$' and '*' (checksum already verified).
 /** GGA, RMC, VTG, HDT, THS, ROT and ZDA of any two-letter talker, and PASHR (field lists: NMEA 0183
-   v4.11; PASHR: manuals of OxTS, NovAtel and Trimble). Empty fields are absent. One malformed or
-   impossible field refuses the sentence. GGA may lack its last field, the reference station. */
+ * v4.11; PASHR: manuals of OxTS, NovAtel and Trimble). Empty fields are absent. One malformed or
+ * impossible field refuses the sentence. GGA may lack its last field, the reference station. */
 ParseResult parseNmea(std::string_view body);
 
 }  // namespace tread::ins

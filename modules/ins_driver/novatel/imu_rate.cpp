@@ -12,9 +12,9 @@ namespace {
 
 constexpr double kUsualRates[] = {100.0, 125.0, 200.0, 250.0, 400.0, 500.0, 1000.0, 2000.0};
 constexpr size_t kRatios = 9;
-constexpr double kFit = 0.08;  ///< a median this near to a usual rate is that rate
+constexpr double kFit = 0.08;  ///< tolerance of a median for a common rate
 constexpr double kLeastTurn =
-    0.02;  ///< below this yaw between two attitudes noise would tell [rad]
+    0.02;  ///< below this yaw change between two attitudes noise would dominate [rad]
 constexpr int64_t kMaxBaseUs = 1'000'000;
 
 }  // namespace

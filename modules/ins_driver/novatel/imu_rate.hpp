@@ -8,20 +8,20 @@
 
 namespace tread::ins {
 
-/// Learns how many samples a second an IMU has whose turning is told per sample.
-/** The time stamps do not tell: the receiver may log every n-th sample. What tells is the attitude:
-   yaw turned in a second over yaw turned in a sample. Nine agreeing ratios while the vehicle turns,
-   near a rate that such IMUs have, are believed. */
+/// Estimates the sample rate of an IMU whose rotation is reported per sample.
+/** The time stamps do not give it, because the receiver may log every n-th sample. The attitude
+ * does: yaw change per second over yaw change per sample. Nine agreeing ratios during turns, near
+ * a common rate of such IMUs, are accepted. */
 class ImuRate {
  public:
   /// `configured`: 0 = learn it [Hz].
   explicit ImuRate(double configured);
 
-  /// A yaw of the inertial solution at a GPS time [us].
+  /// Adds a yaw of the inertial solution at a GPS time [us].
   void addYaw(int64_t time, double yaw);
-  /// Yaw turned in the sample at a GPS time [us], counter-clockwise [rad].
+  /// Adds the yaw change in the sample at a GPS time [us], counter-clockwise [rad].
   void addSample(int64_t time, double yaw_per_sample);
-  /// [Hz]; nothing before it is known.
+  /// [Hz]; nullopt until known.
   const std::optional<double>& rate() const { return rate_; }
 
  private:

@@ -12,18 +12,18 @@
 namespace tread::ins {
 namespace {
 
-// Inertial solution status (manual, "Inertial Solution Status"); all others cannot be vouched for.
+// Inertial solution status (manual, "Inertial Solution Status"); the others are not trusted.
 constexpr uint32_t kSolutionGood = 3;
 constexpr uint32_t kSolutionFree = 6;
 constexpr uint32_t kAlignmentComplete = 7;
 // Position or velocity type (manual, "Position or Velocity Type").
-constexpr uint32_t kSingle = 16;  // below: none, typed in, or Doppler alone
+constexpr uint32_t kSingle = 16;  // below: none, entered manually, or Doppler alone
 constexpr uint32_t kL1Int = 48;
 constexpr uint32_t kNarrowInt = 50;
 /// GPS time is known to a second or better from COARSE on (manual, "GPS Reference Time Status").
 constexpr int kCoarse = 100;
 constexpr int64_t kInertialHoldUs = 1'000'000;
-constexpr double kMaxSpeed = 600.0;     // [m/s], the limit of civil receivers
+constexpr double kMaxSpeed = 600.0;     // [m/s], limit of civil receivers
 constexpr double kMaxHeight = 20000.0;  // [m]
 constexpr double kMaxPerSample = 0.2;   // [rad]: 20 rad/s at 100 Hz
 
@@ -57,7 +57,7 @@ bool setAttitude(std::string_view body, size_t offset, DeviceEpoch& part) {
   return true;
 }
 
-/// Three floats, NaN where they are no standard deviation.
+/// Three floats, NaN if they are no valid standard deviations.
 Eigen::Vector3d stdAt(std::string_view body, size_t first, size_t second, size_t third,
                       double unit) {
   const auto one = [&](size_t offset) {

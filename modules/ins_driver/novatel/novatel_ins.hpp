@@ -14,11 +14,11 @@
 namespace tread::ins {
 
 /// A NovAtel OEM receiver, with or without SPAN (OEM7 Commands and Logs Reference Manual).
-/** Axes of SPAN's vehicle frame are right, forward, up. While the inertial solution is good it
-   alone gives positions (INSPVAX before INSPVA); BESTPOS then tells only satellites, geoid and,
-   beside INSPVA, the accuracy. A second after the inertial solution is lost, or without any,
-   BESTPOS, BESTVEL and HEADING take over; their point is the antenna. CORRIMUDATA tells radians per
-   sample of the IMU. */
+/** Axes of SPAN's vehicle frame are right, forward, up. While the inertial solution is good, it
+ * alone gives positions (INSPVAX before INSPVA); BESTPOS is then used only for satellites, geoid
+ * and, with INSPVA, the accuracy. A second after the inertial solution is lost, or without any,
+ * BESTPOS, BESTVEL and HEADING are used; their reference point is the antenna. CORRIMUDATA
+ * contains radians per sample of the IMU. */
 class NovatelIns : public BinaryIns {
  public:
   explicit NovatelIns(const InsConfig& config);

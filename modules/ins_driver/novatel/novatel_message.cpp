@@ -13,7 +13,7 @@ constexpr std::string_view kSync("\xAA\x44", 2);
 constexpr char kLong = '\x12';
 constexpr char kShort = '\x13';
 constexpr size_t kShortHeader = 12;
-constexpr size_t kLongHeader = 28;  // what the manual's fields need; byte 3 may tell more
+constexpr size_t kLongHeader = 28;  // the fields of the manual; byte 3 may give a longer one
 constexpr size_t kCrc = 4;
 
 std::array<uint32_t, 256> makeCrcTable() {

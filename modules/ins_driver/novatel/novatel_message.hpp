@@ -10,15 +10,15 @@
 
 namespace tread::ins {
 
-/// Judges bytes as a frame of NovAtel's OEM binary format, long or short header (OEM7 Commands and
+/// Checks bytes for a frame of NovAtel's OEM binary format, long or short header (OEM7 Commands and
 /// Logs Reference Manual, "Binary" and "Short Binary" message formats).
 /** CRC32, reflected polynomial EDB88320, start value 0, not inverted, over header and body. */
 FrameLook lookForNovatel(std::string_view bytes);
 
-/// CRC32 as NovAtel counts it.
+/// CRC32 as computed by NovAtel.
 uint32_t novatelCrc(std::string_view bytes);
 
-/// The messages that are read, with what they are counted as in InsConfig::last_type.
+/// The supported messages, numbered as in InsConfig::last_type.
 enum class NovatelKind : uint8_t {
   kBestpos,
   kBestvel,
@@ -31,19 +31,19 @@ enum class NovatelKind : uint8_t {
 inline constexpr const char* kNovatelKindNames[] = {"BESTPOS", "BESTVEL", "INSPVA",     "INSPVAX",
                                                     "INSATT",  "HEADING", "CORRIMUDATA"};
 
-/// A frame taken apart.
+/// A parsed frame.
 struct NovatelFrame {
   uint16_t id = 0;
   std::string_view body;
-  int week = 0;              ///< GPS week as told
+  int week = 0;              ///< GPS week as reported
   int64_t time_of_week = 0;  ///< GPS time in it [us]
-  int time_status = -1;      ///< -1: a short header tells none
+  int time_status = -1;      ///< -1: a short header has none
 };
 
-/// Takes a frame with a good checksum apart.
+/// Parses a frame with a good checksum.
 NovatelFrame frameOf(std::string_view frame);
 
-/// A message that is read: its id, length and name.
+/// A supported message: its id, length and name.
 struct NovatelType {
   uint16_t id;
   size_t length;  ///< of the body [bytes]
@@ -51,7 +51,7 @@ struct NovatelType {
   NovatelKind kind;
 };
 
-/// The type of an id; null if it is none of ours.
+/// The type of an id; null if it is not supported.
 const NovatelType* typeOfId(uint16_t id);
 
 }  // namespace tread::ins

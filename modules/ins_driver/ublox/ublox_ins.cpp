@@ -19,7 +19,7 @@ constexpr size_t kChecksum = 2;
 
 // F9 Interface Description: the section of each message.
 struct UbxType {
-  uint16_t id;  ///< class and id as they stand in the frame, low byte first
+  uint16_t id;  ///< class and id as in the frame, low byte first
   size_t length;
   size_t time_at;  ///< offset of iTOW
   UbxKind kind;
@@ -152,7 +152,7 @@ const char* UbloxIns::readPvt(std::string_view payload, DeviceEpoch& part) const
     if (!report.point || !within(height, kMaxHeight) || !within(velocity.norm(), kMaxSpeed))
       return kOutOfRange;
     if (fix != 2) report.altitude = height;
-    // The accuracies hold both horizontal axes.
+    // The accuracies cover both horizontal axes.
     const double horizontal = numberAt<uint32_t>(payload, 40) * 1e-3 / std::sqrt(2.0);
     report.std = {horizontal, horizontal, numberAt<uint32_t>(payload, 44) * 1e-3};
     report.starts_map = horizontal <= config_.origin_max_std;

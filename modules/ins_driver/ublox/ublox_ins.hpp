@@ -9,18 +9,18 @@
 
 namespace tread::ins {
 
-/// Judges bytes as a UBX frame: B5 62, class, id, length, payload, Fletcher checksum over class to
+/// Checks bytes for a UBX frame: B5 62, class, id, length, payload, Fletcher checksum over class to
 /// payload (u-blox F9 Interface Description, "UBX Protocol").
 FrameLook lookForUbx(std::string_view bytes);
 
-/// The messages that are read, with what they are counted as in InsConfig::last_type.
+/// The supported messages, numbered as in InsConfig::last_type.
 enum class UbxKind : uint8_t { kNavPvt, kNavRelposned, kNavAtt, kEsfIns };
 inline constexpr const char* kUbxKindNames[] = {"NAV-PVT", "NAV-RELPOSNED", "NAV-ATT", "ESF-INS"};
 
 /// A u-blox receiver: NAV-PVT, NAV-RELPOSNED (heading of a moving base), NAV-ATT, ESF-INS.
-/** Times are milliseconds of the GPS week; NAV-PVT tells UTC. Axes of the vehicle frame are
-   forward, right, down. A heading of NAV-RELPOSNED counts only with every flag that it needs: fix,
-   relative position valid, moving base, ambiguities fixed, heading valid. */
+/** Times are milliseconds of the GPS week; NAV-PVT contains UTC. Axes of the vehicle frame are
+ * forward, right, down. A heading of NAV-RELPOSNED is used only with all required flags: fix,
+ * relative position valid, moving base, ambiguities fixed, heading valid. */
 class UbloxIns : public BinaryIns {
  public:
   explicit UbloxIns(const InsConfig& config);

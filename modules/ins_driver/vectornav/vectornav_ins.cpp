@@ -21,12 +21,12 @@ constexpr double kMaxSpeed = 600.0;     // [m/s]
 constexpr double kMaxHeight = 20000.0;  // [m]
 constexpr double kMaxRate = 50.0;       // [rad/s], the sensor's limit is 35
 constexpr int64_t kYear2010Us =
-    int64_t{30} * 365 * kDayUs;  // of GPS time: before it none was known
+    int64_t{30} * 365 * kDayUs;  // of GPS time: no earlier time is valid
 
 /// Mode of InsStatus, bits 0 and 1.
 enum Mode : unsigned { kNotTracking = 0, kAligning = 1, kTracking = 2, kOutage = 3 };
 
-/// The field of one group, else of another.
+/// The field of one group, otherwise of another.
 std::string_view either(const VectornavFields& fields, VnGroup group, size_t bit, VnGroup other,
                         size_t other_bit) {
   const std::string_view field = fields.field(group, bit);
@@ -49,7 +49,7 @@ std::optional<int64_t> gpsTime(const VectornavFields& fields) {
   return time;
 }
 
-/// Of TimeUTC [us]; -1 if the message has none or it is none.
+/// From TimeUTC [us]; -1 if it is absent or invalid.
 int64_t toldUtc(const VectornavFields& fields) {
   const std::string_view field = either(fields, VnGroup::kTime, 6, VnGroup::kGnss, 0);
   const CivilDate date{2000 + numberAt<int8_t>(field, 0), numberAt<uint8_t>(field, 1),
@@ -61,8 +61,8 @@ int64_t toldUtc(const VectornavFields& fields) {
          int64_t{numberAt<uint16_t>(field, 6)} * 1000;
 }
 
-/// Yaw, pitch, roll in the house's sense, from the quaternion or else the angles.
-/** False where a field is there and is no attitude. */
+/// Yaw, pitch, roll in our convention, from the quaternion, otherwise from the angles.
+/** False if a field is present but no valid attitude. */
 bool setAttitude(const VectornavFields& fields, DeviceEpoch& part) {
   YawPitchRoll ned;  // yaw clockwise from north, pitch nose up, roll right side down [rad]
   const std::string_view quaternion = either(fields, VnGroup::kAttitude, 2, VnGroup::kCommon, 4);

@@ -11,10 +11,10 @@
 namespace tread::ins {
 
 /// A VectorNav VN-200 or VN-300 that sends binary messages (VN-300 User Manual).
-/** Axes are forward, right, down. Each message is one instant. InsStatus is needed: only while the
-   filter tracks do position, velocity and heading count; while it aligns, position and velocity; in
-   a GNSS outage, attitude. Heights are above the ellipsoid: geoid_separation must be configured.
-   Device time is TimeStartup, which no fix sets, else TimeGps. */
+/** Axes are forward, right, down. Each message is one instant. InsStatus is required: position,
+ * velocity and heading are used only while the filter tracks; position and velocity while it
+ * aligns; the attitude in a GNSS outage. Heights are above the ellipsoid: geoid_separation must be
+ * configured. Device time is TimeStartup, which fixes do not change, otherwise TimeGps. */
 class VectornavIns : public BinaryIns {
  public:
   explicit VectornavIns(const InsConfig& config);

@@ -12,7 +12,7 @@ namespace {
 constexpr char kSync = '\xFA';
 constexpr size_t kCrc = 2;
 
-/// Bytes of each field; 0: not known. VN-300 User Manual, tables of the groups' fields.
+/// Bytes of each field; 0: unknown. VN-300 User Manual, tables of the groups' fields.
 constexpr uint8_t kLengths[kVnGroups][16] = {
     {8, 8, 8, 12, 16, 12, 24, 12, 12, 24, 20, 28, 2, 4, 8, 0},
     {8, 8, 8, 2, 8, 8, 8, 4, 4, 1, 0, 0, 0, 0, 0, 0},
@@ -26,7 +26,7 @@ bool holds(unsigned mask, size_t bit) {
   return (mask >> bit & 1U) != 0;
 }
 
-/// Calls `visit(group, mask)` for each group; false if bytes are missing for its mask.
+/// Calls `visit(group, mask)` for each group; false if bytes of its mask are missing.
 template <class Visit>
 bool forEachGroup(std::string_view bytes, const Visit& visit) {
   const unsigned groups = numberAt<uint8_t>(bytes, 1);
@@ -46,7 +46,7 @@ size_t headerLength(unsigned groups) {
   return length;
 }
 
-/// Length of all fields of a mask; nothing if one of them is not known.
+/// Length of all fields of a mask; nullopt if one of them is unknown.
 std::optional<size_t> lengthOf(size_t group, unsigned mask) {
   size_t length = 0;
   for (size_t bit = 0; bit < 16; ++bit) {

@@ -10,12 +10,12 @@
 
 namespace tread::ins {
 
-/// Groups of a VectorNav binary output message, and the fields in them that are read (VN-300 User
-/// Manual, "User Configurable Binary Output Messages").
+/// Groups of a VectorNav binary output message, and their supported fields (VN-300 User Manual,
+/// "User Configurable Binary Output Messages").
 enum class VnGroup : size_t { kCommon, kTime, kImu, kGnss, kAttitude, kIns, kGnss2 };
 inline constexpr size_t kVnGroups = 7;
 
-/// Judges bytes as such a message: FA, groups, field masks, payload, CRC16.
+/// Checks bytes for such a message: FA, groups, field masks, payload, CRC16.
 /** The length follows from the masks. A message with a field of unknown length is refused. */
 FrameLook lookForVectornav(std::string_view bytes);
 

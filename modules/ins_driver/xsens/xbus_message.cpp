@@ -38,7 +38,7 @@ double numberOf(unsigned format, std::string_view bytes) {
     }
     case 1:  // 12.20
       return bigEndianAt<int32_t>(bytes, 0) / 1048576.0;
-    case 2:  // 16.32: the 32 bits behind the point come first
+    case 2:  // 16.32: the 32 bits after the point come first
       return bigEndianAt<int16_t>(bytes, 4) + bigEndianAt<uint32_t>(bytes, 0) / 4294967296.0;
     default: {
       const auto bits = bigEndianAt<uint64_t>(bytes, 0);

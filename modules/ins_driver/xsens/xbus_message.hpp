@@ -12,8 +12,8 @@
 
 namespace tread::ins {
 
-/// Data of an MTData2 message that are read (MT Low Level Communication Protocol): their
-/// identifiers without number format and coordinate system.
+/// Supported data of an MTData2 message (MT Low Level Communication Protocol): their identifiers
+/// without number format and coordinate system.
 enum class XbusData : uint16_t {
   kUtcTime = 0x1010,
   kSampleTimeFine = 0x1060,
@@ -28,22 +28,22 @@ enum class XbusData : uint16_t {
   kStatusWord = 0xE020
 };
 
-/// Judges bytes as an Xbus message: FA, FF, identifier, length, data, checksum.
+/// Checks bytes for an Xbus message: FA, FF, identifier, length, data, checksum.
 FrameLook lookForXbus(std::string_view bytes);
 
-/// The data of an MTData2 message with a good checksum; views of it, so that it must outlive them.
+/// The data of an MTData2 message with a good checksum, as views into it: it must outlive them.
 class XbusFields {
  public:
-  /// Nothing for another message, or if the lengths of its data do not fit the message.
+  /// nullopt for another message, or if the lengths of its data do not match the message.
   static std::optional<XbusFields> of(std::string_view frame);
 
   bool holds(XbusData data) const { return fields_.count(data) != 0; }
-  /// The numbers of a field, in whichever of the four formats it is; empty if it is not there or
-  /// holds another count of them.
+  /// The numbers of a field, in any of the four formats; empty if it is absent or has another count
+  /// of them.
   std::vector<double> numbers(XbusData data, size_t count) const;
-  /// Bytes of a field that has no number format; empty if it is not there or of another length.
+  /// Bytes of a field without a number format; empty if it is absent or has another length.
   std::string_view bytes(XbusData data, size_t length) const;
-  /// Whether orientation and velocity, where they are, are relative to east, north, up.
+  /// Whether orientation and velocity, if present, are relative to east, north, up.
   bool eastNorthUp() const;
 
  private:

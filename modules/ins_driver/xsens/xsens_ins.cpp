@@ -23,13 +23,14 @@ constexpr double kMaxHeight = 20000.0;  // [m]
 constexpr double kMaxRate = 50.0;       // [rad/s], the sensor's limit is 35
 constexpr int64_t kTick = 100;          // [us] of SampleTimeFine
 constexpr int64_t kCycle = (int64_t{1} << 32) * kTick;
-constexpr int64_t kAccuracyAge = 2'000'000;  // [us] after which a told accuracy counts no more
+constexpr int64_t kAccuracyAge =
+    2'000'000;  // [us] after which a reported accuracy no longer counts
 constexpr size_t kPvtLength = 94;
 
 /// Filter mode of StatusWord, bits 23 and 24.
 enum Mode : unsigned { kWithoutGnss = 0, kCoasting = 1, kWithGnss = 3 };
 
-/// Of UtcTime [us]; -1 if it is not there or not fully valid.
+/// From UtcTime [us]; -1 if it is absent or not fully valid.
 int64_t utcOf(const XbusFields& fields) {
   const std::string_view field = fields.bytes(XbusData::kUtcTime, 12);
   if (field.empty() || (bigEndianAt<uint8_t>(field, 11) & 7U) != 7U) return -1;
@@ -42,7 +43,7 @@ int64_t utcOf(const XbusFields& fields) {
          int64_t{bigEndianAt<uint32_t>(field, 0)} / 1000;
 }
 
-/// Yaw, pitch and roll of the device over the map's axes; nothing if there are none or they are no
+/// Yaw, pitch and roll of the device over the map's axes; nullopt if they are absent or no valid
 /// attitude.
 std::optional<YawPitchRoll> attitudeOf(const XbusFields& fields) {
   const std::vector<double> q = fields.numbers(XbusData::kQuaternion, 4);  // w, x, y, z
@@ -127,7 +128,7 @@ const char* XsensIns::readPlace(const XbusFields& fields, int64_t time, DeviceEp
     if (!height.empty() && config_.geoid_separation)
       report.altitude = height[0] - *config_.geoid_separation;
     if (told) {
-      // GNSS tells the radius of its circle; it is shared by two axes.
+      // GNSS reports the radius of a circle; it is divided between two axes.
       const double horizontal = accuracy_.horizontal / std::sqrt(2.0);
       report.std = {horizontal, horizontal, accuracy_.vertical};
       report.starts_map = !(accuracy_.horizontal > config_.origin_max_std);

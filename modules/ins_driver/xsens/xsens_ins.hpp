@@ -12,10 +12,11 @@ namespace tread::ins {
 
 /// An Xsens MTi with GNSS that sends MTData2 (MT Low Level Communication Protocol).
 /** Axes are forward, left, up; orientation and velocity relative to east, north, up (the factory
-   setting; others are refused). Each message is one instant. StatusWord is needed: only while the
-   filter uses GNSS do position and velocity count; while it coasts on without, the attitude; before
-   and after, roll and pitch. Accuracies come from the last GnssPvtData, which is rarer. Heights are
-   above the ellipsoid: geoid_separation must be configured. Device time is SampleTimeFine. */
+ * setting; others are refused). Each message is one instant. StatusWord is required: position and
+ * velocity are used only while the filter uses GNSS; the attitude also while it coasts without;
+ * before and after, only roll and pitch. Accuracies come from the last GnssPvtData, which is
+ * rarer. Heights are above the ellipsoid: geoid_separation must be configured. Device time is
+ * SampleTimeFine. */
 class XsensIns : public BinaryIns {
  public:
   explicit XsensIns(const InsConfig& config);
@@ -29,7 +30,7 @@ class XsensIns : public BinaryIns {
   void readGnss(std::string_view pvt, int64_t time);
   const char* readPlace(const XbusFields& fields, int64_t time, DeviceEpoch& part) const;
 
-  /// What the last GnssPvtData told.
+  /// Accuracies from the last GnssPvtData.
   struct Accuracy {
     int64_t time = -1;                ///< of the device [us]; -1: none yet
     double horizontal = kUnmeasured;  ///< [m]

@@ -16,7 +16,7 @@ constexpr double kLongestPause = 5.0;  // [s]
 constexpr const char* kWhichFile =
     "is this a CARMEN log? Its scans are lines of FLASER or ROBOTLASER1";
 
-/// Ranges behind their number; false if one is missing or no number.
+/// Ranges after their number; false if one is missing or no number.
 bool readRanges(std::istream& words, std::vector<float>& ranges) {
   size_t count = 0;
   if (!(words >> count) || count < 2 || count > kMostBeams) return false;
@@ -49,7 +49,7 @@ bool skipNumbers(std::istream& words, size_t count) {
   return true;
 }
 
-/// Laser and robot follow the ranges, x, y and heading of each: what lacks them was cut off.
+/// Laser and robot follow the ranges, x, y and heading of each: a line without them was truncated.
 bool readPoses(std::istream& words, Pose2& laser) {
   return readNumber(words, laser.x) && readNumber(words, laser.y) && readNumber(words, laser.yaw) &&
          skipNumbers(words, 3);
@@ -59,7 +59,7 @@ bool readFlaser(std::istream& words, CarmenScan& read) {
   RangeScan& scan = read.scan;
   if (!readRanges(words, scan.ranges) || !readPoses(words, read.T_map_laser)) return false;
   const size_t count = scan.ranges.size();
-  // 181 beams end on both sides, 180 leave out the last one.
+  // 181 beams end on both sides, 180 omit the last one.
   scan.angle_first = -kPi / 2.0;
   scan.angle_step = kPi / static_cast<double>(count % 2 == 1 ? count - 1 : count);
   return true;

@@ -65,7 +65,7 @@ void ScanCheck::thin(RangeScan& scan) const {
   scan.angle_step *= limits_.beam_stride;
   for (size_t i = 0; i < ranges.size(); i += stride)
     scan.ranges.push_back(classified(ranges[i], scan.range_min, scan.range_max));
-  // The last kept beam may lie before the last measured one.
+  // The last kept beam may precede the last measured one.
   if (ranges.size() > 1)
     scan.duration_us = scan.duration_us * static_cast<int64_t>((scan.ranges.size() - 1) * stride) /
                        static_cast<int64_t>(ranges.size() - 1);

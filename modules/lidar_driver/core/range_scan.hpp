@@ -10,7 +10,7 @@
 
 namespace tread::lidar {
 
-/// Of a slice: what one message of at most 60 kB holds.
+/// Of a slice: capacity of one message of at most 60 kB.
 inline constexpr size_t kMostPoints = 4900;
 
 /// One sweep of a 2D range finder, or one slice of a 3D one, in the sensor frame.
@@ -19,28 +19,28 @@ struct RangeScan {
   int64_t duration_us = 0;    ///< [us] from the first to the last beam
   double angle_first = 0.0;   ///< [rad] 0 = forward, counter-clockwise positive
   double angle_step = 0.0;    ///< [rad] from beam to beam
-  double range_min = 0.0;     ///< [m] shorter is not a measurement
-  double range_max = 0.0;     ///< [m] longer means that nothing was hit
+  double range_min = 0.0;     ///< [m] shorter ranges are no measurement
+  double range_max = 0.0;     ///< [m] longer ranges mean no hit
   std::vector<float> ranges;  ///< [m]; none in a slice
-  /// Of a slice [m]: forward, left, up, in equal steps of time; NaN where nothing came back.
+  /// Of a slice [m]: forward, left, up, at equal time steps; NaN without a return.
   std::vector<std::array<float, 3>> points;
 };
 
-/// What the check lets through.
+/// Limits of the check.
 struct ScanLimits {
   double range_min = 0.1;   ///< [m]
   double range_max = 30.0;  ///< [m]
   int max_beams = 4000;
-  int beam_stride = 1;  ///< every n-th beam is kept; not of slices
+  int beam_stride = 1;  ///< every n-th beam is kept; not for slices
 };
 
-/// Checks scans before they reach the bus. Time never goes back; a beam is a range, +inf (nothing
-/// hit) or NaN, a point one within the limits or NaN.
+/// Checks scans before they are published. Time never goes back; a beam is a range, +inf (no hit)
+/// or NaN, a point is within the limits or NaN.
 class ScanCheck {
  public:
   explicit ScanCheck(const ScanLimits& limits) : limits_(limits) {}
 
-  /// The scan as it is to be published, or nothing and the reason in refusal().
+  /// The scan to publish; nullopt and the reason in refusal() if it is refused.
   std::optional<RangeScan> accept(const RangeScan& raw);
   const std::string& refusal() const { return refusal_; }
 

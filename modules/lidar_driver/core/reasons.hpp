@@ -8,32 +8,31 @@
 
 namespace tread::lidar {
 
-/// Why no scan comes, by how much it tells.
+/// Why there is no scan, in increasing order of significance.
 enum class Rank {
   kNone,
-  kStarting,    ///< the start-up is under way
+  kStarting,    ///< the start-up is running
   kSilent,      ///< nothing comes
-  kUnreadable,  ///< bytes come that are no telegrams
-  kRefused      ///< telegrams come that cannot be used
+  kUnreadable,  ///< bytes arrive that are no telegrams
+  kRefused      ///< telegrams arrive that are unusable
 };
 
-/// A reason as HEALTH gives it, with its count and what to do.
+/// A reason for HEALTH, with its count and the remedy.
 struct NotedReason {
   Rank rank = Rank::kNone;
   std::string words;
 };
 
-/// The reasons that were noted since the last good scan; the one that tells most is given.
-/** Each is kept for 5 s after it was noted last, so that no later one that tells less replaces it:
- * a device that is refused, starts up again and is connected anew is still a device that is
- * refused. */
+/// The reasons since the last good scan; the most significant one is reported.
+/** Each is kept for 5 s after its last occurrence, so that a later, less significant one does not
+ * replace it: a refused device that restarts and reconnects is still a refused device. */
 class Reasons {
  public:
   void note(Rank rank, const std::string& what, int64_t now, int64_t times = 1,
             const std::string& remedy = {});
-  /// A good scan came: nothing is wrong any more.
+  /// A good scan arrived: no fault remains.
   void clear() { noted_.clear(); }
-  /// Of the highest rank; among those the one that was noted most often.
+  /// Of the highest rank; among those the most frequent one.
   NotedReason best(int64_t now) const;
 
  private:

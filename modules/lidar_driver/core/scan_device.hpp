@@ -13,43 +13,43 @@
 
 namespace tread::lidar {
 
-/// A range finder at the end of a byte stream: the door for all kinds.
-/** Pure: bytes and time [us] are arguments; times of all calls must not go back. */
+/// A range finder at the end of a byte stream: the interface for all kinds.
+/** Pure: bytes and time [us] are arguments; times must not go back between calls. */
 class ScanDevice {
  public:
   virtual ~ScanDevice() = default;
 
-  /// The line is up. What was received before is forgotten: no scan outlives a disconnect.
+  /// The line was opened. Received data are discarded: no scan spans a disconnection.
   virtual void open(int64_t now) = 0;
-  /// The line is down.
+  /// The line was closed.
   virtual void close() = 0;
   virtual void receive(std::string_view bytes, int64_t now) = 0;
-  /// Bytes that the device is to get now.
+  /// Bytes to send to the device now.
   virtual std::string poll(int64_t now) = 0;
-  /// Bytes that end its scanning, for when nobody reads it any longer.
+  /// Bytes that stop its scanning when it is no longer read.
   virtual std::string farewell() const { return {}; }
-  /// Scans that were completed since the last call, oldest first.
+  /// Scans completed since the last call, oldest first.
   virtual std::vector<RangeScan> take(int64_t now) = 0;
-  /// Why no good scan comes.
+  /// Why there is no good scan.
   NotedReason reason(int64_t now) const { return reasons_.best(now); }
-  /// True if only a new connection can help.
+  /// Whether only a new connection can help.
   virtual bool lost() const { return false; }
-  /// False while it has enough bytes to work on.
+  /// False while it has enough bytes to process.
   virtual bool hungry() const { return true; }
-  /// What it cannot promise, as one line: clock, checksums, field of view.
+  /// Its limitations, as one line: clock, checksums, field of view.
   virtual std::string shortcomings() const = 0;
-  /// What was counted, by its name in words.
+  /// Counters by name, in words.
   const std::map<std::string, int64_t>& counters() const { return counters_; }
 
  protected:
   void count(const std::string& what, int64_t times = 1) { counters_[what] += times; }
-  /// Counts what was not used, and keeps it with its remedy as the reason why no scan comes.
+  /// Counts unused data, and keeps the cause with its remedy as the reason for missing scans.
   void refuse(const std::string& what, int64_t now, const std::string& remedy = {},
               int64_t times = 1) {
     count(what, times);
     reasons_.note(Rank::kRefused, what, now, times, remedy);
   }
-  /// The same of bytes that are no telegrams.
+  /// The same for bytes that are no telegrams.
   void skipUnreadable(const std::string& what, int64_t now, const std::string& remedy,
                       int64_t times) {
     if (times == 0) return;
@@ -65,16 +65,17 @@ class ScanDevice {
 
 /// One request of a start-up.
 struct StartUpStep {
-  std::string name;            ///< for messages
-  std::string bytes;           ///< what the device gets
-  bool optional = false;       ///< a device that refuses it or does not know it may still scan
-  bool unanswered = false;     ///< it has no answer: the next one follows after the patience
-  std::string otherwise = {};  ///< sent with the last try: the same in words of a like device
+  std::string name;         ///< for messages
+  std::string bytes;        ///< bytes to the device
+  bool optional = false;    ///< a device that refuses or does not know it may still scan
+  bool unanswered = false;  ///< it has no answer: the next one follows after the timeout
+  std::string otherwise =
+      {};  ///< sent with the last attempt: the equivalent request of a similar device
 };
 
-/// A device that is asked step by step to scan, and again when it falls silent.
+/// A device that needs a step-by-step start-up, which is repeated when it falls silent.
 /** Each step is sent up to three times. A device that sends no scan for a second is started up
- * anew, and after a start-up without an answer or two without a scan it is lost(). */
+ * again; after a start-up without an answer, or two without a scan, it is lost(). */
 class StartedDevice : public ScanDevice {
  public:
   void open(int64_t now) final;
@@ -84,22 +85,22 @@ class StartedDevice : public ScanDevice {
   bool lost() const final { return lost_; }
 
  protected:
-  /// `patience_us`: how long an answer may take.
+  /// `patience_us`: timeout of an answer.
   StartedDevice(std::vector<StartUpStep> steps, int64_t patience_us)
       : steps_(std::move(steps)), patience_us_(patience_us) {}
 
-  /// Drops half received telegrams and everything learned from the device.
+  /// Discards partly received telegrams and everything learned from the device.
   virtual void forget() = 0;
 
-  /// The step whose answer is awaited; its name is empty when the device scans or is closed.
+  /// The step whose answer is awaited; its name is empty while the device scans or is closed.
   const StartUpStep& awaited() const;
   bool streaming() const { return step_ == steps_.size(); }
   void answered(int64_t now);
   void refused(const std::string& words, int64_t now, const std::string& remedy = {});
-  /// Of a step whose request depends on an answer before it.
+  /// Sets the request of a step that depends on an earlier answer.
   void setRequest(const std::string& step, std::string bytes);
   void deliver(RangeScan scan, int64_t now);
-  /// Starts it up anew for this reason.
+  /// Repeats its start-up for this reason.
   void restart(const std::string& reason, int64_t now, const std::string& remedy = {});
   /// What to do if no scan comes though the device streams; empty if nothing hints at a cause.
   virtual std::string remedyForSilence() const { return {}; }

@@ -8,13 +8,13 @@
 
 namespace tread::lidar {
 
-/// Host time of a device's own microsecond counter of 32 bits, which wraps after 71.6 minutes.
-/** The way from the device takes a varying time: the shortest of the last 10 to 20 s is taken for
- * the constant one. A counter that jumps against the host's clock was restarted. */
+/// Host time of a device's 32 bit microsecond counter, which wraps after 71.6 minutes.
+/** The transport delay varies: the shortest of the last 10 to 20 s is taken as its constant part.
+ * If the counter jumps relative to the host's clock, the device was restarted. */
 class TickClock {
  public:
-  /// Tells that `ticks` [us] was sent and arrived at `arrival` [us]; false if the device's counter
-  /// was restarted, so that everything before it is forgotten.
+  /// `ticks` [us] was sent and arrived at `arrival` [us]; false if the device's counter was
+  /// restarted, which discards all earlier data.
   bool observe(uint32_t ticks, int64_t arrival) {
     bool ran_on = true;
     if (device_) {
@@ -37,20 +37,20 @@ class TickClock {
     return ran_on;
   }
 
-  /// Host time at which the observed counter would have arrived on the shortest way [us].
+  /// Host time at which the observed counter would have arrived with the shortest delay [us].
   int64_t hostTime() const { return *device_ + std::min(shortest_, before_); }
 
   void forget() { device_.reset(); }
 
  private:
   static constexpr int64_t kWindow = 10'000'000;   // [us]
-  static constexpr int64_t kMostSlip = 2'000'000;  // [us] that a line may hold bytes back
+  static constexpr int64_t kMostSlip = 2'000'000;  // [us] by which a line may delay bytes
 
   std::optional<int64_t> device_;  ///< [us] unwrapped
   int64_t arrival_ = 0;
   int64_t window_start_ = 0;
   int64_t shortest_ = INT64_MAX;  ///< arrival minus device time in this window
-  int64_t before_ = INT64_MAX;    ///< the same in the window before
+  int64_t before_ = INT64_MAX;    ///< the same in the previous window
 };
 
 }  // namespace tread::lidar

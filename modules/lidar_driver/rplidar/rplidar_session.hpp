@@ -14,7 +14,7 @@ namespace tread::lidar {
 
 /// Configuration of an RPLIDAR A1, A2 or A3.
 struct RplidarConfig {
-  double step = 1.0;        ///< [deg] of the beams that samples are sorted into: 0.5 or 1
+  double step = 1.0;        ///< [deg] width of the beams into which samples are sorted: 0.5 or 1
   double range_max = 12.0;  ///< [m] of the model
   double latency = 0.002;   ///< [s] from a beam to the arrival of its bytes
 };
@@ -23,13 +23,13 @@ struct RplidarConfig {
 RplidarConfig readRplidarConfig(ConfigReader& reader);
 
 /// The connection to an RPLIDAR in SCAN mode. Source: Slamtec LR001, protocol v2.8, section 4.
-/** Start-up: stop, health, motor on, scan. Five bytes a sample, with two check bits; a turn ends
- * with the next start flag. A turn counts if each of its samples is sound, their angles run on, and
- * they cover 350 degrees. Angles are not equidistant: the nearest range in each step is the beam's.
- * A told angle is corrected by the range that was measured at it, by up to 8 degrees; that of a
- * sample without echo is not, so that it lies ahead of its neighbours'. Such a sample's angle is
- * used for nothing but the check that they run on. It keeps no clock: a turn lasts from the arrival
- * of its first sample to that of the next turn. */
+/** Start-up: stop, health, motor on, scan. Five bytes per sample, with two check bits; a revolution
+ * ends at the next start flag. It is used if all its samples are valid, their angles increase, and
+ * they cover 350 degrees. Angles are not equidistant: the nearest range in each step is the
+ * beam's. A reported angle is corrected as a function of its range, by up to 8 degrees; the angle
+ * of a sample without echo is not, so that it is ahead of its neighbours'. Such an angle is used
+ * only to check that angles increase. The device has no clock: a revolution lasts from the arrival
+ * of its first sample to that of the next revolution's. */
 class RplidarSession final : public StartedDevice {
  public:
   explicit RplidarSession(const RplidarConfig& config);
@@ -43,12 +43,12 @@ class RplidarSession final : public StartedDevice {
  private:
   struct Sample {
     bool start = false;
-    double angle = 0.0;  ///< [deg] clockwise from ahead
+    double angle = 0.0;  ///< [deg] clockwise from forward
     double range = 0.0;  ///< [m]; 0 = none
   };
 
   void forget() override;
-  /// Takes an answer off the buffer; false if it needs more bytes.
+  /// Takes an answer from the buffer; false if it is incomplete.
   bool takeAnswer(int64_t now);
   bool takeSample(int64_t now);
   void add(const Sample& sample, int64_t now);
@@ -60,9 +60,9 @@ class RplidarSession final : public StartedDevice {
   std::string buffer_;
   bool in_turn_ = false;
   int64_t turn_began_ = 0;
-  double last_angle_ = 0.0;  ///< [deg] the largest of the turn, unwrapped
+  double last_angle_ = 0.0;  ///< [deg] the largest of the revolution, unwrapped
   size_t samples_ = 0;
-  std::vector<Sample> echoes_;  ///< of the turn, with unwrapped angles
+  std::vector<Sample> echoes_;  ///< of the revolution, with unwrapped angles
 };
 
 }  // namespace tread::lidar

@@ -23,7 +23,7 @@ char exclusiveOr(std::string_view bytes) {
 
 std::vector<std::string> ColaFramer::push(std::string_view bytes) {
   std::vector<std::string> telegrams;
-  // In pieces, so that the buffer is bounded whatever comes at once.
+  // In pieces, to bound the buffer for any input.
   while (!bytes.empty()) {
     const size_t piece = std::min<size_t>(bytes.size(), 4096);
     buffer_.append(bytes.substr(0, piece));
@@ -43,7 +43,7 @@ void ColaFramer::skip(size_t bytes) {
 bool ColaFramer::cutText(std::string& telegram) {
   skip(std::min(buffer_.find(kStart), buffer_.size()));
   const size_t end = buffer_.find(kEnd);
-  // A second start before the end: the first telegram lost its end.
+  // A second start before the end: the first telegram is incomplete.
   const size_t last_start = buffer_.rfind(kStart, end);
   if (last_start != std::string::npos && last_start > 0) skip(last_start);
   if (end == std::string::npos) {
@@ -58,7 +58,7 @@ bool ColaFramer::cutText(std::string& telegram) {
 
 bool ColaFramer::cutBinary(std::string& telegram) {
   static const std::string kStarts(4, kStart);
-  size_t at = 0;  // bytes are skipped together: one by one would take the square of their number
+  size_t at = 0;  // bytes are skipped together: one by one would take quadratic time
   for (;; ++at) {
     at = buffer_.find(kStarts, at);
     if (at == std::string::npos) {

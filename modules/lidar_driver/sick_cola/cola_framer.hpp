@@ -12,9 +12,9 @@ namespace tread::lidar {
 /// The two dialects of SICK's Command Language: A is text in hexadecimal, B is binary.
 enum class ColaDialect { kA, kB };
 
-/// Cuts a byte stream into CoLa telegrams. Source: SICK telegram listing 8014631, section 3.
+/// Splits a byte stream into CoLa telegrams. Source: SICK telegram listing 8014631, section 3.
 /** A: 02, text, 03. B: 02 02 02 02, length (32 bits, most significant byte first), that many bytes,
- * their exclusive or. A telegram has at most 64 kB; what does not fit is skipped byte by byte. */
+ * their exclusive or. A telegram has at most 64 kB; invalid data are skipped byte by byte. */
 class ColaFramer {
  public:
   explicit ColaFramer(ColaDialect dialect) : dialect_(dialect) {}

@@ -29,10 +29,10 @@ LmsConfig readLmsConfig(ConfigReader& reader);
 
 /// The connection to a SICK LMS 2xx. Source: SICK telegrams for LMS2xx, 8007954.
 /** Start-up: stream off (20 25), configuration read (74), variant set (3B), stream on (20 24).
- * Nothing that wears the scanner's memory is written. Scans (B0): 13 to 16 bits of range by the
- * measuring mode that the configuration tells, cm or mm as each telegram says. It keeps no clock:
- * the last beam is when the first byte came, less the latency; the mirror turns 75 times a second.
- */
+ * Nothing is written to the memory of the scanner that wears out. Scans (B0): 13 to 16 bits of
+ * range by the measuring mode in the configuration, cm or mm as given in each telegram. The device
+ * has no clock: the last beam is dated at the arrival of the first byte, minus the latency; the
+ * mirror turns 75 times a second. */
 class LmsSession final : public StartedDevice {
  public:
   explicit LmsSession(const LmsConfig& config);
@@ -54,7 +54,7 @@ class LmsSession final : public StartedDevice {
 
   LmsConfig config_;
   std::string buffer_;
-  int64_t frame_began_ = 0;        ///< when the first byte in the buffer came
+  int64_t frame_began_ = 0;        ///< when the first byte in the buffer arrived
   std::optional<int> range_bits_;  ///< of a measured value
 };
 

@@ -15,13 +15,13 @@ uint64_t lowBits(double count) {
   return (uint64_t{1} << static_cast<int>(count)) - 1;
 }
 
-/// All bits above the highest one that is set.
+/// All bits above the highest set one.
 uint64_t above(uint64_t bits) {
   for (int shift = 1; shift < kColumnHeight; shift *= 2) bits |= bits >> shift;
   return ~bits;
 }
 
-/// Index of the highest bit that is set, or -1.
+/// Index of the highest set bit, or -1.
 int highestBit(uint64_t bits) {
   return bits == 0 ? -1 : kColumnHeight - 1 - __builtin_clzll(bits);
 }

@@ -10,31 +10,30 @@
 
 namespace tread::mapping {
 
-/// What counts as an obstacle for this robot.
+/// Definition of an obstacle for this robot.
 struct ObstacleConfig {
-  /// [m] above the ground: lower things are driven over; also below it: what is deeper is a drop.
+  /// [m] above the ground: lower objects are driven over; also below it: a larger depth is a drop.
   double step = 0.15;
-  double robot_height = 0.0;  ///< [m] above the ground: higher things are driven under
+  double robot_height = 0.0;  ///< [m] above the ground: the robot drives under higher objects
 };
 
-/// Says what a column is, by heights above the ground of its voxels' centres.
-/** With ground g, doubt u, and the band from g + step to g + robot_height:
+/// Classifies a column, by heights of its voxels' centres above the ground.
+/** With ground g, uncertainty u, and the band from g + step to g + robot_height:
  *  1. Obstacle: something occupied in the band, and above g + step + u.
- *  2. In doubt (occupied in the band, but no higher than g + step + u: perhaps the ground itself):
- *     free if the space above it in the band was seen free, else unknown. Driving nearer ends the
- *     doubt.
- *  3. Free: something in the band, widened by u, was seen free. Otherwise unknown.
- *  The ground is no higher than the lowest voxel that was seen: that lowers g by up to u and a
- *  cell. */
+ *  2. Uncertain (occupied in the band, but no higher than g + step + u: possibly the ground
+ *     itself): free if the space above it in the band was observed free, else unknown. Driving
+ *     closer resolves it.
+ *  3. Free: something in the band, widened by u, was observed free. Otherwise unknown.
+ * The ground is no higher than the lowest observed voxel: that lowers g by up to u and a cell. */
 class ColumnClassifier {
  public:
   ColumnClassifier(const ObstacleConfig& config, double cell_size)
       : config_(config), cell_size_(cell_size) {}
 
   Cell classify(const Column& column, int lower_z, const GroundHeight& ground) const;
-  /// Bit of the highest voxel that the ground occupies: below the band; -1 if none was seen.
+  /// Bit of the highest voxel occupied by ground, below the band; -1 if none was observed.
   int surface(const Column& column, int lower_z, const GroundHeight& ground) const;
-  /// Whether whoever drives from a column over the other's edge falls deeper than a step.
+  /// Whether driving from a column over the other's edge means a fall deeper than a step.
   bool isDrop(int surface, int neighbour) const {
     return surface >= 0 && (neighbour - surface - 1) * cell_size_ > config_.step;
   }

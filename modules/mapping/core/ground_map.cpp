@@ -8,9 +8,9 @@
 namespace tread::mapping {
 namespace {
 
-/// A patch forgets beyond this many stands of full weight, so that a drifting height is followed.
+/// Limit of a patch's memory, in stances of full weight, so that a drifting height is followed.
 constexpr double kMemory = 10.0;
-/// Changes of height and doubt below this are not worth judging the columns again [m].
+/// Smaller changes of height and uncertainty do not justify a new classification of columns [m].
 constexpr double kNoticeable = 0.02;
 
 CellIndex patchOf(CellIndex cell) {

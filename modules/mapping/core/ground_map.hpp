@@ -12,12 +12,12 @@
 
 namespace tread::mapping {
 
-/// What the robot's own stand says about the ground farther away.
+/// Uncertainty of the distant ground, given the robot's own stance.
 struct GroundMapConfig {
   double height_noise = 0.03;  ///< [m] of the ground under the robot
-  double slope_noise = 0.03;   ///< [1] of the robot's inclination against the ground's: bumps
-  double curvature = 0.04;     ///< [1/m] by which the ground's slope changes along the way
-  double slope_doubt = 0.03;   ///< [1] error of the ground per metre of distance, as seen by
+  double slope_noise = 0.03;   ///< [1] of the robot's inclination relative to the ground's: bumps
+  double curvature = 0.04;     ///< [1/m] change of the ground's slope with distance
+  double slope_doubt = 0.03;   ///< [1] error of the ground per metre of distance, as observed by
 };
 
 /// The plane on which the robot stands.
@@ -26,21 +26,21 @@ struct GroundPlane {
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();  ///< dz/dx, dz/dy in map [1]
 };
 
-/// The plane under a body; nothing if it lies on its side.
+/// The plane under a body; nullopt if it lies on its side.
 std::optional<GroundPlane> planeUnder(const Eigen::Isometry3d& T_map_body);
 
 /// Estimated height of the ground.
 struct GroundHeight {
   double z = 0.0;      ///< [m] in map
-  double doubt = 0.0;  ///< [m] by which it may be wrong
+  double doubt = 0.0;  ///< [m] possible error
 };
 
-/// Local ground, patch by patch, from where the robot stood.
-/** The robot stands on the ground, so each stand is a plane that holds nearby and less and less
- *  farther away: its variance at distance d is height_noise^2 + (slope_noise d)^2 +
- *  (curvature d^2 / 2)^2. A patch is the weighted mean of all planes that were extrapolated to it.
- *  So the estimate follows the newest stand where the robot is and hardly moves far ahead when it
- *  pitches on a bump, and a patch that was driven over keeps the height that it had then. */
+/// Local ground, patch by patch, extrapolated from the robot's stances.
+/** The robot stands on the ground, so each stance gives a plane whose accuracy decreases with
+ * distance: its variance at distance d is height_noise^2 + (slope_noise d)^2 + (curvature d^2 /
+ * 2)^2. A patch is the weighted mean of all planes extrapolated to it. So the estimate follows the
+ * newest stance near the robot and hardly changes far ahead when it pitches on a bump, and a patch
+ * that was driven over keeps its height. */
 class GroundMap {
  public:
   /// Cells per side of a patch.
@@ -50,7 +50,7 @@ class GroundMap {
 
   /// Moves the window; `lower` is its lower left cell, a multiple of kPatchCells.
   void moveTo(CellIndex lower);
-  /// Adds a stand. Returns the patches (index of the lower left cell) whose ground moved
+  /// Adds a stance. Returns the patches (index of the lower left cell) whose ground moved
   /// noticeably.
   std::vector<CellIndex> learn(const GroundPlane& plane);
   /// Ground at the centre of a cell of the window.
@@ -61,8 +61,8 @@ class GroundMap {
     double z = 0.0;  // at the centre of the patch
     Eigen::Vector2d slope = Eigen::Vector2d::Zero();
     double weight = 0.0;
-    double nearest = 1e9;  // distance to the nearest stand [m]
-    double told_z = 1e9;   // what was last reported as moved
+    double nearest = 1e9;  // distance to the nearest stance [m]
+    double told_z = 1e9;   // height last reported as moved
     double told_nearest = 1e9;
   };
 

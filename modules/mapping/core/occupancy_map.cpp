@@ -12,14 +12,16 @@
 namespace tread::mapping {
 namespace {
 
-/// OctoMap numbers 2^15 voxels to each side of the origin.
+/// OctoMap indexes 2^15 voxels to each side of the origin.
 constexpr double kMostCells = 32000.0;
-/// A new stand counts after so much way or height: rocking on the spot tells nothing new.
+/// A new stance counts after this change of position or height: rocking on the spot adds no
+/// information.
 constexpr double kStandDistance = 0.2;
 constexpr double kStandHeight = 0.05;
-/// The window moves when the robot is this many tiles off its middle; less makes it restless.
+/// The window moves when the robot is this many tiles off its middle; a smaller value would make it
+/// move back and forth.
 constexpr double kOffMiddle = 0.75;
-/// Returns so close to the footprint are the robot's own [m].
+/// Returns this close to the footprint are the robot's own [m].
 constexpr double kOwnBodyMargin = 0.05;
 
 bool isNewStand(const GroundPlane& stand, const GroundPlane& last) {
@@ -228,7 +230,7 @@ void OccupancyMap::classify(size_t offset) {
   tile.utime = utime_;
 }
 
-/// Ground that was seen makes edges with that of the neighbours.
+/// Observed ground may form edges with that of its neighbours.
 void OccupancyMap::classifyAround(size_t offset) {
   classify(offset);
   if (voxels_.columns()[offset].occupied == 0) return;
@@ -317,7 +319,7 @@ void TileSchedule::begin(const std::vector<CellIndex>& seen,
   queue_ = std::move(kept);
   for (const CellIndex tile : changed)
     if (!isQueued(tile)) queue_.push_back(tile);
-  // The turn goes by index, so that it survives tiles that come and go.
+  // The turn is kept by index, so that it survives appearing and disappearing tiles.
   const auto first = std::find_if(seen.begin(), seen.end(),
                                   [&](CellIndex tile) { return comesAfter(tile, last_turn_); });
   const size_t start = first == seen.end() ? 0 : static_cast<size_t>(first - seen.begin());

@@ -20,9 +20,9 @@
 
 namespace tread::mapping {
 
-/// The window's middle follows the robot's height only when it is this many voxels off.
+/// The window's middle follows the robot's height only when it is off by this many voxels.
 inline constexpr int kMostOffHeight = kColumnHeight / 6;
-/// Voxels of a column that are above the robot's ground at any time; what is higher is not kept.
+/// Voxels of a column that are always kept above the robot's ground; higher ones are not kept.
 inline constexpr int kVoxelsAboveGround = kColumnHeight / 2 - kMostOffHeight;
 
 /// One scan of a range finder with the body's motion during it.
@@ -34,10 +34,10 @@ struct Scan {
   std::vector<Beam> beams;
 };
 
-/// Whether a return comes from the robot itself: within its outline and a little more.
+/// Whether a return comes from the robot itself: within its slightly enlarged outline.
 bool isOwnBody(const Eigen::Vector3d& p_body, const FootprintSize& robot, double height);
 
-/// Everything that shapes the local map.
+/// Configuration of the local map.
 struct OccupancyMapConfig {
   VoxelConfig voxels;
   GroundMapConfig ground;
@@ -46,46 +46,46 @@ struct OccupancyMapConfig {
   FootprintSize robot;             ///< its outline
   int tile_cells = 32;             ///< a multiple of GroundMap::kPatchCells
   int window_tiles = 8;            ///< tiles per side of the window
-  double marking_range = 10.0;     ///< [m] returns from farther away mark nothing
-  double clearing_range = 10.0;    ///< [m] beams clear no farther
-  double start_free_radius = 0.0;  ///< [m] around the body origin where a map begins
+  double marking_range = 10.0;     ///< [m] more distant returns mark nothing
+  double clearing_range = 10.0;    ///< [m] range up to which beams clear
+  double start_free_radius = 0.0;  ///< [m] assumed free around the body origin where a map begins
 };
 
 /// A rolling map of the robot's surroundings: free, obstacle or unknown, from scans and poses.
 /** 1. Each beam becomes a ray in map with the body's pose at that beam's time; returns from the
- *     robot itself are left out.
- *  2. The rays go into the voxels (VoxelMap), the robot's stand into the ground (GroundMap).
- *     Returns on free ground go into its roughness (RoughnessMap), which is the cost of free cells.
- *  3. Columns are classified again (ColumnClassifier) where their voxels or their ground changed.
- *     A free one whose ground was seen more than a step below that of a neighbour is an obstacle.
- *  4. Where a beam went on through the ground and ended more than a step below it, the columns
- *     under its way are unknown until ground is seen in them. Ground that slopes less than the
- *     beams do is seen when the robot comes nearer, that behind an edge never.
- *  Free without having been seen are: the cells under the robot (even if something was marked
- *  there: the robot stands in it); the cells that it stood on before, and, where a map begins, all
- *  within start_free_radius, because a range finder that looks over its own robot sees neither
- *  what is beside nor behind it and the robot could not turn on the spot. In these an obstacle
- *  that is seen wins. Whoever starts the robot, or mapping anew, asserts that this radius is free.
- */
+ *    robot itself are dropped.
+ *  2. The rays update the voxels (VoxelMap), the robot's stance the ground (GroundMap). Returns on
+ *     free ground update its roughness (RoughnessMap), which is the cost of free cells.
+ *  3. Columns whose voxels or ground changed are classified again (ColumnClassifier). A free one
+ *     whose ground was observed more than a step below that of a neighbour is an obstacle.
+ *  4. Where a beam passed through the ground and ended more than a step below it, the columns
+ *     under its path are unknown until ground is observed in them. Ground that slopes less than
+ *     the beams is observed when the robot comes closer, ground behind an edge never is.
+ * Free without observation are: the cells under the robot (even if something was marked there,
+ * because the robot stands in it); the cells on which it stood before, and, where a map begins,
+ * all within start_free_radius, because a range finder that looks over its own robot observes
+ * neither the sides nor the rear, and the robot could not turn on the spot. In the latter two an
+ * observed obstacle prevails. A person who starts the robot, or mapping again, asserts that this
+ * radius is free. */
 class OccupancyMap {
  public:
   /// Throws std::invalid_argument if tile_cells is no multiple of the patches or sizes are not
   /// positive.
   explicit OccupancyMap(const OccupancyMapConfig& config);
 
-  /// Why a scan was not taken.
+  /// Why a scan was refused.
   enum class Refusal { kNone, kNotNewer, kToppled, kTooFar };
-  /// Takes a scan, or says why not: not newer than the one before; the robot lies on its side;
-  /// farther from the origin of map than OctoMap can number (32000 cells).
+  /// Takes a scan, or returns why it is refused: not newer than the previous one; the robot lies on
+  /// its side; farther from the origin of map than OctoMap can index (32000 cells).
   Refusal insert(const Scan& scan);
 
   const Grid& grid() const { return grid_; }
   const OccupancyMapConfig& config() const { return config_; }
   const VoxelMap& voxels() const { return voxels_; }
 
-  /// Indices of the tiles of the window of which something was seen, row by row.
+  /// Indices of the tiles of the window with observations, row by row.
   std::vector<CellIndex> seenTiles() const;
-  /// Those that changed since they were last asked for.
+  /// The tiles that changed since the last call.
   std::vector<CellIndex> takeChangedTiles();
   /// Content of a tile of the window.
   Tile tile(CellIndex index) const;
@@ -95,11 +95,11 @@ class OccupancyMap {
     int64_t utime = 0;  // of the newest scan that touched it
     bool changed = false;
   };
-  /// What makes cells free without having been seen, or not free although they were.
+  /// What makes cells free without observation, or not free in spite of one.
   struct Trust {
     bool stood_on = false;  // or assumed free at the start
     bool under_robot = false;
-    bool missed = false;  // a beam that met no ground here went deep below it: is there any?
+    bool missed = false;  // a beam that met no ground here went far below it: there may be none
   };
 
   bool place(const Eigen::Isometry3d& T_map_body);
@@ -134,18 +134,18 @@ class OccupancyMap {
   int64_t utime_ = 0;
 };
 
-/// Which tiles to send next: changed ones first, the rest in turn.
+/// Which tiles to send next: changed ones first, the others in turn.
 class TileSchedule {
  public:
-  /// Sends `refresh` unchanged tiles a cycle, if there are so many, beside those that changed.
+  /// Sends up to `refresh` unchanged tiles per cycle in addition to the changed ones.
   explicit TileSchedule(size_t refresh) : refresh_(refresh) {}
 
-  /// Begins a cycle. What an earlier cycle left over stays first if it is still in `seen`.
+  /// Begins a cycle. Tiles left over from an earlier cycle stay first if they are still in `seen`.
   /** `seen`: all tiles that may be sent; `changed`: those of them that changed, in the same order.
    */
   void begin(const std::vector<CellIndex>& seen, const std::vector<CellIndex>& changed);
   bool empty() const { return queue_.empty(); }
-  /// The next tile to send; call only if there is one.
+  /// The next tile to send; call it only if there is one.
   CellIndex take();
   void clear() { queue_.clear(); }
 
@@ -154,7 +154,7 @@ class TileSchedule {
 
   size_t refresh_;
   std::deque<CellIndex> queue_;
-  CellIndex last_turn_;  // the last tile that came in turn, not by change
+  CellIndex last_turn_;  // the last tile that was sent in turn, not for a change
 };
 
 }  // namespace tread::mapping

@@ -14,7 +14,7 @@ using Key = std::array<int, 3>;
 constexpr int kWordBits = 64;
 constexpr int kBlocksPerWord = kWordBits / kBlockSide;
 
-/// The four bits of half a row of voxels, where a 2 x 2 x 2 cube of 2 x 2 x 2 voxels has them.
+/// The four bits of half a row of voxels, in their places in a 2 x 2 x 2 cube of 2 x 2 x 2 voxels.
 constexpr std::array<uint64_t, 16> halfRows() {
   std::array<uint64_t, 16> rows{};
   for (unsigned x = 0; x < 16; ++x) rows[x] = (x & 3u) | uint64_t{x & 12u} << 6;
@@ -29,7 +29,7 @@ Key keyOf(const octomap::OcTreeKey& key) {
 }  // namespace
 
 struct RayGrid::Step {
-  Key key{};             // only kept up to date outside of the box
+  Key key{};             // updated only outside of the box
   int64_t bit = 0;       // of the voxel
   int64_t last_bit = 0;  // of the voxel in which the beam ends
   Key last{};
@@ -44,7 +44,7 @@ RayGrid::RayGrid(const Key& sides) : sides_(sides) {
   for (const int side : sides)
     if (side <= 0 || side % kBlockSide != 0)
       throw std::invalid_argument("ray grid: sides must be positive multiples of 8 voxels");
-  // Rows begin with a word, so that eight blocks can be looked at together.
+  // Rows begin with a word, so that eight blocks can be processed together.
   const int64_t row = (sides[0] + kWordBits - 1) / kWordBits * kWordBits;
   strides_ = {1, row, row * sides[1]};
   passed_.resize(static_cast<size_t>(strides_[2] * sides[2] / kWordBits));
@@ -70,7 +70,7 @@ bool RayGrid::contains(const Key& key) const {
   return true;
 }
 
-/// Rounding may take a beam one voxel beyond its end.
+/// Rounding may extend a beam one voxel beyond its end.
 void RayGrid::extendTo(const Key& key) {
   for (size_t axis = 0; axis < 3; ++axis) {
     const int at = key[axis] - low_[axis];
@@ -101,7 +101,7 @@ void RayGrid::trace(const octomap::OcTree& tree, const octomap::point3d& from,
     step.direction[i] = (direction(i) > 0.0F) - (direction(i) < 0.0F);
     step.strides[i] = step.direction[i] * strides_[i];
     step.next[i] = step.between[i] = std::numeric_limits<double>::max();
-    // Inside of the box is a beam that stays there even if it goes one voxel too far.
+    // A beam is inside if it stays in the box even when it goes one voxel too far.
     const int nearest = std::min(step.key[i], step.last[i]) - 1;
     const int farthest = std::max(step.key[i], step.last[i]) + 1;
     inside = inside && nearest >= low_[i] && farthest < low_[i] + sides_[i];
@@ -120,8 +120,8 @@ void RayGrid::trace(const octomap::OcTree& tree, const octomap::point3d& from,
     walk<false>(step);
 }
 
-/// Inside, a voxel's bit says where it is. Marks have the type of the strides, which the compiler
-/// would read again after each: so all of a step is in variables of its own.
+/// Inside, a voxel's bit gives its position. Marks have the type of the strides, which the compiler
+/// would reload after each: so a step is kept in local variables.
 template <bool kInside>
 void RayGrid::walk(Step& step) {
   uint64_t* const passed = passed_.data();
@@ -130,9 +130,9 @@ void RayGrid::walk(Step& step) {
   auto [next_x, next_y, next_z] = step.next;
   const int64_t last_bit = step.last_bit;
   int64_t bit = step.bit;
-  // The first step is taken whatever the beam's length.
+  // The first step is taken for any length of the beam.
   double most = std::numeric_limits<double>::max();
-  // Marks the voxel, leaves it along an axis and says whether the beam goes on.
+  // Marks the voxel, leaves it along an axis and returns whether the beam continues.
   const auto leave = [&](size_t axis, int64_t stride, double& next, double between) {
     if (next > most) return false;
     if (kInside || contains(step.key)) passed[bit >> 6] |= uint64_t{1} << (bit & 63);
@@ -165,7 +165,7 @@ std::vector<VoxelBlock>& RayGrid::takeBlocks() {
   return blocks_;
 }
 
-/// Looks at a row of blocks, eight of them together, and clears it.
+/// Processes a row of blocks, eight of them together, and clears it.
 void RayGrid::takeRow(int block_y, int block_z) {
   const int64_t row_words = strides_[1] / kWordBits;
   const int64_t slice_words = strides_[2] / kWordBits;
@@ -206,7 +206,7 @@ void RayGrid::takeBlock(const Key& block, bool any_hit) {
   for (size_t i = 0; i < taken.hit.size(); ++i) taken.passed[i] &= ~taken.hit[i];
 }
 
-/// Brings the rows of a block into the octree's order.
+/// Reorders the rows of a block to the octree's order.
 void RayGrid::gather(const std::vector<uint64_t>& words, int64_t bit, BlockBits& bits) const {
   for (unsigned z = 0; z < kBlockSide; ++z)
     for (unsigned y = 0; y < kBlockSide; ++y) {

@@ -10,7 +10,7 @@
 
 namespace tread::mapping {
 
-/// Voxels per side of a block, the unit in which a scan goes from the grid into the tree.
+/// Voxels per side of a block, the unit of transfer of a scan from the grid into the tree.
 inline constexpr int kBlockSide = 8;
 
 /// One bit per voxel of a block, in the order in which an octree numbers its children: word i is
@@ -18,7 +18,7 @@ inline constexpr int kBlockSide = 8;
 /// bit 0 = x, bit 1 = y, bit 2 = z.
 using BlockBits = std::array<uint64_t, 8>;
 
-/// What one scan says about a block of 8 x 8 x 8 voxels.
+/// Result of one scan for a block of 8 x 8 x 8 voxels.
 struct VoxelBlock {
   std::array<int, 3> low{};  ///< keys of its lowest voxel, multiples of 8
   BlockBits passed{};        ///< beams went through, and none ended
@@ -28,30 +28,30 @@ struct VoxelBlock {
   uint64_t seen(size_t word) const { return passed[word] | hit[word]; }
 };
 
-/// The voxels that the beams of one scan pass and hit: two bits a voxel, in a box of keys.
-/** A beam is traced as by octomap::OcTree::computeRayKeys(), in the same arithmetic and so through
- *  the same voxels (Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing",
- *  Eurographics 1987), but a voxel is one number: a step to a neighbour adds its stride. */
+/// The voxels that the beams of one scan pass and hit: two bits per voxel, in a box of keys.
+/** A beam is traced as by octomap::OcTree::computeRayKeys(), with the same arithmetic and so
+ * through the same voxels (Amanatides and Woo, "A Fast Voxel Traversal Algorithm for Ray Tracing",
+ * Eurographics 1987), but a voxel is one number: a step to a neighbour adds its stride. */
 class RayGrid {
  public:
   /// Sides of the box in voxels, each a positive multiple of 8; else std::invalid_argument.
   explicit RayGrid(const std::array<int, 3>& sides);
 
-  /// Moves the box; drops what was traced. `low`: keys of its lowest voxel, multiples of 8, also
-  /// beyond what a tree can number.
+  /// Moves the box; discards traced beams. `low`: keys of its lowest voxel, multiples of 8,
+  /// possibly beyond the tree's range.
   void moveTo(const std::array<int, 3>& low);
 
-  /// Marks the voxels that a beam passes and, with `hit`, the one in which it ends; what lies
-  /// outside of the box is left out. Nothing if an end is farther out than the tree can number.
+  /// Marks the voxels that a beam passes and, with `hit`, the one in which it ends, as far as they
+  /// are in the box. Marks none if an end is beyond the tree's range.
   void trace(const octomap::OcTree& tree, const octomap::point3d& from, const octomap::point3d& to,
              bool hit);
 
-  /// The blocks of which something was marked, in no order; then nothing is marked any more.
+  /// The marked blocks, in no order; clears all marks.
   /** Valid until the next call. */
   std::vector<VoxelBlock>& takeBlocks();
 
  private:
-  /// A beam on its way: where it is, and at what distances it crosses the next borders.
+  /// State of a beam during tracing: position, and distances to the next borders.
   struct Step;
 
   int64_t bitOf(const std::array<int, 3>& key) const;

@@ -8,15 +8,15 @@
 namespace tread::mapping {
 namespace {
 
-/// Neighbours of a profile are no farther apart than this [m].
+/// Largest distance of neighbours in a profile [m].
 constexpr double kGap = 0.2;
-/// Shorter profiles, or with fewer returns, do not show bumps [m].
+/// Shorter profiles, or those with fewer returns, do not show bumps [m].
 constexpr double kShortest = 0.4;
 constexpr size_t kFewest = 6;
-/// A patch speaks from so many degrees of freedom on, and forgets beyond so many.
+/// Degrees of freedom from which a patch is used, and limit of its memory.
 constexpr double kEnough = 12.0;
 constexpr double kMost = 300.0;
-/// Smaller changes are not worth a message: this share, and 1 mm.
+/// Smaller changes do not justify a message: this share, and 1 mm.
 constexpr double kNoticeableShare = 0.15;
 
 }  // namespace

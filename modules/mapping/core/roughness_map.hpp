@@ -11,9 +11,9 @@
 
 namespace tread::mapping {
 
-/// How a range finder's returns become roughness.
+/// How a range finder's returns determine roughness.
 struct RoughnessConfig {
-  double range_noise = 0.0;  ///< [m] standard deviation of a range; 0 = roughness is not looked at
+  double range_noise = 0.0;  ///< [m] standard deviation of a range; 0 = no roughness
 };
 
 /// A return on the ground.
@@ -22,14 +22,14 @@ struct GroundPoint {
   double noise = 0.0;                               ///< variance of its height by range noise [m2]
 };
 
-/// Roughness of the ground, patch by patch, from lines of returns across it.
-/** 1. The returns of one sweep that follow each other within a patch are a profile of its ground. A
- *     straight line is fitted; what is left is bumps and range noise. A pose that is wrong moves
- * the whole profile and changes nothing.
- *  2. A patch adds up the squares of all its profiles, less what range noise is expected to give.
- *     Of N returns two are used up by the line.
- * Castelnovi, Arkin and Collins (ICRA 2005) take the spread of a downward scan for roughness, too.
- */
+/// Roughness of the ground, patch by patch, from scan lines across it.
+/** 1. Consecutive returns of one sweep within a patch are a profile of its ground. A straight line
+ *    is fitted; the residuals are bumps and range noise. An error of the pose moves the whole
+ *    profile and changes nothing.
+ *  2. A patch sums the squares of all its profiles, minus those expected from range noise. Of N
+ *     returns the line takes two degrees of freedom.
+ * Castelnovi, Arkin and Collins (ICRA 2005) also derive roughness from the spread of a downward
+ * scan. */
 class RoughnessMap {
  public:
   /// Cells per side of a patch.
@@ -39,15 +39,15 @@ class RoughnessMap {
 
   /// Moves the window; `lower` is its lower left cell, a multiple of kPatchCells.
   void moveTo(CellIndex lower);
-  /// Takes the ground returns of one sweep in their order. Returns the patches (index of the lower
-  /// left cell) whose cost changed noticeably.
+  /// Takes the ground returns of one sweep in order. Returns the patches (index of the lower left
+  /// cell) whose cost changed noticeably.
   std::vector<CellIndex> take(const std::vector<GroundPoint>& points);
-  /// 1..100 of a cell of the window, see costOf(); kFree where too little was seen.
+  /// 1..100 of a cell of the window, see costOf(); kFree with too little data.
   Cell at(CellIndex cell) const { return patches_.at(patchOf(cell)).cost; }
 
  private:
   struct Patch {
-    double squares = 0.0;  // of what the lines leave, less the noise [m2]
+    double squares = 0.0;  // of the residuals, minus the noise [m2]
     double degrees = 0.0;  // of freedom
     Cell cost = kFree;     // as last reported
   };

@@ -11,30 +11,31 @@
 namespace tread::mapping {
 namespace {
 
-/// So many scans are remembered by their bits: a device may repeat a few in turn.
+/// Scans remembered by their bits: a device may repeat a few in turn.
 constexpr size_t kRemembered = 32;
-/// Repeated bits with so many returns are a defect after so little motion [m, rad] ...
+/// Repeated bits with this many returns are a defect after this little motion [m, rad] ...
 constexpr size_t kManyReturns = 20;
 constexpr double kLittleWay = 0.15;
 constexpr double kLittleTurn = 3.0 / 180.0 * kPi;
-/// ... and with fewer after this; with fewer still they prove nothing: something may move along.
+/// ... and with fewer after this; with still fewer they prove nothing, because an object may move
+/// with the robot.
 constexpr int kFewReturns = 3;
 constexpr double kWay = 0.5;
 constexpr double kTurn = 10.0 / 180.0 * kPi;
 
-/// Returns of the last good scan that must be hit again, at least and as a share, and the share of
-/// these that is not.
+/// Returns of the last good scan that must be hit again, as a minimum and as a share, and the share
+/// of these that is missed.
 constexpr double kLeastExpected = 5.0;
 constexpr double kExpectedShare = 0.5;
 constexpr double kSeenThrough = 0.9;
-/// The last good scan tells for so long what must be there [us]; while doubted without end.
+/// How long the last good scan predicts what must be there [us]; while doubted without limit.
 constexpr int64_t kMoment = 600'000;
 
-/// Steeper than this a level range finder looks along the ground: what it sees of a hillside comes
-/// and goes as the robot rolls [rad].
+/// On steeper ground a level range finder looks along the ground: returns from a hillside come and
+/// go as the robot rolls [rad].
 constexpr double kSteep = 0.25;
 
-/// Good scans are kept every so far [m, rad], and compared with over these distances.
+/// Spacing of kept good scans [m, rad], and distances over which they are compared.
 constexpr double kKeepWay = 0.2;
 constexpr double kKeepTurn = 6.0 / 180.0 * kPi;
 constexpr size_t kKept = 16;
@@ -44,23 +45,23 @@ struct Distance {
 };
 constexpr Distance kCompared[] = {{0.2, 0.1}, {0.5, 0.26}, {1.2, 0.6}};
 
-/// Points of a scan that are compared.
+/// Number of compared points of a scan.
 constexpr size_t kSample = 90;
-/// Points of a scan that do not fit an earlier one, for a doubt; and points that a defect explains
-/// where only one earlier scan does not fit: what fits several by chance is rare.
+/// Points of a scan that must miss an earlier one for a suspicion; and points that a defect must
+/// explain if only one earlier scan is missed: fitting several by chance is rare.
 constexpr size_t kLeastMissed = 12;
 constexpr double kLeastAlone = 30.0;
-/// ... or where earlier scans, which fit each other, would be wrong in the same way: rises seen
-/// from here and there look like that.
+/// ... or if earlier scans, which fit each other, would have the same defect: rises seen from
+/// different positions look like that.
 constexpr double kLeastAlways = 60.0;
 
-/// So long a scan that decides nothing is not compared with later ones [us].
+/// How long an inconclusive scan is not compared with later ones [us].
 constexpr int64_t kUndecided = 1'500'000;
 
 constexpr size_t kJudged = 5;
 constexpr int kSure = 3;
 constexpr int64_t kGoodAgain = 1'000'000;  // [us]
-/// So long after a verdict one suspicion makes the next [us].
+/// How long after a verdict a single suspicion gives the next [us].
 constexpr int64_t kProbation = 60'000'000;
 
 bool beyond(double way, double turn, double least_way, double least_turn) {
@@ -100,7 +101,7 @@ std::optional<ScanSuspicion> ScanMonitor::compare(const Scan& scan, const PoseAt
   ScanView view(scan, robot_, height_);
   const bool sees = !view.points().empty();
   if (!apart(scan.utime)) {
-    // No place goes from many returns to none at once.
+    // A scene does not change from many returns to none at once.
     if (!sees && newest_ && newest_->points().size() >= kManyReturns)
       return ScanSuspicion{ScanDefect::kSeesThrough};
     const std::vector<ScanDoubt> doubts = this->doubts(view);
@@ -111,7 +112,7 @@ std::optional<ScanSuspicion> ScanMonitor::compare(const Scan& scan, const PoseAt
       unsettled_ = true;
       return std::nullopt;
     }
-    // Who was doubted and sees nothing has not proved to be good.
+    // A doubted range finder without returns has not proved to be good.
     if (!sees && doubted()) return std::nullopt;
   }
   keep(std::move(view));
@@ -176,7 +177,7 @@ std::vector<const ScanView*> ScanMonitor::references(const ScanView& view) const
       return beyond(motion.translation().norm(), turnOf(motion), distance.way, distance.turn);
     });
     if (far == views_.rend()) break;
-    // The newest one may be among those along the way.
+    // The newest one may be among those along the path.
     const bool again = !references.empty() && far->utime() == references.back()->utime();
     if (!again) references.push_back(&*far);
   }
@@ -234,8 +235,8 @@ ScanSuspicion ScanMonitor::explain(const ScanView& view, const std::vector<ScanD
                                    const PoseAt& poseAt) const {
   ScanSuspicion best;
   if (doubts.empty()) return best;
-  // What begins now fits the newest good scan worst; a robot that starts under old scans does not
-  // show it so, and has less credit after a verdict.
+  // A defect that begins now fits the newest good scan worst; a robot that starts with old scans
+  // does not show this, and is trusted less after a verdict.
   const bool sudden = doubts.front().reference == &*newest_ || onProbation(view.utime());
   const double least_sudden = doubts.size() > 1 ? kLeastMissed : kLeastAlone;
   static const std::vector<ScanSuspicion> kAll = scanHypotheses();
@@ -261,7 +262,7 @@ ScanSuspicion ScanMonitor::weigh(ScanSuspicion suspicion, const ScanView& view,
     suspicion.gain += gain;
     explained += gain > 0.0 ? 1 : 0;
   }
-  // A little delay explains much that is none: there all must agree.
+  // A small delay explains much by chance: there all must agree.
   const bool delayed = suspicion.defect == ScanDefect::kDelayed;
   const size_t needed =
       delayed ? doubts.size() : std::max(std::min<size_t>(2, doubts.size()), doubts.size() / 2);
@@ -305,7 +306,7 @@ void ScanMonitor::judge(const ScanSuspicion& suspicion, int64_t utime) {
     return words_.clear();
   }
   last_suspected_ = utime;
-  // Old or mirrored scans are good while the robot stands: who was convicted has less credit.
+  // Old or mirrored scans look good while the robot stands: after a verdict they are trusted less.
   const auto agreeing =
       std::count_if(recent_.begin(), recent_.end(),
                     [&](const ScanSuspicion& other) { return agree(suspicion, other); });

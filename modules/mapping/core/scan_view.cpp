@@ -13,18 +13,18 @@ namespace tread::mapping {
 namespace {
 
 constexpr double kBin = 2.0 * kPi / ScanView::kBins;
-/// What is lower above the robot's own ground may be ground [m].
+/// Lower points above the robot's own ground may be ground [m].
 constexpr double kGround = 0.25;
-/// Two returns of one thing are no farther apart [m], and by this more per metre of range.
+/// Largest distance of two returns from one object [m], plus this per metre of range.
 constexpr double kApart = 0.08;
 constexpr double kApartPerRange = 0.015;
-/// A beam that must hit what was seen passes no higher or lower [m].
+/// Largest height difference at which a beam must hit an observed object [m].
 constexpr double kInPlane = 0.04;
-/// So near to the plane of another scan it would have seen it, too [m].
+/// Distance from another scan's plane within which that scan would also have seen it [m].
 constexpr double kSamePlane = 0.06;
 /// With a smaller share of its points there the planes differ: on hills both may have seen ground.
 constexpr double kMostInPlane = 0.6;
-/// What moves may leave the view or the range within a moment: so far it counts for nothing [m].
+/// A moving object may leave the view or the range: within this distance a miss does not count [m].
 constexpr double kMayLeave = 1.0;
 
 double apart(double range) {
@@ -61,7 +61,7 @@ ScanView::ScanView(const Scan& scan, const FootprintSize& robot, double height)
         interpolated(scan.T_map_body_first, scan.T_map_body_last, beam.share) * p_body;
     if (p_map.z() > ground) hits.emplace_back(binOf(T_sensor_map * p_map.head<2>()), p_map);
   }
-  // What is that near may be the robot itself, now and then.
+  // Such close returns may occasionally be the robot itself.
   hits.erase(
       std::remove_if(hits.begin(), hits.end(),
                      [&](const auto& hit) { return hidden[static_cast<size_t>(hit.first)]; }),
@@ -111,7 +111,7 @@ ScanView::Fit ScanView::fit(const Eigen::Vector2d& p_sensor) const {
 }
 
 ScanView::SeenThrough ScanView::seenThrough(const Scan& later) const {
-  // At each bearing [m]; infinite: it did not look.
+  // At each bearing [m]; infinite: not observed.
   std::array<double, kBins> nearest;
   nearest.fill(std::numeric_limits<double>::infinity());
   double farthest = 0.0;

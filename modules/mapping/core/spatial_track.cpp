@@ -9,9 +9,9 @@
 namespace tread::mapping {
 namespace {
 
-/// Steps may be so much longer than the top speed allows: noise of the INS [m].
+/// Excess of a step over the top speed's that is noise of the INS [m].
 constexpr double kStepMargin = 0.5;
-/// So many doubted poses that agree with each other are believed.
+/// Doubted poses that must agree with each other to be accepted.
 constexpr size_t kEnoughDoubted = 3;
 
 }  // namespace

@@ -16,19 +16,19 @@ class SpatialTrack {
   enum class PoseCheck {
     kTaken,
     kNotNewer,  ///< not newer than the last pose, or a negative time: refused
-    kDoubted,   ///< farther from the last pose than the robot can move: kept aside for now
-    kJump       ///< the poses that were doubted agree with each other: the track begins anew
+    kDoubted,   ///< farther from the last pose than the robot can move: set aside for now
+    kJump       ///< the doubted poses agree with each other: the track restarts
   };
 
-  /// Keeps poses that are at most `span_us` older than the newest. A step is doubted if it is
-  /// longer than half a metre beyond what `top_speed` [m/s] allows; three in a row that agree are a
-  /// jump, while a single one is forgotten as soon as the track goes on.
+  /// Keeps poses that are at most `span_us` older than the newest. A step is doubted if it exceeds
+  /// what `top_speed` [m/s] allows by more than half a metre; three consistent ones in a row are a
+  /// jump, while a single one is forgotten as soon as the track continues.
   SpatialTrack(int64_t span_us, double top_speed) : span_us_(span_us), top_speed_(top_speed) {}
 
   PoseCheck push(int64_t utime, const Eigen::Isometry3d& T_map_body);
   void clear();
 
-  /// Pose at a time between two kept poses at most `max_gap_us` apart; else nothing.
+  /// Pose at a time between two kept poses at most `max_gap_us` apart; else nullopt.
   std::optional<Eigen::Isometry3d> at(int64_t utime, int64_t max_gap_us) const;
 
   bool empty() const { return poses_.empty(); }

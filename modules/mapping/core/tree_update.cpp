@@ -23,8 +23,7 @@ uint64_t mortonOf(const VoxelBlock& block) {
          spread(block.low[2] / kBlockSide) << 2;
 }
 
-/// Of the first voxel that was seen: the nine bits of its number in the block are x, y and z in
-/// turn.
+/// For the first observed voxel: the nine bits of its index in the block are x, y and z in turn.
 octomap::OcTreeKey firstKeyOf(const VoxelBlock& block) {
   size_t word = 0;
   while (block.seen(word) == 0) ++word;
@@ -47,12 +46,12 @@ void TreeUpdate::operator()(octomap::OcTree& tree, std::vector<VoxelBlock>& bloc
   order_.clear();
   for (VoxelBlock& block : blocks) order_.emplace_back(mortonOf(block), &block);
   std::sort(order_.begin(), order_.end());
-  // A tree makes its own root only; evidence of nothing for a voxel that gets some anyway does it.
+  // A tree creates only its own root; neutral evidence for a voxel that is updated anyway does it.
   if (tree.getRoot() == nullptr) tree.updateNode(firstKeyOf(*order_.front().second), 0.0F);
   inner(tree.getRoot(), false, 0, order_.data(), order_.data() + order_.size());
 }
 
-/// Returns whether the node has changed, as do the others.
+/// Returns whether the node has changed, as do the other functions.
 bool TreeUpdate::inner(Node* node, bool fresh, unsigned depth, const Entry* first,
                        const Entry* last) {
   if (depth == kBlockDepth) return block(node, fresh, *first->second);
@@ -99,7 +98,7 @@ bool TreeUpdate::block(Node* node, bool fresh, VoxelBlock& block) {
   return finish(node, childless && !fresh, changed);
 }
 
-/// The same for a node of so many voxels; `occupied`: as in VoxelBlock.
+/// The same for a node of this many voxels; `occupied`: as in VoxelBlock.
 template <unsigned kVoxels>
 bool TreeUpdate::cube(Node* node, bool fresh, uint64_t passed, uint64_t hit, uint64_t& occupied) {
   constexpr uint64_t kAll = ~uint64_t{0} >> (64 - kVoxels);
@@ -130,7 +129,7 @@ bool TreeUpdate::cube(Node* node, bool fresh, uint64_t passed, uint64_t hit, uin
   return finish(node, childless && !fresh, changed);
 }
 
-/// Updates a childless node as one; nothing if it has to get children first.
+/// Updates a childless node as one; nullopt if it needs children first.
 std::optional<bool> TreeUpdate::updateWhole(Node* node, bool fresh, const Below& below) {
   if (below.passed && below.hit) return std::nullopt;
   const bool settled = below.hit ? node->getLogOdds() >= tree_->getClampingThresMaxLog()
@@ -141,7 +140,7 @@ std::optional<bool> TreeUpdate::updateWhole(Node* node, bool fresh, const Below&
   return true;
 }
 
-/// `opened`: it was childless until now; if it did not change it becomes so again.
+/// `opened`: it was childless until now; without a change it becomes so again.
 bool TreeUpdate::finish(Node* node, bool opened, bool changed) {
   if ((changed || opened) && !tree_->pruneNode(node)) node->updateOccupancyChildren();
   return changed;

@@ -13,16 +13,17 @@
 
 namespace tread::mapping {
 
-/// Puts the blocks of one scan into an octree and says which of their voxels are occupied now.
-/** The tree is the same, byte for byte, as after octomap::OcTree::updateNode(key, hit) for each
- *  voxel of the blocks, hits and misses in any order: pruned wherever eight children are equal,
- *  inner nodes up to date.
- *  1. Blocks in Morton order: the children of a node stand together, so one descent visits each
- *     node once and prunes it, or sets its value, when all its children are done.
- *  2. A childless node below which every voxel gets the same is updated itself: what eight equal
- *     children become when they are pruned. So seen free space costs no nodes.
- *  3. Nodes at the clamp of what they would get stay as they are, as in updateNode().
- *  Change detection of the tree is not served. Blocks are sorted; no block may come twice. */
+/// Inserts the blocks of one scan into an octree and returns which of their voxels are now
+/// occupied.
+/** The tree equals, byte for byte, that after octomap::OcTree::updateNode(key, hit) for each voxel
+ * of the blocks, hits and misses in any order: pruned wherever eight children are equal, inner
+ * nodes up to date.
+ *  1. Blocks are in Morton order: the children of a node are consecutive, so one descent visits
+ *     each node once and prunes it, or sets its value, when all its children are done.
+ *  2. A childless node below which every voxel gets the same update is updated itself, as eight
+ *     equal children would be pruned. So observed free space costs no nodes.
+ *  3. Nodes at the clamping limit of their update stay as they are, as in updateNode().
+ * Does not support the tree's change detection. Blocks are sorted; no block may occur twice. */
 class TreeUpdate {
  public:
   void operator()(octomap::OcTree& tree, std::vector<VoxelBlock>& blocks);
@@ -38,7 +39,7 @@ class TreeUpdate {
   template <unsigned kVoxels>
   bool cube(Node* node, bool fresh, uint64_t passed, uint64_t hit, uint64_t& occupied);
 
-  /// What a childless node has below it for this scan.
+  /// Updates below a childless node in this scan.
   struct Below {
     bool passed;  ///< some voxel
     bool hit;

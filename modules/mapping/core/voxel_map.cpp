@@ -50,7 +50,7 @@ void makeChildless(OcTree& tree, OcTreeNode* node, unsigned depth) {
   tree.pruneNode(node);
 }
 
-/// Returns whether anything is left below the node.
+/// Returns whether anything remains below the node.
 bool trim(OcTree& tree, OcTreeNode* node, unsigned depth, const Cube& cube, const KeyBox& box) {
   const Overlap overlap = overlapOf(cube, box);
   if (overlap != Overlap::kPartly) return overlap == Overlap::kInside;
@@ -70,7 +70,7 @@ bool trim(OcTree& tree, OcTreeNode* node, unsigned depth, const Cube& cube, cons
   return any_left;
 }
 
-/// OctoMap numbers voxels from here: this key holds [0, cell_size).
+/// OctoMap's voxel index of the origin: this key covers [0, cell_size).
 constexpr int kKeyOfZero = 32768;
 
 octomap::point3d point(const Eigen::Vector3d& p) {

@@ -15,8 +15,8 @@
 
 namespace tread::mapping {
 
-/// A square of elements with indices fixed in map; what moves out is forgotten, what comes in is
-/// new.
+/// A square of elements with indices fixed in map; elements that leave it are forgotten, new ones
+/// are initialised.
 template <class Element>
 class Window {
  public:
@@ -43,7 +43,7 @@ class Window {
   Element& at(CellIndex index) { return elements_[offset(index)]; }
   const Element& at(CellIndex index) const { return elements_[offset(index)]; }
 
-  /// Keeps the elements that old and new window share.
+  /// Keeps the elements in both the old and the new window.
   void moveTo(CellIndex lower) {
     Window moved(side_);
     moved.lower_ = lower;
@@ -69,30 +69,32 @@ struct KeyBox {
   octomap::OcTreeKey high;
 };
 
-/// Removes every leaf outside of a box; the rest is as pruned as before, inner nodes up to date.
-/** Own descent, because the library has none: its deleteNode() aborts as soon as it takes the last
- *  child of an inner node (the node's array of children stays allocated, and its destructor asserts
- *  that there is none). Only pruneNode() frees that array, and only with eight equal children. */
+/// Removes every leaf outside of a box; the rest stays pruned as before, inner nodes up to date.
+/** Own descent, because the library has none: its deleteNode() aborts as soon as it removes the
+ * last child of an inner node (the node's array of children stays allocated, and its destructor
+ * asserts that there is none). Only pruneNode() frees that array, and only with eight equal
+ * children. */
 void trimTree(octomap::OcTree& tree, const KeyBox& box);
 
-/// Index of the lowest bit that is set; some must be.
+/// Index of the lowest set bit; at least one must be set.
 inline int lowestBit(uint64_t bits) {
   return __builtin_ctzll(bits);
 }
 
-/// How evidence about a voxel adds up; probabilities of being occupied (OctoMap's sensor model).
+/// How evidence about a voxel accumulates; probabilities of being occupied (OctoMap's sensor
+/// model).
 struct VoxelConfig {
   double cell_size = 0.1;  ///< [m]
   double hit = 0.80;       ///< after one hit
-  double miss = 0.40;      ///< after one beam that passed
+  double miss = 0.40;      ///< after one passing beam
   double clamp_min = 0.12;
   double clamp_max = 0.88;  ///< with this and `miss`, five passing scans clear any voxel
 };
 
-/// Number of voxels in a column: as many as a word has bits.
+/// Number of voxels in a column: the number of bits of a word.
 inline constexpr int kColumnHeight = 64;
 
-/// What the tree holds of one column of voxels: bit i stands for the voxel lower_z + i.
+/// State of one column of voxels in the tree: bit i stands for the voxel lower_z + i.
 struct Column {
   uint64_t known = 0;     ///< some beam ended in it or passed it
   uint64_t occupied = 0;  ///< more likely occupied than not
@@ -103,13 +105,13 @@ struct Column {
 /// A beam in map.
 struct Ray {
   Eigen::Vector3d from;  ///< p_map [m]
-  Eigen::Vector3d to;    ///< p_map of the return, or of the end of what was seen free [m]
+  Eigen::Vector3d to;    ///< p_map of the return, or the end of the observed free space [m]
   bool hit = false;
 };
 
-/// Rolling octomap::OcTree with a bit image of its leafs, column by column.
-/** The tree holds the evidence, the image says what it comes to: both always agree, and nothing of
- *  the tree lies outside of the window. The tree is pruned and its inner nodes are up to date. */
+/// Rolling octomap::OcTree with a bit image of its leaves, column by column.
+/** The tree holds the evidence, the image its classification: both always agree, and no part of the
+ * tree is outside of the window. The tree is pruned and its inner nodes are up to date. */
 class VoxelMap {
  public:
   /// `side_cells`: a multiple of kBlockSide.
@@ -117,18 +119,18 @@ class VoxelMap {
   VoxelMap(const VoxelMap&) = delete;
   VoxelMap& operator=(const VoxelMap&) = delete;
 
-  /// Moves the window: its lower left column and its lowest voxel, as indices fixed in map, each a
-  /// multiple of kBlockSide.
+  /// Moves the window, given its lower left column and its lowest voxel as indices fixed in map,
+  /// multiples of kBlockSide.
   void moveTo(CellIndex lower, int lower_z);
 
-  /// Takes the rays of one scan; hits win over passing beams, each voxel counts once.
-  /** Same tree as octomap::OcTree::insertPointCloud() makes within the window, lazy_eval = false.
-   *  This is the one place that writes into the tree. */
+  /// Takes the rays of one scan; hits override passing beams, each voxel counts once.
+  /** Gives the same tree as octomap::OcTree::insertPointCloud() within the window, with lazy_eval =
+   * false. The only function that writes to the tree. */
   void insert(const std::vector<Ray>& rays);
 
   /// Columns that the last insert() passed or hit.
   const std::vector<size_t>& touched() const { return touched_; }
-  /// Columns in which the last insert() changed what is known or occupied.
+  /// Columns in which the last insert() changed known or occupied.
   const std::vector<size_t>& changed() const { return changed_; }
 
   const Window<Column>& columns() const { return columns_; }

@@ -16,9 +16,9 @@ constexpr int kMaxDepth = 6;
 constexpr int kMaxExpansions = 20'000;  // about two milliseconds
 constexpr double kTimeCost = 0.05;      // [1/s]
 constexpr double kFarCost = 0.5;        // at the border of the room
-constexpr double kLagGain = 0.5;        // for the pattern that lags behind most
-constexpr double kLaterShare = 0.9;     // what the next pattern counts of the one before
-constexpr double kTurnMoves = 0.05;     // [m] that turning in place may lead farther
+constexpr double kLagGain = 0.5;        // for the pattern furthest behind
+constexpr double kLaterShare = 0.9;     // weight of each next pattern relative to the previous one
+constexpr double kTurnMoves = 0.05;     // [m] by which turning in place may move the robot outwards
 
 double distance(const Pose2& T_home_body) {
   return std::hypot(T_home_body.x, T_home_body.y);
@@ -26,9 +26,10 @@ double distance(const Pose2& T_home_body) {
 
 constexpr int64_t kMaxPoseAge = 150'000;    // [us] as the planner's
 constexpr int64_t kMaxBridgeAge = 500'000;  // [us] as the planner's
-constexpr int64_t kLead = 600'000;  // [us] before its end the running pattern gets its successor
-constexpr int64_t kLostAfter = 3'000'000;  // [us] of standing after which no record comes any more
-constexpr double kPlannedShare = 0.85;     // of the room; the rest is for deviations
+constexpr int64_t kLead =
+    600'000;  // [us] before its end, when the running pattern gets its successor
+constexpr int64_t kLostAfter = 3'000'000;  // [us] of standstill after which no more records arrive
+constexpr double kPlannedShare = 0.85;     // of the room; the rest is a margin for deviations
 constexpr int kMaxWithoutGain = 60;        // patterns
 
 /// A number with one decimal, such as "-3.5".
@@ -44,12 +45,12 @@ std::string placeOf(const Pose2& pose) {
 
 }  // namespace
 
-/// Depth-first search over chains, deeper and deeper; keeps the first pattern of the best one.
+/// Iterative deepening search over chains; keeps the first pattern of the best one.
 struct ExcitationPlanner::Search {
   const ExcitationPlanner& excitation;
   std::vector<int> needed;
   double most_needed;
-  double limit;  // [m] for the place where it would stand
+  double limit;  // [m] for the place where it would stop
   int expansions = 0;
   double best_value = -std::numeric_limits<double>::infinity();
   std::optional<size_t> best_first;
@@ -66,7 +67,7 @@ struct ExcitationPlanner::Search {
       best_value = -std::numeric_limits<double>::infinity();
       best_first.reset();
       extend(motion_class, T_home_body, depth, 0.0, 1.0, std::nullopt);
-      // A search that was cut short has not looked at everything: the one before counts.
+      // A search that was cut short is incomplete: the previous result counts.
       if (expansions < kMaxExpansions || !found) found = best_first;
     }
     best_first = found;
@@ -126,7 +127,7 @@ size_t ExcitationPlanner::classIndex(const std::string& name) const {
   return static_cast<size_t>(found - class_names_.begin());
 }
 
-/// Bellman and Ford: patterns are few.
+/// Bellman-Ford, because there are few patterns.
 void ExcitationPlanner::findWays() {
   ways_.assign(class_names_.size(), {});
   ways_[standing_].duration = 0.0;
@@ -160,7 +161,8 @@ std::optional<size_t> ExcitationPlanner::next(const std::string& motion_class,
                                               const std::vector<int>& needed) const {
   const size_t from = classIndex(motion_class);
   if (*std::max_element(needed.begin(), needed.end()) <= 0) return ways_[from].first;
-  // Where it is too far away already, no pattern may lead farther, but to turn back it must turn.
+  // If it is already too far away, no pattern may lead farther, except for turns, which it needs to
+  // turn back.
   const double stands_at = distance(T_home_body * ways_[from].T_start_end);
   Search search(*this, needed, std::max(room_, stands_at + kTurnMoves));
   search.run(from, T_home_body);
@@ -186,7 +188,7 @@ void RecordingDrive::step(const RobotReadings& readings, const RecordingProgress
   if (state_ == State::kRunning) drive(readings, progress, may_begin);
 }
 
-/// Slots that the bridge never began will not be judged.
+/// Slots that the bridge never started get no result.
 void RecordingDrive::forgetUnplayed(const RobotReadings& readings) {
   for (auto it = under_way_.begin(); it != under_way_.end();) {
     const bool known =
@@ -249,7 +251,7 @@ void RecordingDrive::drive(const RobotReadings& readings, const RecordingProgres
 
 void RecordingDrive::begin(const RobotReadings& readings, const std::vector<int>& missing) {
   const std::vector<int> open = needed(missing);
-  // What is under way may be refused, and then it is needed again.
+  // An execution in progress may be refused, and then it is needed again.
   if (*std::max_element(open.begin(), open.end()) <= 0) return;
   if (!T_map_home_) T_map_home_ = readings.pose->T_map_body;
   const std::optional<size_t> pattern =

@@ -96,7 +96,7 @@ const ScanPoint* LocalMap::nearest(const Eigen::Vector2d& p_map, double radius,
       const ScanPoint& point = points_[i];
       const double distance = (point.p - p_map).squaredNorm();
       if (distance >= least) continue;
-      // The other side of a thin wall is not what is seen from here.
+      // The other side of a thin wall is invisible from here.
       if (point.shape == Shape::kLine && point.normal.dot(p_map_sensor - point.p) < 0.0) continue;
       least = distance;
       found = &point;
@@ -117,7 +117,7 @@ LikelihoodGrid::LikelihoodGrid(const std::vector<ScanPoint>& map_points) {
           static_cast<int>(std::floor((point.p.y() - low_.y()) / kCell)));
 }
 
-/// A bump around a cell: 255 in its middle, about a tenth at the edge.
+/// A smooth peak at a cell: 255 in its middle, about a tenth at the edge.
 void LikelihoodGrid::raise(int x, int y) {
   for (int dy = -kBlur; dy <= kBlur; ++dy)
     for (int dx = -kBlur; dx <= kBlur; ++dx) {

@@ -16,17 +16,17 @@ namespace tread::scan_matching {
 /// Points of recent scans in the map, found by place.
 class LocalMap {
  public:
-  /// Keeps the last `scans` scans, and of them what is within `reach` [m] of the newest.
+  /// Keeps the last `scans` scans, limited to `reach` [m] around the newest.
   LocalMap(size_t scans, double reach) : most_(scans), reach_(reach) {}
 
-  /// Puts a scan into the map, and forgets the oldest where there are too many.
+  /// Adds a scan to the map, and drops the oldest if there are too many.
   void add(const Pose2& T_map_body, const std::vector<ScanPoint>& points);
   void clear();
 
   bool empty() const { return scans_.empty(); }
   /// All points, p_map.
   const std::vector<ScanPoint>& points() const { return points_; }
-  /// Where the newest scan was taken.
+  /// Pose of the newest scan.
   const Pose2& newest() const { return scans_.back().T_map_body; }
   /// The nearest point within `radius` (at most kCell) that faces `p_map_sensor`; else nullptr.
   const ScanPoint* nearest(const Eigen::Vector2d& p_map, double radius,
@@ -55,8 +55,8 @@ class LocalMap {
   int rows_ = 0;
 };
 
-/// How likely a return at a place is, by what the map holds: 255 at a point, less around it. For
-/// searches that try many poses.
+/// Likelihood of a return at a position given the map: 255 at a point, falling off around it. For
+/// searches that test many poses.
 class LikelihoodGrid {
  public:
   static constexpr double kCell = 0.1;  ///< [m]

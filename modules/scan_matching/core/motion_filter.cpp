@@ -33,7 +33,8 @@ void MotionFilter::predict(double dt) {
   Covariance F = Covariance::Identity();
   F.topLeftCorner<3, 3>() = turning;
   F.topRightCorner<3, 3>() = dt * moving;
-  // White acceleration of this density changes speed as one that lasts for `correlation` does.
+  // White acceleration of this density changes the speed as much as one that lasts for
+  // `correlation`.
   const double a = config_.acceleration * config_.acceleration * config_.correlation;
   const double w = config_.yaw_acceleration * config_.yaw_acceleration * config_.correlation;
   const Matrix3d density = Vector3d(a, a, w).asDiagonal();
@@ -48,14 +49,14 @@ void MotionFilter::predict(double dt) {
 }
 
 void MotionFilter::constrain(double dt, bool standing) {
-  // As one measurement in each correlation time, whatever the rate of the scans.
+  // As one measurement per correlation time, for any rate of scans.
   const double count = dt / config_.correlation;
   const auto variance = [&](double std) { return std * std / std::max(1e-6, count); };
   if (!standing) return measureTwist(1, variance(config_.lateral_speed));
   for (int axis = 0; axis < 3; ++axis) measureTwist(axis, variance(config_.standing_speed));
 }
 
-/// One component of the twist is zero, but for this variance.
+/// One component of the twist is zero, up to this variance.
 void MotionFilter::measureTwist(int axis, double variance) {
   const double value = axis == 0 ? twist_.v_x : axis == 1 ? twist_.v_y : twist_.omega;
   const Eigen::Matrix<double, 6, 1> column = covariance_.col(3 + axis);
@@ -66,7 +67,7 @@ void MotionFilter::measureTwist(int axis, double variance) {
   covariance_ -= column * column.transpose() / total;
 }
 
-/// A body never becomes faster than it can be, whatever is not known of it.
+/// A body never exceeds its top speed, however large the uncertainty.
 void MotionFilter::limitTwist() {
   const double most[3] = {config_.speed, config_.speed, config_.yaw_rate};
   for (int i = 0; i < 3; ++i) {
@@ -79,7 +80,7 @@ void MotionFilter::limitTwist() {
 
 void MotionFilter::update(const Pose2& T_map_body, const Matrix3d& covariance) {
   const Matrix3d P = poseCovariance();
-  // What is learnt of the pose goes on to the twist by their correlation.
+  // Information about the pose is transferred to the twist by their correlation.
   const Matrix3d gain = covariance_.bottomLeftCorner<3, 3>() * P.inverse();
   const Vector3d change(T_map_body.x - pose_.x, T_map_body.y - pose_.y,
                         wrapAngle(T_map_body.yaw - pose_.yaw));

@@ -8,19 +8,20 @@
 
 namespace tread::scan_matching {
 
-/// How a body may move between scans.
+/// Motion of a body between scans.
 struct MotionConfig {
   double acceleration = 1.0;      ///< [m/s2] standard deviation, along x and y of the body
   double yaw_acceleration = 1.5;  ///< [rad/s2]
-  double correlation = 0.5;       ///< [s] for which an acceleration lasts
+  double correlation = 0.5;       ///< [s] duration of an acceleration
   double start_speed = 0.3;       ///< [m/s], and [rad/s], before the first two scans
-  double lateral_speed = 0.1;     ///< [m/s] sideways: tracks and wheels hardly slip so
-  double standing_speed = 0.005;  ///< [m/s], and [rad/s], while the motors have been off for long
-  double speed = 1.0;             ///< [m/s] standard deviation, however long nothing was measured
-  double yaw_rate = 0.7;          ///< [rad/s] the same
+  double lateral_speed = 0.1;     ///< [m/s] sideways: tracks and wheels hardly slip sideways
+  double standing_speed = 0.005;  ///< [m/s], and [rad/s], long after the motors were switched off
+  double speed = 1.0;     ///< [m/s] upper limit of the standard deviation without measurements
+  double yaw_rate = 0.7;  ///< [rad/s] the same
 };
 
-/// Pose and twist of a body that goes on as it goes, but for accelerations: a Kalman filter.
+/// Pose and twist of a body with constant velocity except for random accelerations: a Kalman
+/// filter.
 /** State: x, y [m] and yaw [rad] in map, v_x, v_y [m/s] and omega [rad/s] in body. */
 class MotionFilter {
  public:
@@ -28,13 +29,14 @@ class MotionFilter {
 
   MotionFilter(const MotionConfig& config, const Pose2& T_map_body);
 
-  /// Goes on for dt [s].
+  /// Predicts over dt [s].
   void predict(double dt);
-  /// What is known of the motion over dt [s] without any scan: hardly sideways, or not at all.
+  /// Applies prior knowledge of the motion over dt [s]: hardly any sideways motion, or standstill.
   void constrain(double dt, bool standing);
-  /// Takes what a match made of the predicted pose: the posterior pose and its covariance (3x3).
+  /// Takes the result of a match at the predicted pose: the posterior pose and its covariance
+  /// (3x3).
   void update(const Pose2& T_map_body, const Eigen::Matrix3d& covariance);
-  /// From now on the pose is counted from where it is: its own uncertainty is nothing.
+  /// Takes the present pose as reference: its own uncertainty becomes zero.
   void anchor();
 
   const Pose2& pose() const { return pose_; }

@@ -15,9 +15,9 @@ constexpr double kMostShift = 1.5;   // [m] the same
 constexpr double kMostTurn = 0.6;    // [rad]
 constexpr size_t kMostPoints = 120;  // looked at
 constexpr double kCoarse = 0.2;      // [m] between tried places
-constexpr double kPriorCost = 4.0;   // [of 255] that one variance from the prior costs
+constexpr double kPriorCost = 4.0;   // [of 255] cost of one prior variance of deviation
 
-/// Tries poses of a lattice and keeps the best.
+/// Tests poses of a lattice and keeps the best.
 class Search {
  public:
   Search(const std::vector<ScanPoint>& points, const LocalMap& map, const PosePrior& prior)

@@ -17,22 +17,23 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kMostIterations = 25;
-constexpr int kWideIterations = 4;      // with the large radius at least
+constexpr int kWideIterations = 4;      // with the large radius, at least
 constexpr double kWideRadius = 0.5;     // [m] to a partner
-constexpr double kNarrowRadius = 0.25;  // [m] the same, once it lies nearly right
+constexpr double kNarrowRadius = 0.25;  // [m] the same, once the alignment is nearly right
 constexpr double kSmallShift = 1e-4;    // [m], and [rad] at 10 m
 constexpr double kCauchy = 2.4;         // [1] of the scale: where a weight has fallen to a half
-constexpr double kScatterNoise = 0.05;  // [m] at least, of a scatter's partner
-constexpr double kScatterDoubt = 0.1;   // [1] of what scatter tells is chance: it finds partners
-constexpr double kStraightness = 0.03;  // [rad] walls are no straighter
-constexpr double kClear = 6.0;          // [1] a direction is determined from here on
-constexpr double kPiece = 2.0;          // [m] of one thing that share an error
-constexpr size_t kFewestOfPiece = 3;    // points of which the mean counts
-constexpr size_t kFewestPieces = 5;     // that tell what error they share
-constexpr double kUsualShared = 0.02;   // [m] that error, where there are fewer
+constexpr double kScatterNoise = 0.05;  // [m] lower limit for a scatter's partner
+constexpr double kScatterDoubt =
+    0.1;  // [1] of a scatter's information is chance: it always finds partners
+constexpr double kStraightness = 0.03;  // [rad] limit of walls' straightness
+constexpr double kClear = 6.0;          // [1] from which a direction is determined
+constexpr double kPiece = 2.0;          // [m] of one object that share an error
+constexpr size_t kFewestOfPiece = 3;    // fewest points for a mean
+constexpr size_t kFewestPieces = 5;     // fewest pieces for estimating their shared error
+constexpr double kUsualShared = 0.02;   // [m] that error with fewer pieces
 constexpr double kLeaves = 2.0;         // [1] of their distance: error of a partner in a scatter
-constexpr double kApart = 0.5;          // [m] between neighbours: another thing
-constexpr double kBad = 0.1;            // [m] a residual that makes a point as bad as one without
+constexpr double kApart = 0.5;          // [m] between neighbours: another object
+constexpr double kBad = 0.1;  // [m] residual that makes a point as bad as one without a partner
 
 Vector2d leftOf(const Vector2d& v) {
   return {-v.y(), v.x()};
@@ -44,11 +45,11 @@ struct Pair {
   Vector2d offset;  ///< from the partner to the point [m]
   const ScanPoint* partner = nullptr;
   double weight = 0.0;    ///< [1/m2] of its residual
-  bool doubtful = false;  ///< nobody saw it from near: may be the ground
+  bool doubtful = false;  ///< never seen from near: may be ground
 
   bool isLine() const { return partner->shape == Shape::kLine; }
   double residual() const { return isLine() ? partner->normal.dot(offset) : offset.norm(); }
-  /// How the offset along an axis changes with x, y, yaw.
+  /// Derivative of the offset along an axis with respect to x, y, yaw.
   Vector3d jacobian(const Vector2d& axis) const {
     return {axis.x(), axis.y(), axis.dot(leftOf(lever))};
   }
@@ -80,7 +81,7 @@ double scaleOf(const std::vector<Pair>& pairs, bool lines, double least) {
   return std::max(least, 1.4826 * *middle);
 }
 
-/// The end of the piece of one thing that begins at a pair.
+/// The end of the piece of one object that begins at a pair.
 size_t pieceFrom(const std::vector<Pair>& pairs, size_t begin) {
   size_t end = begin + 1;
   double length = 0.0;
@@ -94,7 +95,7 @@ size_t pieceFrom(const std::vector<Pair>& pairs, size_t begin) {
   return end;
 }
 
-/// A piece of one thing, as a range of pairs.
+/// A piece of one object, as a range of pairs.
 struct Piece {
   size_t begin;
   size_t end;
@@ -116,8 +117,8 @@ std::vector<Piece> piecesOf(const std::vector<Pair>& pairs) {
   return pieces;
 }
 
-/// Robust standard deviation of the mean residuals of whole pieces [m], at least `least`; three of
-/// them the fit has made zero.
+/// Robust standard deviation of the mean residuals of whole pieces [m], at least `least`; the fit
+/// has removed three degrees of freedom.
 double sharedError(const std::vector<Pair>& pairs, const std::vector<Piece>& pieces, double least) {
   std::vector<double> offsets;
   for (const Piece& piece : pieces)
@@ -131,9 +132,9 @@ double sharedError(const std::vector<Pair>& pairs, const std::vector<Piece>& pie
   return std::max(least, 1.4826 * *middle * fitted);
 }
 
-/// Leaves the weights that the errors behind the residuals allow. The nearest leaf is mostly
-/// another one: as far off as leaves are apart. And however many points a thing has, it tells no
-/// more than the error that they share.
+/// Reduces the weights to those that the errors behind the residuals allow. The nearest leaf is
+/// mostly a different one, at about the distance between leaves. And any number of points on an
+/// object gives no more information than their shared error allows.
 void limitWeights(std::vector<Pair>& pairs, double surface_noise) {
   for (Pair& pair : pairs) {
     if (pair.isLine()) continue;
@@ -148,7 +149,7 @@ void limitWeights(std::vector<Pair>& pairs, double surface_noise) {
   }
 }
 
-/// Pieces of what may be the ground tell no more than this error allows [m].
+/// Limits pieces that may be ground to the information that this error allows [m].
 void doubt(std::vector<Pair>& pairs, double ground_noise) {
   for (const Piece& piece : piecesOf(pairs)) {
     if (!pairs[piece.begin].doubtful) continue;
@@ -170,7 +171,7 @@ double weigh(std::vector<Pair>& pairs, const RegistrationConfig& config) {
   return line;
 }
 
-/// What the pairs tell, and what chance would.
+/// Information of the pairs, and the part due to chance.
 struct Normal {
   Matrix3d told = Matrix3d::Zero();    ///< H
   Matrix3d chance = Matrix3d::Zero();  ///< F
@@ -205,10 +206,10 @@ Normal normalOf(const std::vector<Pair>& pairs) {
   return normal;
 }
 
-/// What a scan determines: in the other directions nothing is left of it.
+/// The determined part of a scan's information: nothing remains in the other directions.
 struct Determined {
   Matrix3d told = Matrix3d::Zero();         ///< for the steps
-  Matrix3d information = Matrix3d::Zero();  ///< without what chance tells
+  Matrix3d information = Matrix3d::Zero();  ///< without the part due to chance
   Vector3d gradient = Vector3d::Zero();
   int undetermined = 3;
 };

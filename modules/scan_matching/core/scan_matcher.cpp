@@ -13,10 +13,11 @@ namespace {
 
 using Eigen::Matrix3d;
 
-constexpr int64_t kLeast = 1'000;        // [us] between scans
-constexpr int64_t kLongest = 3'000'000;  // [us] the same: beyond, nothing is known of the motion
-constexpr double kBent = 0.01;           // [m] a sweep may be bent by a twist that was wrong
-constexpr double kLever = 5.0;           // [m] at which turning bends it
+constexpr int64_t kLeast = 1'000;  // [us] between scans
+constexpr int64_t kLongest =
+    3'000'000;                  // [us] the same: beyond it nothing is known about the motion
+constexpr double kBent = 0.01;  // [m] by which a wrong twist may distort a sweep
+constexpr double kLever = 5.0;  // [m] distance at which turning distorts it
 
 double secondsOf(int64_t us) {
   return 1e-6 * static_cast<double>(us);
@@ -49,7 +50,7 @@ MatchedPose ScanMatcher::take(const Sweep& sweep) {
   const int64_t middle = sweep.first + (sweep.last - sweep.first) / 2;
   if (middle_ && middle < *middle_ + kLeast) return describe(sweep, MatchOutcome::kNotNewer);
   if (middle_ && middle > *middle_ + kLongest) {
-    // Whatever it did meanwhile is not known.
+    // Its motion in the meantime is unknown.
     filter_ = MotionFilter(config_.motion, filter_.pose());
     map_.clear();
   } else if (middle_) {
@@ -70,7 +71,7 @@ MatchOutcome ScanMatcher::process(const Sweep& sweep) {
   if (best.outcome != MatchOutcome::kMatched) return best.outcome;
   const MotionFilter predicted = filter_;
   correct(best.registration);
-  // The twist is known better now than when the sweep was straightened.
+  // The twist is better known now than when the sweep was undistorted.
   if (bentBy(before, filter_.twist(), secondsOf(sweep.last - sweep.first)) > kBent) {
     const Twist2 after = filter_.twist();
     const MotionFilter corrected = filter_;
@@ -136,7 +137,7 @@ bool ScanMatcher::isKey() const {
          std::abs(wrapAngle(step.yaw)) >= config_.key_turn;
 }
 
-/// A covariance of the newest key scan, as it is at a pose: a wrong yaw there swings it.
+/// A covariance of the newest key scan, propagated to a pose: a yaw error there acts as a lever.
 Matrix3d ScanMatcher::carried(const Matrix3d& covariance, const Pose2& T_map_body) const {
   if (map_.empty()) return covariance;
   Matrix3d J = Matrix3d::Identity();
@@ -152,7 +153,7 @@ void ScanMatcher::addKeyScan(const std::vector<ScanPoint>& points) {
   map_.add(filter_.pose(), points);
 }
 
-/// Says what is still known, and begins anew where nothing fits for long.
+/// Updates what is still known, and restarts if nothing has fitted for long.
 void ScanMatcher::watch(const Sweep& sweep, MatchOutcome outcome) {
   const Matrix3d unfixed = carried(unfixed_, filter_.pose()) + filter_.poseCovariance();
   const bool position = positionStd(unfixed) <= config_.max_position_std;

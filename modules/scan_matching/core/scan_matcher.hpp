@@ -17,65 +17,70 @@
 
 namespace tread::scan_matching {
 
-/// How motion is measured from scans, with its defaults.
+/// Settings of motion estimation from scans, with defaults.
 struct ScanMatcherConfig {
   Pose2 start;  ///< T_map_body at the first scan
   ScanPointsConfig points;
   RegistrationConfig registration;
   MotionConfig motion;
-  int min_points = 25;        ///< of a scan, and of those that find a partner
-  double min_overlap = 0.3;   ///< share of the points that must find a partner
-  double search_std = 0.1;    ///< [m], and half of it in rad: less known places are searched for
+  int min_points = 25;        ///< of a scan, and of its points with a partner
+  double min_overlap = 0.3;   ///< share of the points that must have a partner
+  double search_std = 0.1;    ///< [m], and half of it in rad: larger uncertainty starts a search
   double key_distance = 0.5;  ///< [m] after which a scan is added to the local map
   double key_turn = 0.35;     ///< [rad] the same
-  int key_scans = 15;         ///< that the local map keeps
-  double max_position_std = 0.3;  ///< [m] since the last full match: beyond, position is unknown
-  double max_yaw_std = 0.1;       ///< [rad] the same for the heading
-  double new_map_after = 1.0;     ///< [s] lost, after which the map begins anew where the body is
+  int key_scans = 15;         ///< in the local map
+  double max_position_std =
+      0.3;                   ///< [m] since the last full match: beyond it the position is unknown
+  double max_yaw_std = 0.1;  ///< [rad] the same for the heading
+  double new_map_after =
+      1.0;  ///< [s] lost, after which the map restarts at the body's present pose
 };
 
-/// One sweep, as seen from above.
+/// One sweep, seen from above.
 struct Sweep {
   int64_t first = 0;  ///< [us] of the first beam
   int64_t last = 0;   ///< [us] of the last
   Eigen::Vector2d p_body_sensor = Eigen::Vector2d::Zero();
   std::vector<PlanarReturn> returns;
-  double trusted_range = std::numeric_limits<double>::infinity();  ///< [m] beyond may be the ground
-  bool standing = false;  ///< the motors have been off for long: the body stands
+  double trusted_range =
+      std::numeric_limits<double>::infinity();  ///< [m] more distant returns may be ground
+  bool standing = false;  ///< the motors have long been off: the body is at rest
 };
 
-/// What became of a scan.
+/// Result of matching a scan.
 enum class MatchOutcome {
-  kFirst,         ///< the map begins with it
+  kFirst,         ///< the map starts with it
   kMatched,       ///< it determines the pose
-  kUndetermined,  ///< it fits, but says nothing about some direction: a corridor, a round room
-  kTooFew,        ///< hardly anything to be seen: an open field
+  kUndetermined,  ///< it fits, but does not determine some direction: a corridor, a round room
+  kTooFew,        ///< too few returns: an open field
   kNoFit,         ///< it does not fit the map
-  kNotNewer       ///< its time is not after that of the scan before
+  kNotNewer       ///< its time is not after the previous scan's
 };
 
-/// Where the body was at the last beam of a scan.
+/// Pose of the body at the last beam of a scan.
 struct MatchedPose {
   int64_t utime = 0;  ///< [us]
   MatchOutcome outcome = MatchOutcome::kFirst;
   Pose2 T_map_body;  ///< yaw unwrapped
   Twist2 v_body;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y, yaw in map, since the start
-  Eigen::Matrix3d local = Eigen::Matrix3d::Zero();       ///< the same against the newest key scan
+  Eigen::Matrix3d local = Eigen::Matrix3d::Zero();  ///< the same relative to the newest key scan
   bool position_known = true;
   bool heading_known = true;
   bool new_track = false;  ///< not connected with the poses before
 };
 
-/// Measures the motion of a body from a range finder alone, against a local map of recent scans.
-/** 1. The pose in the middle of the sweep is predicted (MotionFilter), the sweep straightened with
- *     the predicted twist.
- *  2. A badly known pose is searched for, then the scan is laid onto the map (registerScan).
- *  3. A scan that fits corrects pose and twist in the directions that it determines. In the others,
- *     and where none fits, the prediction goes on and its uncertainty grows; beyond max_*_std the
- *     pose is unknown, until a scan determines it again.
- *  4. Every key_distance the scan is added to the map. From then on its own uncertainty belongs to
- *     all that follows: that sum is the drift, and without an absolute reference it only grows. */
+/// Estimates the motion of a body from a range finder alone, relative to a local map of recent
+/// scans.
+/** 1. The pose in the middle of the sweep is predicted (MotionFilter), and the sweep undistorted
+ *    with the predicted twist.
+ *  2. A very uncertain pose is first searched for; then the scan is aligned with the map
+ *     (registerScan).
+ *  3. A scan that fits corrects pose and twist in the directions that it determines. In the
+ *     others, and without a fit, the prediction continues and its uncertainty grows; beyond
+ *     max_*_std the pose is unknown, until a scan determines it again.
+ *  4. Every key_distance the scan is added to the map. From then on its own uncertainty is part of
+ *     all later poses: that sum is the drift, which only grows without an absolute reference. */
 class ScanMatcher {
  public:
   explicit ScanMatcher(const ScanMatcherConfig& config);

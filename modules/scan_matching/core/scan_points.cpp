@@ -10,11 +10,11 @@
 namespace tread::scan_matching {
 namespace {
 
-constexpr double kReach = 0.3;          // [m] of a line fit to either side
+constexpr double kReach = 0.3;          // [m] of a line fit, to either side
 constexpr double kFarthestReach = 1.5;  // [m] where points are sparse
 constexpr size_t kMostNeighbours = 12;  // to either side
 constexpr size_t kFewest = 5;           // points of a line fit
-constexpr double kStraight = 0.04;      // [1] of the variance along the line may lie across it
+constexpr double kStraight = 0.04;  // [1] share of the variance along the line allowed across it
 
 std::vector<Eigen::Vector2d> deskewed(const std::vector<PlanarReturn>& returns, const Twist2& twist,
                                       double duration) {
@@ -45,7 +45,7 @@ std::vector<Eigen::Vector2d> thinned(const std::vector<Eigen::Vector2d>& points,
   return means;
 }
 
-/// From a point to the nearer of its two neighbours [m].
+/// Distance from a point to the nearer of its two neighbours [m].
 double spreadAt(const std::vector<Eigen::Vector2d>& points, size_t i) {
   double nearest = kFarthestReach;
   if (i > 0) nearest = std::min(nearest, (points[i] - points[i - 1]).norm());
@@ -55,7 +55,7 @@ double spreadAt(const std::vector<Eigen::Vector2d>& points, size_t i) {
 
 /// The range [begin, end) of neighbours in the order of the beams.
 std::pair<size_t, size_t> neighbours(const std::vector<Eigen::Vector2d>& points, size_t i) {
-  // Grazing beams are far apart on the same wall.
+  // Grazing beams hit the same wall at large distances.
   const double reach = std::clamp(3.0 * spreadAt(points, i), kReach, kFarthestReach);
   const auto near = [&](size_t j) { return (points[j] - points[i]).norm() <= reach; };
   size_t begin = i;
@@ -65,7 +65,7 @@ std::pair<size_t, size_t> neighbours(const std::vector<Eigen::Vector2d>& points,
   return {begin, end};
 }
 
-/// False if it is not known what the point is part of.
+/// False if the point's shape is unknown.
 bool describe(const std::vector<Eigen::Vector2d>& points, size_t i,
               const Eigen::Vector2d& p_body_sensor, double range_noise, ScanPoint& point) {
   const auto [begin, end] = neighbours(points, i);
@@ -73,7 +73,7 @@ bool describe(const std::vector<Eigen::Vector2d>& points, size_t i,
   point.p = points[i];
   point.spread = spreadAt(points, i);
   if (end - begin < kFewest) {
-    // A post or a trunk far away. Single points may be of a wall that is seen at a grazing angle.
+    // A post or a trunk far away. Single points may belong to a wall at a grazing angle.
     point.shape = Shape::kScatter;
     const auto beside = [&](size_t j) { return (points[j] - points[i]).norm() <= kReach; };
     return (i > begin && beside(i - 1)) || (i + 1 < end && beside(i + 1));

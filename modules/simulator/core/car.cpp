@@ -13,14 +13,14 @@ namespace {
 constexpr double kCarGravity = 9.81;  // [m/s^2]
 constexpr double kTyrePatch = 0.2;    // [m] length of a tyre on the ground
 
-/// A twist as seen by a wheel that is turned to the left.
+/// A twist in the frame of a wheel that is turned to the left.
 Twist2 turned(const Twist2& v_body, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c * v_body.v_x + s * v_body.v_y, c * v_body.v_y - s * v_body.v_x, v_body.omega};
 }
 
-/// What a surface is to a tyre: as stiff across as along, pressed evenly, and without what a track
-/// loses in its belt and by pushing ground aside.
+/// A surface under a tyre: as stiff across as along, evenly loaded, and without a track's losses in
+/// its belt and by pushing ground aside.
 TrackContact::Surfaces tyreOn(const SurfaceParameters& surface, SurfaceParameters& tyre) {
   tyre.friction = surface.friction;
   tyre.shear_displacement = tyre.lateral_displacement = surface.shear_displacement;
@@ -58,7 +58,7 @@ void Car::step(const MotorPower& power, const Ground& ground, double dt) {
   const Twist2 v_front = turned({v.v_x, v.v_y + ahead * v.omega, v.omega}, steering_);
   const Twist2 v_rear{v.v_x, v.v_y - mass_at_ * v.omega, v.omega};
   const TrackGeometry patch{kTyrePatch, 0.0};
-  // The front wheels roll freely: their rims go as fast as the ground passes.
+  // The front wheels roll freely: their rim speed is that of the ground.
   const TrackForce front = front_contact_.step(patch, tyreOn(*ground.left.front(), front_ground_),
                                                v_front, v_front.v_x, {weight * on_front, 0.0}, dt);
   const TrackForce rear =
@@ -66,8 +66,8 @@ void Car::step(const MotorPower& power, const Ground& ground, double dt) {
                          {weight * (1.0 - on_front), 0.0}, dt);
 
   const double c = std::cos(steering_), s = std::sin(steering_);
-  // What slows the front wheels holds them only while they roll, and with the grip that cornering
-  // leaves.
+  // The front wheels' resistance holds them only while they roll, and only with the grip that
+  // cornering leaves.
   const double rolling = std::clamp(v_front.v_x / 0.05, -1.0, 1.0);
   const double grip = ground.left.front()->friction * weight * on_front;
   const double left_over = std::sqrt(std::max(0.0, grip * grip - front.across * front.across));

@@ -9,12 +9,11 @@
 namespace tread::sim {
 
 /// A car on sheared ground: rear wheels driven by one motor, front wheels steered by a servo.
-/** Body origin on the ground in the middle of the rear axle. To it, the power of the left is the
- * throttle, that of the right the steering angle over max_steering, -1..1, to the left positive.
- * The two wheels of an axle are one contact patch in its middle, on the surface that the axle
- * stands on; the tyres slip on it (TrackContact), so that the car goes wide on slippery
- * ground. Weight on the axles is that of a car that does not accelerate. Its right drive,
- * the servo, draws no current. */
+/** Body origin on the ground in the middle of the rear axle. The left power is the throttle, the
+ * right one the steering angle over max_steering, -1..1, to the left positive. The two wheels of
+ * an axle are one contact patch in its middle, on the surface below the axle; the tyres slip on it
+ * (TrackContact), so that the car runs wide on slippery ground. Axle loads are those of a car that
+ * does not accelerate. Its right drive, the servo, draws no current. */
 class Car final : public Plant {
  public:
   explicit Car(const VehicleParameters& parameters);
@@ -36,7 +35,7 @@ class Car final : public Plant {
   double mass_at_;  ///< [m] of the centre of mass ahead of the rear axle
   TrackContact front_contact_;
   TrackContact rear_contact_;
-  SurfaceParameters front_ground_;  ///< as the tyres feel it
+  SurfaceParameters front_ground_;  ///< as it acts on the tyres
   SurfaceParameters rear_ground_;
   TrackDrive drive_;
   TrackDrive servo_;
@@ -45,8 +44,8 @@ class Car final : public Plant {
   Twist2 v_mass_;  ///< of the centre of mass, axes of the body
 };
 
-/// The dynamic vehicle of these parameters: a holonomic base if they have wheels, a car if they
-/// have a wheelbase, else a tracked one.
+/// The dynamic vehicle for these parameters: a holonomic base if they have wheels, a car if they
+/// have a wheelbase, otherwise a tracked vehicle.
 std::unique_ptr<Plant> makeVehicle(const VehicleParameters& parameters);
 
 }  // namespace tread::sim

@@ -72,7 +72,7 @@ InsInput Ins::atInstrument(InsInput truth) const {
   truth.v_body += truth.rate_body.cross(p_body);
   const Eigen::Matrix3d R_body_device = rotationOf(parameters_.mounting.angles);
   const Eigen::Matrix3d R = truth.body.R_map_body * R_body_device;
-  // It says its velocity over the ground, however it leans, and its rates as it lies.
+  // It reports its velocity over the ground in any attitude, and its rates about its own axes.
   const Eigen::Vector3d v_map = truth.body.R_map_body * truth.v_body;
   truth.rate_body = R_body_device.transpose() * truth.rate_body;
   truth.yaw += wrapAngle(std::atan2(R(1, 0), R(0, 0)) - truth.yaw);

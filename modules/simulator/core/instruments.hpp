@@ -14,7 +14,7 @@
 
 namespace tread::sim {
 
-/// Place and attitude of a vehicle that lies on the ground.
+/// Position and attitude of a vehicle on the ground.
 struct BodyPose {
   Eigen::Vector3d p_map = Eigen::Vector3d::Zero();           ///< of the body origin [m]
   Eigen::Matrix3d R_map_body = Eigen::Matrix3d::Identity();  ///< Rz(yaw) Ry(pitch) Rx(roll)
@@ -28,21 +28,21 @@ BodyPose poseOnGround(const Pose2& T_map_body, double height, const Eigen::Vecto
 
 /// An inertial navigation system with satellite positions. Noise is per sample, one sigma.
 struct InsParameters {
-  Mounting mounting;              ///< p_body: the point whose position it reports
+  Mounting mounting;              ///< p_body: the reported reference point
   int64_t period_us = 20000;      ///< from measurement to measurement
   int64_t latency_us = 20000;     ///< from measurement to output
   double position_noise = 0.003;  ///< [m]
-  double position_bias = 0.02;    ///< wanders slowly, one sigma [m]
+  double position_bias = 0.02;    ///< drifts slowly, one sigma [m]
   double height_noise = 0.005;    ///< [m]
   double heading_noise = 0.001;   ///< [rad]
-  double heading_bias = 0.002;    ///< wanders slowly, one sigma [rad]
+  double heading_bias = 0.002;    ///< drifts slowly, one sigma [rad]
   double attitude_noise = 0.001;  ///< of roll and pitch [rad]
   double velocity_noise = 0.01;   ///< per axis [m/s]
   double rate_noise = 0.002;      ///< per axis [rad/s]
   double bias_time = 120.0;       ///< correlation time of both biases [s]
 };
 
-/// The truth that the INS senses.
+/// The true values measured by the INS.
 struct InsInput {
   BodyPose body;
   double yaw = 0.0;                                     ///< [rad], unwrapped
@@ -50,37 +50,37 @@ struct InsInput {
   Eigen::Vector3d rate_body = Eigen::Vector3d::Zero();  ///< about x, y, z [rad/s]
 };
 
-/// What age, place and mounting of the instrument make of the truth, before its own noise.
+/// Errors from age, position and mounting of the instrument, before its own noise.
 class InsErrors {
  public:
   virtual ~InsErrors() = default;
-  /// What the INS senses at a time; called at each measurement, in the order of time.
+  /// Input of the INS at a time; called at each measurement, in order of time.
   virtual InsInput sensed(int64_t utime, const InsInput& truth) = 0;
 };
 
 /// One measurement.
 struct InsMeasurement {
   int64_t utime = 0;                                    ///< of the measurement [us]
-  Eigen::Vector3d p_map = Eigen::Vector3d::Zero();      ///< of the reported point [m]
+  Eigen::Vector3d p_map = Eigen::Vector3d::Zero();      ///< of the reference point [m]
   double yaw = 0.0;                                     ///< [rad], unwrapped, counter-clockwise
   double pitch = 0.0;                                   ///< nose down positive [rad]
   double roll = 0.0;                                    ///< left side up positive [rad]
-  Eigen::Vector3d v_body = Eigen::Vector3d::Zero();     ///< of that point, ahead, left, up [m/s]
+  Eigen::Vector3d v_body = Eigen::Vector3d::Zero();     ///< of that point, forward, left, up [m/s]
   Eigen::Vector3d rate_body = Eigen::Vector3d::Zero();  ///< about the device's axes [rad/s]
 };
 
-/// Measures at a fixed rate and hands out what has passed the latency.
+/// Measures at a fixed rate and returns measurements after the latency.
 class Ins {
  public:
   /// The first measurement is at `start_utime`.
   Ins(const InsParameters& parameters, uint64_t seed, int64_t start_utime);
 
-  /// True if a measurement is due at a time: call measure() then.
+  /// Whether a measurement is due at a time: then call measure().
   bool due(int64_t utime) const { return utime >= next_; }
-  /// Takes the measurement that is due, from the present truth.
+  /// Takes the due measurement from the present true values.
   void measure(int64_t utime, const InsInput& truth);
 
-  /// Measurements that are out at a time, oldest first; each is given once.
+  /// Measurements output up to a time, oldest first; each is returned once.
   std::vector<InsMeasurement> takeSamples(int64_t utime);
 
   const InsParameters& parameters() const { return parameters_; }
@@ -90,7 +90,7 @@ class Ins {
   Eigen::Vector3d noise3(double sigma);
 
   InsParameters parameters_;
-  bool at_origin_;  ///< of the body, and straight
+  bool at_origin_;  ///< at the body origin, without rotation
   Gaussian gaussian_;
   OrnsteinUhlenbeck bias_x_;
   OrnsteinUhlenbeck bias_y_;
@@ -99,7 +99,7 @@ class Ins {
   std::deque<InsMeasurement> pending_;
 };
 
-/// A scanning laser range finder: one plane, beams in turn from right to left.
+/// A scanning laser range finder: one plane, beams in sequence from right to left.
 struct LaserParameters {
   Mounting mounting;
   double field_of_view = 270.0 * kPi / 180.0;  ///< [rad], centred on its x axis
@@ -109,29 +109,29 @@ struct LaserParameters {
   double range_min = 0.10;   ///< [m]
   double range_max = 15.0;   ///< [m]
   double range_noise = 0.01;  ///< standard deviation [m]
-  double dropout = 0.0;       ///< share of beams that come back empty although something is there
+  double dropout = 0.0;       ///< share of beams without a return although something is there
 };
 
-/// What the laser saw in one sweep.
+/// Result of one sweep.
 struct LaserScan {
   int64_t utime = 0;          ///< of the first beam [us]
   int64_t sweep_us = 0;       ///< first to last beam
   double angle_min = 0.0;     ///< of the first beam in the sensor's plane, counter-clockwise [rad]
   double angle_step = 0.0;    ///< [rad]
-  std::vector<float> ranges;  ///< [m]; +inf = nothing hit up to range_max, NaN = no measurement
+  std::vector<float> ranges;  ///< [m]; +inf = no hit up to range_max, NaN = no measurement
   bool ground = false;        ///< of the one that looks at the ground ahead
 };
 
-/// The laser on a moving body: casts each beam from where the sensor is at that beam's time.
+/// The laser on a moving body: casts each beam from the sensor's pose at that beam's time.
 class Laser {
  public:
   /// The first sweep starts at `start_utime`.
   Laser(const LaserParameters& parameters, uint64_t seed, int64_t start_utime);
 
-  /// Casts the beams due up to a time from a body pose; call it at every simulation step.
+  /// Casts the beams due up to a time from a body pose; call it in every simulation step.
   void advanceTo(int64_t utime, const World& world, const BodyPose& body);
 
-  /// Finished scans since the last call, oldest first.
+  /// Scans completed since the last call, oldest first.
   std::vector<LaserScan> takeScans();
 
   const LaserParameters& parameters() const { return parameters_; }

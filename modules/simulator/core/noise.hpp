@@ -20,8 +20,8 @@ inline uint64_t streamSeed(uint64_t seed, uint64_t stream) {
 }
 
 /// Standard normal numbers by the polar method.
-/** Own code, since the standard leaves the algorithm of std::normal_distribution open and the same
-    seed must give the same bytes with every library. */
+/** Own code, because the standard does not define the algorithm of std::normal_distribution and the
+ * same seed must give the same bytes with every library. */
 class Gaussian {
  public:
   explicit Gaussian(uint64_t seed) : generator_(seed) {}
@@ -77,18 +77,18 @@ class OrnsteinUhlenbeck {
   double value_;
 };
 
-/// What is made of a motion at one moment.
+/// Disturbance of a motion at one instant.
 struct MotionFactors {
   double forward = 1.0;  ///< factor on the forward speed [1]
   double yaw = 1.0;      ///< factor on the yaw rate [1]
   double heading = 0.0;  ///< added to the direction of motion [rad]
 };
 
-/// What the ground adds to the motion and no model knows: correlated in time, scaled by the
+/// Motion disturbances by the ground that no model contains: correlated in time, scaled by the
 /// surface.
-/** Three Ornstein-Uhlenbeck processes change forward gain, yaw gain and direction of motion. Their
-   scale is such that the mean over one second has the surface's spread; a standing vehicle stays at
-   rest. */
+/** Three Ornstein-Uhlenbeck processes change forward gain, yaw gain and direction of motion. They
+ * are scaled so that the mean over one second has the surface's spread; a standing vehicle stays
+ * at rest. */
 class MotionNoise {
  public:
   /// One step is `step` seconds long.
@@ -107,12 +107,12 @@ class MotionNoise {
     heading_.step(gaussian_);
   }
 
-  /// What the processes are now, for a spread.
+  /// Present values of the processes for a spread.
   MotionFactors factors(const MotionSpread& spread) const {
     return {1.0 + scale_ * spread.forward * forward_.value(),
             1.0 + scale_ * spread.yaw * yaw_.value(), scale_ * spread.heading * heading_.value()};
   }
-  /// The body velocity that comes out of the dynamics' velocity on a surface.
+  /// The body velocity that results from the dynamics' velocity on a surface.
   Twist2 disturb(const Twist2& v_body, const MotionSpread& spread) const {
     const MotionFactors now = factors(spread);
     const double v_x = v_body.v_x * now.forward;
@@ -120,9 +120,9 @@ class MotionNoise {
   }
 
  private:
-  /// How long the ground stays like itself under a moving vehicle [s].
+  /// Correlation time of the ground under a moving vehicle [s].
   static constexpr double kCorrelationTime = 2.0;
-  /// The calibration's executions last this long [s].
+  /// Duration of the calibration's executions [s].
   static constexpr double kExecutionTime = 1.0;
 
   Gaussian gaussian_;

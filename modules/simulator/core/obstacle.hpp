@@ -32,7 +32,7 @@ Obstacle boxObstacle(const Pose2& T_map_box, double length, double width, double
 /// An upright cylinder.
 Obstacle discObstacle(const Eigen::Vector2d& centre, double radius, double height);
 
-/// Why an obstacle cannot stand in a world; nothing if it can.
+/// Why an obstacle is invalid; nullopt if it is valid.
 std::optional<std::string> obstacleFault(const Obstacle& obstacle);
 
 /// Axis-aligned box around a shape.
@@ -55,7 +55,8 @@ struct RayCrossing {
   double enter = 0.0;
   double leave = 0.0;
 };
-/// Where a ray (unit direction) passes through an obstacle; nothing if it misses or lies behind.
+/// Where a ray (unit direction) passes through an obstacle; nullopt if it misses or the obstacle is
+/// behind.
 /** `enter` is 0 for a ray that starts inside. */
 std::optional<RayCrossing> crossingOf(const Obstacle& obstacle, const Eigen::Vector2d& start,
                                       const Eigen::Vector2d& direction);
@@ -66,19 +67,17 @@ struct Rectangle {
   double width = 0.0;   ///< along y_body [m]
 };
 
-/// How deep a rectangle is in an obstacle [m]: the shortest way out; 0 or less if they do not
-/// touch.
-/** Exact for touching or not; for separate shapes the amount is a lower bound of the gap, negated.
- */
+/// Penetration of a rectangle into an obstacle [m]: the shortest distance out; 0 or less if they do
+/// not touch.
+/** The sign is exact; for separate shapes the magnitude is a lower bound of the gap. */
 double penetrationOf(const Obstacle& obstacle, const Rectangle& rectangle, const Pose2& T_map_body);
 
-/// Which obstacles reach into which cell of a uniform grid: makes queries independent of their
-/// number.
+/// The obstacles in each cell of a uniform grid: makes queries independent of their number.
 class ObstacleGrid {
  public:
   ObstacleGrid() = default;
-  /// Takes the extents of the obstacles (kept by the caller, same order). Cell edge [m]; wider
-  /// where the obstacles spread over kilometres.
+  /// Takes the extents of the obstacles (owned by the caller, same order). Cell edge [m]; larger if
+  /// the obstacles spread over kilometres.
   ObstacleGrid(const std::vector<Obstacle>& obstacles, double cell_edge);
 
   /// Calls visit(index) for the obstacles whose extent may touch a box; some may come more than
@@ -95,8 +94,7 @@ class ObstacleGrid {
   }
 
   /// Walks along a ray cell by cell and calls visit(index, distance at which the cell ends) for the
-  /// obstacles of each; stops at `range` or when `visit` has returned true for an obstacle of a
-  /// cell.
+  /// obstacles of each; stops at `range` or after a cell for which `visit` has returned true.
   template <typename Visit>
   void visitAlong(const Eigen::Vector2d& start, const Eigen::Vector2d& direction, double range,
                   Visit&& visit) const;
@@ -108,7 +106,7 @@ class ObstacleGrid {
 
   int column(double x) const { return static_cast<int>(std::floor((x - low_.x()) / edge_)); }
   int row(double y) const { return static_cast<int>(std::floor((y - low_.y()) / edge_)); }
-  /// First index of a cell's list; lists of a row lie one after the other.
+  /// First index of a cell's list; lists of a row are consecutive.
   uint32_t begin(int x, int y) const { return starts_[cell(x, y)]; }
   size_t cell(int x, int y) const {
     return static_cast<size_t>(y) * static_cast<size_t>(columns_) + static_cast<size_t>(x);

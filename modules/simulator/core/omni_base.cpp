@@ -13,10 +13,10 @@ namespace {
 
 constexpr double kBaseGravity = 9.81;  // [m/s^2]
 constexpr double kRollerPatch = 0.08;  // [m] length of a roller's contact
-constexpr double kRollerDrag = 2.0;    // [1] of a wheel's resistance: what small rollers add
+constexpr double kRollerDrag = 2.0;    // [1] of a wheel's resistance: added by small rollers
 constexpr double kRollingFrom = 0.05;  // [m/s] below it a roller does not resist fully
 
-/// What a surface is to rollers: sheared along their axis only.
+/// A surface under rollers: sheared only along their axis.
 TrackContact::Surfaces rollersOn(const SurfaceParameters& surface, SurfaceParameters& felt) {
   felt.friction = surface.friction;
   felt.shear_displacement = surface.shear_displacement;
@@ -28,7 +28,7 @@ TrackContact::Surfaces rollersOn(const SurfaceParameters& surface, SurfaceParame
   return surfaces;
 }
 
-/// Weight on the wheels: as even as the point above which it acts allows.
+/// Loads of the wheels: as even as the point of application allows.
 std::vector<double> wheelLoads(const VehicleParameters& vehicle, const Ground& ground) {
   const double steepness =
       ground.slope_along * ground.slope_along + ground.slope_across * ground.slope_across;

@@ -9,12 +9,11 @@
 namespace tread::sim {
 
 /// A holonomic base on sheared ground: three or more driven wheels with rollers on their rims.
-/** Each wheel stands on the surface below it and shears it along the axis of the roller that
- * touches it, as a track's contact patch does (TrackContact); at right angles to that axis it rolls
- * away on the roller. Both ways the ground resists, and more so the small rollers. So wheels slip
- * one by one: on ground that differs below them the base goes askew. Weight is shared as a rigid
- * body at rest shares it. Its motors, battery and gears are those of DriveParameters, a wheel
- * each. */
+/** Each wheel shears the surface below it along the axis of the roller that touches it, as a
+ * track's contact patch does (TrackContact); at right angles to that axis it rolls away on the
+ * roller. The ground resists in both directions, more so for the small rollers. So wheels slip
+ * individually, and on non-uniform ground the base turns. Loads are those of a rigid body at rest.
+ * Its motors, battery and gears are those of DriveParameters, one set per wheel. */
 class OmniBase final : public Plant {
  public:
   explicit OmniBase(const VehicleParameters& parameters);
@@ -40,7 +39,7 @@ class OmniBase final : public Plant {
 
   VehicleParameters parameters_;
   std::array<TrackContact, kMostMotors> contacts_;
-  std::array<SurfaceParameters, kMostMotors> grounds_;  ///< as the rollers feel them
+  std::array<SurfaceParameters, kMostMotors> grounds_;  ///< as it acts on the rollers
   std::array<TrackDrive, kMostMotors> drives_;
   Battery battery_;
   Twist2 v_mass_;  ///< of the centre of mass, axes of the body

@@ -12,9 +12,10 @@ namespace tread::sim {
 namespace {
 
 constexpr int64_t kStepUs = 1000;
-constexpr double kStep = 1e-3;            // [s]
-constexpr int kStepsPerGround = 10;       // ground, collision and noise are looked at every 10 ms
-constexpr int64_t kEncounterUs = 500000;  // without touch this long, the next touch is a new one
+constexpr double kStep = 1e-3;       // [s]
+constexpr int kStepsPerGround = 10;  // ground, collision and noise are updated every 10 ms
+constexpr int64_t kEncounterUs =
+    500000;  // after this long without contact, the next contact is a new one
 
 /// Random streams of the parts.
 constexpr uint64_t kMotionStream = 0;
@@ -39,7 +40,7 @@ TrackContact::Surfaces surfacesBelow(const World& world, const VehicleParameters
   return surfaces;
 }
 
-/// Where the tracks touch the ground.
+/// Contact area of the tracks.
 FootprintSize contactOf(const VehicleParameters& vehicle) {
   return {vehicle.contact_length / 2.0 + vehicle.centre,
           vehicle.contact_length / 2.0 - vehicle.centre, vehicle.gauge / 2.0};
@@ -68,7 +69,7 @@ SimulatedRobot::SimulatedRobot(std::shared_ptr<const World> world, const RobotSe
       T_map_free_(settings.start) {
   truth_.utime = settings.start_utime;
   truth_.T_map_body = settings.start;
-  // Half a period later than the other, as free-running devices are.
+  // Half a period later than the other, like free-running devices.
   if (settings.ground_laser)
     ground_laser_.emplace(*settings.ground_laser, streamSeed(settings.seed, kGroundLaserStream),
                           settings.start_utime + settings.ground_laser->period_us / 2);

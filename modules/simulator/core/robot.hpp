@@ -16,46 +16,47 @@
 
 namespace tread::sim {
 
-/// How the motors hang on the channels of their controller.
-/** The controller gives power, or holds the speed of each track. */
+/// How the motors are connected to the channels of their controller.
+/** The controller sets the power, or controls the speed of each track. */
 struct MotorWiring {
-  int left_channel = 1;  ///< 1 or 2; the right track has the other one
+  int left_channel = 1;  ///< 1 or 2; the right track uses the other
   bool invert_left = false;
   bool invert_right = false;
   std::optional<double>
-      top_speed;             ///< [m/s] held at full command; none: the controller gives power
-  bool four_motors = false;  ///< two on each side, each with a controller of its own
-  std::vector<bool> invert_wheels{};  ///< of a holonomic base, one for each; else none
+      top_speed;             ///< [m/s] at full command; nullopt: the controller sets the power
+  bool four_motors = false;  ///< two on each side, each with its own controller
+  std::vector<bool> invert_wheels{};  ///< of a holonomic base, one per wheel; otherwise empty
 };
 
 /// How a simulated robot is built.
 struct RobotSettings {
   VehicleParameters vehicle;
   LaserParameters laser;
-  std::optional<LaserParameters> ground_laser;  ///< one more, which looks at the ground ahead
+  std::optional<LaserParameters> ground_laser;  ///< a second one, which looks at the ground ahead
   InsParameters ins;
   MotorWiring wiring;
   Pose2 start;               ///< T_map_body at the beginning
   int64_t start_utime = 0;   ///< [us]
-  uint64_t seed = 1;         ///< of ground and instruments
-  bool motion_noise = true;  ///< false: the calibrated mean motion only
+  uint64_t seed = 1;         ///< for ground and instruments
+  bool motion_noise = true;  ///< false: only the calibrated mean motion
 };
 
-/// Parts that the user may exchange; what is null is as it always is.
+/// Exchangeable parts; null = the default.
 struct RobotParts {
-  std::unique_ptr<Plant> vehicle;         ///< in the place of the dynamic vehicle
-  std::unique_ptr<InsErrors> ins_errors;  ///< of an INS that is late or askew
+  std::unique_ptr<Plant> vehicle;         ///< replaces the dynamic vehicle
+  std::unique_ptr<InsErrors> ins_errors;  ///< of an INS with delays or misalignment
 };
 
-/// The footprint met an obstacle: one entry per encounter, ended by half a second without touch.
+/// The footprint touched an obstacle: one entry per encounter, which ends after half a second
+/// without contact.
 struct CollisionEvent {
   int64_t utime = 0;         ///< of the first touch [us]
   size_t obstacle = 0;       ///< index in the world's description
   double penetration = 0.0;  ///< deepest attempt [m]
 };
 
-/// How the front end of the body was shaken while it moved, looked at every 10 ms.
-/** There the vehicle's rise and its pitching add up: what arms, cameras and range finders feel. */
+/// Vertical motion of the body's front end while it moved, sampled every 10 ms.
+/** Heave and pitch add up there: this is the motion of arms, cameras and range finders. */
 struct Shaking {
   double time = 0.0;               ///< [s]
   double distance = 0.0;           ///< [m] driven in that time
@@ -65,11 +66,11 @@ struct Shaking {
   double pitch_rate_peak = 0.0;    ///< [rad/s]
 
   void add(double speed, double acceleration, double pitch_rate, double dt);
-  /// RMS over the time of a squared quantity's sum; 0 without any time.
+  /// RMS over the time, from the sum of squares; 0 without any time.
   double rms(double sum) const { return time > 0.0 ? std::sqrt(sum / time) : 0.0; }
 };
 
-/// What is really the case.
+/// The true state.
 struct RobotTruth {
   int64_t utime = 0;                       ///< [us]
   Pose2 T_map_body;                        ///< yaw unwrapped
@@ -83,17 +84,17 @@ struct RobotTruth {
 };
 
 /// World, vehicle and instruments, stepped together at 1 ms.
-/** An obstacle stops the body where it last stood free; the tracks go on turning until told
- * otherwise. */
+/** An obstacle stops the body at its last free pose; the tracks continue until they get another
+ * command. */
 class SimulatedRobot {
  public:
   SimulatedRobot(std::shared_ptr<const World> world, const RobotSettings& settings,
                  RobotParts parts = {});
 
-  /// Power on the motors from now on, -1..1; what is not a number counts as zero.
+  /// Motor power from now on, -1..1; NaN counts as zero.
   void setPower(const MotorPower& power);
 
-  /// Simulates up to a time; less than 1 ms may be left for the next call.
+  /// Simulates up to a time; a remainder below 1 ms is left for the next call.
   void advanceTo(int64_t utime);
 
   const RobotTruth& truth() const { return truth_; }
@@ -101,9 +102,9 @@ class SimulatedRobot {
   const World& world() const { return *world_; }
   const RobotSettings& settings() const { return settings_; }
 
-  /// INS measurements that came out since the last call.
+  /// INS measurements output since the last call.
   std::vector<InsMeasurement> takeInsSamples() { return ins_.takeSamples(truth_.utime); }
-  /// Laser scans finished since the last call, oldest first.
+  /// Laser scans completed since the last call, oldest first.
   std::vector<LaserScan> takeScans();
 
  private:
@@ -128,7 +129,7 @@ class SimulatedRobot {
   MotorPower power_;
   Ground ground_;
   const SurfaceParameters* surface_ = nullptr;
-  /// The ground near the vehicle, renewed every 10 ms.
+  /// The ground near the vehicle, updated every 10 ms.
   struct TangentPlane {
     Eigen::Vector2d p_map = Eigen::Vector2d::Zero();
     double height = 0.0;
@@ -140,7 +141,7 @@ class SimulatedRobot {
   double roll_before_ = 0.0;
   double height_before_ = 0.0;  ///< of the front [m]
   double rise_before_ = 0.0;    ///< [m/s]
-  Pose2 T_map_free_;            ///< where the body last stood free
+  Pose2 T_map_free_;            ///< last free pose of the body
   int64_t last_touch_ = INT64_MIN;
   int64_t steps_ = 0;
 };

@@ -10,9 +10,9 @@ namespace tread::sim {
 namespace {
 
 constexpr int kWaves = 40;
-constexpr double kFade = 0.5;      // from the border to full height [m]
+constexpr double kFade = 0.5;      // distance from the border to full height [m]
 constexpr double kSpacing = 0.05;  // of the raster [m]
-constexpr int kAlong = 11;         // points along each side of a bearing rectangle
+constexpr int kAlong = 11;         // points along each side of a supporting rectangle
 
 /// From a point of a polygon to its border [m].
 double distanceToBorder(const std::vector<Eigen::Vector2d>& corners, const Eigen::Vector2d& p) {
@@ -25,7 +25,7 @@ double distanceToBorder(const std::vector<Eigen::Vector2d>& corners, const Eigen
   return nearest;
 }
 
-/// Wavelengths evenly over the octaves, directions and phases at random.
+/// Wavelengths evenly distributed over the octaves, directions and phases at random.
 std::vector<TerrainWave> wavesOf(const RoughRegion& region) {
   std::mt19937_64 random(region.seed * 0x9E3779B97F4A7C15ULL + 1);
   const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1.0p-53; };
@@ -56,7 +56,7 @@ std::string faultOf(const RoughRegion& region) {
 
 RoughGround::RoughGround(const std::vector<RoughRegion>& regions) {
   for (const RoughRegion& region : regions) {
-    if (!faultOf(region).empty()) continue;  // the world refuses it in words
+    if (!faultOf(region).empty()) continue;  // the world refuses it with a message
     Patch patch{region, extentOf(region.corners), wavesOf(region), {}};
     patch.table =
         HeightTable([&](const auto& p) { return heightOf(patch, p); }, patch.extent, kSpacing);

@@ -13,7 +13,7 @@
 
 namespace tread::sim {
 
-/// Bumps without order in a simple polygon, convex or not; they fade out towards its border.
+/// Random bumps in a simple polygon, convex or not; they fade out towards its border.
 struct RoughRegion {
   std::vector<Eigen::Vector2d> corners;  ///< p_map [m]
   double rms = 0.02;                     ///< of the height [m]
@@ -22,17 +22,17 @@ struct RoughRegion {
   uint64_t seed = 1;
 };
 
-/// What is wrong with a region, in words; empty if nothing is.
+/// What is wrong with a region, in words; empty if it is valid.
 std::string faultOf(const RoughRegion& region);
 
-/// The plane that bears a vehicle.
+/// The plane that supports a vehicle.
 struct Bearing {
   double height = 0.0;                                 ///< at the body origin [m]
   Eigen::Vector2d gradient = Eigen::Vector2d::Zero();  ///< height gained along x and y of map [1]
 };
 
-/// The bumps of all regions: sums of plane waves whose slope is the same in each octave.
-/** Amplitudes grow with the wavelength, as those of unpaved ground do (ISO 8608: w = 2). */
+/// The bumps of all regions: sums of plane waves with the same slope in each octave.
+/** Amplitudes grow with the wavelength, as on unpaved ground (ISO 8608: w = 2). */
 class RoughGround {
  public:
   explicit RoughGround(const std::vector<RoughRegion>& regions);
@@ -41,13 +41,12 @@ class RoughGround {
   bool covers(const Eigen::Vector2d& p_map) const;
   /// Height of the bumps [m].
   double height(const Eigen::Vector2d& p_map) const;
-  /// The same from a raster of 5 cm, for the many beams of a laser [m].
+  /// The same from a 5 cm raster, for the many beams of a laser [m].
   double seen(const Eigen::Vector2d& p_map) const;
-  /// A slope that the raster nowhere exceeds [1].
+  /// Upper bound of the raster's slope [1].
   double steepestSlope() const { return steepest_; }
-  /// The plane nearest to the bumps under both sides of a rectangle (least squares).
-  /** A rigid track bridges what is shorter than itself: this is what makes a bump less than its
-   * height. */
+  /// The plane that fits the bumps under both sides of a rectangle best (least squares).
+  /** A rigid track bridges shorter bumps, so they lift the vehicle by less than their height. */
   Bearing bearing(const Pose2& T_map_body, const FootprintSize& contact) const;
 
  private:

@@ -78,12 +78,12 @@ double HeightTable::height(const Eigen::Vector2d& p_map) const {
 
 // Friction, constant resistance and the spreads were chosen or taken from the calibration that
 // tests/simulator/test_calibration.cpp repeats. The other five numbers of the first four surfaces
-// were found by a simplex search (Nelder-Mead) per surface that compared straight, left and
+// were found by a simplex search (Nelder-Mead) per surface. It compared straight, left and
 // hard_left, entered at steady full power, noise off, with the calibration model: squared end
-// errors in x, y and yaw, and a fifth of the largest error on the way. With small weight, so that
-// what the calibration does not cover stays near its model, it also compared turns in place, the
-// shipped start, stop, step and turn patterns. The vehicle's defaults were held fixed; after a
-// change of those the search has to be repeated. Sand and ice are judgement, not measurement.
+// errors in x, y and yaw, and a fifth of the largest error on the path. Turns in place and the
+// shipped start, stop, step and turn patterns had a small weight, so that motions not covered by
+// the calibration stay close to its model. The vehicle's defaults were fixed; after a change of
+// those the search must be repeated. Sand and ice are judgement, not measurement.
 const std::vector<SurfaceParameters>& builtInSurfaces() {
   static const std::vector<SurfaceParameters> surfaces = {
       {"cinder", 0.75, 0.0165, 0.1794, 0.020, 0.2097, 1.183, -0.0292, {0.0149, 0.0373, 0.0474}},

@@ -10,9 +10,9 @@ namespace {
 
 /// Slip velocity counts as displacement over this time: damps the spring of a standing track [s].
 constexpr double kDampingTime = 0.08;
-/// Belt speed from which on nothing needs damping: the ground is renewed [m/s].
+/// Belt speed from which no damping is needed, because the ground is renewed [m/s].
 constexpr double kDampingSpeed = 0.1;
-/// Displacement beyond this many saturation displacements is not remembered.
+/// Displacement is limited to this many saturation displacements.
 constexpr double kMemory = 3.0;
 
 /// Share of the load's offset that one metre of x_body gives to a segment [1/m^2].
@@ -21,7 +21,7 @@ double offsetGain(const TrackGeometry& geometry) {
   return 12.0 / (geometry.length * geometry.length * kDiscrete);
 }
 
-/// Speed after dry friction took away up to `change` of it; friction stops, it never reverses.
+/// Speed after dry friction has removed up to `change` of it; friction stops but never reverses.
 double withDryFriction(double speed, double change) {
   if (std::abs(speed) <= change) return 0.0;
   return speed - std::copysign(change, speed);
@@ -29,7 +29,7 @@ double withDryFriction(double speed, double change) {
 
 constexpr double kGravity = 9.81;  // [m/s^2]
 
-/// Weight on the two tracks; a cross slope moves it to the lower one.
+/// Loads of the two tracks; a cross slope shifts them to the lower one.
 struct Loads {
   ContactLoad left;
   ContactLoad right;
@@ -63,7 +63,8 @@ TrackForce TrackContact::step(const TrackGeometry& geometry, const Surfaces& sur
     const double u_x = (along_[i] + damping * slip_along_[i]) / surface.shear_displacement;
     const double u_y = (across_[i] + damping * slip_across_[i]) / surface.lateral_displacement;
     const double shear = surface.friction * normal / std::sqrt(1.0 + u_x * u_x + u_y * u_y);
-    // Ground heaped up beside the track: pushed aside, not sheared, so friction does not limit it.
+    // Ground heaped up beside the track is pushed aside, not sheared, so friction does not limit
+    // it.
     const double across = -shear * u_y - normal * surface.scrub_resistance * slip_across_[i];
     total.along -= shear * u_x;
     total.across += across;
@@ -117,7 +118,7 @@ void stepTrack(const DriveParameters& parameters, double commanded_power, double
 
   const double per_mass = dt / parameters.track_mass;
   if (force == wanted) {
-    // The motor's own stiffness is taken implicitly: stable for any step.
+    // The motor's own stiffness is treated implicitly: stable for any step.
     track.speed =
         (track.speed + per_mass * (parameters.stiffness * drive_speed + load.ground_force)) /
         (1.0 + per_mass * parameters.stiffness);
@@ -193,7 +194,7 @@ void TrackedVehicle::moveBody(const TrackForce& left, const TrackForce& right, c
                          weight * ground.slope_along + outside_.along;
   const double from_ground = left.across + right.across;
   const double force_y = from_ground - weight * ground.slope_across + outside_.across;
-  // About the centre of mass; what moves is the middle of the patches.
+  // About the centre of mass; the velocity is that of the middle of the patches.
   const double ahead = parameters_.mass_ahead;
   const double moment = left.moment + right.moment - ahead * from_ground + outside_.moment;
   const double turned = dt * moment / parameters_.yaw_inertia;

@@ -11,10 +11,10 @@
 
 namespace tread::sim {
 
-/// Pieces of a track's contact patch, front to rear.
+/// Segments of a track's contact patch, front to rear.
 inline constexpr int kTrackSegments = 5;
 
-/// Where the track touches the ground: axes of the body, origin midway between the two patches.
+/// Contact geometry of a track: axes of the body, origin midway between the two patches.
 struct TrackGeometry {
   double length = 0.0;   ///< of the contact patch [m]
   double lateral = 0.0;  ///< y of the track's middle [m]
@@ -25,8 +25,9 @@ struct TrackGeometry {
 
 /// The weight on one track.
 struct ContactLoad {
-  double force = 0.0;   ///< normal force [N]
-  double offset = 0.0;  ///< of its centre ahead of the middle, beside that of the surface [m]
+  double force = 0.0;  ///< normal force [N]
+  double offset =
+      0.0;  ///< of its centre ahead of the middle, in addition to that of the surface [m]
 };
 
 /// Force and yaw moment of the ground on one track.
@@ -34,17 +35,17 @@ struct TrackForce {
   double along = 0.0;   ///< shear along the track, forward positive [N]
   double across = 0.0;  ///< shear across it, to the left positive [N]
   double resistance =
-      0.0;              ///< of rolling, grows with speed, acts on the body, forward positive [N]
-  double moment = 0.0;  ///< of the three about the middle of the patches [N m]
+      0.0;  ///< rolling resistance that grows with speed, on the body, forward positive [N]
+  double moment = 0.0;        ///< of the three about the middle of the patches [N m]
   double dry_friction = 0.0;  ///< rolling resistance that does not depend on speed, >= 0 [N]
 };
 
 /// The contact patch of one track: shear displacement of the ground below each segment.
-/** The ground below a segment is sheared by the slip velocity and is carried backwards by the belt,
-   so that undisturbed ground enters at the leading edge (Janosi and Hanamoto's shear displacement
-   as a state). Shear force = friction x load x u / sqrt(1 + |u|^2), u = displacement over the
-   displacement of saturation. A standing belt keeps its displacement: the track then holds like a
-   spring and does not creep. */
+/** The ground below a segment is sheared by the slip velocity and carried backwards by the belt, so
+ * that undisturbed ground enters at the leading edge (Janosi and Hanamoto's shear displacement as
+ * a state). Shear force = friction x load x u / sqrt(1 + |u|^2), u = displacement over the
+ * displacement of saturation. A standing belt keeps its displacement: the track then holds like a
+ * spring and does not creep. */
 class TrackContact {
  public:
   using Surfaces = std::array<const SurfaceParameters*, kTrackSegments>;
@@ -65,17 +66,17 @@ class TrackContact {
   std::array<double, kTrackSegments> slip_across_{};  ///< [m/s]
 };
 
-/// Battery, power stage, motors and gears of a tracked vehicle, seen at the tracks; those of a 24 V
-/// machine, but for what its size and weight decide.
+/// Battery, power stage, motors and gears of a tracked vehicle, referred to the tracks; defaults
+/// are those of a 24 V machine, except for values that depend on size and weight.
 struct DriveParameters {
   double free_speed = 0.0;     ///< track speed at full power, nominal voltage and no load [m/s]
   double stiffness = 0.0;      ///< loss of drive force per track speed, one track [N s/m]
   double force_limit = 0.0;    ///< current limit of the power stage, as force at the track [N]
   double power_lag = 0.09;     ///< first-order lag of the power stage's output [s]
-  double dead_power = 0.0;     ///< commands up to it give nothing, larger ones lose as much [1]
+  double dead_power = 0.0;     ///< smaller commands give no power, larger ones lose as much [1]
   double track_mass = 0.0;     ///< belt, sprockets, gear and rotor, as mass at the track [kg]
   double gear_friction = 0.0;  ///< dry friction of gear and belt, one track [N]
-  double brake_force = 0.0;    ///< parking brake, holds while there is no power [N]
+  double brake_force = 0.0;    ///< parking brake, engaged while there is no power [N]
   double brake_power = 0.004;  ///< below this output the parking brake may close [1]
   double brake_speed = 0.02;   ///< and only below this track speed [m/s]
   double force_per_current = 20.0;   ///< [N/A] of motor current
@@ -87,21 +88,21 @@ struct DriveParameters {
   double idle_current = 3.0;         ///< electronics and instruments [A]
 };
 
-/// One motor with its track: what it does now.
+/// State of one motor with its track.
 struct TrackDrive {
   double power = 0.0;    ///< output of the power stage, -1..1
   double speed = 0.0;    ///< belt speed, forward positive [m/s]
-  double current = 0.0;  ///< motor current, positive when it drives forward [A]
+  double current = 0.0;  ///< motor current, positive when driving forward [A]
 };
 
 /// The battery now.
 struct Battery {
-  double charge = 1.0;    ///< share left, 1 = full
+  double charge = 1.0;    ///< remaining share, 1 = full
   double voltage = 25.6;  ///< at the terminals [V]
   double current = 0.0;   ///< [A], positive when discharging
 };
 
-/// What acts on one track from outside.
+/// External forces on one track.
 struct TrackLoad {
   double ground_force = 0.0;  ///< of the ground on the belt, forward positive [N]
   double dry_friction = 0.0;  ///< rolling resistance that does not depend on speed [N]
@@ -119,12 +120,12 @@ void stepBattery(const DriveParameters& parameters, double motors_current, doubl
 void stepBattery(const DriveParameters& parameters, const TrackDrive& left, const TrackDrive& right,
                  double dt, Battery& battery);
 
-/// No vehicle has more.
+/// Upper limit of a vehicle's motors.
 inline constexpr size_t kMostMotors = 8;
 /// A number for each motor or channel of a vehicle; of two tracks left and right.
 using MotorValues = std::array<double, kMostMotors>;
 
-/// Motor power, -1..1 a track; of a holonomic base a wheel, of which the first two stand for left
+/// Motor power, -1..1 per track; for a holonomic base per wheel, where the first two replace left
 /// and right.
 struct MotorPower {
   double left = 0.0;
@@ -141,19 +142,19 @@ struct MotorPower {
   }
 };
 
-/// The ground below the vehicle at one moment.
+/// The ground below the vehicle at one instant.
 struct Ground {
   TrackContact::Surfaces left{};   ///< below the segments, front to rear; never null
   TrackContact::Surfaces right{};  ///< below the segments, front to rear; never null
-  /// Below the wheels of a holonomic base; never null of those that it has.
+  /// Below the wheels of a holonomic base; not null for existing wheels.
   std::array<const SurfaceParameters*, kMostMotors> wheels{};
   double slope_along = 0.0;   ///< height gained per metre ahead [1]
   double slope_across = 0.0;  ///< height gained per metre to the left [1]
 };
 
-/// The vehicle of a simulated robot as its devices and the world see it: power in, motion out.
-/** One that takesSpeeds() has the controller that holds them in itself: to it, "power" is the
- * wanted track speed [m/s]. */
+/// The vehicle of a simulated robot as used by its devices and the world: power in, motion out.
+/** One that takesSpeeds() contains the speed controller: its "power" is the wanted track speed
+ * [m/s]. */
 /** Body origin on the ground midway between the tracks, x forward, y left. */
 class Plant {
  public:
@@ -162,7 +163,7 @@ class Plant {
   virtual bool takesSpeeds() const { return false; }
   /// Advances by dt [s]. Power is clamped to -1..1.
   virtual void step(const MotorPower& power, const Ground& ground, double dt) = 0;
-  /// Velocity of the body origin in the body frame: what moves it through the next step.
+  /// Velocity of the body origin in the body frame, which moves it through the next step.
   virtual Twist2 velocity() const = 0;
   virtual const TrackDrive& left() const = 0;
   virtual const TrackDrive& right() const = 0;
@@ -170,21 +171,21 @@ class Plant {
   /// The drive of each motor, in the order of their channels.
   virtual const TrackDrive& motor(size_t i) const { return i == 0 ? left() : right(); }
   virtual const Battery& battery() const = 0;
-  /// Stops the body at once, as a hard obstacle does; the tracks go on turning.
+  /// Stops the body at once, as at a hard obstacle; the tracks continue.
   virtual void stopBody() = 0;
 
-  /// Whether the spread of the world's surfaces disturbs its motion; else it has all its noise in
-  /// itself.
+  /// Whether the spread of the world's surfaces disturbs its motion; otherwise it includes all its
+  /// noise itself.
   virtual bool disturbedByGround() const { return true; }
-  /// What it is called, where the user chose it; may be empty.
+  /// Its name, if the user chose it; may be empty.
   virtual std::string name() const { return {}; }
-  /// Why its motion is not to be relied on, in one line; empty = nothing known against it.
+  /// Why its motion is unreliable, in one line; empty = no known reason.
   virtual std::string warning() const { return {}; }
 };
 
 /// A wheel with rollers on its rim, axes of the body.
 struct WheelMount {
-  double x = 0.0;        ///< [m] of its contact
+  double x = 0.0;        ///< [rad] rolling direction when driven forward
   double y = 0.0;        ///< [m]
   double heading = 0.0;  ///< [rad] where it rolls when it is driven forward
   double rollers = 0.0;  ///< [rad] from there to its rollers' axis
@@ -192,7 +193,7 @@ struct WheelMount {
   Eigen::Vector2d p_body() const { return {x, y}; }
 };
 
-/// A tracked machine; no robot's size is a default.
+/// A tracked machine; there are no defaults for its size.
 /** Body origin on the ground midway between the tracks, x forward, y left. */
 struct VehicleParameters {
   double mass = 0.0;               ///< [kg]
@@ -205,18 +206,19 @@ struct VehicleParameters {
   double max_steering = 0.0;       ///< [rad] of a car, to either side
   double steering_rate = 2.0;      ///< [rad/s] of a car's servo
   std::vector<WheelMount> wheels;  ///< of a holonomic base (omni_base.hpp); else none
-  /// Of the middle of the contact patches, or of a holonomic base's origin: the centre of mass [m].
+  /// Position of the centre of mass relative to the middle of the contact patches, or to a
+  /// holonomic base's origin [m].
   double mass_ahead = 0.0;
   FootprintSize outline;     ///< what obstacles stop
-  double left_power = 1.0;   ///< what the left drive gives of the power that it is told to [1]
-  double right_power = 1.0;  ///< the same on the right [1]
-  double left_drag = 0.0;    ///< dry friction that holds the left track, a jammed brake [N]
+  double left_power = 1.0;   ///< share of the commanded power that the left drive gives [1]
+  double right_power = 1.0;  ///< the same for the right drive [1]
+  double left_drag = 0.0;    ///< dry friction on the left track, as of a jammed brake [N]
   double right_drag = 0.0;   ///< the same on the right [N]
-  double charge = 1.0;       ///< of the battery at the beginning, 1 = full
+  double charge = 1.0;       ///< of the battery at the start, 1 = full
   DriveParameters drive;
 };
 
-/// What else acts on the body, axes of the body, at the centre of mass: a plough, a trailer, wind.
+/// Other forces on the body at the centre of mass, axes of the body: a plough, a trailer, wind.
 struct OutsideForce {
   double along = 0.0;   ///< forward positive [N]
   double across = 0.0;  ///< to the left positive [N]
@@ -226,10 +228,10 @@ struct OutsideForce {
 /// The same surface everywhere, level. The surface must outlive the ground.
 Ground levelGround(const SurfaceParameters& surface);
 
-/// What hides the truth: a dynamic tracked vehicle on sheared ground.
+/// The hidden ground truth: a dynamic tracked vehicle on sheared ground.
 /** Motor power -> drive force against belt speed -> belt speed -> slip -> shear of the ground ->
-   motion of the body in the tangent plane of the ground. Semi-implicit integration, meant for steps
-   of 1 ms. */
+ * motion of the body in the tangent plane of the ground. Semi-implicit integration, for steps of 1
+ * ms. */
 class TrackedVehicle final : public Plant {
  public:
   explicit TrackedVehicle(const VehicleParameters& parameters);
@@ -247,9 +249,9 @@ class TrackedVehicle final : public Plant {
   void stopBody() override { v_centre_ = {}; }
   /// Acts on the body from now on.
   void setOutsideForce(const OutsideForce& force) { outside_ = force; }
-  /// Another build from now on, a new payload for instance; the body origin keeps its velocity.
+  /// Changes the parameters, for instance for a new payload; the body origin keeps its velocity.
   void rebuild(const VehicleParameters& parameters);
-  /// Puts a share 0..1 of charge into the battery.
+  /// Sets the battery's charge, 0..1.
   void setCharge(double charge) { battery_.charge = charge; }
 
  private:

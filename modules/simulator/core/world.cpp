@@ -13,7 +13,7 @@ namespace {
 constexpr double kGridEdge = 0.5;        // [m]
 constexpr double kHeightSpacing = 0.25;  // [m]
 constexpr double kHeightMargin = 5.0;    // of the height table around the bounds [m]
-constexpr double kGroundStep = 0.05;     // smallest advance of a beam towards the ground [m]
+constexpr double kGroundStep = 0.05;     // least advance of a beam towards the ground [m]
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
 /// The one of that name, or the end.
@@ -118,7 +118,7 @@ Bearing World::bearing(const Pose2& T_map_body, const FootprintSize& contact) co
 
 std::optional<double> World::castRay(const Eigen::Vector3d& start, const Eigen::Vector3d& direction,
                                      double range) const {
-  // Beams of a ground vehicle are never vertical; one that is would see the ground below it.
+  // Beams of a ground vehicle are never vertical; a vertical one would see the ground below.
   const double horizontal = std::max(direction.head<2>().norm(), 1e-9);
   const Beam beam{start.head<2>(), direction.head<2>() / horizontal, start.z(),
                   direction.z() / horizontal};
@@ -136,7 +136,7 @@ double World::obstacleDistance(const Beam& beam, double range) const {
     if (!crossing) return false;
     double hit = crossing->enter;
     if (beam.z + beam.slope * hit > tops_[i]) {
-      // Above the wall: a falling beam may still come down on the roof.
+      // Above the wall: a falling beam may still hit the roof.
       hit = beam.slope < 0.0 ? (tops_[i] - beam.z) / beam.slope : kFar;
       if (hit > crossing->leave) return false;
     }
@@ -148,7 +148,8 @@ double World::obstacleDistance(const Beam& beam, double range) const {
 
 double World::groundDistance(const Beam& beam, double range) const {
   if (heights_.empty() && rough_.empty()) return beam.slope < 0.0 ? beam.z / -beam.slope : kFar;
-  // The gap to the ground shrinks no faster than this: the beam may advance by gap / closing.
+  // Upper bound of the rate at which the gap to the ground shrinks: the beam may advance by gap /
+  // closing.
   const double closing = heights_.steepestSlope() + rough_.steepestSlope() - beam.slope;
   if (closing <= 0.0) return kFar;
   double before = 0.0, gap_before = 0.0;

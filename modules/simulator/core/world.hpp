@@ -13,7 +13,7 @@
 
 namespace tread::sim {
 
-/// A patch of ground: a simple polygon, convex or not.
+/// A region of ground: a simple polygon, convex or not.
 struct SurfaceRegion {
   std::string surface;                   ///< by name
   std::vector<Eigen::Vector2d> corners;  ///< p_map [m]
@@ -23,31 +23,32 @@ struct SurfaceRegion {
 SurfaceRegion stripRegion(const std::string& surface, const Eigen::Vector2d& from,
                           const Eigen::Vector2d& to, double width);
 
-/// All that a world is made of, as a person writes it down.
+/// A complete world, as described by the user.
 struct WorldDescription {
   std::string name;
   Extent bounds{{-20.0, -20.0}, {20.0, 20.0}};  ///< where missions take place [m]
-  std::string base_surface = "grass";           ///< where no region lies
-  std::vector<SurfaceParameters> surfaces;      ///< beside the built-in ones; same name replaces
-  std::vector<SurfaceRegion> regions;           ///< later ones lie on top
+  std::string base_surface = "grass";           ///< outside of all regions
+  std::vector<SurfaceParameters>
+      surfaces;                        ///< in addition to the built-in ones; the same name replaces
+  std::vector<SurfaceRegion> regions;  ///< later ones cover earlier ones
   Terrain terrain;
-  std::vector<RoughRegion> rough;  ///< bumps on the terrain; where two lie, both count
+  std::vector<RoughRegion> rough;  ///< bumps on the terrain; overlapping ones add up
   std::vector<Obstacle> obstacles;
 };
 
-/// Why a world cannot be built from a description; nothing if it can.
+/// Why a description is invalid; nullopt if it is valid.
 std::optional<std::string> worldFault(const WorldDescription& description);
 
-/// A touch of the footprint and an obstacle.
+/// A contact between the footprint and an obstacle.
 struct Collision {
   size_t obstacle = 0;       ///< index in the description
   double penetration = 0.0;  ///< [m], above 0
 };
 
-/// Ground, terrain and obstacles, made for fast questions.
+/// Ground, terrain and obstacles, prepared for fast queries.
 class World {
  public:
-  /// Throws std::invalid_argument with worldFault()'s words if the description makes no world.
+  /// Throws std::invalid_argument with worldFault()'s message if the description is invalid.
   explicit World(WorldDescription description);
 
   /// The surface at a point; the reference lives as long as the world.
@@ -57,18 +58,19 @@ class World {
   double height(const Eigen::Vector2d& p_map) const {
     return description_.terrain.height(p_map) + rough_.height(p_map);
   }
-  /// The plane on which a rigid vehicle lies: the terrain's at the body origin, and the bumps'
+  /// The plane that supports a rigid vehicle: the terrain's at the body origin, and the bumps'
   /// under the whole contact of both tracks.
   Bearing bearing(const Pose2& T_map_body, const FootprintSize& contact) const;
-  /// Whether a point lies on ground with bumps.
+  /// Whether a point is on ground with bumps.
   bool isRough(const Eigen::Vector2d& p_map) const { return rough_.covers(p_map); }
 
-  /// Distance along a ray (unit direction, map frame) to the first obstacle or ground; nothing
-  /// within range.
+  /// Distance along a ray (unit direction, map frame) to the first obstacle or ground; nullopt if
+  /// there is none within range.
   std::optional<double> castRay(const Eigen::Vector3d& start, const Eigen::Vector3d& direction,
                                 double range) const;
 
-  /// The deepest touch of a rectangle at a pose with any obstacle. The referee of missions.
+  /// The deepest contact of a rectangle at a pose with any obstacle. Used to detect collisions in
+  /// missions.
   std::optional<Collision> collision(const Rectangle& rectangle, const Pose2& T_map_body) const;
 
   const WorldDescription& description() const { return description_; }

@@ -14,14 +14,14 @@
 
 namespace tread::sim {
 
-/// What is wrong with a device of binary messages or its line.
+/// Faults of a device with binary messages, or of its line.
 struct BinaryInsFaults {
-  bool silent = false;         ///< stalled: says nothing
+  bool silent = false;         ///< stalled: sends nothing
   bool no_fix = false;         ///< no satellites and no inertial solution
-  double drop_share = 0.0;     ///< chance that a message loses a byte
-  double corrupt_share = 0.0;  ///< chance that one bit of a message is turned
-  double cut_share = 0.0;      ///< chance that a message breaks off
-  double garbage_share = 0.0;  ///< chance of random bytes before a message
+  double drop_share = 0.0;     ///< probability that a message loses a byte
+  double corrupt_share = 0.0;  ///< probability that one bit of a message is flipped
+  double cut_share = 0.0;      ///< probability that a message breaks off
+  double garbage_share = 0.0;  ///< probability of random bytes before a message
 };
 
 /// A message as its bytes, little-endian.
@@ -41,7 +41,7 @@ class Bytes {
   std::string bytes_;
 };
 
-/// A measurement where and when it is on Earth.
+/// A measurement with its position and time on Earth.
 struct EarthFix {
   double latitude = 0.0;   ///< [deg]
   double longitude = 0.0;  ///< [deg]
@@ -53,7 +53,7 @@ struct EarthFix {
   int64_t gps = 0;         ///< GPS time [us] since 1980-01-06
 };
 
-/// What the emulated INS of binary messages share: place on Earth, faults, the line.
+/// Common part of the emulated INS with binary messages: position on Earth, faults, the line.
 class BinaryInsEmulator : public InsEmulator {
  public:
   BinaryInsEmulator(const MapOnEarth& map, uint64_t seed);
@@ -63,7 +63,7 @@ class BinaryInsEmulator : public InsEmulator {
   void add(const InsMeasurement& sample) final;
   std::string transmit(int64_t utime) final;
   void setFaults(const BinaryInsFaults& faults) { faults_ = faults; }
-  /// The device starts anew: what it had not sent is lost, and it has no solution for a while.
+  /// The device restarts: unsent messages are lost, and it has no solution for a while.
   void reboot(int64_t utime);
 
  protected:

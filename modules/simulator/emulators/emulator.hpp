@@ -13,8 +13,8 @@
 
 namespace tread::sim {
 
-/// A device of the simulated robot at its end of the line: the doors for the next ones.
-/** Pure: bytes and time [us] are arguments; times of all calls must not go back. */
+/// A device of the simulated robot at its end of the line: the interface for further ones.
+/** Pure: bytes and time [us] are arguments; times must not go back between calls. */
 class Emulator {
  public:
   virtual ~Emulator() = default;
@@ -22,11 +22,11 @@ class Emulator {
   virtual void receive(std::string_view bytes, int64_t utime) = 0;
   /// Bytes to the robot since the last call.
   virtual std::string transmit(int64_t utime) = 0;
-  /// The line was closed and opened again.
+  /// The line was closed and reopened.
   virtual void reconnect() {}
 };
 
-/// Where and when the simulated map is.
+/// Position and time of the simulated map on Earth.
 struct MapOnEarth {
   double origin_latitude = 50.3629;        ///< of the map's origin, WGS84 [deg]
   double origin_longitude = 7.5587;        ///< [deg]
@@ -49,7 +49,7 @@ class LaserEmulator : public Emulator {
   virtual void add(const LaserScan& scan) = 0;
 };
 
-/// What a motor controller measures, from the simulated drive, by channel.
+/// Measurements of a motor controller, from the simulated drive, by channel.
 struct DriveMeasurements {
   double battery_voltage = 25.6;  ///< [V]
   MotorValues motor_current{};    ///< [A]
@@ -59,10 +59,10 @@ struct DriveMeasurements {
 /// A motor controller behind its driver's line.
 class MotorEmulator : public Emulator {
  public:
-  /// Power on the motors of all channels now, -1..1. Where the controller is set up to hold speeds
-  /// and heldSpeeds() does not tell them: the shares of its top speed that it is told to hold.
+  /// Present power of the motors of all channels, -1..1. If the controller is configured to control
+  /// speeds and heldSpeeds() does not return them: the commanded shares of its top speed.
   virtual MotorValues output(int64_t utime) = 0;
-  /// The speeds that it holds by itself, by channel [m/s]; output() is what it does for them.
+  /// The speeds that it controls itself, by channel [m/s]; output() is the resulting power.
   virtual std::optional<MotorValues> heldSpeeds() const { return std::nullopt; }
   virtual void measure(const DriveMeasurements& measurements) = 0;
 };

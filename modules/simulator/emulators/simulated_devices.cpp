@@ -27,17 +27,17 @@ namespace tread::sim {
 namespace {
 
 constexpr int64_t kStepUs = 1000;
-constexpr uint64_t kInsStream = 10;  // of random numbers, beside those of the robot
+constexpr uint64_t kInsStream = 10;  // of random numbers, separate from the robot's
 constexpr uint64_t kLaserStream = 11;
 constexpr uint64_t kMotorStream = 12;
 constexpr uint64_t kGroundLaserStream = 13;
 
-/// Positive where the motor drives, negative where it brakes.
+/// Positive while the motor drives, negative while it brakes.
 double drivingCurrent(const TrackDrive& track) {
   return std::copysign(1.0, track.power) * track.current;
 }
 
-/// As many as the robot has motors; a car's only one has the servo, too.
+/// As many as the robot has motors; a car's only one also has the servo.
 VescSettings vescsOf(const RobotSettings& robot) {
   VescSettings vesc;
   vesc.servo = robot.vehicle.wheelbase > 0.0;
@@ -48,7 +48,7 @@ VescSettings vescsOf(const RobotSettings& robot) {
   return vesc;
 }
 
-// A new device is one line in one of these tables and a folder of its own.
+// A new device needs one line in one of these tables and a folder of its own.
 using Settings = SimulatorSettings;
 template <class Kind, class From = Settings>
 using Table = std::map<std::string, std::unique_ptr<Kind> (*)(const From&, uint64_t seed)>;
@@ -154,8 +154,8 @@ MotorValues SimulatedDevices::power(int64_t utime) {
   return ofTracks(motor_->output(utime));
 }
 
-/// From the controller's channels to the left and the right track, and the same way back; of a
-/// holonomic base, to its wheels.
+/// From the controller's channels to the left and the right track, and back; for a holonomic base,
+/// to its wheels.
 MotorValues SimulatedDevices::ofTracks(MotorValues channels) const {
   const MotorWiring& wiring = robot_.settings().wiring;
   for (size_t i = 0; i < wiring.invert_wheels.size(); ++i)

@@ -12,8 +12,8 @@
 
 namespace tread::sim {
 
-/// Robot and devices of one simulation. A device's name is the one that its driver's configuration
-/// has for it.
+/// Robot and devices of one simulation. Devices have the names that their drivers' configurations
+/// use.
 struct SimulatorSettings {
   RobotSettings robot;
   MapOnEarth ins;
@@ -22,7 +22,7 @@ struct SimulatorSettings {
   std::string device = "hokuyo";       ///< the range finder
 };
 
-/// Names of the devices that there are emulators of.
+/// Names of the devices with emulators.
 struct EmulatedDevices {
   std::vector<std::string> controllers;
   std::vector<std::string> sources;
@@ -30,19 +30,19 @@ struct EmulatedDevices {
 };
 EmulatedDevices emulatedDevices();
 
-/// The simulated robot with its devices: bytes in and out are all that a driver sees of it.
+/// The simulated robot with its devices: drivers access it only by bytes in and out.
 /** Pure: no clock, no links. */
 class SimulatedDevices {
  public:
-  /// Throws std::out_of_range for a device of another name than emulatedDevices() has.
+  /// Throws std::out_of_range for a device that is not in emulatedDevices().
   SimulatedDevices(std::shared_ptr<const World> world, const SimulatorSettings& settings,
                    RobotParts parts = {});
 
   /// Simulates up to a time; the motors follow the controller's output in steps of 1 ms.
   void advanceTo(int64_t utime);
 
-  /// What the controller gives to the left and the right motor, or to each wheel's, now, -1..1:
-  /// power, or a share of the speed that it holds at full command.
+  /// Present output of the controller to the left and the right motor, or to each wheel's, -1..1:
+  /// power, or a share of the speed controlled at full command.
   MotorValues power(int64_t utime);
 
   const SimulatedRobot& robot() const { return robot_; }

@@ -10,7 +10,7 @@ namespace tread::sim {
 namespace {
 
 constexpr size_t kLineLength = 64;      // of measured values, without sum
-constexpr size_t kLongestCommand = 80;  // what is longer is forgotten
+constexpr size_t kLongestCommand = 80;  // longer ones are discarded
 constexpr uint32_t kNothingHit = 65533;
 constexpr uint32_t kMostOfTwo = 4095;  // of two characters
 constexpr uint32_t kNoMeasurement = 1;
@@ -94,7 +94,7 @@ void ScipEmulator::answer(const std::string& line, const std::string& status,
   out_ += "\n";
 }
 
-/// SCIP 1.1: one character of status, without a sum; of its commands only the way out.
+/// SCIP 1.1: one character of status, without a sum; only the commands for leaving it.
 bool ScipEmulator::runInScip1(const std::string& line) {
   if (!scip1_) return false;
   scip1_ = line != "SCIP2.0";

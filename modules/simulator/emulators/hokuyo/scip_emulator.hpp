@@ -12,7 +12,7 @@
 
 namespace tread::sim {
 
-/// The range finder as it describes itself (PP and VV).
+/// The range finder's description of itself (PP and VV).
 struct ScipSettings {
   std::string model = "UTM-30LX-EW (emulated)";
   std::string serial_number = "T0000001";
@@ -22,30 +22,30 @@ struct ScipSettings {
   int first_step = 0;           ///< AMIN
   int last_step = 540;          ///< AMAX
   int front_step = 270;         ///< AFRT
-  int turns_per_minute = 2400;  ///< SCAN: of its mirror, also where it leaves turns out
+  int turns_per_minute = 2400;  ///< SCAN: of its mirror, including skipped revolutions
   bool scip1 = false;           ///< speaks SCIP 1.1 until it is switched to 2.0
 };
 
-/// Settings that fit a simulated laser.
+/// Settings that match a simulated laser.
 ScipSettings scipSettingsOf(const LaserParameters& laser);
 
-/// What is wrong with the device or its line.
+/// Faults of the device or its line.
 struct ScipFaults {
-  bool silent = false;        ///< hears and says nothing
+  bool silent = false;        ///< receives but does not send
   bool garbage = false;       ///< random bytes between scans
-  bool bad_sums = false;      ///< one byte of each scan is another: its sum does not fit
+  bool bad_sums = false;      ///< one byte of each scan is changed: its sum is wrong
   bool dropped_byte = false;  ///< one byte of each scan is missing
   bool half_scan = false;     ///< the second half of each scan is missing
   bool repeats = false;       ///< the first scan again, with its time
-  bool ill = false;           ///< its laser does not come on
-  bool trouble = false;       ///< a status in the place of each scan
+  bool ill = false;           ///< its laser does not switch on
+  bool trouble = false;       ///< a status instead of each scan
 };
 
-/// A laser range finder that speaks SCIP 2.0, byte by byte; good behind TCP or a serial line.
+/// A laser range finder with SCIP 2.0, byte by byte; for TCP or a serial line.
 /** Commands end with LF or CR: QT RS BM HS SS PP VV II MD MS and SCIP2.0. An answer is the
-   command's echo, a status with its sum, lines each with a sum, and an empty line. Ranges are three
-   characters (18 bits, mm), after MS two; 65533 (4095) stands for nothing hit, 1 for no
-   measurement. MD and MS switch the laser on. */
+ * command's echo, a status with its sum, lines each with a sum, and an empty line. Ranges are
+ * three characters (18 bits, mm), after MS two; 65533 (4095) means no hit, 1 no measurement. MD
+ * and MS switch the laser on. */
 class ScipEmulator final : public LaserEmulator {
  public:
   ScipEmulator(const ScipSettings& settings, uint64_t seed);
@@ -53,7 +53,7 @@ class ScipEmulator final : public LaserEmulator {
   void receive(std::string_view bytes, int64_t utime) override;
   void add(const LaserScan& scan) override;
   std::string transmit(int64_t utime) override;
-  /// Unread commands are gone, streaming stops.
+  /// Unread commands are lost, streaming stops.
   void reconnect() override;
   void setFaults(const ScipFaults& faults) { faults_ = faults; }
 
@@ -66,8 +66,8 @@ class ScipEmulator final : public LaserEmulator {
     int first = 0;
     int last = 0;
     int cluster = 1;
-    int interval = 0;  ///< scans left out between two
-    int count = 0;     ///< scans left; 0 = without end
+    int interval = 0;  ///< scans to skip between two
+    int count = 0;     ///< remaining scans; 0 = endless
     bool endless = true;
   };
 

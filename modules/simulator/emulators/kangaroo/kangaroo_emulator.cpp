@@ -11,11 +11,11 @@ namespace {
 
 constexpr int kAddress = 128;
 constexpr int64_t kControlPeriod = 5'000;  // [us]
-constexpr double kGain = 0.02;             // power a period and 1 m/s of error
+constexpr double kGain = 0.02;             // power per period and 1 m/s of error
 
 }  // namespace
 
-// As a table of what each of the 128 values adds: the sum is worked out bit by bit elsewhere.
+// As a table of each of the 128 values' contributions: the driver computes the sum bit by bit.
 int KangarooEmulator::sumOf(const std::string& packet) {
   int sum = 0x3fff;
   for (const char byte : packet) {

@@ -11,11 +11,11 @@
 
 namespace tread::sim {
 
-/// A Kangaroo x2 in packet serial at address 128, tuned for speeds, after its packet serial
-/// reference.
-/** A channel moves only between its Start and what stops it: a serial timeout (off after power-up;
- * any good packet begins it anew), lost control, power-up. Only Get is answered, with the speed or
- * with the error. */
+/// A Kangaroo x2 in packet serial mode at address 128, tuned for speeds, according to its packet
+/// serial reference.
+/** A channel moves only between its Start and an event that stops it: a serial timeout (off after
+ * power-up; any good packet restarts it), lost control, power-up. Only Get is answered, with the
+ * speed or the error. */
 class KangarooEmulator final : public SerialMotorEmulator {
  public:
   static constexpr double kUnitsPerMetre = 1000.0;
@@ -46,7 +46,7 @@ class KangarooEmulator final : public SerialMotorEmulator {
   void execute(int64_t utime);
   void stop(Channel& channel, int error) { channel = {error, 0, 0.0}; }
   void tell(size_t channel, int64_t utime);
-  /// The number at a place of the packet.
+  /// The number at a position in the packet.
   int numberAt(size_t place) const;
   static int sumOf(const std::string& packet);
 

@@ -30,7 +30,7 @@ unsigned remainderOf(const std::string& body) {
   return rest;
 }
 
-/// The words of up to four hexadecimal digits behind "$DRV," as numbers with a sign.
+/// The words of up to four hexadecimal digits after "$DRV," as signed numbers.
 std::vector<int> wordsIn(const std::string& body) {
   std::vector<int> words;
   for (const char* at = body.c_str() + 4; *at == ',';) {

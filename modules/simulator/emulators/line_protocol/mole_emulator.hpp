@@ -11,21 +11,21 @@
 
 namespace tread::sim {
 
-/// A controller of an invented protocol, for drivers that are described and not written.
-/** Lines $BODY*CCCC LF; CCCC is CRC-16/XMODEM of BODY without its $, in hexadecimal. What has a
- * wrong checksum is not answered.
+/// A controller with an invented protocol, for testing described drivers.
+/** Lines $BODY*CCCC LF; CCCC is CRC-16/XMODEM of BODY without its $, in hexadecimal. Lines with a
+ * wrong checksum are not answered.
  *
  *      $DRV,LLLL,RRRR  power, 32000 = full, two's complement   $OK or $ERR,reason
- *                      (of n motors n words, and as much in $TEL)
+ *                      (n words for n motors, also in $TEL)
  *      $HLT            zero                                    $OK
  *      $WDT,s.ss       watchdog (1.00 after power-up)          $OK or $ERR,range
  *      $WDT?                                                   $WDT,s.ss
  *      $STA            $STA,faults (hex),volts,degC
  *      $TEL            $TEL,amperes,amperes,mm/s,mm/s
- *      $LCK, $ULK      latches and frees a stop (fault 1)      $OK
+ *      $LCK, $ULK      latches and releases a stop (fault 1)   $OK
  *
- * After power-up it says $BOOT. Only $DRV and $HLT feed the watchdog; when it has expired, the next
- * of them and $ULK let the motors run on at the old speed first, as the worst real ones do. */
+ * After power-up it sends $BOOT. Only $DRV and $HLT feed the watchdog; after it has expired, the
+ * next of them, and also $ULK, resume the old speed first, like the worst real controllers. */
 class MoleEmulator final : public SerialMotorEmulator {
  public:
   explicit MoleEmulator(size_t motors = 2)
@@ -33,10 +33,10 @@ class MoleEmulator final : public SerialMotorEmulator {
 
   MotorValues output(int64_t utime) override;
   void measure(const DriveMeasurements& measurements) override { measurements_ = measurements; }
-  /// Faults beside the lock: 2 undervoltage, 4 stall.
+  /// Faults in addition to the lock: 2 undervoltage, 4 stall.
   void setFaults(int faults) { faults_ = faults; }
   double watchdog() const { return watchdog_; }
-  /// How often a watchdog's stop ended with another speed than zero.
+  /// How often the motors resumed at another speed than zero after a watchdog stop.
   int resumed() const { return resumed_; }
 
  private:

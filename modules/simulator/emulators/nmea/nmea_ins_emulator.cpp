@@ -14,7 +14,7 @@ namespace {
 constexpr double kDegree = kPi / 180.0;
 constexpr double kKnot = 1852.0 / 3600.0;  // [m/s]
 
-/// Degrees and minutes as NMEA writes them, 8 decimals of a minute (0.02 mm), with the hemisphere.
+/// Degrees and minutes in NMEA format, 8 decimals of a minute (0.02 mm), with the hemisphere.
 std::string angle(double degrees, int digits, char positive, char negative) {
   constexpr int64_t kPerMinute = 100000000;
   const int64_t parts = std::llround(std::abs(degrees) * 60.0 * static_cast<double>(kPerMinute));
@@ -37,7 +37,7 @@ bool due(int64_t n, int every) {
 
 }  // namespace
 
-/// A measurement in the words of NMEA.
+/// A measurement in NMEA's terms.
 struct NmeaInsEmulator::Fix {
   std::string time;  ///< hhmmss.sss
   std::tm utc{};
@@ -117,7 +117,7 @@ void NmeaInsEmulator::sayMotion(int64_t n, const Fix& fix, const InsMeasurement&
                   0.0, valid ? 1 : 0));
   }
   if (due(n, settings_.rates.rot)) {
-    // Of the heading, also where the device lies on its back.
+    // Rate of the heading, even if the device is upside down.
     const double rate = std::cos(sample.roll) < 0.0 ? -sample.rate_body.z() : sample.rate_body.z();
     say(formatted("GPROT,%.3f,A", -rate / kDegree * 60.0));
   }

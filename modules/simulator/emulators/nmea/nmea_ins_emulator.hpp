@@ -24,27 +24,26 @@ struct NmeaRates {
   int rot = 1;
 };
 
-/// Where and when the emulated INS is, and what it sends.
+/// Position and time of the emulated INS, and its sentences.
 struct NmeaInsSettings : MapOnEarth {
   NmeaRates rates;
 };
 
-/// What is wrong with the device or its line.
+/// Faults of the device or its line.
 struct NmeaInsFaults {
-  bool silent = false;         ///< says nothing
+  bool silent = false;         ///< sends nothing
   bool no_fix = false;         ///< no satellites: positions and velocities are empty
-  bool no_heading = false;     ///< HDT is empty, PASHR stays away
-  double garbage_share = 0.0;  ///< chance of random bytes before a sentence
-  double corrupt_share = 0.0;  ///< chance that one character of a sentence is another
-  double cut_share = 0.0;      ///< chance that a sentence breaks off
+  bool no_heading = false;     ///< HDT is empty, PASHR is missing
+  double garbage_share = 0.0;  ///< probability of random bytes before a sentence
+  double corrupt_share = 0.0;  ///< probability that one character of a sentence is changed
+  double cut_share = 0.0;      ///< probability that a sentence breaks off
 };
 
-/// An INS that speaks NMEA 0183: ZDA, RMC, GGA, VTG, HDT, PASHR, ROT, in this order per
-/// measurement.
+/// An INS with NMEA 0183: ZDA, RMC, GGA, VTG, HDT, PASHR, ROT, in this order per measurement.
 /** Map axes are east, north, up at the origin (GeographicLib's LocalCartesian). Heading is
-   clockwise from north; PASHR's roll is positive with the left side up, its pitch with the bow up;
-   ROT is in degrees a minute, negative to the left. All times in sentences are UTC of the
-   measurement. */
+ * clockwise from north; PASHR's roll is positive with the left side up, its pitch with the bow up;
+ * ROT is in degrees a minute, negative to the left. All times in sentences are UTC of the
+ * measurement. */
 class NmeaInsEmulator final : public InsEmulator {
  public:
   NmeaInsEmulator(const NmeaInsSettings& settings, uint64_t seed);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kDegree = kPi / 180.0;
 constexpr int64_t kWeek = int64_t{7} * 86400 * 1000;  // [ms]
-constexpr double kSamples = 200.0;                    // of the IMU a second
+constexpr double kSamples = 200.0;                    // of the IMU per second
 
 uint32_t crc32Of(const std::string& bytes) {
   uint32_t crc = 0;

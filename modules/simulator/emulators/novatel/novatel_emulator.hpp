@@ -6,9 +6,10 @@
 
 namespace tread::sim {
 
-/// A SPAN receiver that logs BESTPOS, CORRIMUDATA (short header) and INSPVAX with each measurement.
+/// A SPAN receiver that sends BESTPOS, CORRIMUDATA (short header) and INSPVAX with each
+/// measurement.
 /** Vehicle frame: right, forward, up; roll right side down, pitch nose up; rates in radians per
-   sample of a 200 Hz IMU. Without a solution the receiver says so in their status. */
+ * sample of a 200 Hz IMU. Without a solution the logs' status says so. */
 class NovatelEmulator final : public BinaryInsEmulator {
  public:
   using BinaryInsEmulator::BinaryInsEmulator;

@@ -29,7 +29,7 @@ std::string sign(bool good) {
   return good ? "+" : "-";
 }
 
-constexpr double kBrownOutVoltage = 12.0;  // what is left of the motor supply [V]
+constexpr double kBrownOutVoltage = 12.0;  // remaining motor supply [V]
 constexpr int kUndervoltageFault = 4;      // bits of ?FF
 constexpr int kEmergencyStopFault = 16;
 constexpr int kSerialStatus = 1;  // bits of ?FS
@@ -39,7 +39,7 @@ int rounded(double value) {
   return static_cast<int>(std::lround(value));
 }
 
-constexpr size_t kLongestLine = 64;  // what is longer is refused
+constexpr size_t kLongestLine = 64;  // longer ones are refused
 constexpr char kEnquiry = 0x05;
 constexpr char kAcknowledge = 0x06;
 
@@ -102,7 +102,7 @@ bool RoboteqFirmware::runCommand(const RoboteqWords& words, int64_t utime) {
     good = true;
   }
   if (!good) return false;
-  // Any good command makes the serial line the active source again: the kept speeds apply.
+  // Any good command makes the serial line the active source again: the stored speeds apply.
   serial_active_ = true;
   last_command_ = utime;
   return true;

@@ -12,46 +12,46 @@
 
 namespace tread::sim {
 
-/// How the emulated controller is built.
+/// Configuration of the emulated controller.
 struct RoboteqSettings {
   int baud = 115200;
   int64_t reply_delay_us = 300;  ///< from the end of a line to the first byte of its reply
-  int64_t boot_us = 400000;      ///< deaf and dumb after a reboot
+  int64_t boot_us = 400000;      ///< no input or output after a reboot
   bool encoders = false;         ///< with encoders ?S is answered
-  double rpm_per_speed = 400.0;  ///< motor turns a minute per track speed [rpm s/m]
-  double undervoltage = 18.0;    ///< power stage off below [V]
+  double rpm_per_speed = 400.0;  ///< motor revolutions per minute over track speed [rpm s/m]
+  double undervoltage = 18.0;    ///< the power stage switches off below it [V]
 };
 
-/// A line in capitals, taken apart: name in letters, then numbers.
+/// An upper-case line, parsed: name in letters, then numbers.
 struct RoboteqWords {
   std::string name;
   std::vector<std::optional<int>> numbers;  ///< empty: not an integer
 };
-/// Takes a line without its first character apart.
+/// Parses a line without its first character.
 RoboteqWords roboteqWords(const std::string& text);
 
 /// The controller behind its serial port: commands, queries, settings, watchdog.
-/** Two-channel Roboteq controller after its manual (v2.0, 2019). Only '!' commands feed the
-   watchdog: when it expires the motors stop, and the next good '!' command of any kind lets them
-   run on at the old speed. !EX latches bit 16 of ?FF until !MG, which also brings the old speed
-   back. Its memory for settings and its history of queries are left out: no driver of ours uses
-   them. Where the manual is silent this takes what is worse for a careless driver. */
+/** Two-channel Roboteq controller according to its manual (v2.0, 2019). Only '!' commands feed the
+ * watchdog: when it expires the motors stop, and the next good '!' command of any kind resumes the
+ * old speed. !EX latches bit 16 of ?FF until !MG, which also restores the old speed. Its memory
+ * for settings and its history of queries are left out: no driver of ours uses them. Where the
+ * manual is silent this assumes the behaviour that is worse for a careless driver. */
 class RoboteqFirmware {
  public:
   explicit RoboteqFirmware(const RoboteqSettings& settings) : settings_(settings) {}
 
-  /// Runs one line in capitals; its reply without CR, or nothing if it has none.
+  /// Executes one upper-case line; returns its reply without CR, or nullopt if it has none.
   std::optional<std::string> execute(const std::string& line, int64_t utime);
-  /// Lets the watchdog look at the time.
+  /// Updates the watchdog.
   void advance(int64_t utime);
   /// Back to the power-up state: default settings, zero, no active command source.
   void powerUp();
   void measure(const DriveMeasurements& measurements) { measurements_ = measurements; }
-  /// The motor supply drops below what the power stage needs, or recovers.
+  /// The motor supply drops below the power stage's minimum, or recovers.
   void setBrownOut(bool active) { brown_out_ = active; }
 
   bool echo() const { return !configuration_.echo_off; }
-  /// On the motors now, per mille.
+  /// Present motor power, per mille.
   std::array<int, 2> applied() const;
 
  private:
@@ -85,16 +85,16 @@ class RoboteqFirmware {
   int64_t last_command_ = 0;
 };
 
-/// A Roboteq controller at the end of a serial line: paced bytes, echo, line ends, faults.
+/// A Roboteq controller at the end of a serial line: byte timing, echo, line ends, faults.
 /** Lines end with CR or '_'; other characters below space are ignored. Echo is on after power-up:
-   each character comes back before the reply. */
+ * each character is returned before the reply. */
 class RoboteqEmulator final : public SerialMotorEmulator {
  public:
   explicit RoboteqEmulator(const RoboteqSettings& settings = {});
 
   MotorValues output(int64_t utime) override;
   void measure(const DriveMeasurements& measurements) override { firmware_.measure(measurements); }
-  /// The motor supply drops below what the power stage needs, or recovers.
+  /// The motor supply drops below the power stage's minimum, or recovers.
   void setBrownOut(bool active) { firmware_.setBrownOut(active); }
 
  private:

@@ -30,7 +30,7 @@ void RplidarEmulator::receive(std::string_view bytes, int64_t /*utime*/) {
     in_.erase(0, std::min(in_.find('\xA5'), in_.size()));
     if (in_.size() < 2) return;
     const char command = in_[1];
-    // Commands from 80 on carry a length, that many bytes, and a sum.
+    // Commands from 80 on have a length, that many bytes, and a sum.
     size_t whole = 2;
     if (static_cast<unsigned char>(command) >= 0x80) {
       if (in_.size() < 3) return;

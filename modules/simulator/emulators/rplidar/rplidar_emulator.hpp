@@ -11,20 +11,21 @@
 
 namespace tread::sim {
 
-/// What is wrong with the device or its line, from then on.
+/// Faults of the device or its line, from now on.
 struct RplidarFaults {
-  bool silent = false;        ///< hears and says nothing
-  bool bad_check = false;     ///< one sample of each turn has wrong check bits
-  bool dropped_byte = false;  ///< one byte of each turn is missing
-  bool half_turn = false;     ///< the second half of each turn is missing
-  bool ill = false;           ///< its health is error
-  double correction = 0.0;    ///< [deg] by which samples with an echo are told behind those without
+  bool silent = false;        ///< receives but does not send
+  bool bad_check = false;     ///< one sample of each revolution has wrong check bits
+  bool dropped_byte = false;  ///< one byte of each revolution is missing
+  bool half_turn = false;     ///< the second half of each revolution is missing
+  bool ill = false;           ///< its health status is error
+  double correction =
+      0.0;  ///< [deg] by which angles of samples with an echo lag behind those without
 };
 
 /// An RPLIDAR in SCAN mode: STOP, RESET, SCAN, GET_INFO, GET_HEALTH, motor (LR001, protocol v2.8).
-/** A turn of 360 samples, clockwise, unevenly spaced; each leaves when it would be measured, so
- * that a turn is out one period after the simulated sweep. Outside the laser's field of view
- * nothing is seen. */
+/** A revolution of 360 samples, clockwise, unevenly spaced; each is sent when it would be measured,
+ * so that a revolution is complete one period after the simulated sweep. There are no returns
+ * outside the laser's field of view. */
 class RplidarEmulator final : public LaserEmulator {
  public:
   explicit RplidarEmulator(const LaserParameters& laser) : laser_(laser) {}
@@ -32,7 +33,7 @@ class RplidarEmulator final : public LaserEmulator {
   void receive(std::string_view bytes, int64_t utime) override;
   void add(const LaserScan& scan) override;
   std::string transmit(int64_t utime) override;
-  void reboot();  ///< says its banner and waits for commands
+  void reboot();  ///< sends its banner and waits for commands
   void setFaults(const RplidarFaults& faults) { faults_ = faults; }
 
  private:
@@ -42,7 +43,7 @@ class RplidarEmulator final : public LaserEmulator {
   RplidarFaults faults_;
   std::string in_;
   std::string out_;
-  std::deque<std::pair<int64_t, std::string>> samples_;  ///< with the times at which they leave
+  std::deque<std::pair<int64_t, std::string>> samples_;  ///< with their times of sending
   bool scanning_ = false;
 };
 

@@ -30,7 +30,7 @@ void SabertoothEmulator::hear(char byte, int64_t utime) {
   const int value = static_cast<unsigned char>(byte);
   bauded_ = bauded_ || value == kBauding;
   if (!bauded_) return;
-  // Only an address has its highest bit set: it begins a packet wherever it comes.
+  // Only an address has its highest bit set, so it always begins a packet.
   if (value >= 128) length_ = 0;
   if (length_ == 0 && value != kAddress) return;
   packet_[static_cast<size_t>(length_++)] = value;

@@ -9,10 +9,10 @@
 
 namespace tread::sim {
 
-/// A Sabertooth 2x controller in packet serial mode at address 128, after its manual.
-/** Deaf after power-up until the bauding character 170; then packets of address, command, value and
- * 7-bit sum. It never answers. Its serial timeout is off after power-up, counts from any good
- * packet, and stops both motors. */
+/// A Sabertooth 2x controller in packet serial mode at address 128, according to its manual.
+/** Ignores everything after power-up until the bauding character 170; then packets of address,
+ * command, value and 7-bit sum. It never answers. Its serial timeout is off after power-up, is
+ * restarted by any good packet, and stops both motors. */
 class SabertoothEmulator final : public SerialMotorEmulator {
  public:
   SabertoothEmulator() : SerialMotorEmulator(38400, 0, 200'000) {}

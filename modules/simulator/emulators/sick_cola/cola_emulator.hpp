@@ -10,18 +10,18 @@
 
 namespace tread::sim {
 
-/// What is wrong with the device or its line, for the next scan or from then on.
+/// Faults of the device or its line, for the next scan or from now on.
 struct ColaFaults {
-  bool silent = false;         ///< hears and says nothing
-  bool half_telegram = false;  ///< scans end in their middle
+  bool silent = false;         ///< receives but does not send
+  bool half_telegram = false;  ///< scans break off in the middle
   bool dropped_byte = false;   ///< scans lack one byte
-  bool bad_checksum = false;   ///< of the binary dialect: scans carry a wrong one
-  bool repeats = false;        ///< the scan before is sent again, to the byte
+  bool bad_checksum = false;   ///< of the binary dialect: scans have a wrong one
+  bool repeats = false;        ///< the previous scan is sent again, byte for byte
 };
 
-/// A SICK LMS1xx that speaks CoLa A and B, telegram by telegram (listing 8014631).
-/** It answers each request in the dialect in which it came, and streams in that of sEN LMDscandata
- * 1. Angles: 90 degrees are ahead; no echo is 0, ranges are mm of 16 bits. LMCstartmeas asks for a
+/// A SICK LMS1xx with CoLa A and B, telegram by telegram (listing 8014631).
+/** It answers each request in the request's dialect, and streams in that of sEN LMDscandata 1.
+ * Angles: 90 degrees are forward; no echo is 0, ranges are mm of 16 bits. LMCstartmeas requires a
  * login. */
 class ColaEmulator final : public LaserEmulator {
  public:
@@ -31,12 +31,12 @@ class ColaEmulator final : public LaserEmulator {
   void add(const LaserScan& scan) override;
   std::string transmit(int64_t utime) override;
   void reconnect() override;  ///< the stream ends with its connection
-  /// Power off and on: nobody is logged in, nothing streams, its clock begins at 0.
+  /// Power cycle: nobody is logged in, nothing streams, its clock restarts at 0.
   void reboot(int64_t utime);
   void setFaults(const ColaFaults& faults) { faults_ = faults; }
 
  private:
-  /// Takes one telegram off the input; false if there is none in full.
+  /// Extracts one telegram from the input; false if there is no complete one.
   bool next(std::string& telegram, bool& binary);
   void run(const std::string& telegram, bool binary);
   std::string scanTelegram(const LaserScan& scan);

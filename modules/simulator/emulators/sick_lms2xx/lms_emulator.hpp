@@ -9,16 +9,16 @@
 
 namespace tread::sim {
 
-/// What is wrong with the device or its line, from then on.
+/// Faults of the device or its line, from now on.
 struct LmsFaults {
-  bool silent = false;        ///< hears and says nothing
-  bool bad_checksum = false;  ///< scans carry a wrong one
-  bool half_frame = false;    ///< scans end in their middle
+  bool silent = false;        ///< receives but does not send
+  bool bad_checksum = false;  ///< scans have a wrong one
+  bool half_frame = false;    ///< scans break off in the middle
   bool dropped_byte = false;  ///< scans lack one byte
 };
 
 /// A SICK LMS 2xx on its serial line: 20 (modes 24, 25), 31, 3B, 74 (telegrams for LMS2xx).
-/** Half a turn with a value each degree or half degree, in mm of 13 bits (up to 8.18 m). */
+/** 180 degrees with a value per degree or half degree, in mm of 13 bits (up to 8.18 m). */
 class LmsEmulator final : public LaserEmulator {
  public:
   explicit LmsEmulator(const LaserParameters& laser) : laser_(laser) {}
@@ -26,7 +26,7 @@ class LmsEmulator final : public LaserEmulator {
   void receive(std::string_view bytes, int64_t utime) override;
   void add(const LaserScan& scan) override;
   std::string transmit(int64_t utime) override;
-  /// Power off and on: it is in 1 degree and sends no scans. The line is one without a connection.
+  /// Power cycle: resets to 1 degree without scans. The line has no connection state.
   void reboot();
   void setFaults(const LmsFaults& faults) { faults_ = faults; }
 

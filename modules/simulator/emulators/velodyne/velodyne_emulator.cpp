@@ -32,7 +32,7 @@ void VelodyneEmulator::add(const LaserScan& scan) {
   scan_ = scan;
 }
 
-/// A range in steps of 2 mm; 0 where nothing comes back. Azimuth clockwise, 0.01 degree.
+/// A range in steps of 2 mm; 0 without a return. Azimuth clockwise, 0.01 degree.
 uint16_t VelodyneEmulator::ticksAt(double azimuth) const {
   const double angle = -std::remainder(azimuth * 0.01 * kPi / 180.0, 2.0 * kPi);
   const double step = laser_.field_of_view / (laser_.beams - 1);
@@ -76,7 +76,7 @@ std::string VelodyneEmulator::transmit(int64_t utime) {
   std::string bytes;
   if (scan_.ranges.empty()) return bytes;
   const double duration = 2.0 * kFiring * kBlocks / (faults_.dual_return ? 2 : 1);
-  // What a pause of the host left unsent is gone.
+  // Packets unsent because of a pause of the host are lost.
   const auto now = static_cast<double>(utime);
   if (now - firing_ > kTurn) firing_ += duration * std::floor((now - firing_) / duration - 1.0);
   for (; firing_ + duration <= now; firing_ += duration) {

@@ -50,7 +50,7 @@ std::string values(const VescMotor& motor) {
   return out.put(300, 2).put(300, 2).put(300, 2).put(0, 4).put(0, 4).put(0, 1).bytes;
 }
 
-/// The part that matters, and as much more as a real one has.
+/// The relevant part, padded to a real one's length.
 std::string appConfiguration(const VescMotor& motor) {
   Writer out;
   out.put(17, 1)

@@ -14,8 +14,8 @@
 namespace tread::sim {
 
 /// Controllers that drive two channels, odd ids the first, even ids the second, or more in turn.
-/// With a servo, that is the second: -1..1 from its position 0.1 to 0.9, which is held whatever the
-/// motors' timeout.
+/// With a servo, the servo is the second: -1..1 from its position 0.1 to 0.9, which it keeps
+/// independent of the motors' timeout.
 class VescBank {
  public:
   explicit VescBank(const VescSettings& settings);
@@ -36,9 +36,9 @@ class VescBank {
   double servo_ = 0.5;
 };
 
-/// VESC controllers behind the UART of the one with id 1, after the firmware's packet.c and
+/// VESC controllers behind the UART of the one with id 1, according to the firmware's packet.c and
 /// commands.c: COMM_FW_VERSION, GET_VALUES, SET_DUTY, SET_CURRENT_BRAKE, SET_RPM, SET_SERVO_POS,
-/// GET_APPCONF, ALIVE, FORWARD_CAN. What it does not know it does not answer.
+/// GET_APPCONF, ALIVE, FORWARD_CAN. Other commands are not answered.
 class VescUartEmulator final : public SerialMotorEmulator {
  public:
   explicit VescUartEmulator(const VescSettings& settings = {});

@@ -7,13 +7,13 @@
 
 namespace tread::sim {
 
-/// How the emulated VESC controllers are set up.
+/// Configuration of the emulated VESC controllers.
 struct VescSettings {
-  /// Ids 1, 2 (left, right) or 1 to 4 (left, right, left, right); 1 with a servo; 1 to n of n
+  /// Ids 1, 2 (left, right) or 1 to 4 (left, right, left, right); 1 with a servo; 1 to n for n
   /// wheels.
   int controllers = 2;
   size_t channels = 2;
-  int64_t timeout_ms = 200;  ///< without a command until the motor is let go; 0 = never
+  int64_t timeout_ms = 200;  ///< time without a command until the motor is released; 0 = never
   double erpm_per_mps = 5000.0;
   bool statuses = true;  ///< CAN status messages are switched on
   bool servo = false;    ///< the first one steers: its servo output is the second channel
@@ -27,16 +27,16 @@ class VescMotor {
   void setDuty(double duty, int64_t utime);
   void setRpm(double erpm, int64_t utime);
   void setBrake(double amperes, int64_t utime);
-  /// COMM_ALIVE: the timeout begins anew, whatever was commanded goes on.
+  /// COMM_ALIVE: restarts the timeout, the present command continues.
   void keepAlive(int64_t utime) { fed_ = utime; }
   void measure(double track_speed, double current, double battery);
   void setFault(int code) { fault_ = code; }
   void powerUp();
 
-  /// Power on the motor at a time, -1..1.
+  /// Motor power at a time, -1..1.
   double output(int64_t utime);
 
-  /// [m/s] that its speed control holds; 0 in the other modes.
+  /// [m/s] set point of its speed control; 0 in the other modes.
   double heldSpeed() const { return mode_ == Mode::kRpm ? wanted_ / settings_.erpm_per_mps : 0.0; }
 
   int id() const { return id_; }

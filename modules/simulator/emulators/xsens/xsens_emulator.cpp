@@ -29,7 +29,7 @@ class MtData {
     std::memcpy(&bits, &narrow, sizeof bits);
     whole(bits, 4);
   }
-  /// Fixed point with 16 bits before and 32 behind the point, these first.
+  /// Fixed point with 16 bits before and 32 after the point, the latter first.
   void fixed(double number) {
     const auto scaled = static_cast<uint64_t>(std::llround(std::ldexp(number, 32)));
     whole(scaled & 0xFFFFFFFFU, 4);
@@ -70,7 +70,7 @@ void putDate(const std::tm& date, MtData& m) {
     m.whole(static_cast<unsigned>(part), 1);
 }
 
-/// GnssPvtData as far as a receiver with a fix fills it; 94 bytes.
+/// GnssPvtData, as far as a receiver with a fix fills it; 94 bytes.
 void putPvt(const EarthFix& fix, MtData& m) {
   const auto thousandths = [&m](double number) {
     m.whole(static_cast<uint32_t>(static_cast<int32_t>(std::lround(number * 1e3))), 4);

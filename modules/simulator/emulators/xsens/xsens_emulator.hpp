@@ -6,10 +6,10 @@
 
 namespace tread::sim {
 
-/// An Xsens MTi-680 that sends one MTData2 with each measurement, and GnssPvtData in four of them a
-/// second.
+/// An Xsens MTi-680 that sends one MTData2 with each measurement, and GnssPvtData in four of them
+/// per second.
 /** Axes: forward, left, up; orientation and velocity over east, north, up. Angular rates and the
- * quaternion are single precision, places and velocities fixed point 16.32. */
+ * quaternion are single precision, positions and velocities fixed point 16.32. */
 class XsensEmulator final : public BinaryInsEmulator {
  public:
   using BinaryInsEmulator::BinaryInsEmulator;
