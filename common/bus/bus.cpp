@@ -13,24 +13,23 @@
 namespace tread {
 namespace {
 
-/// Nobody publishes this often; a higher seq is that of a broken message.
+/// No publisher sends this many; a higher seq comes from a broken message.
 constexpr int64_t kLargestSeq = 1'000'000'000'000;
 
 constexpr int64_t kHealthPeriodUs = 1'000'000;
 constexpr int64_t kConfigPeriodUs = 10'000'000;
-/// A process that says nothing for this long is gone.
+/// A process that is silent for this long is gone.
 constexpr int64_t kNamesakeLife = 3 * kHealthPeriodUs;
 constexpr size_t kMostNamesakes = 8;
 constexpr size_t kMostOfStop = 65'507;  // [bytes] of a datagram
-/// Names with numbers in them, or of what others send, would make HEALTH so large that it is not
-/// sent.
+/// Counters named after numbers or foreign messages could make HEALTH too large to send.
 constexpr size_t kMostCounters = 50;
 constexpr size_t kLongestCounter = 120;  // [bytes]
 constexpr size_t kLongestReason = 1000;  // [bytes]
 /// CONFIG stays within one datagram.
 constexpr size_t kMaxConfigBytes = 50'000;
 
-/// Why a message is not taken, and what helps.
+/// Why a message is refused, and the remedy.
 std::string remedyFor(SealVerdict verdict) {
   switch (verdict) {
     case SealVerdict::kUnsealed:
@@ -40,9 +39,9 @@ std::string remedyFor(SealVerdict verdict) {
     case SealVerdict::kOtherSession:
       return "it was sent from another host, or recorded before the robot's last start";
     case SealVerdict::kTooManySenders:
-      return "stop what starts senders again and again";
+      return "stop the program that keeps restarting senders";
     default:
-      return "it was recorded or held up on its way";
+      return "it was recorded, or delayed in transit";
   }
 }
 
@@ -91,13 +90,13 @@ std::optional<size_t> Bus::unseal(const std::string& channel, const Subscribed& 
                                   const uint8_t* bytes, size_t size) {
   trusted_ = true;
   if (size > subscribed.most) {
-    // A stop is taken from everybody, however long its reason is.
+    // A stop is accepted from everybody, however long its reason is.
     const size_t without = sizeWithoutSeal(bytes, size);
     trusted_ = false;
     if (size <= kMostOfStop && subscribed.stops != nullptr && subscribed.stops(bytes, without))
       return without;
     refuse(channel, "too large",
-           std::to_string(size) + " bytes; no program of Tread sends so many");
+           std::to_string(size) + " bytes; no program of Tread sends that many");
     return std::nullopt;
   }
   if (!sealer_) {
@@ -131,15 +130,15 @@ void Bus::deliver(const RawHandler& handler, const std::string& channel, const u
 void Bus::noteReceipt(const ChannelSpec& spec, int64_t utime, int64_t seq) {
   ++statistics_.received;
   statistics_.newest = {spec.name, utime, seq};
-  // What may be old by its nature (a tile of the map) does not tell the time, nor does a stranger.
+  // A message that may be old (a map tile) does not give the time, nor does a stranger's.
   if (spec.max_age_ms > 0 && trusted_ && !onReceipt(utime)) {
     ++statistics_.jumps;
     statistics_.last_refusal = std::string(spec.name) + ": utime " + std::to_string(utime) +
                                " is not of the present; is its publisher's clock CLOCK_MONOTONIC?";
   }
-  // Differences are taken so that the numbers of a broken message cannot overflow.
+  // Computed as a difference, so that the numbers of a broken message cannot overflow.
   if (spec.max_age_ms > 0 && utime < now() - spec.max_age_ms * int64_t{1000}) ++statistics_.late;
-  // Several publishers share HEALTH, CONFIG, ESTOP, FENCE, FENCES and MARK, so a gap says nothing
+  // HEALTH, CONFIG, ESTOP, FENCE, FENCES and MARK have several publishers, so gaps are normal
   // there.
   const bool one_publisher = std::string(spec.publisher).find("every") == std::string::npos &&
                              std::string(spec.publisher) != "anyone";
@@ -150,13 +149,13 @@ void Bus::noteLoss(const ChannelSpec& spec, int64_t utime, int64_t seq) {
   const auto [known, first] = newest_.try_emplace(spec.name, Newest{seq, utime});
   Newest& newest = known->second;
   if (first || seq == newest.seq) return;
-  // What may be old by its nature does not tell a late message from a publisher's new beginning.
+  // For messages that may be old, a late message and a restarted publisher look alike.
   if (spec.max_age_ms > 0 && seq < newest.seq && utime < newest.utime) {
-    // It was overtaken on its way, and counted as lost then.
+    // It arrived out of order and was counted as lost before.
     if (statistics_.lost > 0) --statistics_.lost;
     return;
   }
-  // A publisher that starts again counts from its beginning: no loss.
+  // A restarted publisher counts from the beginning: no loss.
   if (seq > newest.seq + 1) statistics_.lost += seq - newest.seq - 1;
   newest = {seq, utime};
 }
@@ -207,7 +206,7 @@ void HealthReporter::watchNamesakes() {
   bus_.overhear<health_t>(kHealth, [this](const health_t& health) {
     if (health.process != process_ || health.boot_id == boot_id_) return;
     const int64_t now = bus_.now();
-    // Broken messages may name any number.
+    // Broken messages may contain any number.
     if (namesakes_.size() >= kMostNamesakes && namesakes_.count(health.boot_id) == 0)
       namesakes_.clear();
     Namesake& other = namesakes_[health.boot_id];
@@ -223,7 +222,7 @@ std::optional<Namesake> HealthReporter::namesake(int64_t now, int heard_at_least
 }
 
 std::string HealthReporter::describe(int64_t utime) const {
-  // A message of another program is no fault of this process, but its line must be seen.
+  // A foreign message is no fault of this process, but its line must be visible.
   std::string words = reason_.empty() ? bus_.statistics().last_refusal : reason_;
   const std::optional<Namesake> other = namesake(utime);
   if (!other) return words;

@@ -13,9 +13,9 @@ namespace tread {
 namespace {
 
 constexpr int kQueue = 500;       // messages, of up to 60 kB each
-constexpr int kMostAtOnce = 500;  // after which its owner has other things to do
+constexpr int kMostAtOnce = 500;  // then the owner gets its turn
 
-/// By it each program tries the bus at its start; nobody means anything by it.
+/// Every LCM program sends it to itself at its start; it means nothing.
 constexpr const char* kSelfTest = "LCM_SELF_TEST";
 
 /// [bytes] of any message of Tread and its seal.
@@ -58,7 +58,7 @@ std::string LcmListener::doubt() const {
   if (sealed_unread_)
     return "the robot has a key and this program none, so nothing here is proven: --key FILE";
   if (sealer_ && sealer_->hearsTwoSessions(hostNow()))
-    return "the robot is heard twice; one of the two is a recording: stop it";
+    return "the robot's messages arrive twice; one of the two sources is a recording: stop it";
   std::string words;
   for (const auto& [why, count] : refused_)
     words += (words.empty() ? "" : ", ") + std::to_string(count) + " " + why;

@@ -60,11 +60,12 @@ template <size_t Size>
 void attach(int descriptor, std::array<sock_filter, Size> code, const std::string& url) {
   const sock_fprog program{static_cast<unsigned short>(Size), code.data()};
   if (setsockopt(descriptor, SOL_SOCKET, SO_ATTACH_FILTER, &program, sizeof program) != 0)
-    refuse(url, "the kernel lets no filter onto LCM's socket (" +
+    refuse(url, "the kernel refuses a filter on LCM's socket (" +
                     std::generic_category().message(errno) + ")");
 }
 
-/// Waits until LCM's thread has taken, and without a subscriber dropped, what came in unfiltered.
+/// Waits until LCM's thread has read the packets received before the filter; they are dropped for
+/// lack of a subscriber.
 void awaitEmpty(int descriptor, const std::string& url) {
   using std::chrono::steady_clock;
   const auto deadline = steady_clock::now() + std::chrono::seconds(5);
@@ -86,7 +87,7 @@ void closeToOthers(int descriptor, uint32_t group, const std::string& url) {
                                   BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, group, 0, 1),
                                   BPF_STMT(BPF_RET | BPF_K, kAll), BPF_STMT(BPF_RET | BPF_K, 0)}},
       url);
-  // Only the link that LCM has joined the group on, not those of the host's other programs.
+  // Only through the interface on which LCM has joined the group, not those of other programs.
   const int off = 0;
   if (setsockopt(descriptor, IPPROTO_IP, IP_MULTICAST_ALL, &off, sizeof off) != 0)
     refuse(url, "LCM's socket cannot be kept to its own link");
@@ -106,7 +107,7 @@ bool openForMulticastOnly(lcm::LCM& lcm, const std::string& url) {
   in_addr group{};
   if (inet_pton(AF_INET, address->group.c_str(), &group) != 1 || !IN_MULTICAST(ntohl(group.s_addr)))
     refuse(effective, address->group + " is no multicast group");
-  // Another bus of this process, or a socket that its parent left open, is not touched.
+  // Leave another bus of this process, or a socket inherited from its parent, untouched.
   const std::set<int> others = udpSocketsOn(address->port);
   if (lcm.getFileno() < 0) return false;
   bool closed = false;

@@ -17,7 +17,7 @@
 namespace tread {
 namespace {
 
-// A signal handler can reach nothing but a global; it lives in this file only.
+// A signal handler can access only globals; this one is local to this file.
 std::atomic<bool> g_stop{false};
 
 void requestStop(int /*signal*/) {
@@ -41,8 +41,9 @@ void describe(CLI::App& app, Arguments& arguments) {
   app.add_option("--lcm-url", arguments.lcm_url,
                  "LCM provider, for instance udpm://239.255.76.67:7667?ttl=0");
   addKeyOption(app, arguments.key);
-  app.add_flag("--check", arguments.check,
-               "only read the configuration and the key, and print what holds, defaults included");
+  app.add_flag(
+      "--check", arguments.check,
+      "only read the configuration and the key, and print the effective values, defaults included");
   app.add_flag("--with-parent", arguments.with_parent, "end when the starting process is gone");
 }
 
@@ -51,11 +52,11 @@ void describe(CLI::App& app, Arguments& arguments) {
 const std::atomic<bool>& stopRequest(pid_t parent) {
   std::signal(SIGINT, requestStop);
   std::signal(SIGTERM, requestStop);
-  // A terminal that is closed, unless nohup says that the process outlives it.
+  // A closed terminal ends the process, unless nohup is used.
   if (std::signal(SIGHUP, requestStop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
-  // A device that goes away while it is written to must not end the process.
+  // A device that vanishes during a write must not end the process.
   std::signal(SIGPIPE, SIG_IGN);
-  // Nor may a limit of the size of files: writing fails, and is told.
+  // Nor may a file size limit: the write fails and is reported.
   std::signal(SIGXFSZ, SIG_IGN);
   if (parent != 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGINT);

@@ -16,7 +16,7 @@ constexpr size_t kLongestBlock = 16 << 20;  // of another kind than frames
 constexpr size_t kMostStreams = 1000;
 constexpr uint32_t kMicroseconds = 0xA1B2C3D4;
 constexpr uint32_t kNanoseconds = 0xA1B23C4D;
-constexpr const char* kRepair = "; record it anew, or repair it with pcapfix";
+constexpr const char* kRepair = "; record it again, or repair it with pcapfix";
 constexpr uint32_t kGzip = 0x8B1F;
 constexpr uint32_t kSection = 0x0A0D0D0A;  // reads the same both ways
 constexpr uint32_t kSectionOrder = 0x1A2B3C4D;
@@ -37,7 +37,7 @@ uint32_t littleEndian32(std::string_view bytes, size_t at) {
   return reversed(bigEndian32(bytes, at));
 }
 
-/// Where a frame tells the type of its contents, and where these begin, by its link layer.
+/// Position of the type field and of the contents in a frame, by its link layer.
 std::optional<std::pair<size_t, size_t>> contentsOf(uint32_t link_type) {
   switch (link_type) {
     case 1:
@@ -51,7 +51,7 @@ std::optional<std::pair<size_t, size_t>> contentsOf(uint32_t link_type) {
   }
 }
 
-/// Where IPv4 begins in a frame; nothing for other contents.
+/// Where IPv4 begins in a frame; nullopt for other contents.
 std::optional<size_t> internetAt(uint32_t link_type, std::string_view frame) {
   constexpr uint32_t kIpv4 = 0x0800;
   if (link_type == 101 || link_type == 228) return 0;  // bare IP
@@ -59,7 +59,7 @@ std::optional<size_t> internetAt(uint32_t link_type, std::string_view frame) {
   auto [type_at, at] = *contentsOf(link_type);
   if (frame.size() < at) return std::nullopt;
   uint32_t type = bigEndian16(frame, type_at);
-  // A VLAN's tag, and one around it (QinQ): two bytes, then the type of what follows.
+  // A VLAN tag, or two of them (QinQ): two bytes, then the type of the contents.
   for (; type == 0x8100 || type == 0x88A8 || type == 0x9100; at += 4) {
     if (frame.size() < at + 4) return std::nullopt;
     type = bigEndian16(frame, at + 2);
@@ -148,7 +148,7 @@ std::optional<CapturedPayload> PcapStream::next() {
   }
 }
 
-/// A record of the classic format; `whole` stays 0 while its bytes are missing.
+/// A record of the classic format; `whole` stays 0 while bytes are missing.
 std::optional<PcapStream::Frame> PcapStream::nextRecord(size_t& whole) {
   if (buffer_.size() < kRecordHeader) return std::nullopt;
   const size_t length = number(8);
@@ -163,7 +163,7 @@ std::optional<PcapStream::Frame> PcapStream::nextRecord(size_t& whole) {
   return Frame{&interface, int64_t{1'000'000} * number(0) + fraction, kRecordHeader, length};
 }
 
-/// A block of pcapng; frames are in blocks of three kinds.
+/// A block of pcapng; three kinds of blocks contain frames.
 std::optional<PcapStream::Frame> PcapStream::nextBlock(size_t& whole) {
   constexpr size_t kLeast = 12;
   if (buffer_.size() < kLeast) return std::nullopt;
@@ -203,7 +203,7 @@ std::optional<PcapStream::Frame> PcapStream::frameIn(uint32_t type, size_t lengt
   return Frame{&interface, static_cast<int64_t>(ticks / interface.ticks_per_us), begin, size};
 }
 
-/// Link type, longest frame, and of the options the clock's resolution.
+/// Link type, longest frame, and the clock's resolution from the options.
 void PcapStream::addInterface(size_t end) {
   constexpr uint32_t kResolution = 9;
   Interface interface;
@@ -236,13 +236,12 @@ std::optional<CapturedPayload> PcapStream::payloadOf(const Interface& interface,
   const bool fragment = (bigEndian16(packet, 6) & 0x3FFFU) != 0;
   if ((protocol != 17 && protocol != 6) || header < 20)
     return leaveOut("captured packets that are neither UDP nor TCP");
-  if (fragment || packet.size() < header + 8)
-    return leaveOut("captured packets that are not whole");
+  if (fragment || packet.size() < header + 8) return leaveOut("incomplete captured packets");
   CapturedPayload ends;
   ends.tcp = protocol == 6;
   ends.from = endOf(packet, 12, bigEndian16(packet, header));
   ends.to = endOf(packet, 16, bigEndian16(packet, header + 2));
-  // What follows the packet fills up the frame.
+  // The rest of the frame is padding.
   const size_t told = bigEndian16(packet, 2);
   if (!ends.tcp) return datagramOf(packet.substr(header), ends);
   const std::string_view whole = told > header ? packet.substr(0, told) : packet;
@@ -252,7 +251,7 @@ std::optional<CapturedPayload> PcapStream::payloadOf(const Interface& interface,
 std::optional<CapturedPayload> PcapStream::datagramOf(std::string_view packet,
                                                       CapturedPayload ends) {
   const size_t length = bigEndian16(packet, 4);
-  if (length < 8 || packet.size() < length) return leaveOut("captured packets that are not whole");
+  if (length < 8 || packet.size() < length) return leaveOut("incomplete captured packets");
   ends.bytes = packet.substr(8, length - 8);
   return ends;
 }
@@ -261,8 +260,7 @@ std::optional<CapturedPayload> PcapStream::segmentOf(std::string_view packet,
                                                      CapturedPayload ends) {
   constexpr size_t kLeast = 20;
   const size_t header = packet.size() < kLeast ? 0 : 4 * (byteAt(packet, 12) >> 4);
-  if (header < kLeast || packet.size() < header)
-    return leaveOut("captured packets that are not whole");
+  if (header < kLeast || packet.size() < header) return leaveOut("incomplete captured packets");
   uint32_t sequence = bigEndian32(packet, 4);
   const bool begins = (byteAt(packet, 13) & 2U) != 0;
   std::string_view bytes = packet.substr(header);

@@ -22,7 +22,7 @@
 namespace tread {
 namespace {
 
-/// Groups of options are commands without a name to CLI11.
+/// To CLI11, option groups are commands without a name.
 std::vector<std::string> commandsOf(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({}))
@@ -37,7 +37,7 @@ std::vector<std::string> optionsOf(const CLI::App& app) {
   return names;
 }
 
-/// "'fnd' is no command; did you mean find?", else the list of all.
+/// "'fnd' is no command; did you mean find?", else the list of all commands.
 std::string unknown(const std::string& word, const std::string& is_not,
                     const std::vector<std::string>& known) {
   const auto meant = nearestSpelling(word, known);
@@ -45,7 +45,7 @@ std::string unknown(const std::string& word, const std::string& is_not,
          (meant ? "did you mean " + *meant + "? Known: " : "known: ") + joinWords(known);
 }
 
-/// The part of the program whose arguments are wrong.
+/// The subcommand whose arguments are wrong.
 const CLI::App& innermost(const CLI::App& app) {
   const std::vector<CLI::App*> given = app.get_subcommands();
   return given.empty() ? app : innermost(*given.back());
@@ -59,7 +59,7 @@ bool is(const CLI::Error& error, CLI::ExitCodes kind) {
   return error.get_exit_code() == static_cast<int>(kind);
 }
 
-/// CLI11 says of which type what is missing would have been.
+/// CLI11 reports the type of the missing value.
 std::string missingValue(const std::string& what) {
   const size_t end = what.find(':');
   const bool missing = what.find("missing") != std::string::npos;
@@ -92,7 +92,7 @@ std::optional<std::string> wrongChoice(const std::string& what) {
 std::string whatIsWrong(const CLI::App& app, const CLI::App& part, const CLI::Error& error) {
   const std::vector<std::string> left = app.remaining(true);
   const std::vector<std::string> commands = commandsOf(part);
-  // A mistyped option comes first: it is why another one seems to be missing.
+  // A mistyped option is reported first: it may be why another one seems to be missing.
   const auto mistyped = std::find_if(left.begin(), left.end(), isOption);
   const auto choice =
       is(error, CLI::ExitCodes::RequiredError) ? wrongChoice(error.what()) : std::nullopt;
@@ -111,7 +111,7 @@ std::string whatIsWrong(const CLI::App& app, const CLI::App& part, const CLI::Er
   return is(error, CLI::ExitCodes::ArgumentMismatch) ? missingValue(error.what()) : error.what();
 }
 
-/// CLI::Range lets NaN pass, and an option without a range infinity, too.
+/// CLI::Range accepts NaN, and an option without a range also infinity.
 void requireFiniteNumbers(CLI::App& app) {
   const auto problemOf = [](const std::string& text) {
     double number = 0.0;
@@ -158,7 +158,7 @@ std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv) {
 
 void addThreads(CLI::App& command, int& threads) {
   threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  command.add_option("--threads", threads, "no influence on any byte")
+  command.add_option("--threads", threads, "number of threads; the output does not depend on it")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
 }

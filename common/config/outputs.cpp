@@ -60,7 +60,7 @@ struct Outputs::Declared {
 };
 
 Outputs::Outputs(CLI::App& command) : command_(command), declared_(std::make_shared<Declared>()) {
-  command.add_flag("--force", declared_->force, "replace what is there already");
+  command.add_flag("--force", declared_->force, "replace existing files");
   command.parse_complete_callback([declared = declared_, &command] { declared->check(command); });
 }
 

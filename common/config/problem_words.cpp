@@ -11,11 +11,11 @@ namespace tread {
 namespace {
 
 constexpr const char* kUnusable =
-    "what it was given is damaged, incomplete or of another kind than expected; check the files "
-    "and "
-    "values of this call";
+    "an input is damaged, incomplete or of another kind than expected; check the files and values "
+    "of this call";
 
-/// What libraries call their own exceptions, and parts of theirs that no sentence of ours has.
+/// Names that libraries give their exceptions, and fragments of their messages that ours never
+/// contain.
 bool isForeign(const std::string& words) {
   for (const char* name :
        {"std::", "basic_", "vector::", "deque::", "map::", "array::", "_M_", "bad_",

@@ -52,7 +52,7 @@ std::optional<DriveClock::Dated> DriveClock::next() {
   return dated;
 }
 
-/// Whether both clocks are one (virtual time, imports): messages are still under way for a while.
+/// Whether both clocks are the same (virtual time, imports): then only the transport delay differs.
 bool DriveClock::isOneClock() const {
   return offset_ > -20'000 && offset_ < kStep;
 }
@@ -66,7 +66,7 @@ bool DriveClock::isNear(const Tick& stamp) const {
   return later > -kStep && later < kDelay;
 }
 
-/// The time of an event about which there is no doubt.
+/// The time of an event that is beyond doubt.
 std::optional<int64_t> DriveClock::fitting(const Tick& tick) {
   if (tick.utime && !isNear(tick)) return std::nullopt;
   const int64_t since = timeOf(tick) - last_;
@@ -75,12 +75,12 @@ std::optional<int64_t> DriveClock::fitting(const Tick& tick) {
   return timeOf(tick);
 }
 
-/// Whether a stamp by itself says that the robot's clock simply goes on.
+/// Whether a stamp by itself shows that the robot's clock simply continued.
 bool DriveClock::goesOn(const Tick& stamp) const {
   return std::abs(*stamp.utime + shift_ - last_) <= kSilence;
 }
 
-/// Whether most of the stamps behind one say the same of both clocks.
+/// Whether most stamps after this one agree with it about both clocks.
 bool DriveClock::agreesWithNext(size_t index) const {
   const Tick& stamp = ticks_[index];
   const auto isBack = [&](const Tick& tick) { return *tick.utime + shift_ < last_ - kDelay; };
@@ -91,7 +91,7 @@ bool DriveClock::agreesWithNext(size_t index) const {
     const int64_t offset_change = offsetOf(ticks_[i]) - offsetOf(stamp);
     const int64_t passed = *ticks_[i].utime - *stamp.utime;
     const bool both_back = isBack(ticks_[i]) || !isBack(stamp);
-    // What a recorder writes at once may be of any time, pauses among it.
+    // Events that a recorder writes at once may be of any time, with pauses between them.
     const bool at_once = std::abs(ticks_[i].recorded - stamp.recorded) < kAtOnce && passed >= 0 &&
                          passed < kUnconfirmed;
     if ((std::abs(offset_change) < kStep || at_once) && passed > -kStep && both_back) ++agreeing;
@@ -113,8 +113,8 @@ DriveClock::Dated DriveClock::judge(const Tick& tick) {
   return {time.value_or(last_), !time || tick.utime};
 }
 
-/// The time of an event between the last one and the next stamp that is believed, by the clocks of
-/// the one or the other; nothing if its time is wrong.
+/// The time of an event between the last one and the next accepted stamp, by the clock of either;
+/// nullopt if its time is wrong.
 std::optional<int64_t> DriveClock::between(const Tick& tick) {
   const int64_t since = timeOf(tick) - last_;
   if (since >= -kStep && since <= kSilence) return timeOf(tick);
@@ -124,7 +124,7 @@ std::optional<int64_t> DriveClock::between(const Tick& tick) {
     const int64_t until = *stamp.utime + shift_;
     const bool near = isNear(stamp) && until >= last_ - kDelay;
     if (!(near && goesOn(stamp)) && !agreesWithNext(i)) {
-      // The recorder's clock was set so late that too few follow.
+      // The recorder's clock was set so late that too few stamps follow.
       if (goesOn(stamp)) return std::nullopt;
       continue;
     }
@@ -137,7 +137,7 @@ std::optional<int64_t> DriveClock::between(const Tick& tick) {
   return byRecorder(tick);
 }
 
-/// The same where no stamp follows: only the recorder's times can tell.
+/// The same without a following stamp: only the recorder's times can decide.
 std::optional<int64_t> DriveClock::byRecorder(const Tick& tick) {
   size_t asked = 0, later = 0, back = 0;
   for (size_t i = 1; i < ticks_.size() && asked < kFollowers; ++i, ++asked) {
@@ -178,12 +178,12 @@ void DriveClock::follow(int64_t offset) {
   one_clock_ = isOneClock();
 }
 
-/// A recorder that was held up writes many events at once: they come ever less late.
+/// A delayed recorder writes many events at once, with decreasing delay.
 bool DriveClock::isCatchingUp() const {
   return earliest_ - least_ > kStep;
 }
 
-/// Believes the front's stamp, whose offset is another one: one of the clocks was set.
+/// Accepts the front's stamp with its new offset: one of the clocks was set.
 void DriveClock::step(int64_t offset) {
   const Tick& stamp = ticks_.front();
   const int64_t by_robot = *stamp.utime + shift_ - last_stamp_;
@@ -222,7 +222,7 @@ std::vector<std::string> DriveClock::notes() const {
                     seconds(jumps.front().at - first_) + moreTimes(jumps.size()) +
                     "; the robot's own times are used");
   if (!restarts_.empty())
-    lines.push_back("the robot's clock began anew at " + seconds(restarts_.front() - first_) +
+    lines.push_back("the robot's clock restarted at " + seconds(restarts_.front() - first_) +
                     moreTimes(restarts_.size()) +
                     " (its host was started again, or this is another robot); times go on there");
   return lines;

@@ -10,7 +10,7 @@
 namespace tread {
 namespace {
 
-/// Whoever sends messages can make up names without end; a robot has a few dozen.
+/// A sender can invent any number of names; a robot has a few dozen.
 constexpr size_t kMostNames = 500;
 constexpr size_t kMostAborted = 10'000;  // executions
 
@@ -85,7 +85,7 @@ bool EventTeller::changes(const std::string& source, const std::string& state) {
 
 void EventTeller::hear(const motor_t& motor) {
   const StateWords state = wordsOf(kMotorStates, motor.bridge_state);
-  // From pattern to pattern it stands for a moment: no event.
+  // A short stop between patterns is no event.
   const bool moves =
       motor.bridge_state == motor_t::STATE_ARMED || motor.bridge_state == motor_t::STATE_DRIVING;
   if (changes("motors", moves ? "armed" : withReason(state.words, motor.state_reason)))
@@ -95,7 +95,7 @@ void EventTeller::hear(const motor_t& motor) {
 
 void EventTeller::hear(const plan_t& plan) {
   const StateWords state = wordsOf(kPlanStates, plan.plan_status);
-  // While it drives the reason tells of a stop to come, and changes with every plan.
+  // While driving, the reason describes a future stop and changes with every plan.
   const bool drives = plan.plan_status == plan_t::PLAN_DRIVING;
   const std::string words = drives ? state.words : withReason(state.words, plan.reason);
   if (changes("plan", words)) tell(state.severity, "planner", words);
@@ -113,7 +113,7 @@ void EventTeller::hear(const health_t& health) {
   tell(ok                                               ? Severity::kInfo
        : health.health_state == health_t::HEALTH_FAILED ? Severity::kError
                                                         : Severity::kWarning,
-       health.process, ok ? "is well again" : inWords(health));
+       health.process, ok ? "recovered" : inWords(health));
 }
 
 void EventTeller::hear(const learning_t& learning) {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int64_t kTransportUs = 20;  ///< of a message on the virtual bus
 
-/// Number of an event on a channel of one publisher.
+/// Sequence number of an event on a channel with one publisher.
 std::optional<int64_t> numberOf(const LogEvent& event) {
   std::optional<int64_t> seq;
   dispatch(
@@ -25,12 +25,12 @@ void noteSeq(const LogEvent& event, int64_t seq, std::map<std::string, int64_t>&
   if (seq < 0) return;  // a broken number
   const auto [known, first] = last.try_emplace(event.channel, seq);
   const int64_t gap = seq - known->second - 1;
-  // Who starts again counts from the beginning; a gap of thousands is a broken number.
+  // A restarted publisher counts from the beginning; a gap of thousands is a broken number.
   if (!first && gap > 0 && gap < 100'000) missing[event.channel] += gap;
   known->second = seq;
 }
 
-/// Leaves out what a robot with a key has not taken: unsealed messages that do not stop.
+/// Removes what a robot with a key has refused: unsealed messages that do not stop it.
 void removeUnsealed(std::vector<LogEvent>& events) {
   bool robot_has_key = false;
   const auto refused = [&](const LogEvent& event) {
@@ -43,7 +43,7 @@ void removeUnsealed(std::vector<LogEvent>& events) {
   events.erase(std::remove_if(events.begin(), events.end(), refused), events.end());
 }
 
-/// What is known of the events as a whole.
+/// Fills in what follows from all events together.
 void describe(RobotLog& log) {
   removeUnsealed(log.events);
   std::map<std::string, int64_t> last;
@@ -89,7 +89,7 @@ const std::vector<Said<health_t>>& RobotLog::healthOf(const std::string& process
 Intake intakeOf(const RobotLog& log, const std::string& process,
                 const std::vector<std::string>& channels) {
   using Health = const Said<health_t>*;
-  std::map<int64_t, std::pair<Health, Health>> lives;  // by boot id: the first and the last
+  std::map<int64_t, std::pair<Health, Health>> lives;  // by boot id: first and last
   for (const Said<health_t>& health : log.healthOf(process))
     lives.try_emplace(health.message.boot_id, &health, &health).first->second.second = &health;
   const auto at = [&](Health health) {
@@ -150,7 +150,7 @@ ConfigReader loggedConfig(const RobotLog& log, const std::string& process,
       from = dot + 1;
     }
     if (!(section ? *section : known).has(key.substr(from)))
-      throw std::runtime_error(name + ": knows no key " + key);
+      throw std::runtime_error(name + ": has no key " + key);
   }
   return ConfigReader::fromText(text, name, overrides);
 }

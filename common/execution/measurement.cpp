@@ -10,14 +10,14 @@
 namespace tread {
 namespace {
 
-/// Speeds are judged over this time: shorter steps are mostly INS noise.
+/// Speeds are evaluated over this time: shorter steps are mostly INS noise.
 constexpr int64_t kSpeedSpanUs = 100'000;
-/// What must be predicted before "did not move" means anything [m, rad].
+/// Least predicted motion for "did not move" to be meaningful [m, rad].
 constexpr double kExpectedMotion = 0.10;
-/// A PoseTrack decides about gaps itself; here they are judged for the whole execution.
+/// A PoseTrack checks gaps itself; here they are checked for the whole execution.
 constexpr int64_t kAnyGap = std::numeric_limits<int64_t>::max();
 
-/// A number with so many decimals.
+/// A number with this many decimals.
 std::string fixed(double value, int decimals) {
   std::ostringstream out;
   out << std::fixed << std::setprecision(decimals) << value;
@@ -33,7 +33,7 @@ std::vector<Pose2> firstOf(const std::vector<Pose2>& poses, size_t count) {
           poses.begin() + static_cast<std::ptrdiff_t>(std::min(count, poses.size()))};
 }
 
-/// Fills a measurement step by step; the first gate that closes stays.
+/// Fills a measurement step by step; the first closed gate is kept.
 class Cutter {
  public:
   Cutter(const TrackHistory& history, const ExecutionCut& cut, const MotionPattern& pattern,
@@ -78,11 +78,11 @@ class Cutter {
     const int64_t took = cut_.ended - cut_.started;
     const double longest = seconds(duration()) / limits_.min_covered;
     if (took <= 0 || seconds(took) > longest)
-      close(Gate::kRecord, "the record says that it took " + fixed(seconds(took), 3) +
+      close(Gate::kRecord, "its record has a duration of " + fixed(seconds(took), 3) +
                                " s; the pattern takes " + fixed(seconds(duration()), 3) + " s");
   }
 
-  /// M at started + (t + 1) periods, as far as the record and the track go.
+  /// M at started + (t + 1) periods, as far as record and track reach.
   void cutTrajectory() {
     const Pose2 T_map_start = *track_->at(cut_.started, kAnyGap);
     const std::vector<Pose2>& predicted = pattern_.trajectory;
@@ -105,8 +105,7 @@ class Cutter {
     return cut_.started + static_cast<int64_t>(t + 1) * period_us_;
   }
 
-  /// Where the INS tells nothing, the prediction's own motion is kept, so that nothing is learned
-  /// there.
+  /// Where the INS has no data, the predicted motion is kept, so that nothing is learned there.
   void continueAsPredicted() {
     const std::vector<Pose2>& predicted = pattern_.trajectory;
     if (result_.covered == 0) return;
@@ -150,7 +149,7 @@ class Cutter {
     if (fastest > allowed)
       close(Gate::kSpeed,
             "measured " + fixed(fastest, 2) + " m/s, possible " + fixed(allowed, 2) + " m/s");
-    // Of a beginning, what lies behind it is only predicted.
+    // After a beginning's end the motion is only predicted.
     const size_t known = cut_.beginning ? result_.covered : pattern_.trajectory.size();
     const Eigen::Array3d moved = boundingBox(firstOf(result_.trajectory, known));
     const Eigen::Array3d expected = boundingBox(firstOf(pattern_.trajectory, known));
@@ -176,7 +175,7 @@ class Cutter {
 
   void checkEntry(const MotionClass& entry_class) {
     const bool any = std::isinf(limits_.entry_speed) && std::isinf(limits_.entry_yaw_rate);
-    // What the ground makes of the right command is what is to be learned.
+    // The ground's response to the right command is what should be learned.
     if (any || cut_.steady_before) return;
     if (!std::isfinite(result_.context.entry.v_x)) {
       close(Gate::kEntryTwist, "the twist before the start was not measured");
@@ -227,8 +226,8 @@ Measurement measure(const TrackHistory& history, const ExecutionCut& cut,
 
 namespace {
 
-/// Mean of the speeds that a command asks of tracks or wheels [m/s]; 0 if it asks for none. Wheels
-/// around a holonomic base turn against each other wherever it goes: the fastest of them.
+/// Mean speed that a command asks of tracks or wheels [m/s]; 0 if it asks for none. For a holonomic
+/// base the fastest wheel, because its wheels turn against each other in any motion.
 double commandedSpeed(const Command& command, const CommandChannels& channels) {
   double sum = 0.0, count = 0.0, fastest = 0.0;
   for (size_t i = 0; i < channels.size(); ++i) {
@@ -260,7 +259,7 @@ double largestSpeed(const PatternSet& set) {
 }
 
 Eigen::Array3d boundingBox(const std::vector<Pose2>& trajectory) {
-  // The start pose (0, 0, 0) belongs to the box: a reversing pattern is as long as a forward one.
+  // The start pose (0, 0, 0) is part of the box: a reversing pattern is as long as a forward one.
   Eigen::Array3d low = Eigen::Array3d::Zero();
   Eigen::Array3d high = Eigen::Array3d::Zero();
   for (const Pose2& pose : trajectory) {

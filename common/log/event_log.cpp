@@ -18,8 +18,8 @@
 namespace tread {
 namespace {
 
-// An LCM event log is a row of events: sync word, event number (64 bits), utime (64), length of the
-// channel's name (32), length of the message (32), name, message; all big-endian.
+// An LCM event log is a sequence of events: sync word, event number (64 bits), utime (64), length
+// of the channel's name (32), length of the message (32), name, message; all big-endian.
 constexpr uint32_t kLogSync = 0xEDA1DA01;
 constexpr size_t kLogHeaderSize = 28;  // [bytes]
 /// LCM's longest channel name.
@@ -53,7 +53,7 @@ LogWriter::LogWriter(const std::string& path, OutputFile::Kind kind)
     : file_(new File{OutputFile(path, kind), path}) {}
 
 LogWriter::~LogWriter() {
-  // What an exception cut short is no log.
+  // A log cut short by an exception is not kept.
   if (std::uncaught_exceptions() == file_->exceptions) try {
       close();
     } catch (const WriteError&) {
@@ -85,23 +85,24 @@ void LogWriter::close() {
   if (!std::exchange(file_->closed, true)) file_->output.commit();
 }
 
-// Own reader: lcm::LogFile looks for the next sync word without a word about what it skipped, and
-// allocates whatever length a damaged header names.
+// Replaces lcm::LogFile, which skips to the next sync word without reporting it, and allocates any
+// length that a damaged header gives.
 struct LogReader::File {
   explicit File(const std::string& log_path);
   ~File() { ::close(fd); }
   File(const File&) = delete;
   File& operator=(const File&) = delete;
 
-  /// A part of the log in memory, or nullptr if the log does not hold it.
+  /// A part of the log in memory; nullptr if it is beyond the end.
   const uint8_t* view(uint64_t from, size_t count);
-  /// Whether a sync word lies here, or as much of one as the log still has.
+  /// Whether a sync word is here, or the part of one that the log still has.
   bool isSync(uint64_t at);
-  /// Whether an event may begin here: sync word, possible lengths, the next event or the end after.
+  /// Whether an event may begin here: sync word, possible lengths, followed by another event or the
+  /// end.
   bool fits(uint64_t at, size_t& channel_size, size_t& message_size);
-  /// Whether the event that begins here is whole; its lengths, then.
+  /// Whether the event that begins here is complete; returns its lengths.
   bool measure(uint64_t at, size_t& channel_size, size_t& message_size);
-  /// Goes to the next whole event after this place, or to the end.
+  /// Goes to the next complete event, or to the end.
   void skipDamage();
   void describe();
 
@@ -153,7 +154,7 @@ const uint8_t* LogReader::File::view(uint64_t from, size_t count) {
       if (got <= 0) break;
       filled += static_cast<size_t>(got);
     }
-    // The file has become shorter, or the disk does not give more of it: this is its end now.
+    // The file was truncated, or the disk cannot read further: its end is here now.
     if (filled < window.size()) size = from + filled;
     window.resize(filled);
   }
@@ -172,7 +173,7 @@ bool LogReader::File::isSync(uint64_t at) {
 
 bool LogReader::File::measure(uint64_t at, size_t& channel_size, size_t& message_size) {
   if (!fits(at, channel_size, message_size)) return false;
-  // A damaged length may by chance lead to a later event; then others lie in what it spans.
+  // By chance a damaged length may lead to a later event; then other events lie within its span.
   const uint64_t end = at + kLogHeaderSize + channel_size + message_size;
   uint8_t sync[4];
   putBigEndian<4>(sync, kLogSync);
@@ -199,7 +200,7 @@ bool LogReader::File::fits(uint64_t at, size_t& channel_size, size_t& message_si
   if (name == 0 || name > kLongestChannel || message > INT32_MAX || end > size) return false;
   channel_size = static_cast<size_t>(name);
   message_size = static_cast<size_t>(message);
-  // Else a length is damaged, and the message is not whole.
+  // Otherwise a length is damaged, and the message is incomplete.
   return end == size || isSync(end);
 }
 
@@ -220,7 +221,7 @@ void LogReader::File::describe() {
   if (places == 0) return;
   problem = "log " + path + ": ";
   if (events == 0 && position >= size) {
-    problem += "no whole event in it; is this an LCM log?";
+    problem += "no complete event in it; is this an LCM log?";
     return;
   }
   problem += std::to_string(skipped) + " bytes left out at " + std::to_string(places) +

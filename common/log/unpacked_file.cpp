@@ -50,10 +50,10 @@ void UnpackedFile::unpack() {
          (count = gzread(packed, buffer.data(), static_cast<unsigned>(buffer.size()))) > 0)
     written = std::fwrite(buffer.data(), 1, static_cast<size_t>(count), file_.get()) ==
               static_cast<size_t>(count);
-  // At the end of what gzread gives, a file that was cut off shows only in its state.
+  // At the end of the data from gzread, only the state reveals a truncated file.
   int error = Z_OK;
   gzerror(packed, &error);
-  if (error != Z_OK) problem_ = name_ + ": what gzip packed is damaged or cut off";
+  if (error != Z_OK) problem_ = name_ + ": the gzip data is damaged or cut off";
   gzclose(packed);
   if (!written || std::fflush(file_.get()) != 0)
     throw std::runtime_error(name_ + ": cannot be unpacked; is there room for temporary files?");
@@ -69,7 +69,7 @@ std::string UnpackedFile::named(std::string message) const {
 
 std::string UnpackedFile::reasonOf(const std::string& failure) const {
   if (problem_.empty()) return named(failure);
-  return problem_ + "; get a whole copy of it (unpacked as far as possible: " + named(failure) +
+  return problem_ + "; get a complete copy of it (unpacked as far as possible: " + named(failure) +
          ")";
 }
 

@@ -14,7 +14,7 @@ namespace tread::mcap {
 namespace {
 
 constexpr size_t kRecordHead = 9;            // opcode and length
-constexpr uint64_t kLargestChunk = 1 << 30;  // unpacked; larger ones are no chunks of a robot's log
+constexpr uint64_t kLargestChunk = 1 << 30;  // unpacked; a robot's log has no larger chunks
 
 std::optional<std::string> unpackedLz4(const std::string& packed, size_t size) {
   LZ4F_dctx* context = nullptr;
@@ -44,7 +44,7 @@ std::optional<std::string> unpackedAs(const std::string& packing, const std::str
   return out;
 }
 
-/// The records of a chunk; nothing where it is damaged or packed in a way that is not known.
+/// The records of a chunk; nullopt if it is damaged or packed in an unknown way.
 std::optional<std::string> unpacked(const std::string& content, std::string& packing) {
   FieldReader fields(content.data(), content.size());
   fields.u64();
@@ -55,12 +55,12 @@ std::optional<std::string> unpacked(const std::string& content, std::string& pac
   const std::string packed = fields.bytes(fields.u64());
   std::optional<std::string> chunk;
   if (fields.ok() && size <= kLargestChunk) chunk = unpackedAs(packing, packed, size);
-  // Zero: the writer told no checksum.
+  // Zero means that the writer computed no checksum.
   if (chunk && crc != 0 && crc32Of(*chunk) != crc) chunk.reset();
   return chunk;
 }
 
-/// The record within a chunk that begins there; false where it is not whole.
+/// The record at this position of a chunk; false if it is incomplete.
 bool recordIn(const std::string& chunk, size_t at, Op& op, const char*& content, size_t& size) {
   if (chunk.size() < kRecordHead || at > chunk.size() - kRecordHead) return false;
   op = static_cast<Op>(chunk[at]);
@@ -124,7 +124,7 @@ void Reader::scan() {
       constexpr uint32_t kEntry = 16;  // [bytes]
       lost_messages_ += fields.u32() / kEntry;
     } else {
-      // The summary behind the data repeats what a damaged chunk said of channels.
+      // The summary after the data repeats the channels described in a damaged chunk.
       take({op, content.data(), content.size()}, 0, at);
     }
   }
@@ -141,8 +141,7 @@ bool Reader::scanChunk(uint64_t at, const std::string& content) {
   const auto chunk = unpacked(content, packing);
   if (!chunk) {
     lost_bytes_ += content.size();
-    damaged("a chunk is damaged or packed in a way that is not known ('" + packing +
-            "'); it is left out");
+    damaged("a chunk is damaged or packed in an unknown way ('" + packing + "'); it is left out");
     return false;
   }
   Record record;
@@ -213,7 +212,7 @@ bool Reader::next(Message& message) {
   Record record;
   if (place.chunk != 0) {
     if (!recordIn(chunkAt(place.chunk), place.at, record.op, record.content, record.size))
-      return next(message);  // the file has changed under the reader
+      return next(message);  // the file has changed while being read
   } else {
     if (!fileRecord(place.at, record.op, content)) return next(message);
     record.content = content.data();

@@ -62,7 +62,7 @@ Problem headProblem(const pattern_set_part_t& part) {
   return {};
 }
 
-/// What they mean is PatternSet::make's business.
+/// PatternSet::make checks their meaning.
 Problem channelProblem(const pattern_set_part_t& part) {
   if (part.num_channels < 1 || part.num_channels > static_cast<int32_t>(Command::kMaxChannels))
     return "number of channels is not 1.." + std::to_string(Command::kMaxChannels);
@@ -107,7 +107,7 @@ Problem partProblem(const pattern_set_part_t& part) {
   return seriesProblem(part);
 }
 
-/// Whether two parts tell the same about their set.
+/// Whether two parts agree about their set.
 bool sameSet(const pattern_set_part_t& a, const pattern_set_part_t& b) {
   return a.utime == b.utime && a.parent_version == b.parent_version &&
          a.set_checksum == b.set_checksum && a.set_name == b.set_name &&
@@ -143,7 +143,7 @@ MotionPattern patternOf(const pattern_set_part_t& part) {
   return pattern;
 }
 
-/// Adds a class, or compares it with the one of that name; false if they differ.
+/// Adds a class, or compares it with the present one of that name; false if they differ.
 bool addClass(std::vector<MotionClass>& classes, const std::string& name, const double (&twist)[3],
               const std::vector<double>& steady) {
   const auto known = std::find_if(classes.begin(), classes.end(),
@@ -175,7 +175,7 @@ BridgeReading::State stateFrom(int16_t state) {
 
 /// Far more than the eight that are repeated.
 constexpr size_t kRememberedKeys = 64;
-/// No queue of waiting executions is this long unless somebody sends nonsense.
+/// The queue of waiting executions is only longer if somebody sends invalid ones.
 constexpr size_t kMaxWaiting = 64;
 /// An execution that is over does not end later than this after now [us].
 constexpr int64_t kMaxAheadUs = 1'000'000;
@@ -215,7 +215,7 @@ std::optional<PatternSet> PatternSetAssembler::add(const pattern_set_part_t& par
   if (part.set_version <= last_version_) return std::nullopt;
   Pending& pending = pendingOf(part.set_version);
   const bool fits = pending.parts.empty() || sameSet(pending.parts.begin()->second, part);
-  // Which of the two is broken is not known: begin anew with this one, the rest is repeated.
+  // It is unknown which of the two is broken: start again with this one, the rest is repeated.
   if (!fits) pending.parts.clear();
   pending.parts.insert_or_assign(part.part, part);
   if (pending.parts.size() == static_cast<size_t>(part.part_count)) return complete(pending);
@@ -259,7 +259,7 @@ std::optional<PatternSet> PatternSetAssembler::complete(Pending& pending) {
   }
   pending.parts.clear();
   const std::string version = "PATTERN_SET version " + std::to_string(first.set_version) + ": ";
-  if (!same_classes) return refuse(version + "two parts tell different twists of one motion class");
+  if (!same_classes) return refuse(version + "two parts have different twists of one motion class");
   std::string why;
   auto set = PatternSet::make(std::move(content), why);
   if (!set) return refuse(version + why);
@@ -375,7 +375,7 @@ void ExecutionQueue::noteHandled(const ExecutionKey& key) {
 
 Command commandFrom(const motor_t& message) {
   Command command;
-  // A channel that the robot does not have is NaN in the message, as is one that nobody knows.
+  // An absent or unknown channel is NaN in the message.
   for (size_t i = 0; i < Command::kMaxChannels; ++i)
     if (message.channel_kind[i] != 0 || !std::isnan(message.command[i]))
       command[i] = static_cast<double>(message.command[i]);

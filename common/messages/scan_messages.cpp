@@ -23,7 +23,7 @@ std::optional<Eigen::Isometry3d> sensorPose(const scan_t& message) {
                                        message.sensor_orientation[2],
                                        message.sensor_orientation[3]);
   const double off_unit = std::abs(orientation.norm() - 1.0);
-  // maxCoeff() overlooks a NaN that is not in the first place.
+  // maxCoeff() misses a NaN that is not in the first place.
   if (!position.allFinite() || position.cwiseAbs().maxCoeff() >= kFarthestMount ||
       !(off_unit < 1e-3))
     return std::nullopt;
@@ -37,7 +37,7 @@ std::optional<Eigen::Isometry3d> sensorPose(const scan_t& message) {
 const char* faultOf(const scan_t& message) {
   const auto beams = static_cast<size_t>(message.num_beams);
   const auto points = static_cast<size_t>(message.num_points);
-  // The end of the scan must be a time, too.
+  // The end of the scan must also be a valid time.
   if (message.utime <= 0 || message.utime > INT64_MAX - kLongestScan) return "no time";
   if (message.duration < 0 || message.duration > kLongestScan) return "duration out of 0..1 s";
   if (message.num_beams < 0 || message.num_points < 0 ||
@@ -45,7 +45,7 @@ const char* faultOf(const scan_t& message) {
       message.num_points > kMostBeams)
     return "no beams, or too many";
   if (message.ranges.size() != beams || message.points.size() != points)
-    return "not as many beams as it says";
+    return "another number of beams than stated";
   return nullptr;
 }
 
@@ -89,7 +89,7 @@ void takePoints(const scan_t& message, std::vector<Beam>& beams) {
   }
 }
 
-/// Of all that a scan measures, bit for bit (FNV-1a).
+/// Hash of all measured values of a scan, bit for bit (FNV-1a).
 uint64_t fingerprint(const scan_t& message) {
   uint64_t hash = 0xcbf29ce484222325ULL;
   const auto add = [&hash](const std::vector<float>& values) {

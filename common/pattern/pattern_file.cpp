@@ -23,7 +23,7 @@ constexpr Range kCount{0.0, kInfinity};
 constexpr Range kInt32{0.0, 2147483647.0};
 
 constexpr const char* kHeading =
-    "# A set of motion patterns. Edit it with any editor; whoever reads it checks it.\n"
+    "# A set of motion patterns. Edit it with any editor; programs check it when they read it.\n"
     "# kind: power (commands -1..1) or track_speed (commands in m/s). period_us: how long one "
     "sample is held.\n"
     "# classes: steady motions in which patterns begin and end: twist = v_x, v_y [m/s], omega "
@@ -34,9 +34,9 @@ constexpr const char* kHeading =
     "#   each sample in the frame of the start; as many rows as samples. end_covariance: xx xy "
     "xyaw yy yyaw\n"
     "#   yawyaw of the last pose [m2, m rad, rad2]; leave it out if it is unknown.\n";
-// Of a vehicle that has no two tracks.
+// For a vehicle without two tracks.
 constexpr const char* kChannelsHeading =
-    "# A set of motion patterns. Edit it with any editor; whoever reads it checks it.\n"
+    "# A set of motion patterns. Edit it with any editor; programs check it when they read it.\n"
     "# channels: what a command consists of: power (1), track_speed (m/s) or steering_angle (rad, "
     "+ left).\n"
     "# period_us: how long one sample is held. classes: steady motions in which patterns begin and "

@@ -11,10 +11,10 @@
 namespace tread::recordings {
 namespace {
 
-/// A header stands among the first lines.
+/// A header is among the first lines.
 constexpr size_t kMostLinesAbove = 1000;
 constexpr size_t kLinesCompared = 20;
-/// Longer texts in quotes are taken for a quote that stands alone.
+/// A longer quoted text means that the quote is never closed.
 constexpr size_t kLongestQuoted = 2000;
 
 bool isLineEnd(char letter) {
@@ -31,7 +31,7 @@ size_t countWithoutEnd(const std::vector<std::string>& fields) {
   return count;
 }
 
-/// The names of a header without the # that makes it a comment.
+/// The names of a header without its leading #.
 CsvLine named(CsvLine line, char delimiter) {
   std::string& first = line.fields.front();
   first.erase(0, first.find_first_not_of("#% \t"));
@@ -53,7 +53,7 @@ std::optional<CsvLine> headerWith(std::string_view text, char delimiter,
   return std::nullopt;
 }
 
-/// How many of the first lines a delimiter cuts into as many fields as the first one.
+/// How many of the first lines a delimiter splits into as many fields as the first one.
 size_t agreement(std::string_view text, char delimiter) {
   CsvLines lines(text, delimiter);
   CsvLine line;
@@ -64,7 +64,7 @@ size_t agreement(std::string_view text, char delimiter) {
   return static_cast<size_t>(std::count(counts.begin(), counts.end(), counts.front()));
 }
 
-/// Of those that cut alike the first of this list.
+/// In case of a tie the first of this list.
 char likelyDelimiter(std::string_view text) {
   char likely = ',';
   size_t best = 0;
@@ -76,7 +76,7 @@ char likelyDelimiter(std::string_view text) {
   return likely;
 }
 
-/// The first line that is no comment, or above numbers the comment that has as many fields.
+/// The first line that is no comment or, before numbers, the comment with as many fields.
 void findHeader(std::string_view text, CsvStart& start) {
   CsvLines lines(text, start.delimiter);
   CsvLine line;
@@ -90,8 +90,8 @@ void findHeader(std::string_view text, CsvStart& start) {
     start.header = above;
   else
     start.problem =
-        "numbers stand where the names of the columns should be; without names, say header: false "
-        "in the mapping";
+        "there are numbers where the names of the columns should be; without names, set header: "
+        "false in the mapping";
 }
 
 }  // namespace
@@ -139,7 +139,7 @@ bool CsvLines::readField(CsvLine& line) {
   return true;
 }
 
-/// Up to the quote that closes; one that none closes is a letter like others.
+/// Up to the closing quote; an unclosed quote is an ordinary character.
 void CsvLines::readQuoted(std::string& field) {
   const size_t end = std::min(text_.size(), at_ + kLongestQuoted);
   std::string read;
@@ -190,7 +190,7 @@ bool isNoMeasurement(std::string field) {
   static const std::regex kWords(
       R"([+-]?(nan|inf|infinity|1\.#(qnan|snan|ind|inf)0*)(\(.*\))?|#?n/?a!?|null|none|-)",
       std::regex::icase | std::regex::optimize);
-  // A match takes longer than all else, and a number is no match.
+  // A regex match is the slowest step, and a number cannot match.
   if (field.empty()) return true;
   return field.size() < 20 && !isNumeric(field) && std::regex_match(field, kWords);
 }

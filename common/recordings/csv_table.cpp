@@ -33,14 +33,14 @@ std::string textOf(const std::string& path) {
   return text.str();
 }
 
-/// The line "sep=;" at the beginning tells spreadsheets the delimiter.
+/// The line "sep=;" at the beginning gives spreadsheets the delimiter.
 void takeSeparatorLine(std::string& text, CsvLayout& layout) {
   if (text.compare(0, 4, "sep=") != 0 || text.size() < 5) return;
   if (layout.delimiter == '\0') layout.delimiter = text[4];
   text[0] = '#';
 }
 
-/// What the last digit of 1.76414E+12 is worth: 1e7; 0 for numbers that are written otherwise.
+/// Value of the last digit of 1.76414E+12: 1e7; 0 for numbers in another format.
 double lastDigitOf(const std::string& field) {
   const size_t e = field.find_first_of("eE");
   if (e == std::string::npos) return 0.0;
@@ -76,9 +76,9 @@ void CsvTable::read(std::string text, CsvLayout layout) {
   if (const std::string problem = takeByteOrderMark(text); !problem.empty())
     throw RecordingError(path_ + ": " + problem);
   if (const auto zero = std::find(text.begin(), text.end(), '\0'); zero != text.end())
-    throw RecordingError(path_ + ":" + std::to_string(1 + std::count(text.begin(), zero, '\n')) +
-                         ": holds NUL bytes, as after a loss of power; take them out (tr -d "
-                         "'\\000')");
+    throw RecordingError(
+        path_ + ":" + std::to_string(1 + std::count(text.begin(), zero, '\n')) +
+        ": contains NUL bytes, as after a power failure; remove them (tr -d '\\000')");
   takeSeparatorLine(text, layout);
   const CsvStart start = findStart(text, layout);
   delimiter_ = start.delimiter;
@@ -128,8 +128,7 @@ void CsvTable::addRow(CsvLine& line) {
                                     delimiter_ + "' without quotes around it?");
 }
 
-/// Below the header, before the first row: words, where the columns that are asked for have
-/// numbers.
+/// Below the header, before the first row: words in the columns that should have numbers.
 bool CsvTable::takeUnits(const CsvLine& line, const std::vector<std::string>& names) {
   if (!rows_.empty() || units_.size() == kMostLinesOfUnits) return false;
   bool words = false;
@@ -161,7 +160,7 @@ std::string CsvTable::unit(std::string_view column) const {
   return unit == "%" ? "percent" : unit;
 }
 
-/// A comma is decimal where it cannot be one of thousands, and no number has a point.
+/// A comma is decimal where it cannot separate thousands, and no number has a point.
 void CsvTable::findDecimalSign() {
   const auto any = [&](char letter, DecimalSign sign) {
     for (const auto& row : rows_)

@@ -12,7 +12,7 @@
 namespace tread::recordings {
 namespace {
 
-/// What both the import and the comparison of surfaces need of a session.
+/// The fields of a session that both the import and the comparison of surfaces need.
 void readGeometry(const CsvTable& table, size_t row, Session& session) {
   session.wheel_radius = table.numberWithin(row, "wheel_radius_m", 0.01, 2.0);
   session.baseline = table.numberWithin(row, "baseline_m", 0.05, 5.0);
@@ -36,7 +36,7 @@ void readQuality(const std::string& path, std::vector<Session>& sessions) {
     });
     if (session == sessions.end() || !session->problem.empty()) continue;
     CommandStep step{table.integer(row, "step"), {}, table.text(row, "ok") == "1"};
-    // What is not fit for use may lack numbers, too.
+    // An unusable step may lack numbers.
     if (step.ok)
       step.tracks = {session->wheel_radius * table.number(row, "cmd_left_rad_s"),
                      session->wheel_radius * table.number(row, "cmd_right_rad_s")};
@@ -44,7 +44,7 @@ void readQuality(const std::string& path, std::vector<Session>& sessions) {
   }
 }
 
-/// Poses of a window, by their time in the part of it that is used.
+/// Poses of a window, by their time in its settled part.
 struct SettledPoses {
   std::vector<WindowPose> poses;
   double duration = 0.0;  ///< [s] of that part
@@ -118,7 +118,7 @@ double quantileOf(std::vector<double> values, double quantile) {
   return values[static_cast<size_t>(quantile * static_cast<double>(values.size() - 1))];
 }
 
-/// What sessions have in a field, each once, in their order.
+/// The different values of a field over the sessions, in their order.
 std::vector<std::string> distinct(const std::vector<Session>& sessions,
                                   std::string Session::*field) {
   std::vector<std::string> values;
@@ -133,7 +133,7 @@ bool sameGeometry(const Session& a, const Session& b) {
          std::abs(a.wheel_radius - b.wheel_radius) <= kGeometryTolerance * b.wheel_radius;
 }
 
-/// The session whose geometry is that of most ok steps.
+/// The session with the geometry that most ok steps have.
 const Session& ofUsualGeometry(const std::vector<Session>& sessions) {
   size_t best = 0;
   size_t most = 0;
@@ -148,7 +148,7 @@ const Session& ofUsualGeometry(const std::vector<Session>& sessions) {
   return sessions[best];
 }
 
-/// Why a session's commands are not enough, in words; empty if they are.
+/// Why a session's commands are too small, in words; empty if they suffice.
 std::string commandProblem(const Session& session, const BodyCommand& needed) {
   if (!session.problem.empty()) return session.problem;
   if (session.okSteps() < kLeastSteps)
@@ -187,7 +187,7 @@ std::vector<Session> readSessions(const std::string& folder) {
   std::vector<Session> sessions;
   for (size_t row = 0; row < table.rows(); ++row) {
     sessions.push_back(namedSession(table, row));
-    // A session without its numbers is of no use, but the others are.
+    // A session with missing numbers is skipped; the others are kept.
     try {
       readGeometry(table, row, sessions.back());
     } catch (const RecordingError& error) {
@@ -252,7 +252,7 @@ std::string chooseRobot(const std::vector<Session>& sessions, const std::string&
   if (meant.empty())
     throw RecordingError("no robot is called '" + wanted + "'; there are " + listed(robots));
   throw RecordingError("'" + wanted + "' may be any of " + listed(meant) +
-                       "; say more of the name");
+                       "; give more of the name");
 }
 
 BodyCommand reachOf(const Session& session) {

@@ -6,28 +6,28 @@
 #include <string>
 #include <vector>
 
+#include "common/drive/event_teller.hpp"
 #include "common/geometry/se2.hpp"
 #include "common/grid/grid.hpp"
-#include "common/drive/event_teller.hpp"
 
 namespace tread {
 
-/// A message for viewers, in one of Foxglove's own schemas, which these draw without a plugin.
+/// A message for viewers, in one of Foxglove's own schemas, which are drawn without a plugin.
 struct SceneMessage {
   std::string topic;
   std::string schema;  ///< its name
   std::string json;
-  uint64_t part = 0;  ///< what of its topic it replaces: an entity
+  uint64_t part = 0;  ///< identifies the entity of its topic that it replaces
 };
 
-/// The schema (JSON Schema) of such a message, as far as we fill it.
+/// The schema (JSON Schema) of such a message, restricted to the fields that we fill.
 std::string sceneSchema(const std::string& name);
 /// Topics with their schemas' names.
 const std::vector<std::pair<std::string, std::string>>& sceneTopics();
 
-/// Draws the robot, the map, the scan, the plan with its tree, and tells events, from Tread's
+/// Draws the robot, the map, the scan and the plan with its tree, and reports events, from Tread's
 /// messages.
-/** Frames: map, body. All times are those of recording: a viewer's clock is the recorder's. */
+/** Frames: map, body. All times are times of recording: a viewer uses the recorder's clock. */
 class SceneMaker {
  public:
   std::vector<SceneMessage> take(const LogEvent& event);

@@ -14,13 +14,14 @@ namespace tread {
 namespace {
 
 constexpr const char* kComment =
-    "# A key of Tread: who reads this file can drive the robot. Made by tread-key new.\n";
+    "# A key of Tread: anybody who can read this file can drive the robot. Made by tread-key "
+    "new.\n";
 
 PrivateFile keyFile(const std::string& path) {
   return {"key", path, "make one with tread-key new"};
 }
 
-/// Whether the line is a key, which it reads then.
+/// Whether the line is a key; if so, reads it.
 bool isKey(const std::string& line, SealKey& key) {
   const char* end = nullptr;
   size_t size = 0;
@@ -81,7 +82,7 @@ SealKey readKey(const std::string& path) {
     if (++keys > 1 || !isKey(line, key)) keys = 2;
   }
   if (keys != 1)
-    // Neither tread-key nor a start ever writes over a file that is there.
+    // Neither tread-key nor a start ever overwrites an existing file.
     keyFile(path).refuse("holds no key (one line of 64 hexadecimal digits), or only a part of one",
                          "remove it, then make one with tread-key new " + path);
   return key;

@@ -21,14 +21,14 @@ namespace fs = std::filesystem;
 
 constexpr const char* kUnfinished = ".unfinished";
 constexpr size_t kBufferSize = 1 << 18;    // [bytes]
-constexpr size_t kLongestName = 255 - 30;  // what a file system takes, less what we append
+constexpr size_t kLongestName = 255 - 30;  // limit of file systems, less our suffix
 constexpr int kMostTries = 1000;
 
 std::string reasonOf(int error) {
   return std::generic_category().message(error);
 }
 
-/// Where a link leads, so that the link itself stays; also where nothing is there yet.
+/// Target of a symlink, so that the link itself is kept; works without an existing target.
 fs::path targetOf(const std::string& path) {
   std::error_code failure;
   fs::path target = fs::absolute(path, failure).lexically_normal();
@@ -38,8 +38,8 @@ fs::path targetOf(const std::string& path) {
   return failure ? target : found;
 }
 
-/// The stream of this process that a name stands for (/dev/stdout, /dev/fd/3), else -1. Such a
-/// stream may lead to a file, which must not be replaced while somebody writes into it.
+/// The stream of this process that a name refers to (/dev/stdout, /dev/fd/3), else -1. It may be
+/// redirected to a file, which must not be replaced while it is being written.
 int streamNamed(const std::string& path) {
   if (path == "/dev/stdout") return STDOUT_FILENO;
   if (path == "/dev/stderr") return STDERR_FILENO;
@@ -48,14 +48,14 @@ int streamNamed(const std::string& path) {
   return -1;
 }
 
-/// A device, a pipe, a stream: there is nothing to put in its place.
+/// A device, a pipe, a stream: it cannot be replaced by a file.
 bool isSpecial(const std::string& path) {
   std::error_code failure;
   return streamNamed(path) >= 0 ||
          (fs::exists(path, failure) && !fs::is_regular_file(path, failure));
 }
 
-/// A name beside the target that nobody else has, on the same file system.
+/// A unique name beside the target, on the same file system.
 std::string unfinishedName(const fs::path& folder, const std::string& name, int attempt) {
   return (folder /
           (name.substr(0, kLongestName) + (name.empty() ? "" : ".") + std::to_string(::getpid()) +
@@ -67,14 +67,14 @@ std::string unfinishedName(const fs::path& folder, const std::string& name, int 
   throw std::runtime_error(path + ": cannot be written (" + why + "); check folder and rights");
 }
 
-/// The folder itself, or the nearest one above it that is there.
+/// The folder itself, or its nearest existing parent.
 fs::path existingAbove(fs::path folder) {
   std::error_code failure;
   while (!fs::exists(folder, failure) && folder.has_relative_path()) folder = folder.parent_path();
   return folder;
 }
 
-/// Where a file of this output will be made: a folder is made where there is none.
+/// Where a file of this output will be created; the folder is created if needed.
 fs::path folderFor(const PlannedOutput& output, const fs::path& target) {
   std::error_code failure;
   if (fs::is_directory(target, failure)) return target;
@@ -87,7 +87,7 @@ void requireWritable(const PlannedOutput& output, const fs::path& target) {
   std::error_code failure;
   if (!fs::exists(folder, failure)) refuse(output.path, folder.string() + " is not there");
   if (!fs::is_directory(folder, failure)) refuse(output.path, folder.string() + " is no folder");
-  // Permissions alone do not tell: a file system may be read-only, or none that takes files.
+  // Permissions are not enough: a file system may be read-only, or not accept files.
   std::string trial = unfinishedName(folder, "trial", 0) + "-XXXXXX";
   const int fd = ::mkstemp(trial.data());
   if (fd < 0) refuse(output.path, folder.string() + ": " + reasonOf(errno));
@@ -95,13 +95,13 @@ void requireWritable(const PlannedOutput& output, const fs::path& target) {
   ::unlink(trial.c_str());
 }
 
-/// Whether something lies in a folder, however deep.
+/// Whether a path is inside a folder, at any depth.
 bool isWithin(const fs::path& inner, const fs::path& folder) {
   const fs::path way = inner.lexically_relative(folder);
   return !way.empty() && *way.begin() != ".." && way != ".";
 }
 
-/// A folder that is an input is read whole, so far as one can know from outside.
+/// An input folder is assumed to be read completely.
 void keepInput(const PlannedOutput& output, const fs::path& target, const std::string& input) {
   std::error_code failure;
   if (input.empty() || !fs::exists(input, failure)) return;
@@ -137,7 +137,7 @@ void keepExisting(const PlannedOutput& output, const fs::path& target, bool repl
                              ": is there already; name another file, or replace it with --force");
   if (!isEmptyFolder(target))
     throw std::runtime_error(output.path + ": this folder is not empty; name another one, or " +
-                             "replace what has the same names in it with --force");
+                             "replace the files of the same names with --force");
 }
 
 }  // namespace
@@ -156,7 +156,7 @@ OutputFile::~OutputFile() {
 void OutputFile::open(Kind kind) {
   errno = 0;
   if (const int stream = streamNamed(path_); stream >= 0) {
-    std::fflush(nullptr);  // what was printed before comes before
+    std::fflush(nullptr);  // keep the order with earlier output
     fd_ = ::fcntl(stream, F_DUPFD_CLOEXEC, 0);
   } else if (isSpecial(path_)) {
     fd_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
@@ -179,7 +179,7 @@ void OutputFile::openTemporary() {
   }
   struct stat old {};
   if (fd_ < 0 || ::stat(target_.c_str(), &old) != 0) return;
-  // Only root may give a file away; others own what they replace, or the new one.
+  // Only root may change a file's owner; others own what they replace or create.
   if (::fchown(fd_, old.st_uid, old.st_gid) == 0) ::fchmod(fd_, old.st_mode & 07777U);
 }
 
@@ -206,7 +206,7 @@ void OutputFile::write(const void* bytes, size_t size) {
   if (buffer_.size() + size > kBufferSize) flush();
   if (size >= kBufferSize)
     writeOut(bytes, size);
-  else if (size > 0)  // nothing may come with a null pointer
+  else if (size > 0)  // size 0 may come with a null pointer
     buffer_.append(static_cast<const char*>(bytes), size);
 }
 
@@ -242,7 +242,7 @@ OutputFolder::OutputFolder(const std::string& folder) : folder_(folder) {
 OutputFolder::~OutputFolder() {
   std::error_code failure;
   fs::remove_all(temporary_, failure);
-  if (made_) fs::remove(folder_, failure);  // stays if something is in it
+  if (made_) fs::remove(folder_, failure);  // kept if not empty
 }
 
 void OutputFolder::commit() {

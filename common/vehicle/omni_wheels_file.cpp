@@ -12,15 +12,15 @@ namespace {
 constexpr Range kDegrees{-360.0, 360.0};
 constexpr Range kPlace{-10.0, 10.0};  // [m]
 
-/// Nobody mounts wheels within a few degrees of each other; in radians that is where they all are.
+/// Wheels are never within a few degrees of each other, but in radians they would all be.
 constexpr double kFullTurn = 6.3;
 
 OmniWheel readWheel(ConfigReader& reader, double& angle) {
   OmniWheel wheel;
   if (reader.has("angle") == reader.has("position"))
     throw reader.error(reader.has("angle") ? "position" : "angle",
-                       "a wheel stands at an angle [deg] and a distance [m], or at a position "
-                       "[x, y] [m]: give one of them");
+                       "a wheel's place is an angle [deg] and a distance [m], or a position [x, y] "
+                       "[m]: give one of them");
   if (reader.has("angle")) {
     double distance = 0.0;
     reader.number("angle", angle, kDegrees, "deg, from ahead to the left", true);

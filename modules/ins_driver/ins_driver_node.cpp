@@ -26,7 +26,7 @@ MakeInsSource device(ConfigReader& reader, const RobotDescription& robot) {
   return sourceOf<Source>(readConfig(reader, robot));
 }
 
-/// A new INS is one line here and a folder of its own.
+/// A new INS needs one line here and a folder of its own.
 const std::map<std::string, MakeInsSource (*)(ConfigReader&, const RobotDescription&)> kSources{
     {"nmea", device<NmeaIns, readNmeaConfig>},
     {"novatel", device<NovatelIns, readNovatelConfig>},
@@ -40,7 +40,7 @@ GeoOrigin readOrigin(ConfigReader& reader) {
   double latitude = 0.0;
   double longitude = 0.0;
   GeoOrigin origin;
-  // Degrees, because this is what people copy from maps and receivers.
+  // In degrees, because that is what people copy from maps and receivers.
   reader.number("latitude", latitude, {-90.0, 90.0}, "deg", true);
   reader.number("longitude", longitude, {-180.0, 180.0}, "deg", true);
   reader.number("altitude", origin.altitude, {-1000.0, 20000.0}, "m", true);
@@ -70,10 +70,10 @@ FillInConfig readFillIn(ConfigReader reader) {
   return config;
 }
 
-/// A device that floods us is cut off here until the next step.
+/// The bytes of a flooding device are cut off here until the next step.
 constexpr size_t kMaxBytesPerStep = 65536;
 constexpr int64_t kCounterPeriodUs = 200'000;
-/// A message stamped further in the future than this comes from another clock [us].
+/// A message stamped further in the future comes from another clock [us].
 constexpr int64_t kFarthestAhead = 200'000;
 
 /// The configured origin, else the stored one.
@@ -85,7 +85,7 @@ std::optional<GeoOrigin> knownOrigin(const std::optional<GeoOrigin>& configured,
   try {
     return originFrom(*text);
   } catch (const ConfigError& error) {
-    problem = std::string(error.what()) + "; the map starts anew at the first fix";
+    problem = std::string(error.what()) + "; the map restarts at the first fix";
     return std::nullopt;
   }
 }
@@ -121,7 +121,7 @@ std::string inSeconds(int64_t us) {
 
 namespace {
 
-/// Which INS the robot has, and what that one's reader wants to know.
+/// Reads the kind of the robot's INS, and the keys for that kind.
 void readSource(ConfigReader& reader, InsDriverConfig& config) {
   std::vector<std::string> known;
   for (const auto& [name, read] : kSources) known.push_back(name);
@@ -215,8 +215,8 @@ int64_t InsDriverNode::readLink(int64_t utime) {
   std::array<uint8_t, 4096> buffer;
   for (size_t total = 0; total < kMaxBytesPerStep;) {
     const std::optional<size_t> size = link_.read(buffer.data(), buffer.size());
-    // The time after reading: a process that was held up since its step began would else take
-    // bytes as received before they were sent, and the clock filter would believe it for seconds.
+    // The time after reading: otherwise a process that was delayed since its step began would date
+    // bytes before they were sent, which would disturb the clock filter for seconds.
     utime = std::max(utime, bus_.now());
     if (!size) loseLink();
     if (size.value_or(0) == 0) break;
@@ -304,7 +304,7 @@ std::string InsDriverNode::measurementProblem(int64_t utime) const {
   }
   if (utime - last_height_ > silence_us_) {
     return "positions without a height for " + inSeconds(utime - last_height_) +
-           ", mapping cannot use them; where the device tells heights above the ellipsoid only, "
+           ", mapping cannot use them; if the device sends only heights above the ellipsoid, "
            "configure geoid_separation";
   }
   return origin_problem_.empty() ? rolledOver(device_utc_, bus_.utc()) : origin_problem_;

@@ -25,7 +25,7 @@ void readGates(ConfigReader& reader, MeasurementLimits& limits) {
   gates.seconds("entry_window", limits.entry_window_us, {0.01, 2.0});
   gates.number("entry_speed", limits.entry_speed, {0.01, 40.0}, "m/s");
   gates.number("entry_yaw_rate", limits.entry_yaw_rate, {0.01, 40.0}, "rad/s");
-  // A file cannot say "infinite".
+  // A file cannot contain "infinite".
   bool any_entry = std::isinf(limits.entry_speed) && std::isinf(limits.entry_yaw_rate);
   gates.flag("any_entry", any_entry);
   if (any_entry)
@@ -33,10 +33,10 @@ void readGates(ConfigReader& reader, MeasurementLimits& limits) {
   gates.number("max_slope", limits.max_slope, {0.0, 1.6}, "rad");
 }
 
-/// A higher version than ours is believed when this many messages named it: one may be a broken
-/// one.
+/// Messages that must name a higher version than ours before it is accepted: a single one may be
+/// broken.
 constexpr int kBelievedAfter = 3;
-/// How far above a higher version of a former life we go on.
+/// Distance kept above a higher version of an earlier life.
 constexpr int64_t kAboveUnknown = 100;
 
 constexpr int64_t kGripPeriod = 500'000;  // [us]
@@ -62,8 +62,7 @@ learning_t reportOf(const execution_record_t& record, Rule rule) {
   return message;
 }
 
-/// One line for each key of a section that was given and that no rule reads any more. It counts as
-/// read.
+/// One line for each key of a section that was given and is obsolete. It counts as read.
 template <size_t kCount>
 void addRetired(ConfigReader& reader, const char* section_name, const char* const (&keys)[kCount],
                 std::vector<std::string>& lines) {
@@ -73,7 +72,7 @@ void addRetired(ConfigReader& reader, const char* section_name, const char* cons
       lines.emplace_back(section.error(key, "has no effect any more; take it out").what());
 }
 
-/// One line for each key that was given and that the rule does not read.
+/// One line for each key that was given and that the rule does not use.
 std::vector<std::string> unreadKeys(ConfigReader& reader, const Rule& rule) {
   const auto reads = [](const Rule& one, const char* key) {
     const std::vector<std::string> keys = keysReadBy(one);
@@ -94,7 +93,7 @@ std::vector<std::string> unreadKeys(ConfigReader& reader, const Rule& rule) {
   return lines;
 }
 
-/// A vehicle's largest speed that is not given is the largest of its patterns.
+/// The default of a vehicle's largest speed is the largest of its patterns.
 LearnerNodeConfig withSpeed(LearnerNodeConfig config) {
   if (config.limits.max_speed <= 0.0) config.limits.max_speed = largestSpeed(config.shipped);
   return config;
@@ -133,12 +132,12 @@ void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config) {
   std::string rule = config.rule.rule;
   reader.choice("rule", rule, ruleNames());
   config.rule.rule = rule;
-  // w = 1 would never learn and never say why: `off` is the word for that.
+  // w = 1 would never learn without giving a reason: `off` is for that.
   reader.number("memory", config.rule.memory, {0.0, 0.999}, "1");
   readRules(reader, config.rule);
   config.warnings = unreadKeys(reader, config.rule.rule);
   readGates(reader, config.limits);
-  // Not shorter: the publisher sends a portion a step, and LCM loses more than 100 kB in 20 ms.
+  // No shorter: the publisher sends a portion per step, and LCM loses more than 100 kB in 20 ms.
   reader.seconds("period", config.period_us, {0.02, 0.1});
   reader.seconds("settle", config.settle_us, {0.0, 2.0});
   reader.seconds("give_up", config.give_up_us, {0.1, 30.0});
@@ -152,7 +151,7 @@ void readLearnerSettings(ConfigReader& reader, LearnerNodeConfig& config) {
 }
 
 std::string LearnerNodeConfig::effective() const {
-  // Reading nothing over these values writes them.
+  // Reading an empty text over these values prints them.
   ConfigReader reader = ConfigReader::fromText("{}", "learner");
   LearnerNodeConfig copy = *this;
   readLearnerSettings(reader, copy);
@@ -178,7 +177,7 @@ LearnerNode::LearnerNode(LearnerNodeConfig config, Bus& bus, Store& store)
   bus.overhear<pattern_set_part_t>(
       kPatternSet, [this](const pattern_set_part_t& part) { noteVersion(part.set_version); });
   health_.watchNamesakes();
-  // Not now(): it is not known before the first message.
+  // Not now(), which is unknown before the first message.
   start(bus.bootId());
 }
 
@@ -190,7 +189,7 @@ void LearnerNode::start(int64_t boot_time) {
     executions_.remember(found.state->handled);
     if (!learner_.restore(std::move(found.state->set), std::move(found.state->residuals),
                           found.state->memory))
-      health_.addToCounter("state not this rule's: learning begins anew");
+      health_.addToCounter("state of another rule: learning restarts");
     keepVersion();
   }
   if (found.first_version > learner_.set().version())
@@ -214,7 +213,7 @@ void LearnerNode::step(int64_t utime) {
   if (passive_ && !passive) becomeActive();
   passive_ = passive;
   if (passive_) {
-    // They are the other's to learn from.
+    // The other learner learns from them.
     while (executions_.takeEndedBy(horizon)) health_.addToCounter("executions left to the other");
   } else if (!listensOnly()) {
     handleEnded(utime);
@@ -240,7 +239,8 @@ void LearnerNode::handleEnded(int64_t utime) {
     const bool hopeless = horizon >= *end + config_.give_up_us;
     if (!passed && !hopeless) break;
     const execution_record_t record = *executions_.takeEndedBy(*end);
-    // A former life of this process has reported what ended before, or nobody can measure it.
+    // An earlier life of this process has reported executions that ended before, or nobody can
+    // measure them.
     if (record.ended < ins_.begin()) {
       health_.addToCounter("executions before the start");
     } else {
@@ -260,15 +260,16 @@ void LearnerNode::noteRunning(const execution_t& message) {
   }
 }
 
-/// What is known of a running execution teaches at once: the next one is being chosen. All parts up
-/// to `until`, so that those who name a set later find it whichever came in time.
+/// The measured part of a running execution is learned at once, because the next one is being
+/// chosen. All parts up to `until`, so that messages that name a set later find it whichever part
+/// came in time.
 void LearnerNode::followRunning(int64_t until) {
   if (!running_ || config_.follow_us <= 0) return;
   const MotionPattern* pattern = learner_.set().find(running_->record_pattern_id);
   if (pattern == nullptr || running_->started < ins_.begin()) return;
   const int64_t end = running_->started + learner_.set().content().period_us *
                                               static_cast<int64_t>(pattern->commands.size());
-  // What would be known no sooner than its end is left to its record.
+  // A part that would be known no sooner than the end is left to the record.
   for (int64_t part = 1 + (followed_until_ - running_->started) / config_.follow_us;; ++part) {
     const int64_t ended = running_->started + part * config_.follow_us;
     if (ended > until || ended + config_.settle_us >= end) return;
@@ -285,7 +286,7 @@ void LearnerNode::followRunning(int64_t until) {
   }
 }
 
-/// The shipped pattern says what was asked: a learned one knows the ground already.
+/// The shipped pattern defines the request: a learned one already includes the ground.
 void LearnerNode::feelGrip(const ExecutionCut& cut, const Measurement& measurement,
                            int pattern_id) {
   const MotionPattern* pattern = learner_.shipped().find(pattern_id);
@@ -313,14 +314,14 @@ void LearnerNode::publishGrip(int64_t utime) {
   bus_.publish(kGrip, message);
 }
 
-/// By steps and not by time, which jumps when the first message is heard.
+/// By steps, not by time, which jumps at the first message.
 bool LearnerNode::listensOnly() const {
   return steps_ * config_.period_us < config_.listen_us;
 }
 
-/// Whether a learner lives that was started before this one.
+/// Whether a learner is running that was started before this one.
 bool LearnerNode::mustBePassive(int64_t utime) const {
-  // At the start a mistake costs three seconds; later it must not come from one broken message.
+  // At the start a mistake costs three seconds; later a single broken message must not cause it.
   const bool soon = listensOnly() || passive_;
   const auto other = health_.namesake(utime, soon ? 1 : HealthReporter::kSureAfter);
   return other && other->boot_id < health_.bootId();
@@ -340,15 +341,15 @@ void LearnerNode::hear(const execution_t& message) {
   noteVersion(highest);
 }
 
-/// Somebody named a version: ours goes above it, unless it is a broken one.
+/// A version was named by others: ours goes above it, unless the message is broken.
 void LearnerNode::noteVersion(int64_t version) {
   if (version <= learner_.set().version() || version > PatternSet::kHighestVersion) return;
   const bool believed = ++unknown_versions_[version] >= kBelievedAfter;
-  // Broken messages may name any number; what was named once long ago is of no interest.
+  // Broken messages may name any number; old ones no longer matter.
   if (unknown_versions_.size() > 16) unknown_versions_.clear();
   if (!believed) return;
   highest_heard_ = std::max(highest_heard_, version);
-  // Only one of two learners, or both would climb for ever.
+  // Only one of two learners, otherwise both would climb endlessly.
   if (!passive_ && !mustBePassive(bus_.now())) goAbove(version);
 }
 
@@ -375,7 +376,7 @@ void LearnerNode::hear(const motor_t& motor) {
       record.outcome_reason = sentenceOf(StopReason::kLeftByHand);
     }
     message.records.push_back(record);
-    health_.addToCounter("executions by hand");
+    health_.addToCounter("executions under manual control");
   }
   executions_.add(message, bus_.now());
 }
@@ -448,7 +449,7 @@ ExecutionCut LearnerNode::cutOf(const execution_record_t& record,
   const PatternSet& set = learner_.set();
   cut.unexpected_command =
       commands_.unexpectedCommand(keyOf(record), pattern, set.content().channels);
-  // Where a failsafe stops the robot it may have been held: that is no ground.
+  // When a failsafe stops the robot it may have been held: that is not the ground's influence.
   cut.beginning = learner_.learnsParts() && !cut.completed &&
                   (cut.outcome.code == StopReason::kStoppedByPlanner ||
                    cut.outcome.code == StopReason::kLeftByHand);
@@ -514,14 +515,14 @@ std::string LearnerNode::stateText() const {
   return formatState(state, learner_.shipped(), config_.rule);
 }
 
-/// A version that lives until the running execution has ended: it is not written.
+/// A version that is valid until the running execution ends: it is not stored.
 void LearnerNode::publishVersion() {
   keepVersion();
   if (const auto problem = memory_.reserve(learner_.set().version())) noteWrite(problem);
   publisher_.putSet(learner_.set());
 }
 
-/// The newest version becomes the one that everybody uses: on disk first, then on the bus.
+/// Makes the newest version official: on disk first, then on the bus.
 void LearnerNode::adoptVersion() {
   keepVersion();
   const std::string text = stateText();

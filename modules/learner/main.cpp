@@ -19,6 +19,6 @@ int main(int argc, char** argv) {
     return body;
   };
   return runShell(argc, argv, "tread-learner",
-                  "Learns what the ground makes of the motion patterns, and publishes them.",
+                  "Learns the motion patterns as executed on the ground, and publishes them.",
                   prepare);
 }

@@ -35,7 +35,7 @@ void readGrid(ConfigReader& reader, OccupancyMapConfig& map) {
   map.window_tiles = static_cast<int>(window_tiles);
 }
 
-/// Whole cells within which the robot can turn on the spot, with 0.2 m to spare [m].
+/// Whole cells within which the robot can turn on the spot, with a margin of 0.2 m [m].
 double turningRadius(const OccupancyMapConfig& map) {
   const double cells = (Footprint(map.robot, 0.0).circumscribed() + 0.2) / map.voxels.cell_size;
   return std::ceil(cells) * map.voxels.cell_size;
@@ -82,15 +82,15 @@ void readMap(ConfigReader& reader, OccupancyMapConfig& map) {
   ground.number("slope_doubt", map.ground.slope_doubt, {0.0, 1.0}, "");
 }
 
-/// Poses are kept for so long [us]: longer than any scan waits.
+/// How long poses are kept [us]: longer than any scan waits.
 constexpr int64_t kTrackSpan = 6'000'000;
-/// Scans that wait for poses at the same time; more means that the poses do not come.
+/// Scans that may wait for poses at the same time; more means that no poses arrive.
 constexpr size_t kMostWaiting = 20;
-/// Range finders that a robot may have.
+/// Largest number of range finders.
 constexpr size_t kMostFinders = 8;
-/// A message stamped further in the future than this comes from another clock [us].
+/// A message stamped further in the future comes from another clock [us].
 constexpr int64_t kFarthestAhead = 200'000;
-/// LCM loses what a publisher sends above 100 kB in 20 ms, which is this node's period.
+/// LCM loses data above 100 kB per publisher in 20 ms, which is this node's period.
 constexpr size_t kBytesPerStep = 80'000;
 constexpr size_t kTileOverhead = 80;
 
@@ -153,8 +153,8 @@ MappingNode::MappingNode(const MappingConfig& config, Bus& bus)
   bus.subscribe<scan_t>(kScan, [this](const scan_t& message) { hear(message); });
 }
 
-/// A bus that follows the messages' time does not know it before the first one: what counts silence
-/// begins then.
+/// A bus that follows the messages' time does not know it before the first one: silence is counted
+/// from then on.
 void MappingNode::startClock() {
   if (heard_) return;
   heard_ = true;
@@ -241,14 +241,14 @@ void MappingNode::insert(const ReceivedScan& scan) {
 ScanMonitor& MappingNode::monitorOf(const Eigen::Isometry3d& T_body_sensor) {
   for (auto& [T_known, monitor] : monitors_)
     if (T_known.isApprox(T_body_sensor, 1e-6)) return monitor;
-  // Broken messages may tell any mounting.
+  // Broken messages may contain any mounting.
   if (monitors_.size() >= kMostFinders) monitors_.clear();
   const OccupancyMapConfig& map = config_.map;
   monitors_.emplace_back(T_body_sensor, ScanMonitor(map.robot, map.obstacle.robot_height));
   return monitors_.back().second;
 }
 
-/// What is wrong with a range finder that is not believed, in one line; empty if all are.
+/// What is wrong with a distrusted range finder, in one line; empty if all are trusted.
 std::string MappingNode::lyingFinder() const {
   for (const auto& [T_body_sensor, monitor] : monitors_) {
     if (monitor.verdict() == ScanDefect::kNone) continue;
@@ -295,7 +295,7 @@ void MappingNode::reportHealth(int64_t now) {
   } else if (now - last_ins_ >= silence) {
     line << "no INS with a pose comes; is ins_driver running, has it a fix and a heading?";
   } else {
-    line << (last_refusal_.empty() ? "none came whole" : last_refusal_);
+    line << (last_refusal_.empty() ? "none was complete" : last_refusal_);
   }
   health_.setState(health_t::HEALTH_DEGRADED, line.str());
 }

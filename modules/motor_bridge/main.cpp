@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
   using namespace tread::motor;
   const auto prepare = [](ConfigReader& reader) -> ShellBody {
     const MotorBridgeConfig config = readMotorBridgeConfig(reader);
-    parseLinkAddress(config.address);  // throws where it makes no sense
+    parseLinkAddress(config.address);  // throws if it is invalid
     return [config](BusAccess access, const std::atomic<bool>& stop) {
       LcmBus bus(std::move(access), TimeSource::kHost);
       const std::unique_ptr<Link> link = makeLink(config.address);
@@ -24,5 +24,6 @@ int main(int argc, char** argv) {
     };
   };
   return runShell(argc, argv, "tread-motor-bridge",
-                  "Plays PROGRAM on the motor controller and stops by itself.", prepare);
+                  "Plays PROGRAM on the motor controller, and stops the robot by itself on faults.",
+                  prepare);
 }

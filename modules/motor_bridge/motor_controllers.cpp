@@ -32,8 +32,8 @@ MakeMotorController lineProtocol(ConfigReader& reader, const DriveDescription& d
 MakeMotorController kangaroo(ConfigReader& reader, const DriveDescription& drive) {
   if (drive.kind != CommandKind::kTrackSpeed)
     throw reader.error("controller",
-                       "kangaroo holds speeds only, the robot's drive is power: make it "
-                       "track_speed, or take sabertooth");
+                       "kangaroo controls only speeds, but the robot's drive is power: set "
+                       "track_speed, or use sabertooth");
   ConfigReader section = reader.section("kangaroo");
   return making<KangarooConnection>(readKangarooConfig(section, drive));
 }
@@ -41,7 +41,7 @@ MakeMotorController kangaroo(ConfigReader& reader, const DriveDescription& drive
 MakeMotorController sabertooth(ConfigReader& reader, const DriveDescription& drive) {
   if (drive.kind != CommandKind::kPower)
     throw reader.error("controller",
-                       "sabertooth takes power only, the robot's drive is track_speed");
+                       "sabertooth accepts only power, but the robot's drive is track_speed");
   ConfigReader section = reader.section("sabertooth");
   return making<SabertoothConnection>(readSabertoothConfig(section, drive));
 }
@@ -51,7 +51,7 @@ MakeMotorController vesc(ConfigReader section, const DriveDescription& drive) {
   return making<Connection>(readVescConfig(section, drive));
 }
 
-/// A new controller is one line here and a folder of its own.
+/// A new controller needs one line here and a folder of its own.
 const std::map<std::string, MakeMotorController (*)(ConfigReader&, const DriveDescription&)>
     kControllers{{"kangaroo", kangaroo},
                  {"line_protocol", lineProtocol},
@@ -72,7 +72,7 @@ MakeMotorController readMotorController(ConfigReader& reader, const DriveDescrip
   std::vector<std::string> known;
   for (const auto& [each, read] : kControllers) known.push_back(each);
   reader.choice("controller", name, known);
-  // Over CAN a VESC knows no command for its servo output.
+  // Over CAN a VESC has no command for its servo output.
   if (drive.isCar() && name != "vesc" && name != "line_protocol")
     throw reader.error(
         "controller",

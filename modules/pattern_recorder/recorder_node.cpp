@@ -12,12 +12,13 @@
 namespace tread::pattern_recorder {
 namespace {
 
-constexpr int64_t kTrackSpan = 30'000'000;   // [us] of INS that is kept
-constexpr int64_t kSettle = 200'000;         // [us] what is this old has arrived
-constexpr int64_t kGiveUpAfter = 2'000'000;  // [us] after its end an execution is judged anyhow
+constexpr int64_t kTrackSpan = 30'000'000;  // [us] of INS data that are kept
+constexpr int64_t kSettle = 200'000;        // [us] after which messages have arrived
+constexpr int64_t kGiveUpAfter =
+    2'000'000;  // [us] after its end when an execution is evaluated in any case
 constexpr double kDegrees = 180.0 / kPi;
 
-constexpr int64_t kTwistWindow = 300'000;  // [us] over which standing is seen
+constexpr int64_t kTwistWindow = 300'000;  // [us] over which standstill is detected
 constexpr double kStandingSpeed = 0.15;    // [m/s] and
 constexpr double kStandingRate = 0.10;     // [rad/s]: noise of an INS at rest stays below
 
@@ -81,7 +82,7 @@ Measurement ExecutionCollector::measure(const execution_record_t& record,
 
 void ExecutionCollector::keep(size_t pattern, std::vector<Pose2> measured) {
   refused_in_a_row_[pattern] = 0;
-  // Patterns that only led into a class or back home may be driven more often than wanted.
+  // Patterns used only to reach a class or to return may be driven more often than required.
   if (missing(pattern) <= 0) return;
   const Pose2 end = measured.back();
   recorded_[pattern].push_back(std::move(measured));
@@ -98,7 +99,7 @@ void ExecutionCollector::refuse(size_t pattern, Gate gate, const std::string& re
   ++refused_;
   const std::string& name = set_.patterns()[pattern].name;
   say_(name + " refused, it will be repeated: " + reason);
-  // A stop by the operator or a failsafe says nothing of the pattern.
+  // A stop by the operator or a failsafe is no evidence against the pattern.
   if (gate == Gate::kAborted || ++refused_in_a_row_[pattern] < give_up_after_) return;
   hopeless_ = name + " was refused " + std::to_string(give_up_after_) +
               " times in a row, the last time: " + reason;
@@ -131,7 +132,7 @@ void RecorderNode::take(const program_t& message) {
   if (message.run_id == drive_.program().runId() || robot_.invalidTime(message.utime, "PROGRAM"))
     return;
   silent_ = true;
-  drive_.fail("another planner speaks on PROGRAM (its run is " + std::to_string(message.run_id) +
+  drive_.fail("another planner publishes PROGRAM (its run is " + std::to_string(message.run_id) +
               "); end it first; config/launch/recording.yaml starts the robot without one");
 }
 
@@ -146,7 +147,7 @@ void RecorderNode::step(int64_t utime) {
   progress.hopeless = collector_.hopeless();
   progress.standing = stands();
   drive_.step(readings, progress, !listens(utime));
-  // Whoever brings it back decides anew whether it may go on.
+  // The person who brings it back decides again whether it may continue.
   if (drive_.leftRoom()) robot_.permission().restart(utime);
   publishProgram(utime, readings);
   publishHealth(utime);
@@ -169,7 +170,7 @@ bool RecorderNode::stands() const {
 
 void RecorderNode::publishProgram(int64_t utime, const RobotReadings& readings) {
   if (silent_ || listens(utime)) return;
-  // Before the robot speaks its time is unknown, and others would follow ours.
+  // Before the robot's first message its time is unknown, and others would follow ours.
   if (!readings.pose && !readings.bridge) return;
   bus_.publish(kProgram,
                programOf(drive_.program(), bus_, utime, seq_program_++, config_.lease_us));

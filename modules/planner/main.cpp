@@ -19,6 +19,5 @@ int main(int argc, char** argv) {
     };
   };
   return runShell(argc, argv, "tread-planner",
-                  "Plans sequences of motion patterns to the goal and hands them to the motors.",
-                  prepare);
+                  "Plans sequences of motion patterns to the goal, for the motor bridge.", prepare);
 }

@@ -13,15 +13,15 @@
 namespace tread::scan_matching {
 namespace {
 
-/// A message stamped further in the future than this comes from another clock [us].
+/// A message stamped further in the future comes from another clock [us].
 constexpr int64_t kFarthestAhead = 200'000;
-/// Scans that wait for their turn at the same time; more means that this computer is too slow.
+/// Scans that may wait at the same time; more means that this computer is too slow.
 constexpr size_t kMostWaiting = 4;
-/// Own messages come back within so many.
+/// Own messages return within this many.
 constexpr size_t kMostOwn = 100;
-/// An older MOTOR says nothing of now [us].
+/// An older MOTOR is uninformative about the present [us].
 constexpr int64_t kMotorAge = 300'000;
-constexpr double kUsual = 0.1;  // [1] share of a new interval in the usual one
+constexpr double kUsual = 0.1;  // [1] weight of a new interval in the usual one
 
 int64_t microseconds(double seconds) {
   return std::llround(seconds * 1e6);
@@ -83,8 +83,8 @@ const char* wordsOf(MatchOutcome outcome) {
 const char* remedyOf(MatchOutcome outcome) {
   switch (outcome) {
     case MatchOutcome::kUndetermined:
-      return "what is in sight looks the same from all along some way (a corridor, a round room); "
-             "drive where something stands across";
+      return "the visible surroundings look the same along some direction (a corridor, a round "
+             "room); drive where something is across it";
     case MatchOutcome::kTooFew:
       return "too little is in sight of the range finder (an open field?); drive nearer to walls, "
              "trees or posts, or use an INS";
@@ -93,7 +93,7 @@ const char* remedyOf(MatchOutcome outcome) {
              "too "
              "uneven?";
     default:
-      return "the next scans will tell";
+      return "the next scans decide";
   }
 }
 
@@ -190,7 +190,7 @@ ScanMatchingNode::ScanMatchingNode(const ScanMatchingConfig& config, Bus& bus)
   bus.subscribe<scan_t>(kScan, [this](const scan_t& message) { hear(message); });
   bus.subscribe<motor_t>(kMotor, [this](const motor_t& message) { hear(message); });
   if (config.fills_in) return;
-  // Its own messages come back here, too: no input.
+  // Its own messages also arrive here, and are no input.
   bus.overhear<ins_t>(kIns, [this](const ins_t& message) { hear(message); });
 }
 
@@ -223,7 +223,7 @@ void ScanMatchingNode::hear(const motor_t& message) {
   if (off && !off_since_) off_since_ = message.utime;
 }
 
-/// Motors that nobody tells of may be on.
+/// Motors without MOTOR messages may be on.
 bool ScanMatchingNode::standsAt(int64_t utime) const {
   return off_since_ && utime - *off_since_ >= microseconds(config_.standing_after) &&
          utime - last_motor_ <= kMotorAge;

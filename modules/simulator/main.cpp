@@ -13,8 +13,8 @@ namespace {
 using namespace tread;
 using namespace tread::sim;
 
-/// A line that cannot be offered: another simulator may be at its end. That nobody uses it yet is
-/// no fault.
+/// Throws if a line cannot be offered, perhaps because of another simulator. A line without a user
+/// is no fault.
 void mustOffer(const Link& line) {
   const std::string problem = line.problem();
   if (!problem.empty() && problem.find("nobody has connected") == std::string::npos)
@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
   return runShell(argc, argv, "tread-simulator",
                   "The simulated robot behind its devices' protocols: INS and motor controller on "
                   "pseudo-terminals, range finder on a TCP port. The configuration's model: FILE "
-                  "drives a model file in the place of the dynamic vehicle; vehicle: changes that "
-                  "one's physical parameters.",
+                  "simulates a model file instead of the dynamic vehicle; vehicle: changes the "
+                  "latter's physical parameters.",
                   prepare);
 }

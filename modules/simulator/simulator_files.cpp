@@ -19,7 +19,8 @@ constexpr Range kPlace{-100000.0, 100000.0};  // [m]
 constexpr Range kSize{0.001, 10000.0};        // [m]
 constexpr Range kAngle{-10.0, 10.0};          // [rad]
 constexpr int64_t kMirrorTurn = 25'000;       // [us] of a laser
-/// A belt lighter than that share of the vehicle shakes on the ground's spring in steps of 1 ms.
+/// A belt lighter than this share of the vehicle would oscillate on the ground's spring in steps of
+/// 1 ms.
 constexpr double kLightestTrack = 0.02;
 
 std::vector<Eigen::Vector2d> readCorners(ConfigReader& reader) {
@@ -144,7 +145,7 @@ void readBattery(ConfigReader& reader, VehicleParameters& vehicle) {
     throw reader.error("empty_voltage", "must not be above full_voltage");
 }
 
-/// Of a rotating range finder, what it looks at in a turn; the scan is the part in front of it.
+/// For a rotating range finder: its field of view in a revolution; the scan is the forward part.
 void readLaser(ConfigReader reader, LaserParameters& laser) {
   int64_t beams = laser.beams;
   double rate = 1e6 / static_cast<double>(laser.period_us);
@@ -155,10 +156,11 @@ void readLaser(ConfigReader reader, LaserParameters& laser) {
   reader.number("range_max", laser.range_max, {1.0, 300.0}, "m");
   reader.number("range_noise", laser.range_noise, {0.0, 1.0}, "m");
   laser.beams = static_cast<int>(beams);
-  // There and back again a number may lose its last digit, and a seed its mission.
+  // A conversion back and forth may change a number's last digit, and thereby the mission of a
+  // seed.
   if (reader.has("field_of_view")) laser.field_of_view = field_of_view * kPi / 180.0;
   laser.period_us = std::llround(1e6 / rate);
-  // A slow one leaves turns out: its mirror has 40 a second.
+  // A slow one skips revolutions: its mirror makes 40 a second.
   const int64_t turn = std::min<int64_t>(laser.period_us, kMirrorTurn);
   laser.sweep_us = std::llround(static_cast<double>(turn) * field_of_view / 360.0);
 }
@@ -250,10 +252,10 @@ void readSimulatedRobot(ConfigReader& reader, RobotSettings& settings) {
   settings.vehicle.max_steering = robot.drive.max_steering;
   for (const OmniWheel& wheel : robot.drive.wheels.wheels())
     settings.vehicle.wheels.push_back({wheel.x, wheel.y, wheel.heading, wheel.rollers});
-  // What bumps the base lies on.
+  // Area of the bumps that support the base.
   if (robot.drive.isOmni()) settings.vehicle.contact_length = robot.gauge;
   if (robot.drive.isCar() && robot.drive.kind == CommandKind::kTrackSpeed)
-    throw reader.error("robot", "a simulated car takes power, not speeds: drive.kind power");
+    throw reader.error("robot", "a simulated car accepts power, not speeds: set drive.kind: power");
   settings.vehicle.drive.free_speed = robot.drive.full_speed;
   settings.wiring = {
       robot.drive.left_channel, robot.drive.invert_left, robot.drive.invert_right, {}, false,
@@ -304,7 +306,7 @@ std::vector<TruthRow> readTruthRecord(const std::string& path) {
                              "tread-simulator --set record=FILE writes one");
   std::vector<TruthRow> rows;
   while (std::getline(file, line)) {
-    if (file.eof()) break;  // the last one may be half written
+    if (file.eof()) break;  // the last one may be incomplete
     TruthRow row;
     long long utime = 0;
     char surface[64];

@@ -22,7 +22,7 @@ void readAddress(ConfigReader& reader, const std::string& key, std::string& addr
   }
 }
 
-/// `holds_speeds`: the motor controller of the simulated robot does, else it gives power.
+/// `holds_speeds`: the motor controller of the simulated robot controls speeds; otherwise power.
 std::optional<ModelDocument> readModel(ConfigReader& reader, bool holds_speeds) {
   std::string path = "none";
   reader.text("model", path);
@@ -43,7 +43,7 @@ std::optional<ModelDocument> readModel(ConfigReader& reader, bool holds_speeds) 
 
 constexpr int64_t kHealthEvery = 1'000'000;  // [us]
 
-/// What people want to know of a simulation, as YAML.
+/// Summary of a simulation for people, as YAML.
 std::string describe(const SimulatedDevices& devices) {
   const WorldDescription& world = devices.robot().world().description();
   const std::string model = devices.robot().vehicle().name();
@@ -125,7 +125,7 @@ void SimulatorNode::tellHealth(int64_t utime) {
 
 void SimulatorNode::advanceTo(int64_t utime) {
   if (record_ == nullptr) return devices_.advanceTo(utime);
-  // In steps, so that the record is as fine after a pause of the host.
+  // In steps, so that the record keeps its resolution after a pause of the host.
   for (int64_t t = devices_.robot().truth().utime; t < utime;) {
     t = std::min(t + period(), utime);
     devices_.advanceTo(t);
@@ -138,7 +138,7 @@ void SimulatorNode::note(int64_t utime) {
     record_->note(devices_.robot().truth(), devices_.power(utime));
   } catch (const WriteError& error) {
     record_ = nullptr;
-    if (say_) say_(std::string(error.what()) + "; the simulation goes on without its record");
+    if (say_) say_(std::string(error.what()) + "; the simulation continues without its record");
   }
 }
 

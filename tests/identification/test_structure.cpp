@@ -49,7 +49,7 @@ TEST_CASE("a superfluous effect goes, with a step that says why, and a real one 
   REQUIRE(result.record.steps.size() == 1);
   CHECK(result.record.steps[0].effect == "yaw_pull");
   CHECK(result.record.steps[0].removed);
-  CHECK(result.record.steps[0].remark == "chance explains it beside the others");
+  CHECK(result.record.steps[0].remark == "chance explains it in the presence of the others");
   CHECK(result.record.negligible.empty());
 }
 

@@ -115,7 +115,7 @@ TEST_CASE("a turn to the other side beyond the noise updates only itself and is 
   const Correction correction = learner.learn(kLeft, fair(arc({0.9, 0.0, -0.4})), {}, 1);
   REQUIRE(correction.changed);
   REQUIRE(std::isnan(correction.note.scaling[2]));
-  REQUIRE(correction.guards.find("turned the other way") != std::string::npos);
+  REQUIRE(correction.guards.find("turned in the opposite direction") != std::string::npos);
   REQUIRE(sameTrajectory(learner.set(), before, kRight));
   REQUIRE_FALSE(sameTrajectory(learner.set(), before, kLeft));
 }
@@ -123,7 +123,7 @@ TEST_CASE("a turn to the other side beyond the noise updates only itself and is 
 TEST_CASE("motion backwards instead of forwards gives no V") {
   Learner learner(config("collective"), smallSet());
   const Correction correction = learner.learn(kLeft, fair(arc({-0.5, 0.0, 0.5})), {}, 1);
-  REQUIRE(correction.guards.find("moved the other way") != std::string::npos);
+  REQUIRE(correction.guards.find("moved in the opposite direction") != std::string::npos);
   REQUIRE(std::isnan(correction.note.scaling[0]));
 }
 

@@ -80,7 +80,7 @@ TEST_CASE("a device with invalid parameters is refused in one line") {
   REQUIRE(ScipGeometry{0, 1080, 1440, 1440}.problem()->find("AFRT 1440") != std::string::npos);
   REQUIRE(ScipGeometry{0, 1080, 540, 1440, 100, 100}.problem());
   REQUIRE(ScipGeometry{0, 1080, 540, 1440, 20, 30000, 0}.problem());
-  CHECK(refusalOf(parameterLine("MODL:URG-04LX")).find("does not tell its parameters") !=
+  CHECK(refusalOf(parameterLine("MODL:URG-04LX")).find("does not report its parameters") !=
         std::string::npos);
   const std::string good = parameterLine("DMIN:20") + parameterLine("DMAX:5600") +
                            parameterLine("ARES:1024") + parameterLine("AMIN:44") +
@@ -201,7 +201,7 @@ TEST_CASE("a laser that does not come on is refused with what the device says of
   line.device.setFaults(faults);
   CHECK(line.run(3000).empty());
   CHECK(line.session.lost());
-  CHECK(line.reason().find("refused by the device: BM, status '01'; it says of itself: "
+  CHECK(line.reason().find("refused by the device: BM, status '01'; its own report: "
                            "Malfunction 005") == 0);
 }
 
@@ -220,7 +220,7 @@ TEST_CASE("a port that answers otherwise or never is one clear line") {
     if (!asked.empty()) session.receive(asked.substr(0, asked.size() - 1) + "\n0E\n\n", now);
   }
   CHECK(session.reason(now).words ==
-        "refused by the device: PP, status '0E' (3); does its firmware speak SCIP 2.0?");
+        "refused by the device: PP, status '0E' (3); does its firmware support SCIP 2.0?");
   session.close();
   session.open(now);
   session.poll(now);

@@ -137,7 +137,7 @@ TEST_CASE("samples of an RPLIDAR without echo, told ahead of the others, spoil n
     line.device.setFaults(faults);
     const auto scans = line.run(3000);
     REQUIRE(scans.size() >= 20);
-    CHECK(line.counted("refused: turns whose angles do not run on") == 0);
+    CHECK(line.counted("refused: revolutions with discontinuous angles") == 0);
     const RangeScan& scan = scans.back();
     REQUIRE(scan.ranges.size() == 360);
     // The revolution begins at the first echo, so that the first beam is the first in time.
@@ -164,7 +164,7 @@ TEST_CASE("a turn of an RPLIDAR in which a byte is wrong or missing is not publi
   for (const Fault& fault :
        {Fault{&sim::RplidarFaults::bad_check, "refused: samples with wrong check bits"},
         Fault{&sim::RplidarFaults::dropped_byte, "refused: samples with wrong check bits"},
-        Fault{&sim::RplidarFaults::half_turn, "refused: turns that are not whole"}}) {
+        Fault{&sim::RplidarFaults::half_turn, "refused: incomplete revolutions"}}) {
     RplidarLine line;
     REQUIRE(line.run(1500).size() >= 5);
     sim::RplidarFaults faults;

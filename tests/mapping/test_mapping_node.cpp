@@ -285,7 +285,7 @@ TEST_CASE("scans with wrong lengths, NaN or absurd numbers are refused with thei
       {[](scan_t& s) { s.sensor_position[2] = kNan; }, "sensor pose is no pose"},
       {[](scan_t& s) { s.sensor_orientation[3] = kNan; }, "sensor pose is no pose"},
       {[](scan_t& s) { s.sensor_orientation[0] = 0.0; }, "sensor pose is no pose"},
-      {[](scan_t& s) { s.ranges.resize(90); }, "not as many beams as it says"},
+      {[](scan_t& s) { s.ranges.resize(90); }, "another number of beams than stated"},
       {[](scan_t& s) {
          s.num_beams = 0;
          s.ranges.clear();
@@ -465,7 +465,7 @@ TEST_CASE("A frozen range finder is named at once, is left out of the map, and r
   CHECK(rig.health.health_state == health_t::HEALTH_FAILED);
   CHECK_THAT(rig.health.health_reason,
              Catch::Contains("range finder at 0.25, 0.00, 0.50 m") &&
-                 Catch::Contains("it repeats bit for bit what it saw before the robot moved"));
+                 Catch::Contains("it repeats bit for bit its scans from before the robot moved"));
   rig.instruments().speed = 0.0;
   const int64_t taken = rig.counted("scans taken");
   rig.run(3.0);

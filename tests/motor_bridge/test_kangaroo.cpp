@@ -149,7 +149,7 @@ TEST_CASE("Kangaroo: an untuned one is not driven, and the reason stands there")
     CHECK_FALSE(connection.ready());
   }
   CHECK(connection.counters().at(
-            "controller lost: channel 1 is tuned for another mode than its switches say") > 1);
+            "controller lost: channel 1 is tuned for another mode than its switches select") > 1);
 }
 
 TEST_CASE("Kangaroo: lost and damaged bytes leave no wrong command on the motors for long") {

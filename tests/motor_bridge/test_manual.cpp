@@ -344,7 +344,7 @@ TEST_CASE("a second hand of the same operator is refused while the first is ther
     world.step();
     REQUIRE(world.out.command == Command{0.5, 0.5});
   }
-  CHECK(world.bridge.counters().at("MANUAL ignored: another program drives by hand") == 20);
+  CHECK(world.bridge.counters().at("MANUAL ignored: another program has manual control") == 20);
 }
 
 TEST_CASE(

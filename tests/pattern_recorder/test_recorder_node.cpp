@@ -276,7 +276,7 @@ TEST_CASE("Beside another planner it says nothing and gives up") {
   drive.bus().restart("planner");
   drive.run(10.0);
   CHECK(drive.recorder().state() == RecorderNode::State::kFailed);
-  CHECK(drive.recorder().reason().find("another planner speaks on PROGRAM") == 0);
+  CHECK(drive.recorder().reason().find("another planner publishes PROGRAM") == 0);
   CHECK(drive.recorder().recorded()[0].empty());
 }
 

@@ -78,8 +78,8 @@ TEST_CASE(
   for (size_t i = 1; i < places.size(); ++i) CHECK(places[i] < places[i - 1]);
   CHECK(places.back() == 0.0);
   CHECK(walk.way_back.state().words ==
-        "the operator is lost, and the return has ended: it is where its way began, and nobody is "
-        "heard");
+        "the operator is lost, and the return has ended: it is where its path began, and "
+        "there is no operator");
 }
 
 TEST_CASE("an operator who is back ends the return, and so does a robot that is not armed") {

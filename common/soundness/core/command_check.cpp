@@ -13,10 +13,10 @@ namespace {
 constexpr double kPlausibleSpeed = 15.0;  // [m/s] of a ground vehicle
 constexpr double kPlausibleTurn = 10.0;   // [rad/s]
 constexpr double kNearlyAll = 0.98;       // of the measurements: the rest may be jumps
-constexpr double kClearer = 0.25;         // by which it is larger than that of the other sign
+constexpr double kClearer = 0.25;         // required lead over the other sign
 constexpr double kWeak = 0.4;
 
-/// The largest of the values but a few; 0 of none.
+/// The largest value, ignoring a few outliers; 0 for no values.
 double nearlyLargest(std::vector<double> values) {
   values.erase(std::remove_if(values.begin(), values.end(),
                               [](double value) { return !std::isfinite(value); }),
@@ -25,13 +25,13 @@ double nearlyLargest(std::vector<double> values) {
   return values.empty() ? 0.0 : quantile(std::move(values), kNearlyAll);
 }
 
-/// Measured over commanded, and what it is taken for.
+/// Measured over commanded, and the unit that it suggests.
 struct UnitGain {
   double gain;
   const char* words;
 };
 
-/// The unit that makes such a gain; nullptr where a vehicle may have it.
+/// The unit that explains such a gain; nullptr if the gain is possible for a vehicle.
 /** Vehicles lose up to a quarter of their speed to slip. */
 const char* unitOf(double gain) {
   static constexpr UnitGain kGains[] = {
@@ -75,7 +75,7 @@ class Checker {
   LagTable table(const std::vector<double>& rates, const Rate& command) const {
     return {increments_, rates, commandSums(drive_, command), lags_};
   }
-  /// The clearest correlation at a lag that a vehicle may have; 0 where too little is known.
+  /// The clearest correlation at a lag possible for a vehicle; 0 if too little is known.
   double correlation(const LagTable& table, double sign) const {
     const auto match = table.best(0, increments_.size(), sign, -kEarlier, kLongestLag);
     return match && match->rows >= kFewestLegs ? match->correlation : 0.0;
@@ -90,8 +90,8 @@ class Checker {
     return match.correlation * match.correlation - least * least > kLess;
   }
   /// +1, -1: the rate follows the command, or does the opposite; 0 = not clear.
-  /** What moves to the side as much as along is no vehicle of two sides: its turns are little of
-   * what is commanded. */
+  /** A robot that moves sideways as much as along its heading is no vehicle with two sides: its
+   * turns explain little of the commands. */
   int follows(const LagTable& table) const {
     const double against = -correlation(table, -1.0);
     const bool sideways = heading_.legs >= kFewestLegs && heading_.coherence < kNotTogether;
@@ -125,7 +125,7 @@ class Checker {
     const double rate = nearlyLargest(gyro);
     const double turn = nearlyLargest(turns(1.0));
     if (rate > kPlausibleTurn)
-      problem("the gyro says up to " + digits(rate) +
+      problem("the gyro reads up to " + digits(rate) +
               " rad/s, and no ground vehicle turns so: are these degrees per second?");
     if (turn > kPlausibleTurn)
       problem("the heading turns by up to " + digits(turn) +
@@ -139,13 +139,14 @@ class Checker {
   void checkHeading() {
     heading_ = bestHeading(increments_);
     turn_factor_ = heading_.factor;
-    // Doubled angles do not tell left from right: where it drives when told forward does.
+    // Doubled angles do not distinguish forward from reverse: the direction driven on a forward
+    // command does.
     if (isTurned(heading_) && follows(table(speeds(heading_), driveRate())) < 0)
       heading_.offset = wrapAngle(heading_.offset + kPi);
     if (heading_.factor == kDegree)
-      problem("the way goes along the heading if that is in degrees; as radians it does not");
+      problem("the course agrees with the heading if that is in degrees, but not in radians");
     else if (heading_.factor == 1.0 / kDegree)
-      problem("the way goes along the heading if that is in radians; as degrees it does not");
+      problem("the course agrees with the heading if that is in radians, but not in degrees");
     else if (heading_.factor == -1.0)
       nameMirror();
     else if (isTurned(heading_))
@@ -155,23 +156,23 @@ class Checker {
               "are x and y those of another frame?");
   }
 
-  /// Way and heading are mirror images of each other: which of them is wrong, the commands say.
+  /// Course and heading are mirror images of each other: the commands show which is wrong.
   void nameMirror() {
     const int turn = follows(table(turns(1.0), turnRate()));
     const bool quarter = std::abs(heading_.offset) > kPi / 4.0;
-    const std::string mirrored = "the way goes along the heading only if one of them is mirrored: ";
+    const std::string mirrored =
+        "the course agrees with the heading only if one of them is mirrored: ";
     if (turn > 0) {
       turn_factor_ = 1.0;
       problem(mirrored + (quarter ? "x and y are swapped"
-                                  : "y (or x) counts the other way; the heading turns with the "
-                                    "commands"));
+                                  : "y (or x) is inverted; the heading turns with the commands"));
     } else if (turn < 0) {
       problem(mirrored + "yaw counts clockwise" +
               (quarter ? " from north, as a compass does (heading: {sense: clockwise, zero: 90})"
                        : " (heading: {sense: clockwise})") +
               "; it turns against the commands, too");
     } else {
-      problem(mirrored + "yaw counts clockwise, or x or y the other way");
+      problem(mirrored + "yaw is clockwise, or x or y is inverted");
     }
   }
 
@@ -227,15 +228,14 @@ class Checker {
       return " (correlation " + digits(correlation(of, -1.0), 2) + ")";
     };
     if (forward < 0 && left < 0)
-      return problem("it goes backwards and turns right where the commands say forwards and left" +
+      return problem("it goes backwards and turns right when commanded forwards and left" +
                      against(turn) + ": both commands have the other sign");
     if (left < 0)
       return problem("the robot turns against its commands" + against(turn) +
-                     ": left and right are swapped, or y, yaw and gyro count the other way (z "
-                     "down)");
+                     ": left and right are swapped, or y, yaw and gyro are inverted (z down)");
     if (forward < 0)
       return problem(
-          "the robot goes backwards when told forward" + against(speed) +
+          "the robot goes backwards when commanded forward" + against(speed) +
           ": the heading is turned half round, or the commands are negative and swapped");
     if (forward > 0 && left > 0) return checkBody(v, omega, speed, turn);
     checkOneSide(v, omega, speed, turn);
@@ -256,7 +256,7 @@ class Checker {
                 (sign > 0.0 ? "left" : "right") + " side's command has the other sign");
   }
 
-  /// Speed follows the one column, and turn the other: they are a body's, not sides'.
+  /// Speed follows one column, and turn the other: they are body speeds, not sides.
   void checkBody(const std::vector<double>& v, const std::vector<double>& omega,
                  const LagTable& speed, const LagTable& turn) {
     const Rate sides[] = {[](const TrackCommand& c) { return c.left; },
@@ -296,7 +296,7 @@ class Checker {
     }
   }
 
-  /// The wheels' speeds beside the motion.
+  /// Compares the wheels' speeds with the motion.
   void checkWheels() {
     const auto by = [&](const std::vector<double>& rates, const Rate& rate) {
       return LagTable{increments_, rates, encoderSums(drive_, rate), lags_};
@@ -332,7 +332,7 @@ class Checker {
   std::vector<double> lags_;
   MotionCheck result_;
   HeadingFit heading_;
-  double turn_factor_ = 1.0;  ///< of the heading's rate, as far as its unit and sense are known
+  double turn_factor_ = 1.0;  ///< of the heading's rate, as far as its unit and sign are known
   double gauge_ = 0.0;        ///< [m] 0 = turns are not commanded in rad/s
   std::optional<LagMatch> speed_, turn_;
 };

@@ -12,20 +12,20 @@ namespace tread::gap {
 namespace {
 
 constexpr double kPrecedes = 0.1;  // of correlation^2 that a motion before its command must explain
-constexpr double kLagStep = 0.6;   // [s] by which no vehicle's lag changes within a drive
-constexpr double kBetterSquare = 0.25;  // of correlation^2 that another lag must explain more
-constexpr double kLagGrid = 0.02;       // [s] between lags of the gyro that are tried
-constexpr const char* kFitted = "; how late the heading is, the fit says (INS latency)";
+constexpr double kLagStep = 0.6;   // [s] more than any vehicle's lag varies within a drive
+constexpr double kBetterSquare = 0.25;  // of correlation^2 that another lag must gain
+constexpr double kLagGrid = 0.02;       // [s] between the tested lags of the gyro
+constexpr const char* kFitted = "; the fit determines the delay of the heading (INS latency)";
 constexpr const char* kAhead = "; the heading is ahead of the gyro: are both stamped by one clock?";
 constexpr double kPart = 60.0;       // [s] of increments
 constexpr double kLeastDrift = 0.3;  // [s] over a drive
-constexpr double kEvenly = 0.9;      // of the lags' differences that a drift explains
+constexpr double kEvenly = 0.9;      // share of the lags' differences that a drift must explain
 
 double square(double value) {
   return value * value;
 }
 
-/// Lags of ten groups of increments, for the band of the whole.
+/// Standard error of the lag, from ten groups of increments.
 double lagError(const LagTable& table, double correlation) {
   constexpr size_t kGroups = 8;
   std::vector<double> lags;
@@ -43,7 +43,7 @@ double lagError(const LagTable& table, double correlation) {
   return std::sqrt(sum / (n - 1.0) / n);
 }
 
-/// Whether the heading is ahead of the gyro, which no latency of an INS does.
+/// Whether the heading is ahead of the gyro, which no INS latency causes.
 bool isAhead(const LagTable& table, const LagMatch& match) {
   const double error = lagError(table, match.correlation);
   return std::isfinite(error) && match.lag + 2.58 * error < -kLagGrid;
@@ -61,7 +61,7 @@ bool turns(const std::vector<PoseIncrement>& increments) {
   return sum > square(0.03) * static_cast<double>(increments.size());
 }
 
-/// A gyro that says one number while the heading turns.
+/// Checks for a gyro that is constant while the heading turns.
 void checkFrozenGyro(const Drive& drive, Diagnostics& notes) {
   for (const Segment& segment : drive.segments) {
     const InsSample* from = nullptr;
@@ -77,7 +77,7 @@ void checkFrozenGyro(const Drive& drive, Diagnostics& notes) {
       const double time = sample.time - from->time;
       const double turned = std::abs(yaw - yaw_from);
       if (time > 3.0 && turned > 1.0 + 3.0 * std::abs(from->omega) * time)
-        return notes.fatal("the gyro is frozen: it says " + digits(from->omega, 4) +
+        return notes.fatal("the gyro is frozen: it reads " + digits(from->omega, 4) +
                            " rad/s all the time from " + digits(from->time) + " to " +
                            digits(sample.time) + " s while the heading turns " + digits(turned) +
                            " rad; check the INS");
@@ -104,8 +104,8 @@ std::vector<PartLag> partLags(const LagTable& table, const std::vector<PoseIncre
   return parts;
 }
 
-/// Clocks of which one is faster: the lag grows evenly.
-/** Only where a line tells the lags apart and explains nearly all of their differences. */
+/// Checks for clocks at different rates: the lag grows steadily.
+/** Only if a line separates the lags and explains nearly all of their differences. */
 bool clocksDrift(const std::vector<PartLag>& parts, Diagnostics& notes) {
   const auto n = static_cast<double>(parts.size());
   if (parts.size() < 5) return false;
@@ -132,7 +132,7 @@ bool clocksDrift(const std::vector<PartLag>& parts, Diagnostics& notes) {
   return true;
 }
 
-/// A clock that jumped: one part of the drive follows its commands with another lag.
+/// Checks for a clock that jumped: one part of the drive follows its commands with another lag.
 void checkParts(const LagTable& table, const std::vector<PartLag>& parts,
                 const std::vector<PoseIncrement>& increments, const LagMatch& whole,
                 Diagnostics& notes) {
@@ -168,12 +168,13 @@ void checkLag(const LagTable& table, const std::vector<PoseIncrement>& increment
   checkParts(table, parts, increments, *best, notes);
 }
 
-constexpr size_t kFewest = 10;        // segments among which one stands out
-constexpr double kLeastTurn = 0.35;   // [rad] that heading and gyro may differ over a segment
-constexpr double kLeastCourse = 0.6;  // [rad] of the way against the heading
+constexpr size_t kFewest = 10;  // fewest segments among which an outlier can be detected
+constexpr double kLeastTurn =
+    0.35;  // [rad] of allowed difference between heading and gyro over a segment
+constexpr double kLeastCourse = 0.6;  // [rad] of allowed difference between course and heading
 constexpr double kFar = 6.0;          // robust standard deviations
 
-/// Segments whose value is further from the median than a least distance and than six robust
+/// Segments whose value deviates from the median by more than a least distance and than six robust
 /// standard deviations.
 void markOutliers(const std::map<size_t, double>& values, double least,
                   std::vector<size_t>& marked) {
@@ -204,7 +205,7 @@ std::map<size_t, double> turnExcess(const Drive& drive,
   return excess;
 }
 
-/// Direction of the way against the heading, forwards and backwards alike, by segment [rad].
+/// Course relative to the heading, forwards and backwards alike, by segment [rad].
 std::map<size_t, double> courses(const std::vector<PoseIncrement>& increments) {
   struct Sum {
     double cos2 = 0.0, sin2 = 0.0;
@@ -215,7 +216,7 @@ std::map<size_t, double> courses(const std::vector<PoseIncrement>& increments) {
     const Pose2& step = increment.T_begin_end;
     const double way = std::hypot(step.x, step.y);
     if (std::abs(step.yaw) > 0.3 || way < 0.2) continue;
-    // From the middle of the turn, twice the angle: forwards and backwards are the same then.
+    // From the middle of the turn, with twice the angle: forwards and backwards are equal then.
     const double angle = 2.0 * (std::atan2(step.y, step.x) - step.yaw / 2.0);
     Sum& sum = sums[increment.segment];
     sum.cos2 += way * std::cos(angle);
@@ -241,7 +242,7 @@ void checkGyro(const Drive& drive, Diagnostics& notes) {
   const LagTable table = gyroTable(drive, increments);
   const auto match = table.best(0, increments.size());
   if (!match || !turns(increments))
-    return notes.note("no gyro beside the heading, or nothing turns: not compared");
+    return notes.note("no gyro to compare with the heading, or no turns: not compared");
   if (goesAgainst(table, -1.0, 1.0)) {
     const auto against = table.best(0, increments.size(), -1.0);
     return notes.contradiction("flipped sign: the gyro turns against the heading (slope " +
@@ -253,7 +254,7 @@ void checkGyro(const Drive& drive, Diagnostics& notes) {
   const std::string r = "correlation " + digits(match->correlation, 2) + " over " +
                         std::to_string(match->rows) + " intervals";
   if (match->correlation < kClear) return notes.note("gyro and heading hardly agree (" + r + ")");
-  // Steady turns tell little of a lag: the fit, which knows the commands, is what says it.
+  // Steady turns show little of a lag: the fit, which uses the commands, determines it.
   notes.note("gyro and heading agree: the heading turns " + digits(match->slope, 3) +
              " of the gyro; " + r + (isAhead(table, *match) ? kAhead : kFitted));
 }
@@ -273,14 +274,14 @@ std::vector<LogNote> validateLog(const Drive& drive) {
   const auto increments = poseIncrements(drive);
   if (increments.empty()) {
     notes.fatal(
-        "no motion with known commands: no two new poses follow each other within 1.2 s "
-        "while MOTOR tells what the robot obeys");
+        "no motion with known commands: no two new poses are within 1.2 s while MOTOR contains the "
+        "commands");
     return notes.notes();
   }
   const MotionCheck motion = checkMotion(drive, increments);
   for (const std::string& line : motion.lines) notes.following(line);
   for (const std::string& problem : motion.problems) notes.contradiction(problem);
-  // What is taken for something else says nothing of gyro and clocks.
+  // Signals read in the wrong unit or sign prove nothing about gyro and clocks.
   if (!motion.problems.empty()) return notes.notes();
   checkGyro(drive, notes);
   checkLags(drive, increments, notes);

@@ -9,18 +9,18 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kWindow = 15.0;       // [s] of increments that are judged together
+constexpr double kWindow = 15.0;       // [s] of increments that are evaluated together
 constexpr double kWindowClear = 0.5;   // |correlation| with which a window has a sign
-constexpr double kLeastSpread = 0.05;  // [rad/s] or [m/s] RMS of what follows: else it is noise
-constexpr double kAlike = 3.0;         // times the usual slope, or a part of it
+constexpr double kLeastSpread = 0.05;  // [rad/s] or [m/s] RMS of the following rate: less is noise
+constexpr double kAlike = 3.0;         // largest ratio to the usual slope, or its inverse
 constexpr double kFrozen = 2.0;        // [s] of the same numbers
 constexpr size_t kFrozenRows = 10;     // messages of the same numbers
-constexpr double kTenth = 0.1;         // of the largest command, RMS: else nothing is commanded
-constexpr double kDriving = 0.2;       // of the largest command: more than that moves the robot
-constexpr double kAlong = 0.8;         // share of the way along the heading, squared, that is sound
-constexpr double kAcross = 0.4;        // and one that is not
+constexpr double kTenth = 0.1;         // of the largest command, RMS: less means no command
+constexpr double kDriving = 0.2;       // of the largest command: enough to move the robot
+constexpr double kAlong = 0.8;   // share of the course along the heading, squared, that is valid
+constexpr double kAcross = 0.4;  // and one that is not
 
-/// Increments [first, last) and when they were.
+/// Increments [first, last) and their times.
 struct Window {
   size_t first = 0, last = 0;
   double begin = 0.0, end = 0.0;  ///< [s]
@@ -44,8 +44,9 @@ std::string times(const Window& from, const Window& to) {
   return "from " + digits(from.begin) + " to " + digits(to.end) + " s";
 }
 
-/// The longest run of windows that are not as most are, with silent ones in between; nothing where
-/// too few speak. `signs`: +1, -1, 0 = does not say; `sure`: one alone is enough.
+/// The longest run of windows that differ from the majority, with undecided ones in between;
+/// nullopt if too few are decided. `signs`: +1, -1, 0 = undecided; `sure`: one window alone is
+/// enough.
 std::optional<std::pair<size_t, size_t>> minority(const std::vector<int>& signs,
                                                   const std::vector<bool>& sure) {
   const auto plus = std::count(signs.begin(), signs.end(), 1);
@@ -74,16 +75,16 @@ std::optional<std::pair<size_t, size_t>> minority(const std::vector<int>& signs,
   return longest;
 }
 
-/// Two rates of which one follows the other, and from when on a window speaks of them.
+/// Two rates of which one follows the other, and the thresholds for a decided window.
 struct Followed {
   const LagTable& table;
   const std::vector<double>& lags;
-  double least_leading = 0.0;  ///< RMS of the rate that is followed
-  bool one_is_enough = false;  ///< a person or controller may steer against what happens for 15 s
-  const char* what = "";       ///< it means where the sign is the other one
+  double least_leading = 0.0;  ///< RMS of the leading rate
+  bool one_is_enough = false;  ///< for 15 s a person or controller may steer against the motion
+  const char* what = "";       ///< the meaning of an opposite sign
 };
 
-/// The lag at which one rate follows the other best, with whatever sign; lags.size() = none.
+/// The lag at which one rate follows the other best, with either sign; lags.size() = none.
 size_t bestLag(const Followed& followed, const std::vector<Window>& windows) {
   size_t best = followed.lags.size();
   double most = 0.0;
@@ -98,8 +99,8 @@ size_t bestLag(const Followed& followed, const std::vector<Window>& windows) {
   return best;
 }
 
-/// A rate that follows another one with one sign here and the opposite sign there. Windows speak in
-/// which both change enough, and the one by about as much of the other as elsewhere.
+/// Checks for a rate that follows another one with opposite signs in different parts. A window is
+/// decided if both rates vary enough and their ratio is about the usual one.
 void checkSign(const Followed& followed, const std::vector<Window>& windows, Diagnostics& notes) {
   const size_t lag = bestLag(followed, windows);
   if (lag == followed.lags.size()) return;
@@ -128,7 +129,7 @@ void checkSign(const Followed& followed, const std::vector<Window>& windows, Dia
                 followed.what + ", elsewhere it does not; cut the log there");
 }
 
-/// Position and heading that belong together here and not there.
+/// Checks for position and heading that agree in one part and not in another.
 void checkCourses(const std::vector<PoseIncrement>& increments, const std::vector<Window>& windows,
                   Diagnostics& notes) {
   std::vector<int> signs;
@@ -140,9 +141,9 @@ void checkCourses(const std::vector<PoseIncrement>& increments, const std::vecto
       const Pose2& step = increments[i].T_begin_end;
       const double way = step.x * step.x + step.y * step.y;
       if (std::abs(step.yaw) > kGentle || way < 0.01) continue;
-      // A turn on the spot moves what is not over its centre.
+      // A turn on the spot moves a point that is not at its centre.
       if (way < std::pow(kLever * step.yaw, 2)) continue;
-      // Against the heading in the middle of the turn.
+      // Relative to the heading in the middle of the turn.
       along += way * std::pow(std::cos(std::atan2(step.y, step.x) - 0.5 * step.yaw), 2);
       all += way;
       ++rows;
@@ -159,7 +160,7 @@ void checkCourses(const std::vector<PoseIncrement>& increments, const std::vecto
                 "turned; cut the log there");
 }
 
-/// How long between two times commands were given that move the robot [s].
+/// Time between two instants during which commands moved the robot [s].
 double drivenBetween(VehicleLayout layout, const Segment& segment, double from, double to,
                      double least) {
   double sum = 0.0;
@@ -175,11 +176,11 @@ bool isSame(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
 
-/// A run of messages that say the same.
+/// A run of identical messages.
 struct Frozen {
   const InsSample* first = nullptr;
   const InsSample* last = nullptr;
-  const InsSample* pose = nullptr;  ///< the first with a pose: they come more seldom than rates
+  const InsSample* pose = nullptr;  ///< the first with a pose: poses are less frequent than rates
   size_t rows = 0;
 
   bool goesOn(const InsSample& sample) const {
@@ -199,9 +200,9 @@ struct Frozen {
   }
 };
 
-/// An INS that repeats itself while the robot is driven.
-/** A gyro's noise does not stand still, not even where the robot is held; a gyro that says exactly
- * 0 may have none. */
+/// Checks for an INS that repeats itself while the robot is driven.
+/** A gyro's noise is never constant, not even while the robot is held; a gyro that reads exactly 0
+ * may have no noise. */
 void checkFrozen(const Drive& drive, Diagnostics& notes) {
   const double least = kDriving * largestCommand(drive);
   for (const Segment& segment : drive.segments) {
@@ -210,7 +211,7 @@ void checkFrozen(const Drive& drive, Diagnostics& notes) {
       if (run.rows < kFrozenRows || run.pose == nullptr ||
           drivenBetween(drive.layout, segment, run.first->time, run.last->time, least) < kFrozen)
         return false;
-      notes.fatal("the INS is frozen: it says the same " + std::to_string(run.rows) +
+      notes.fatal("the INS is frozen: it repeats the same " + std::to_string(run.rows) +
                   " times from " + digits(run.first->time) + " to " + digits(run.last->time) +
                   " s while the robot is driven; cut the log there");
       return true;

@@ -13,7 +13,7 @@ constexpr double kJump = 0.5;            // [m]
 constexpr double kTooManyJumps = 0.05;   // of the pose steps
 constexpr double kSettled = 3.0;         // [s] after which a vehicle stands; tracks recoil
 constexpr double kNearlyStraight = 0.3;  // [rad]
-constexpr double kLeastAlong = 0.6;      // of the way, squared: else the heading is another one
+constexpr double kLeastAlong = 0.6;      // of the course, squared: less means another heading
 
 /// Steps between new poses.
 struct PoseSteps {
@@ -47,7 +47,7 @@ PoseSteps poseSteps(const Drive& drive) {
   return steps;
 }
 
-/// Position and heading that belong together go along the heading.
+/// Checks that the position moves along the heading.
 void checkCourse(const std::vector<PoseIncrement>& increments, Diagnostics& notes) {
   double along = 0.0;
   double all = 0.0;
@@ -66,7 +66,7 @@ void checkCourse(const std::vector<PoseIncrement>& increments, Diagnostics& note
               "mirrored or turned map?)");
 }
 
-/// Times in which a segment has commanded zero for long.
+/// Times in which a segment commands zero for long.
 std::vector<std::pair<double, double>> standstills(VehicleLayout layout, const Segment& segment) {
   std::vector<std::pair<double, double>> times;
   const auto stands = [&](size_t i) { return driveOf(layout, segment.commands[i].command) == 0.0; };
@@ -80,7 +80,7 @@ std::vector<std::pair<double, double>> standstills(VehicleLayout layout, const S
   return times;
 }
 
-/// Spread of numbers about their own mean at each standstill.
+/// Spread of values about their own mean at each standstill.
 class Spread {
  public:
   void add(double value) {
@@ -111,7 +111,7 @@ std::string range(std::vector<double>& values, const std::string& unit) {
          unit;
 }
 
-/// How often a command changes its sense.
+/// How often a command changes its sign.
 size_t reversals(const Drive& drive) {
   size_t count = 0;
   for (const Segment& segment : drive.segments) {
@@ -203,8 +203,7 @@ void describeStandstill(const Drive& drive, Diagnostics& notes) {
     }
   if (seconds < 2.0)
     return notes.note(
-        "it never stands still for long: bias of the gyro and noise are not "
-        "known by themselves");
+        "it never stands still for long: gyro bias and noise cannot be measured separately");
   std::string what = digits(seconds, 0) + " s of standstill:";
   if (gyro.known())
     what += " gyro " + digits(gyro.mean(), 4) + " +- " + digits(gyro.deviation(), 4) + " rad/s";

@@ -20,11 +20,11 @@ namespace tread::gap {
 
 namespace {
 
-constexpr double kChangeNats = 10.0;  // 2 nats times what correlated ground takes off
+constexpr double kChangeNats = 10.0;  // 2 nats, corrected for correlated ground
 constexpr double kInvisible = 2.0;    // times its typical size: not excited
-/// Share of a found size that its 95 % interval has at least to either side. No vehicle is made of
-/// the catalogue's equations, and no drive shows by how much their sizes are off for that: 1 to 5 %
-/// in the blind study, of effects that are only like them.
+/// Minimum half-width of the 95 % interval as a share of a found size. No vehicle follows the
+/// catalogue's equations exactly, and no drive shows the resulting error of their sizes: 1 to 5 %
+/// in the blind study, for effects that only resemble them.
 constexpr double kForm = 0.05;
 constexpr double kTermChanged = 0.7;  // of the largest value of an unnamed term
 
@@ -40,7 +40,7 @@ bool isShape(const std::string& path) {
   return known != nullptr && known->role == ParameterRole::kShape;
 }
 
-/// Half of a given term's interval, infinite where the drive does not feel it.
+/// Half-width of a given term's interval, infinite if the drive does not excite it.
 double halfInterval(const FitState& state, size_t index, double half) {
   const std::string& path = state.free[index].path;
   const EffectParameter* known = findEffectParameter(path);
@@ -50,10 +50,10 @@ double halfInterval(const FitState& state, size_t index, double half) {
   return half < visible ? half : std::numeric_limits<double>::infinity();
 }
 
-/// Whether a value of an unnamed term that the model has is another one now, beyond chance and by
-/// kTermChanged of the term's largest value.
-/** Such a term is only like what it stands for: on another drive its values are others by more than
- * blocks of one drive tell. */
+/// Whether a value of a model's unnamed term has changed, significantly and by kTermChanged of the
+/// term's largest value.
+/** Such a term is only similar to its cause: on another drive its values differ by more than the
+ * blocks of one drive show. */
 bool hasTermMoved(const UnnamedTerm& term, const ParameterEstimate& estimate,
                   double most_by_chance) {
   const double change = std::abs(estimate.value - estimate.before);
@@ -72,7 +72,7 @@ FoundEffect foundEffect(const std::string& name, const FoundTerms& result,
   effect.gain = evidence.gain.value;
   effect.gain_error = evidence.gain.error;
   effect.accepted = contains(settings.accepted, name);
-  if (effect.accepted) return effect;  // decided: nothing else is in its place
+  if (effect.accepted) return effect;  // accepted by a person: it has no alternatives
   const VehicleLayout layout = result.state.model.vehicle.layout();
   std::vector<std::string> group = confoundedEffects(name, result.state.model.measurement);
   for (const std::string& pair : evidence.replaced) group.push_back(pair);
@@ -80,17 +80,17 @@ FoundEffect foundEffect(const std::string& name, const FoundTerms& result,
     if (!contains(settings.rejected, other) && !contains(evidence.told_from, other) &&
         effectNamed(other).isOf(layout))
       effect.group.push_back(other);
-  // What came in beside it later does not stand in its place.
+  // Runners-up that were accepted later are not alternatives.
   for (const RunnerUp& other : evidence.runner_ups)
     if (!contains(result.effects, other.effect) && !contains(result.released, other.effect))
       effect.runner_ups.push_back(other);
   return effect;
 }
 
-constexpr double kLateWheels = 0.3;  // [s] by which encoders themselves may be late
+constexpr double kLateWheels = 0.3;  // [s] by which encoders themselves may lag
 
-/// Takes what the wheel speeds say: what the drive does is no effect of the INS.
-/** Of a delay only where it is longer than encoders are late: they show that as one, too. */
+/// Attaches the wheel-speed evidence. If the wheels show the effect, drops INS explanations.
+/** For a delay only above kLateWheels, because encoders lag too. */
 void hearWheels(const WheelWitness& wheels, FoundEffect& effect) {
   effect.wheels = wheels;
   const bool is_delay = effectNamed(effect.name).search.late_by == LateBy::kCommand;
@@ -106,7 +106,7 @@ void hearWheels(const WheelWitness& wheels, FoundEffect& effect) {
       effect.runner_ups.end());
 }
 
-/// What witnesses say of an effect, if they do.
+/// The evidence about an effect, if there is any.
 template <class Witness>
 std::optional<Witness> witnessOf(const std::map<std::string, Witness>& witnesses,
                                  const std::string& effect) {
@@ -125,7 +125,7 @@ ParameterCovariance knownCovariance(const FitState& state, const Eigen::MatrixXd
   for (size_t i = 0; i < state.free.size(); ++i) {
     const FreeParameter& parameter = state.free[i];
     const auto at = static_cast<Eigen::Index>(i);
-    if (restTermOf(parameter.path)) continue;  // it has its own deviation
+    if (restTermOf(parameter.path)) continue;  // it has its own standard deviation
     if (!(std::sqrt(covariance(at, at)) < parameter.max - parameter.min)) continue;
     known.parameters.push_back(parameter.path);
     sure.push_back(at);
@@ -161,7 +161,7 @@ EffectKind kindOf(const ParameterEstimate& estimate) {
 }
 
 /// Whether a term of the INS has changed by a share of its typical size: the ends of executions do
-/// not show it, since they begin with the same error.
+/// not show it, because they start with the same error.
 bool hasInstrumentChanged(const ParameterEstimate& estimate) {
   const size_t dot = estimate.parameter.find('.');
   if (dot == std::string::npos || kindOf(estimate) != EffectKind::kMeasurement) return false;
@@ -171,10 +171,10 @@ bool hasInstrumentChanged(const ParameterEstimate& estimate) {
   return std::abs(estimate.value - estimate.before) > kShareOfTypical * std::abs(typical);
 }
 
-/// A change of what the model already has is a discrepancy if the end error falls with it, or would
-/// fall if the new model were right.
-/** Errors scatter more than a small change lets them fall: two models that are apart by d leave an
- * error of e and, of the wrong one, of the root of e^2 + d^2. */
+/// A change of a given term is a discrepancy if the end error falls with it, or would fall if the
+/// new model were right.
+/** The scatter of errors hides the gain from a small change: if two models differ by d and the
+ * right one has an error of e, the wrong one has the root of e^2 + d^2. */
 void dropIrrelevantMoves(GapFinding& finding, double least_gain) {
   const Gap& gap = *finding.gap;
   const double least = 1.0 - least_gain;
@@ -215,7 +215,7 @@ GapVerdict verdictOf(const GapFinding& finding, const std::vector<FoundEffect>& 
   const bool measurement = std::all_of(shown.begin(), shown.end(), [](const FoundEffect& effect) {
     return effectNamed(effect.name).kind() == EffectKind::kMeasurement;
   });
-  // A term of the vehicle that has changed is a finding, too.
+  // A changed term of the vehicle is a finding, too.
   const bool moved =
       std::any_of(finding.identified.calibrated.begin(), finding.identified.calibrated.end(),
                   [](const ParameterEstimate& estimate) {
@@ -224,10 +224,11 @@ GapVerdict verdictOf(const GapFinding& finding, const std::vector<FoundEffect>& 
   return measurement && !moved ? GapVerdict::kMeasurement : GapVerdict::kFound;
 }
 
-constexpr double kUndescribed = 0.15;  // of the way: an error beyond it is that of another vehicle
-constexpr double kLeastWay = 1.0;      // [m], else noise and patches of ground may be so large
+constexpr double kUndescribed = 0.15;  // of the distance: a larger error means another vehicle
+constexpr double kLeastWay =
+    1.0;  // [m]: below it, noise and patches of ground can cause such errors
 
-/// What effects on a model explain that is far from the vehicle are no names.
+/// Effects on a model that is far from the vehicle are not valid names for the deviations.
 void refuseUndescribed(GapFinding& finding) {
   if (!finding.gap || exitStatus(finding.verdict) == 0) return;
   const double off = finding.gap->after.position.median;
@@ -239,7 +240,7 @@ void refuseUndescribed(GapFinding& finding) {
                    " m away: this vehicle is not what the model describes";
 }
 
-/// A size at the end of what is plausible is no measurement.
+/// A size at the end of its plausible range is no measurement.
 void refuseOnBound(const ParameterEstimate& estimate, GapFinding& finding) {
   if (!runsToBound(finding.identified.model, freeParameter(finding.before, estimate.parameter)))
     return;
@@ -261,7 +262,8 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
   std::map<std::string, std::vector<ParameterEstimate>> of_effect;
   for (size_t i = 0; i < state.free.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    if (isNameless(state, i)) {  // adequacy tells of a rest, and a term of itself
+    if (isNameless(state,
+                   i)) {  // the adequacy test reports a rest, and an unnamed term reports itself
       const UnnamedTerm* const had = termOfPath(before, state.free[i].path);
       if (had != nullptr && !settings.calibrate && !contains(identified.moved_terms, had->name) &&
           hasTermMoved(*had, estimateOf(state.free[i].path, before, state.model, 0.0),
@@ -329,7 +331,7 @@ void judge(GapFinding& finding, double adequacy_alpha, double least_gain) {
   std::copy_if(finding.identified.effects.begin(), finding.identified.effects.end(),
                std::back_inserter(shown), isShown);
   if (shown.empty()) dropIrrelevantMoves(finding, least_gain);
-  // What only an unnamed term explains has no name: it counts as unexplained.
+  // A dependence explained only by an unnamed term has no name: it counts as unexplained.
   const bool adequate = finding.adequacy.p_value > adequacy_alpha &&
                         finding.identified.unnamed.empty() &&
                         finding.identified.moved_terms.empty();
@@ -358,13 +360,13 @@ void judge(GapFinding& finding, double adequacy_alpha, double least_gain) {
 
 namespace {
 
-constexpr int kLeastHalf = 10;           // blocks from which effects can be chosen, too
-constexpr double kAdequacyAlpha = 0.01;  // of the variables; of smooth functions half of it more
+constexpr int kLeastHalf = 10;           // blocks from which effects can be chosen
+constexpr double kAdequacyAlpha = 0.01;  // for the variables; half of it more for smooth functions
 
 constexpr double kFastestCar = 15.0;    // [m/s]
 constexpr double kNearlyAlways = 0.98;  // of the driving
 
-/// What drives so that the model's equations are not those of such a vehicle; empty if none does.
+/// Why the model's equations do not hold for a drive of this vehicle; empty if they hold for all.
 std::string beyondTheModel(const GapTask& task) {
   if (!task.model.vehicle.isCar()) return "";
   std::vector<double> speeds;
@@ -377,7 +379,7 @@ std::string beyondTheModel(const GapTask& task) {
          " m/s a car is gears, tyres and load transfer, which the model does not have";
 }
 
-/// Why nothing can be concluded; empty if something can.
+/// Why no conclusion is possible; empty if one is.
 std::string reasonNotToTell(const GapTask& task, const Observations& data) {
   for (const LogNote& note : task.log_notes)
     if (note.fatal) return note.log + ": " + note.what;
@@ -397,7 +399,7 @@ SearchSettings settingsOf(const GapTask& task) {
   return settings;
 }
 
-/// An accepted effect without a size would be a claim about nothing.
+/// An accepted effect without a size would be an empty claim.
 void requireSized(const FoundTerms& result, const SearchSettings& settings) {
   std::map<std::string, std::string> unsized = result.unsized;
   for (const FreeParameter& parameter : result.state.free) {
@@ -409,10 +411,10 @@ void requireSized(const FoundTerms& result, const SearchSettings& settings) {
   }
   for (const auto& [effect, why] : unsized)
     throw std::invalid_argument(effect + ": accepted, but this drive cannot size it: " + why +
-                                "; drive what shows it, or do not accept it");
+                                "; drive so that it shows, or do not accept it");
 }
 
-/// Errors before and after on driving that was not used for the fit.
+/// Errors before and after, on driving that was not used for the fit.
 struct UnseenErrors {
   Gap gap;
   std::vector<Unseen> parts;  ///< of the new model
@@ -430,7 +432,7 @@ UnseenErrors errorsOnTest(const GapTask& task, const Observations& test,
   return unseen;
 }
 
-/// Alternate blocks: what one half found predicts the other.
+/// Alternate blocks: the result of each half predicts the other.
 UnseenErrors errorsOnHalves(const ModelDocument& before, const Fitter& fitter,
                             const FoundTerms& result, const std::vector<UnnamedFinding>& unnamed,
                             SearchSettings settings, SearchMemory& memory) {
@@ -445,16 +447,16 @@ UnseenErrors errorsOnHalves(const ModelDocument& before, const Fitter& fitter,
   for (const UnnamedFinding& term : unnamed)
     channels.push_back({termOfPath(result.state.model, term.name + ".0")->channel});
   std::vector<ExecutionError> outside;  // of either half
-  settings.all_sized = false;           // half of the driving may not show all
+  settings.all_sized = false;           // half of the driving may not show all of them
   const Progress silent = [](const std::string&) {};
   for (int half : {0, 1}) {
     const Fitter on_half = fitter.onRows(halfMask(data, half));
     std::optional<FoundTerms> alone;
     if (nested) alone = search(on_half, before, settings, memory, silent);
-    // Half of the driving chooses its own terms, as many as all of it did.
+    // Each half of the driving chooses its own terms, as many as all of it did.
     for (size_t i = 0; alone && !alone->record.cut_short && i < channels.size(); ++i)
       addTerm(on_half, alone->state, channels[i], kTermSureOfHalf);
-    // What has no time left chooses no effects: they are those of all.
+    // Without time left it chooses no effects: they are those of all the driving.
     nested = alone && !alone->record.cut_short;
     const ModelDocument model = nested ? alone->state.model : refitted(on_half, result).model;
     unseen.parts.push_back({&data, model, {}, 0});
@@ -468,9 +470,10 @@ UnseenErrors errorsOnHalves(const ModelDocument& before, const Fitter& fitter,
   return unseen;
 }
 
-/// Widens the intervals of found effects by half of what the two halves of the driving say apart.
-/** Blocks tell how a size scatters as long as its form is right and the effects beside it are the
- * same; where the halves choose others, or one does without it, that scatters, too. */
+/// Widens the intervals of found effects by half of the difference between the two halves of the
+/// driving.
+/** Blocks give the scatter of a size if its form is right and the other effects are the same; if
+ * the halves choose other effects, or one does without it, that adds to the scatter. */
 void widenByHalves(const std::vector<Unseen>& halves, IdentifiedModel& identified) {
   for (FoundEffect& effect : identified.effects)
     for (ParameterEstimate& estimate : effect.parameters) {
@@ -485,12 +488,11 @@ void widenByHalves(const std::vector<Unseen>& halves, IdentifiedModel& identifie
     }
 }
 
-/// Adds what a report shows of unnamed terms: how sure their values are, and what they were made
-/// from.
+/// Adds the report's data on unnamed terms: the certainty of their values, and their basis.
 void describe(const Fitter& fitter, const ModelDocument& before,
               const std::vector<UnnamedFinding>& unnamed, IdentifiedModel& identified) {
   identified.unnamed = unnamed;
-  // The fitter knows the conditions of the rest before.
+  // The fitter has the conditions of the earlier rest.
   ModelDocument with_old_rest = identified.model;
   with_old_rest.rest = before.rest;
   for (UnnamedFinding& found : identified.unnamed) {
@@ -502,7 +504,7 @@ void describe(const Fitter& fitter, const ModelDocument& before,
   }
 }
 
-/// Noise of what a model leaves, channel by channel.
+/// Noise of a model's residuals, channel by channel.
 Noise residualNoise(const Fitter& fitter, const ModelDocument& model) {
   const Observations& data = fitter.data();
   const Eigen::VectorXd predicted = data.predict(model);
@@ -515,7 +517,7 @@ Noise residualNoise(const Fitter& fitter, const ModelDocument& model) {
 GapFinding findGap(const GapTask& task, const Progress& say) {
   const Observations data(task.train, {});
   ModelDocument before = task.model;
-  // What is calibrated is as if new: nothing of it is known.
+  // A calibrated model is treated as new: without priors.
   if (task.calibrate) before.rest.reset();
   const Fitter fitter(data, task.parallel, restConditions(data, before));
   const int blocks = data.measuredBlocks();
@@ -533,21 +535,20 @@ GapFinding findGap(const GapTask& task, const Progress& say) {
   SearchMemory memory;
   FoundTerms result = search(fitter, before, settings, memory, say);
   requireSized(result, settings);
-  // What was seen but does not matter is no rest without a name.
+  // Detected but irrelevant dependences are not part of the unnamed rest.
   const FitState tested = result.state;
   if (!task.keep_small) dropUnconfirmed({fitter, settings, say, result});
   finding.search = result.record;
   say("6 adequacy");
   finding.adequacy = testAdequacy(fitter, tested, kAdequacyAlpha, task.seed);
   std::vector<UnnamedFinding> unnamed;
-  // What a person has rejected, or what was seen and does not matter, would come back without its
-  // name.
+  // An effect that a person rejected, or that is irrelevant, would return without its name.
   const bool all_kept = result.state.free.size() == tested.free.size();
-  const bool has_terms = !before.vehicle.isOmni();  // its kernel knows none
+  const bool has_terms = !before.vehicle.isOmni();  // its kernel has none
   if (has_terms && !task.named_only && settings.rejected.empty() && all_kept)
     addUnnamedTerms({fitter, settings, say, result}, kAdequacyAlpha, finding.adequacy, unnamed);
   finding.search.cut_short = result.record.cut_short;
-  // A rest in which nothing is new stays what it was.
+  // A rest without anything new stays as it was.
   if (!before.rest || !unnamed.empty() || finding.adequacy.p_value <= kAdequacyAlpha) {
     result.state.model.rest = restOf(fitter, result.state, task.seed);
     countTermsToRest(data, result.state.model);

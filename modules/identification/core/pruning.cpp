@@ -10,24 +10,24 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kSure = 4.0;        // standard errors of a gain beyond doubt
-constexpr double kSureOfFew = 2.5;   // the same where few blocks act, which cannot agree better
-constexpr double kNearly = 0.8;      // evidence with which what has passed once stays
-constexpr double kNearlySure = 2.0;  // if it gains so many standard errors
+constexpr double kSure = 4.0;        // standard errors of a gain that is certain
+constexpr double kSureOfFew = 2.5;   // the same if few blocks act, whose agreement is limited
+constexpr double kNearly = 0.8;      // evidence that suffices for an effect that has passed once
+constexpr double kNearlySure = 2.0;  // required gain in standard errors in that case
 constexpr double kNearlyNats = 50.0;
-constexpr double kSureNats = 100.0;  // and its least size: smaller ones may be negligible
+constexpr double kSureNats = 100.0;  // and its minimum: smaller gains may be negligible
 constexpr double kLongLag = 0.1;     // [s]
 
-/// What removing an effect costs.
+/// The cost of removing an effect.
 struct Removal {
   FitState state;         ///< without it
   double score = 0.0;     ///< T of the whole effect in the presence of the others
   double evidence = 0.0;  ///< over what is needed
   bool few = false;       ///< few blocks excite it
-  Gain gain;              ///< of having it, on blocks left out
+  Gain gain;              ///< of having it, on held-out blocks
 };
 
-/// The effect of one model put into another.
+/// One model with an effect from another model.
 ModelDocument withEffectOf(const ModelDocument& model, const ModelDocument& source,
                            const std::string& effect) {
   ModelDocument changed = model;
@@ -38,7 +38,7 @@ ModelDocument withEffectOf(const ModelDocument& model, const ModelDocument& sour
   return changed;
 }
 
-/// What the effect costs, given a state without it and the direction that leads back.
+/// The cost of the effect, given a state without it and the direction that restores it.
 Removal judged(const Fitter& fitter, const Eigen::VectorXd& loss_with, FitState reduced,
                const Eigen::VectorXd& direction, const Needed& needed) {
   Removal removed;
@@ -59,7 +59,7 @@ Removal removal(const Fitter& fitter, const FitState& state, const Eigen::Vector
   return judged(fitter, loss_with, std::move(reduced), direction, needed);
 }
 
-/// The same in first order, without a simulation; the model of the state stays as it was.
+/// The same in first order, without a simulation; the state's model is not changed.
 Removal linearRemoval(const Fitter& fitter, const FitState& state, const Eigen::VectorXd& loss_with,
                       const std::string& effect, const Needed& needed) {
   FitState reduced = withoutLinearly(fitter, state, effect);
@@ -68,7 +68,7 @@ Removal linearRemoval(const Fitter& fitter, const FitState& state, const Eigen::
   return judged(fitter, loss_with, std::move(reduced), direction, needed);
 }
 
-/// What a model misses on the fitter's blocks: sums, for comparisons.
+/// A model's errors on the fitter's blocks: sums, for comparisons.
 struct Missed {
   double position = 0.0;  ///< at the ends of executions
   double yaw = 0.0;
@@ -90,8 +90,8 @@ Missed missedBy(const Fitter& fitter, const FitState& state) {
   return missed;
 }
 
-/// Relative improvement of the mean end error, of position or yaw, whichever is larger; of an
-/// effect of the INS, which may move no pose, also of the yaw rate.
+/// Relative improvement of the mean end error, of position or yaw, whichever is larger; for an
+/// effect of the INS, which may not change any pose, also of the yaw rate.
 double improvement(const Fitter& fitter, const FitState& old_state, const FitState& new_state,
                    const std::string& effect) {
   const Missed before = missedBy(fitter, old_state);
@@ -104,7 +104,7 @@ double improvement(const Fitter& fitter, const FitState& old_state, const FitSta
   return largest;
 }
 
-/// Effects by how sure their strongest parameter is, least sure first.
+/// Effects by the certainty of their strongest parameter, least certain first.
 std::vector<std::string> leastSureFirst(const Fitter& fitter, const FoundTerms& result) {
   const Eigen::MatrixXd covariance = parameterCovariance(fitter, result.state);
   std::map<std::string, double> sure;
@@ -128,7 +128,8 @@ bool isBeyondDoubt(const Removal& removed) {
   return removed.gain.value > sure * removed.gain.error && removed.gain.value > kSureNats;
 }
 
-/// Whether an effect's prediction is straight down to its absence: not limits, thresholds, shapes.
+/// Whether an effect's prediction is linear down to its absence: not for limits, thresholds,
+/// shapes.
 bool isStraight(const FitState& state, const std::string& effect) {
   for (const FreeParameter& parameter : state.free) {
     if (effectOf(parameter.path) != effect) continue;
@@ -146,14 +147,14 @@ bool isAtBound(const FitState& state, const std::string& effect) {
   });
 }
 
-/// Whether a test has named it: it is no mere nuisance term.
+/// Whether a test has named it, so that it is not only a nuisance term.
 bool wasNamed(const FoundTerms& result, const std::string& effect) {
   const auto known = result.evidence.find(effect);
   return known != result.evidence.end() && known->second.p_value;
 }
 
-/// What has passed the test once stays with a little less evidence; so does what the wheels show,
-/// in the place of an effect that has passed it.
+/// An effect that has passed the test once needs slightly less evidence to stay; so does one that
+/// the wheels show and that replaces such an effect.
 bool isNearly(const FoundTerms& result, const std::string& effect, const Removal& removed) {
   const auto known = result.evidence.find(effect);
   if (known != result.evidence.end() && known->second.by_wheels)
@@ -162,8 +163,9 @@ bool isNearly(const FoundTerms& result, const std::string& effect, const Removal
          removed.gain.value > kNearlySure * removed.gain.error && removed.gain.value > kNearlyNats;
 }
 
-/// Whether an effect is one of the lags between a command and what the INS says, beside a long one.
-/** Without it the long one would take its time over, and with it a size that nobody believes. */
+/// Whether an effect is one of the lags between a command and the INS's measurement, in addition to
+/// a long one.
+/** Without it the long one would absorb its delay, and reach an implausible size. */
 bool isBesideLag(const FoundTerms& result, const std::string& effect) {
   if (!isLag(effectNamed(effect))) return false;
   return std::any_of(result.effects.begin(), result.effects.end(), [&](const std::string& other) {
@@ -172,18 +174,18 @@ bool isBesideLag(const FoundTerms& result, const std::string& effect) {
   });
 }
 
-/// Why an effect should go; no words if it should stay.
+/// The reason for removing an effect; empty if it should stay.
 struct Against {
   std::string words;
-  bool negligible = false;  ///< it is real, but too small to count
+  bool negligible = false;  ///< it is real, but negligible
 };
 
 Against reasonAgainst(const SearchState& search, const std::string& effect,
                       const Removal& removed) {
-  // Residuals far beyond the scales pull no more: a large effect shows in its gain.
+  // Residuals far beyond the scales do not pull more: a large effect shows in its gain.
   if (removed.evidence < 1.0 && !isBeyondDoubt(removed) &&
       !isNearly(search.result, effect, removed))
-    return {"chance explains it beside the others", false};
+    return {"chance explains it in the presence of the others", false};
   if (removed.gain.value <= 0.0) return {"does not help on blocks left out", false};
   const double least = isBesideLag(search.result, effect) ? 0.0 : search.settings.least_gain;
   if (least > 0.0 && improvement(search.fitter, removed.state, search.result.state, effect) < least)
@@ -194,7 +196,7 @@ Against reasonAgainst(const SearchState& search, const std::string& effect,
 void remove(const SearchState& search, const std::string effect, Removal& removed,
             const Against& why) {
   SearchRecord& record = search.result.record;
-  // Mere nuisance terms go without a word.
+  // Pure nuisance terms are removed without a report.
   const bool was_added = wasNamed(search.result, effect);
   if (why.negligible) record.negligible.push_back(effect);
   if (was_added) {
@@ -207,7 +209,7 @@ void remove(const SearchState& search, const std::string effect, Removal& remove
   effects.erase(std::find(effects.begin(), effects.end(), effect));
 }
 
-/// Comes last: a superfluous effect may have pushed another one to its bound.
+/// Last, because a superfluous effect may have pushed another one to its bound.
 bool removeAtBound(const SearchState& search, const Needed& needed, const Eigen::VectorXd& loss) {
   for (const std::string& effect : search.result.effects) {
     if (search.isAccepted(effect) || !isAtBound(search.result.state, effect)) continue;
@@ -219,13 +221,13 @@ bool removeAtBound(const SearchState& search, const Needed& needed, const Eigen:
   return false;
 }
 
-/// Looks at all, least sure first; true if one went.
+/// Considers all, least certain first; true if one was removed.
 bool removeOne(const SearchState& search, const Needed& needed_of_all) {
   const Fitter& fitter = search.fitter;
   FoundTerms& result = search.result;
   const Eigen::VectorXd loss = heldOutLoss(fitter, result.state);
   for (const std::string& effect : leastSureFirst(fitter, result)) {
-    // What is beyond doubt in first order needs no simulation without it.
+    // An effect that is certain in first order needs no simulation without it.
     Needed needed = needed_of_all;
     needed.size_counts = effectNamed(effect).search.change_points.empty();
     const bool straight = isStraight(result.state, effect);
@@ -282,7 +284,7 @@ FitState withoutLinearly(const Fitter& fitter, const FitState& state, const std:
 }
 
 void pruneEffects(const SearchState& search, const Needed& needed) {
-  while (removeOne(search, needed)) continue;  // no more often than there are effects
+  while (removeOne(search, needed)) continue;  // at most as often as there are effects
 }
 
 }  // namespace tread::gap

@@ -13,9 +13,9 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kSame = 1.0;    // [nats] within which two terms do the same
-constexpr double kEdge = 0.05;   // share of a drive that lies before and after a change at least
-constexpr size_t kRenewed = 10;  // directions that are simulated again in a screening
+constexpr double kSame = 1.0;    // [nats] within which two terms are equivalent
+constexpr double kEdge = 0.05;   // minimum share of a drive before and after a change
+constexpr size_t kRenewed = 10;  // directions simulated again in a screening
 
 bool hasVanished(const ModelDocument& model, const Candidate& candidate) {
   const double size =
@@ -39,7 +39,7 @@ class EffectSelection {
     if (!significant(screening).empty() && !underWay().isCutShort()) {
       freeNuisanceTerms();
       screening = test(memory_.with_nuisance);
-      // Each addition frees a path that was not: see search().
+      // Each addition frees another path: see search().
       while (mayAdd(settings_.most + nuisance_terms_) && addBest(screening)) {
         renewLikeliest(screening);
         screening = test(memory_.with_nuisance);
@@ -61,7 +61,7 @@ class EffectSelection {
 
   bool mayAdd(size_t most) { return result_.effects.size() < most && !underWay().isCutShort(); }
 
-  /// Neither an effect nor a term that was re-estimated nor something too small to matter.
+  /// No effect, no re-estimated term, and none that is negligible.
   bool foundNothing() const {
     const bool only_accepted = std::all_of(
         result_.effects.begin(), result_.effects.end(),
@@ -69,8 +69,8 @@ class EffectSelection {
     return only_accepted && result_.record.negligible.empty() && result_.released.empty();
   }
 
-  /// Nuisance terms can imitate an effect and then go one by one, each as superfluous: searches
-  /// once more with nothing but what the first test shows.
+  /// Nuisance terms together can imitate an effect and then be removed one by one as superfluous:
+  /// searches again with only what the first test shows.
   void searchWithoutNuisance(Screening screening) {
     state() = result_.calibrated;
     SensitivityCache cache = memory_.calibrated;
@@ -92,7 +92,7 @@ class EffectSelection {
     result_.calibrated = state();
   }
 
-  /// Takes in what a person has accepted, before anything is tested.
+  /// Includes effects that a person has accepted, before any test.
   void takeInAccepted() {
     for (const std::string& effect : settings_.accepted) {
       if (isOn(effectNamed(effect), state().model)) continue;
@@ -105,7 +105,7 @@ class EffectSelection {
     result_.calibrated = state();
   }
 
-  /// Fits, re-estimates the noise and fits again: the noise of a worse fit is too large.
+  /// Fits, re-estimates the noise and fits again, because the noise of a worse fit is too large.
   void settle(FitState& fitted) const {
     fitter_.fitRoughly(fitted);
     fitter_.renewNoise(fitted);
@@ -117,14 +117,14 @@ class EffectSelection {
     return screen(fitter_, state(), settings_, !has_nuisance_, cache);
   }
 
-  /// What could have been seen beside what was found: before, its size hid the rest.
+  /// Smallest sizes detectable in addition to the found effects, which would otherwise hide them.
   void noteDetectable(const Screening& last) {
     for (CandidateTest& first : result_.record.candidates)
       for (const CandidateTest& now : last.tests)
         if (now.effect == first.effect) first.detectable = now.detectable;
   }
 
-  /// The likeliest candidates of the last screening get directions of the model as it is now.
+  /// The most probable candidates of the last screening get directions at the present model.
   void renewLikeliest(const Screening& screening) {
     memory_.with_nuisance.renew(fitter_, state(), likeliestOf(screening));
   }
@@ -140,7 +140,7 @@ class EffectSelection {
 
   void freeNuisanceTerms() {
     for (const Effect* effect : nuisanceEffects()) {
-      // Numbers of the nominal model that are free do the same.
+      // Free numbers of the nominal model have the same influence.
       if (settings_.calibrate && !effect->search.nominal.empty()) continue;
       if (!effect->isOf(state().model.vehicle.layout())) continue;
       if (contains(settings_.rejected, effect->name)) continue;
@@ -156,7 +156,7 @@ class EffectSelection {
     has_nuisance_ = true;
   }
 
-  /// A candidate that was refitted, and what that brings on blocks left out.
+  /// A refitted candidate, and its gain on held-out blocks.
   struct Trial {
     size_t candidate = 0;
     FitState state;
@@ -165,7 +165,7 @@ class EffectSelection {
     std::string refused;
   };
 
-  /// Whether hardly any driving lies before a moment, or after it.
+  /// Whether hardly any driving is before a time, or after it.
   bool isAtEdge(double time) const {
     double before = 0.0;
     double all = 0.0;
@@ -188,7 +188,7 @@ class EffectSelection {
       refineChangePoint(fitter_, trial.state, change);
       fitter_.fitRoughly(trial.state);
       if (isAtEdge(*findParameter(trial.state.model, change)))
-        trial.refused = "what it changes is the same nearly all the time";
+        trial.refused = "its influence is nearly constant";
     }
     if (hasVanished(trial.state.model, screening.candidates[index]))
       trial.refused = "its size vanishes in the fit";
@@ -199,13 +199,13 @@ class EffectSelection {
         trial.refused = parameter.path + " runs to the end of its plausible range";
     trial.loss = heldOutLoss(fitter_, trial.state);
     trial.gain = gainOf(fitter_, loss_now, trial.loss);
-    // First order may promise more than the refit keeps.
+    // The refit may keep less than first order promises.
     trial.gain.value = std::min(trial.gain.value, state().loss - trial.state.loss);
     return trial;
   }
 
-  /// What always acts, in the place of what begins at some moment, if it is as good.
-  /** A moment that was searched for is a number more, and any slow change looks like a step. */
+  /// Replaces an effect that begins at some time by one that always acts, if that is as good.
+  /** A searched time is one more parameter, and any slow change resembles a step. */
   const Trial* plainerThan(const Trial* best, const std::vector<Trial>& trials,
                            const Screening& screening) const {
     const auto isStep = [&screening](const Trial& trial) {
@@ -222,7 +222,7 @@ class EffectSelection {
     return behind.value < behind.error ? plain : best;
   }
 
-  /// A term that the model has, in the place of a new one that does the same.
+  /// A given term that replaces a new one with the same influence.
   const Trial* givenInstead(const Trial* best, const std::vector<Trial>& trials,
                             const Screening& screening) const {
     if (best == nullptr || screening.candidates[best->candidate].release) return best;
@@ -236,8 +236,8 @@ class EffectSelection {
     return given == nullptr ? best : given;
   }
 
-  /// Refits the most promising effects and adds the one that helps most on blocks left out; the
-  /// next ones if none of them is possible.
+  /// Refits the most promising effects and adds the one with the largest gain on held-out blocks;
+  /// if none is admissible, tries the next ones.
   bool addBest(const Screening& screening) {
     const std::vector<size_t> found = significant(screening);
     if (found.empty()) return false;
@@ -259,7 +259,7 @@ class EffectSelection {
     const Candidate& added = screening.candidates[best->candidate];
     state() = best->state;
     settle(state());
-    // What was taken out before, beside other terms, is in again.
+    // Effects that were removed earlier, with other terms present, are included again.
     for (std::vector<std::string>* told : {&result_.record.negligible, &result_.record.at_bound})
       told->erase(std::remove(told->begin(), told->end(), added.effect), told->end());
     if (added.release && !contains(result_.released, added.effect))
@@ -269,7 +269,7 @@ class EffectSelection {
     return true;
   }
 
-  /// A delay that was superfluous beside the first lags may not be beside the last ones.
+  /// A delay that was superfluous with the first lags may not be with the final ones.
   bool addBesideLags() {
     if (std::none_of(result_.effects.begin(), result_.effects.end(),
                      [](const std::string& effect) { return isLag(effectNamed(effect)); }))
@@ -286,7 +286,7 @@ class EffectSelection {
     Screening screening = test(cache);
     for (size_t i = 0; i < screening.candidates.size(); ++i) {
       const Candidate& candidate = screening.candidates[i];
-      // Nothing else is looked for: it has had its chance.
+      // Searches for nothing else: other candidates were tested before.
       if (candidate.release || !isDelay(effectNamed(candidate.effect))) screening.evidence[i] = 0.0;
     }
     return addBest(screening);
@@ -309,7 +309,7 @@ class EffectSelection {
                 std::move(step.runner_ups),
                 candidate.release ? "is not what the model says" : ""};
       } else if (!trial.refused.empty() && candidate.release) {
-        continue;  // the term stays what the model says
+        continue;  // the term keeps the model's value
       } else if (!trial.refused.empty()) {
         result_.record.steps.push_back({effect, true, score, p_value, 0.0, 0.0, {}, trial.refused});
       } else if (best != nullptr) {
@@ -339,11 +339,11 @@ class EffectSelection {
       EffectEvidence& of = result_.evidence[effect];
       const double known = of.p_value.value_or(1.0);
       const double last_p = pValueOf(last, of.score, of.evidence);
-      // What stays for its gain, and not for its score, keeps the p of its acceptance.
+      // An effect kept for its gain, not for its score, keeps the p-value of its acceptance.
       of.p_value = of.evidence >= 1.0 || last_p < known ? last_p : known;
     }
     settle(state());
-    // The last fit may say of a lag that there is none.
+    // The last fit may set a lag to zero.
     for (size_t i = result_.effects.size(); i-- > 0;) {
       const std::string effect = result_.effects[i];
       if (search.isAccepted(effect) || isOn(effectNamed(effect), state().model)) continue;
@@ -361,7 +361,7 @@ class EffectSelection {
   bool has_nuisance_ = false;
 };
 
-/// A parameter held by what the model's covariance says of it, if it does.
+/// A parameter with the prior from the model's covariance, if it has one.
 FreeParameter heldParameter(const ModelDocument& model, const std::string& path) {
   FreeParameter parameter = freeParameter(model, path);
   parameter.deviation = knownDeviation(model, path);
@@ -396,9 +396,9 @@ FoundTerms searchTwice(const Fitter& fitter, const ModelDocument& model,
                        const SearchSettings& settings, SearchMemory& memory, const Progress& say) {
   FoundTerms found = EffectSelection(fitter, settings, memory, say).run(model);
   if (found.released.empty() || found.record.cut_short) return found;
-  // To take a given term for wrong is easy: it bends to much. Fewer effects may do, with all that
-  // the model says.
-  say("  once more, with all that the model says:");
+  // Releasing a given term makes it flexible, which favours it. Fewer effects may suffice with all
+  // of the model's priors.
+  say("  once more, with all of the model's priors:");
   SearchSettings trusting = settings;
   trusting.release = false;
   SearchMemory again;
@@ -410,7 +410,7 @@ FoundTerms searchTwice(const Fitter& fitter, const ModelDocument& model,
   if (!has_new || other.record.cut_short ||
       other.effects.size() >= found.effects.size() + found.released.size())
     return found;
-  // Each has noise of its own size: losses compare by one.
+  // Each has its own noise: losses are compared with a common one.
   FitState judged = other.state;
   judged.scales = found.state.scales;
   const Gain behind = gainOf(fitter, heldOutLoss(fitter, judged), heldOutLoss(fitter, found.state));

@@ -14,14 +14,14 @@ void append(std::string& text, const std::string& more) {
   text += more;
 }
 
-/// Residuals before a covariance is called known, and those that a shipped covariance counts for.
+/// Residuals needed for a known covariance, and weight of a shipped one in residuals.
 constexpr int64_t kFewestResiduals = 3;
 constexpr int64_t kShippedCount = 5;
-/// [1] of the newest residual, however many there were.
+/// [1] of the newest residual, for any number of them.
 constexpr double kLeastWeight = 0.10;
-/// An execution that begins so soon after another follows it without a pause [us].
+/// An execution that begins this soon after another one follows it without a pause [us].
 constexpr int64_t kNoPause = 100'000;
-/// [s] before an execution the planner has chosen it, by what was known then.
+/// [s] before an execution when the planner has chosen it, with the knowledge of that time.
 constexpr double kChosenBefore = 0.3;
 
 /// The guards of a note in words.
@@ -30,9 +30,10 @@ std::string guardsOf(const RuleNote& note) {
   std::string guards;
   if (note.one_dimensional) append(guards, "one-dimensional: own update only");
   if (note.moved_back)
-    append(guards, "moved the other way: own update only, the ground may have changed");
+    append(guards, "moved in the opposite direction: own update only, the ground may have changed");
   if (note.turned_back)
-    append(guards, "turned the other way: own update only, the ground may have changed");
+    append(guards,
+           "turned in the opposite direction: own update only, the ground may have changed");
   std::string held;
   for (size_t axis = 0; axis < 3; ++axis)
     if (note.held[axis]) held += (held.empty() ? "" : ", ") + std::string(kNames[axis]);
@@ -96,7 +97,7 @@ bool Learner::restore(PatternSet set, ResidualTable residuals, const std::vector
   return false;
 }
 
-/// The rule's, then what it has of the motion so far: the watch's and their number, of coasting.
+/// The rule's memory, then that of the motion: the watch's with its length, and that of coasting.
 std::vector<double> Learner::memory() const {
   std::vector<double> memory = settled_->memory();
   if (!rule_->learnsParts()) return memory;
@@ -122,7 +123,7 @@ bool Learner::restoreMemory(std::vector<double> memory) {
   const auto of_watch = memory.end() - kAtEnd;
   const auto of_coasting = of_watch + 2;
   const auto of_end = of_coasting + Coasting::kNumbers;
-  // A whole number of microseconds that a double holds exactly.
+  // A number of microseconds that a double represents exactly.
   constexpr double kLatest = 9e15;
   const auto isTime = [](double number) { return number >= 0.0 && number < kLatest; };
   const auto left = static_cast<double>(memory.size() - kAtEnd);
@@ -141,7 +142,7 @@ bool Learner::restoreMemory(std::vector<double> memory) {
 }
 
 void Learner::renumber(int64_t version, int64_t parent) {
-  // What still runs is published, not kept.
+  // Running executions are published, but not stored.
   if (following_) rule_->assign(*settled_);
   PatternSetContent content = following_ ? predicted() : set_.content();
   following_ = false;
@@ -172,7 +173,7 @@ PatternSetContent Learner::predicted(const std::optional<Coming>& coming) const 
   return content;
 }
 
-/// What was measured of an execution, as the rule learns from it: the rest moves on as predicted.
+/// The measured part of an execution, as the rule learns it: the rest continues as predicted.
 Eigen::ArrayX3d Learner::measuredRows(const Measurement& measurement) {
   fill(measurement.trajectory, measured_);
   const auto samples = static_cast<Eigen::Index>(measurement.trajectory.size());
@@ -181,7 +182,7 @@ Eigen::ArrayX3d Learner::measuredRows(const Measurement& measurement) {
   return whole.topRows(static_cast<Eigen::Index>(measurement.covered));
 }
 
-/// The rule as it was, and this execution, which began at `begun`.
+/// Updates the earlier rule with this execution, which began at `begun`.
 RuleNote Learner::update(size_t executed, const Measurement& measurement, int64_t begun) {
   const Eigen::ArrayX3d rows = measuredRows(measurement);
   const ConstTrajectory measured(rows.data(), rows.rows(), 3);
@@ -210,7 +211,7 @@ bool Learner::adopt(PatternSetContent content, int64_t version, int64_t utime, s
   return next.has_value();
 }
 
-/// The next execution is compared with this one's end, unless that is on another ground already.
+/// The next execution is compared with the end of this one, unless the ground has already changed.
 void Learner::watchEnd(size_t executed, const Measurement& measurement, int64_t utime) {
   watch_.clear();
   watched_until_ = utime;
@@ -220,7 +221,7 @@ void Learner::watchEnd(size_t executed, const Measurement& measurement, int64_t 
                 set_.periodSeconds());
 }
 
-/// From how far it ended beside what was predicted before it, and with what it began.
+/// Learns from the end error relative to the earlier prediction, and from the initial deviation.
 void Learner::learnCoasting(size_t executed, const Measurement& measurement, int64_t utime) {
   const Ended before = std::exchange(ended_, Ended{});
   if (!rule_->learnsParts() || !measurement.complete() || changed_after_) return;
@@ -244,7 +245,7 @@ void Learner::learnCoasting(size_t executed, const Measurement& measurement, int
 
 std::optional<Learner::Coming> Learner::comingAfter(const MotionPattern& running,
                                                     const Measurement& beginning) const {
-  // Whoever stands coasts no further.
+  // A vehicle at rest does not coast.
   if (set_.classNamed(running.exit_class).standing()) return std::nullopt;
   const std::vector<Pose2> expected =
       predictionOf(*settled_, index_.at(running.id), running.trajectory.size());
@@ -262,7 +263,8 @@ bool Learner::follow(int pattern_id, const Measurement& beginning, int64_t part,
   if (part >= kVersions || version <= set_.version()) return false;
   update(index_.at(pattern_id), beginning,
          utime - std::llround(1e6 * set_.periodSeconds() * static_cast<double>(beginning.covered)));
-  // Behind a change the velocity is the new ground's, which the rule has just learned.
+  // After a change of ground the velocity is that of the new ground, which the rule has just
+  // learned.
   const auto coming = changed_after_ ? std::nullopt : comingAfter(*pattern, beginning);
   std::string why;
   const bool adopted = adopt(predicted(coming), version, utime, why);

@@ -12,7 +12,7 @@
 namespace tread::learner {
 namespace {
 
-/// FNV-1a, 64 bits: tells a damaged text from a whole one.
+/// FNV-1a, 64 bits: detects a damaged text.
 uint64_t fingerprint(const std::string& text) {
   uint64_t hash = 14695981039346656037ULL;
   for (const char letter : text) {
@@ -28,19 +28,19 @@ std::string lastLine(const std::string& content) {
   return line.str();
 }
 
-/// The shortest text that reads back as the same number, whatever the locale.
+/// The shortest text that reads back as the same number, in any locale.
 std::string number(double value) {
   std::array<char, 40> text;
   const auto result = std::to_chars(text.data(), text.data() + text.size(), value);
   return {text.data(), result.ptr};
 }
 
-/// The text with its last line, "end" and a fingerprint of what stands before.
+/// The text with its last line, "end" and a fingerprint of the text before it.
 std::string sealed(const std::string& content) {
   return content + lastLine(content);
 }
 
-/// The text without that line; nothing if it is not that of the text.
+/// The text without that line; nullopt if it does not match the text.
 std::optional<std::string> unsealed(const std::string& text) {
   const size_t end = text.rfind("end ");
   if (end == std::string::npos || end == 0 || text[end - 1] != '\n') return std::nullopt;
@@ -49,7 +49,7 @@ std::optional<std::string> unsealed(const std::string& text) {
   return content;
 }
 
-/// Reads words and numbers; once something is missing everything after fails, too.
+/// Reads words and numbers; after the first failure everything fails.
 class Words {
  public:
   explicit Words(const std::string& text) : in_(text) {}
@@ -82,9 +82,9 @@ class Words {
 
 constexpr const char* kStateKind = "tread-learner-state ";
 constexpr const char* kStateHeader = "tread-learner-state 4";
-/// No state of a thousand patterns has more executions in its list than this.
+/// Upper limit of the list of executions in a state.
 constexpr int64_t kMaxHandled = 10'000;
-/// No rule remembers more numbers than this.
+/// Upper limit of the numbers in a rule's memory.
 constexpr int64_t kMaxMemory = 100'000'000;
 
 void writeNumbers(std::ostringstream& out, const PoseCovariance& numbers) {
@@ -128,7 +128,7 @@ PoseCovariance readNumbers(Words& words) {
   return values;
 }
 
-/// One pattern's learned part, into the pattern of the shipped set.
+/// Reads one pattern's learned part into the pattern of the shipped set.
 void readPattern(Words& words, MotionPattern& pattern, ResidualTable& residuals) {
   words.expect("pattern");
   words.require(words.integer() == pattern.id);
@@ -205,7 +205,7 @@ std::optional<LearnerState> parseState(const std::string& text, const PatternSet
   }
   auto set = PatternSet::make(std::move(content), why);
   if (!set) {
-    why = "holds a wrong set: " + why;
+    why = "contains a wrong set: " + why;
     return std::nullopt;
   }
   return LearnerState{std::move(*set), std::move(residuals), std::move(memory), rule,

@@ -8,7 +8,7 @@ namespace tread::lidar {
 namespace {
 
 constexpr int kTries = 3;                // of one step
-constexpr int kStartsWithoutScan = 2;    // before the connection is given up
+constexpr int kStartsWithoutScan = 2;    // after which the connection is given up
 constexpr int64_t kSilence = 1'000'000;  // [us] without a scan
 /// Scans kept for a node that does not fetch them; newer ones are dropped and counted.
 constexpr size_t kMostScans = 100;
@@ -69,7 +69,7 @@ void StartedDevice::refused(const std::string& words, int64_t now, const std::st
     count(what);
     return answered(now);
   }
-  // It is asked again after the patience: at once would be without end.
+  // It is asked again after the timeout: asking at once could continue endlessly.
   refuse(what, now, remedy);
 }
 
@@ -104,7 +104,7 @@ void StartedDevice::deliver(RangeScan scan, int64_t now) {
   if (scans_.size() < kMostScans)
     scans_.push_back(std::move(scan));
   else
-    count("scans dropped: nobody took them");
+    count("scans dropped: not fetched");
 }
 
 std::vector<RangeScan> StartedDevice::take(int64_t /*now*/) {

@@ -13,14 +13,14 @@ namespace {
 constexpr int64_t kPatience = 500'000;    // [us]: on slow lines the rest of a scan comes first
 constexpr size_t kLongest = 65'536;       // of an answer
 constexpr size_t kPartOfScan = 200;       // a buffer of more holds a part of a scan
-constexpr size_t kNoise = 3;              // so many bytes may be noise of long ago
+constexpr size_t kNoise = 3;              // this many bytes may be old noise
 constexpr int kMostSteps = 10'000;        // a request has four digits
-constexpr double kShortMax = 4.094;       // [m] of two characters: 4095 stands for all beyond
+constexpr double kShortMax = 4.094;       // [m] with two characters: 4095 means everything beyond
 constexpr int32_t kMostJump = 2'000'000;  // [ms] of the device's clock, kept within 32 bits of us
 constexpr const char* kWhichPort = "is this the port of a Hokuyo, at its rate?";
 constexpr const char* kLine = "check the line and its ground";
 constexpr const char* kManual = "its manual lists the status";
-constexpr const char* kFirmware = "does its firmware speak SCIP 2.0?";
+constexpr const char* kFirmware = "does its firmware support SCIP 2.0?";
 constexpr const char* kSums = "wrong checksums";
 
 std::vector<StartUpStep> startUp() {
@@ -35,12 +35,12 @@ char sumOf(std::string_view text) {
   return static_cast<char>((sum & 0x3F) + 0x30);
 }
 
-/// A line whose last character is the sum of those before it.
+/// Whether a line's last character is the sum of those before it.
 bool isSound(std::string_view line) {
   return line.size() >= 2 && sumOf(line.substr(0, line.size() - 1)) == line.back();
 }
 
-/// Of SCIP 2.0, or of 1.1, which has one character and no sum; two without one are met, too.
+/// Of SCIP 2.0, or of 1.1, which has one character and no sum; two without a sum also occur.
 bool isStatus(std::string_view line) {
   return !line.empty() && line.size() <= 3 && (line.size() < 3 || isSound(line));
 }
@@ -68,7 +68,7 @@ std::string printable(std::string_view text) {
   return clean;
 }
 
-/// Six bits a character; nothing where a character has none.
+/// Six bits per character; nullopt for an invalid character.
 std::optional<uint32_t> numberIn(std::string_view characters) {
   uint32_t number = 0;
   for (const char character : characters) {
@@ -166,7 +166,7 @@ void ScipSession::receive(std::string_view bytes, int64_t now) {
   }
 }
 
-/// Noise between two answers stands before the echo, and may hold ends of lines.
+/// Noise between two answers precedes the echo, and may contain ends of lines.
 void ScipSession::takeBlock(std::string_view block, int64_t now) {
   const std::vector<std::string_view> lines = linesOf(block);
   const auto status = std::find_if(lines.begin() + 1, lines.end(), isStatus);
@@ -174,12 +174,11 @@ void ScipSession::takeBlock(std::string_view block, int64_t now) {
     return skipUnreadable("bytes outside of answers", now, kWhichPort,
                           static_cast<int64_t>(block.size() + 2));
   const Answer answer{status->substr(0, 2), {status + 1, lines.end()}};
-  // One of a stream that is being switched off is not known to be new.
+  // A scan from a stream that is being switched off may be old.
   if (!streaming() && answer.status == "99") return count("scans before the start");
   const std::string expected = echo();
-  if (expected.empty() || !ends(*(status - 1), expected))
-    return count("answers that nobody asked for");
-  // What stands before the echo is not the scan's: it may have come long before.
+  if (expected.empty() || !ends(*(status - 1), expected)) return count("unexpected answers");
+  // Bytes before the echo are not the scan's: they may have arrived long before.
   const bool alone = status == lines.begin() + 1 && lines.front() == expected;
   if (streaming() && !alone) began_ = now;
   if (streaming())
@@ -188,13 +187,13 @@ void ScipSession::takeBlock(std::string_view block, int64_t now) {
     takeAnswer(answer, now);
 }
 
-/// A device in SCIP 1.1 refuses QT: PP tells whether it could be switched to 2.0.
+/// A device in SCIP 1.1 refuses QT: PP shows whether it could be switched to 2.0.
 void ScipSession::takeAnswer(const Answer& answer, int64_t now) {
   const std::string name = awaited().name;
   const bool is_on_already = name == "BM" && answer.status == "02";
   const bool good = answer.status == "00" || answer.status == "0" || is_on_already;
   if (!good && name != "QT") {
-    const std::string state = state_.empty() ? "" : "; it says of itself: " + state_;
+    const std::string state = state_.empty() ? "" : "; its own report: " + state_;
     return refused(name + ", status '" + printable(answer.status) + "'" + state, now,
                    name == "PP" ? kFirmware : kManual);
   }
@@ -202,11 +201,11 @@ void ScipSession::takeAnswer(const Answer& answer, int64_t now) {
   if (!in_words || takeText(answer, name, now)) answered(now);
 }
 
-/// False if its lines are not as they should be: then it is asked again.
+/// False if its lines are invalid: then the request is repeated.
 bool ScipSession::takeText(const Answer& answer, const std::string& name, int64_t now) {
   std::vector<std::string> texts;
   for (const std::string_view line : answer.lines) {
-    // Such a line ends with ';', which its sum does not count.
+    // Such a line ends with ';', which its sum does not include.
     if (line.size() < 3 || sumOf(line.substr(0, line.size() - 2)) != line.back()) {
       refuse(kSums, now, kLine);
       return false;
@@ -231,7 +230,7 @@ bool ScipSession::takeParameters(const std::vector<std::string>& texts, int64_t 
       {"SCAN", &told.turns_per_minute}};
   for (const auto& [key, number] : numbers)
     if (!readNumber(texts, key, *number)) {
-      refuse("the device does not tell its parameters: its answer to PP has no number for " + key,
+      refuse("the device does not report its parameters: its answer to PP has no number for " + key,
              now, kFirmware);
       return false;
     }
@@ -247,7 +246,7 @@ bool ScipSession::takeParameters(const std::vector<std::string>& texts, int64_t 
 }
 
 void ScipSession::takeScan(const Answer& answer, int64_t now) {
-  if (answer.status == "00") return count("answers that nobody asked for");
+  if (answer.status == "00") return count("unexpected answers");
   if (answer.status != "99")
     return refuse("refused: a status in the place of a scan, '" + printable(answer.status) + "'",
                   now, kManual);
@@ -269,7 +268,7 @@ void ScipSession::takeScan(const Answer& answer, int64_t now) {
 std::string ScipSession::readRanges(std::string_view values, RangeScan& scan) const {
   const size_t width = config_.short_ranges ? 2 : 3;
   if (values.size() != width * geometry_.beams())
-    return "more or fewer beams than AMIN and AMAX say";
+    return "another number of beams than AMIN and AMAX give";
   for (size_t at = 0; at < values.size(); at += width) {
     const auto range = numberIn(values.substr(at, width));
     if (!range) return "characters that are no ranges";
@@ -285,7 +284,7 @@ std::string ScipSession::readRanges(std::string_view values, RangeScan& scan) co
 
 bool ScipSession::takeTime(uint32_t milliseconds) {
   const uint32_t before = last_milliseconds_.value_or(milliseconds - 1);
-  // 24 bits, which wrap after 4 h 39 min, as a number with its sign.
+  // 24 bits, which wrap after 4 h 39 min, as a signed number.
   const int32_t step = static_cast<int32_t>((milliseconds - before) << 8) / 256;
   if (step == 0) return false;
   last_milliseconds_ = milliseconds;

@@ -12,12 +12,12 @@ namespace {
 constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
 constexpr int64_t kPatience = 200'000;  // [us]
 constexpr double kRangeMin = 0.15;      // [m]
-constexpr double kCover = 350.0;        // [deg] that a turn has at least
-/// [deg] that an angle may fall behind the largest before. Source: Slamtec's public SDK corrects
-/// the angles of its express modes by -8 degrees at far ranges, by 1 degree at the nearest; those
-/// without echo not at all.
+constexpr double kCover = 350.0;        // [deg] minimum of a revolution
+/// [deg] by which an angle may fall behind the largest before. Source: Slamtec's public SDK
+/// corrects the angles of its express modes by -8 degrees at far ranges, by 1 degree at the
+/// nearest; those without echo not at all.
 constexpr double kBackwards = 12.0;
-constexpr double kMostAhead = 15.0;      // [deg] from sample to sample
+constexpr double kMostAhead = 15.0;      // [deg] largest step between samples
 constexpr size_t kMostSamples = 10'000;  // of a turn
 constexpr size_t kDescriptor = 7;
 constexpr const char* kWhichLine = "check baud rate and line; is this an RPLIDAR?";
@@ -36,7 +36,7 @@ unsigned byteAt(const std::string& bytes, size_t at) {
   return static_cast<unsigned char>(bytes[at]);
 }
 
-/// Start, length and kind of an answer. Longer ones than these nobody asked for.
+/// Start, length and kind of an answer. Longer answers are never requested.
 const std::string kHealth("\xA5\x5A\x03\x00\x00\x00\x06", kDescriptor);
 const std::string kScan("\xA5\x5A\x05\x00\x00\x40\x81", kDescriptor);
 
@@ -71,7 +71,7 @@ bool RplidarSession::takeAnswer(int64_t now) {
   const std::string& name = awaited().name;
   const std::string& expected = name == "health" ? kHealth : kScan;
   const bool waits = name == "health" || name == "scan";
-  // What is still on its way of a stream of before, and the banner after a reboot, is skipped.
+  // Skips bytes in transit from an earlier stream, and the banner after a reboot.
   const size_t length = std::min(buffer_.size(), kDescriptor);
   if (!waits || buffer_.compare(0, length, expected, 0, length) != 0) {
     buffer_.erase(0, 1);
@@ -114,7 +114,7 @@ void RplidarSession::add(const Sample& sample, int64_t now) {
     in_turn_ = true;
     turn_began_ = now;
     samples_ = 0;
-    // A turn may begin just before ahead.
+    // A revolution may begin just before the forward direction.
     last_angle_ = sample.angle > 180.0 ? sample.angle - 360.0 : sample.angle;
     echoes_.clear();
   }
@@ -122,12 +122,12 @@ void RplidarSession::add(const Sample& sample, int64_t now) {
   const double angle = sample.angle - 360.0 * std::round((sample.angle - last_angle_) / 360.0);
   if (angle < last_angle_ - kBackwards || angle > last_angle_ + kMostAhead ||
       ++samples_ > kMostSamples)
-    return spoilTurn("turns whose angles do not run on", now);
+    return spoilTurn("revolutions with discontinuous angles", now);
   last_angle_ = std::max(last_angle_, angle);
   if (sample.range > 0.0) echoes_.push_back({false, angle, sample.range});
 }
 
-/// Sorts the echoes into beams from the first one's angle on, so that a beam's index tells its
+/// Sorts the echoes into beams starting at the first one's angle, so that a beam's index gives its
 /// time.
 void RplidarSession::sortEchoes(RangeScan& scan) const {
   const auto beams = std::lround(360.0 / config_.step);
@@ -147,7 +147,7 @@ void RplidarSession::sortEchoes(RangeScan& scan) const {
 
 void RplidarSession::finishTurn(int64_t now) {
   const int64_t duration = now - turn_began_;
-  if (last_angle_ < kCover) return spoilTurn("turns that are not whole", now);
+  if (last_angle_ < kCover) return spoilTurn("incomplete revolutions", now);
   if (duration > 1'000'000) return spoilTurn("turns of more than 1 s", now);
   RangeScan scan;
   sortEchoes(scan);

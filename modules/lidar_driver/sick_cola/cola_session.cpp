@@ -15,14 +15,14 @@ constexpr double kRangeMin = 0.05;      // [m] nearer is the window
 constexpr uint32_t kLargest = 65535;    // digit of a range
 constexpr const char* kStream = "LMDscandata";
 
-/// A request in its dialect: arguments are text in A, bytes in B.
+/// A request in the configured dialect: arguments are text in A, bytes in B.
 std::string request(ColaDialect dialect, const std::string& command, const std::string& text = "",
                     const std::string& bytes = "") {
   const std::string& arguments = dialect == ColaDialect::kA ? text : bytes;
   return colaFrame(dialect, arguments.empty() ? command : command + " " + arguments);
 }
 
-/// The password is the one that SICK prints for clients; measuring without it is refused.
+/// The password is the one that SICK documents for clients; measuring without it is refused.
 std::vector<StartUpStep> startUp(ColaDialect dialect) {
   const std::string off(1, '\0');
   const auto step = [&](const char* kind, const char* name, const std::string& text = "",
@@ -31,7 +31,7 @@ std::vector<StartUpStep> startUp(ColaDialect dialect) {
                        optional};
   };
   StartUpStep first = step("sEN", kStream, "0", off);
-  // A device that is set to the other dialect answers in that only.
+  // A device configured for the other dialect answers only in that.
   if (dialect == ColaDialect::kA)
     first.otherwise = request(ColaDialect::kB, "sEN LMDscandata", "", off);
   else
@@ -112,20 +112,20 @@ void ColaSession::takeTelegram(const std::string& telegram, int64_t now) {
   understood_ = understood_ || isCola(telegram);
   const std::string scan = std::string("sSN ") + kStream + " ";
   if (!begins(telegram, scan)) return takeAnswer(telegram, now);
-  // One of a stream that is being switched off is not known to be new.
+  // A scan from a stream that is being switched off may be old.
   if (streaming()) return takeScan(std::string_view(telegram).substr(scan.size()), now);
   count("scans before the start");
 }
 
-/// sRA answers sRN, sEA sEN, sAN sMN; sFA CODE refuses whichever it was.
+/// sRA answers sRN, sEA sEN, sAN sMN; sFA CODE refuses any of them.
 void ColaSession::takeAnswer(const std::string& telegram, int64_t now) {
   const std::string& name = awaited().name;
-  if (name.empty()) return count("telegrams that nobody asked for");
+  if (name.empty()) return count("unexpected telegrams");
   if (begins(telegram, "sFA")) return refused(name, now);
   const std::string_view kind = std::string_view(telegram).substr(0, 4);
   const bool answer = (kind == "sRA " || kind == "sEA " || kind == "sAN ") &&
                       begins(std::string_view(telegram).substr(4), name);
-  if (!answer) return count("telegrams that nobody asked for");
+  if (!answer) return count("unexpected telegrams");
   if (name == "DeviceIdent") {
     identity_.clear();
     for (const char c : telegram.substr(4 + name.size()))

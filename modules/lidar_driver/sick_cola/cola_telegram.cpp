@@ -14,12 +14,12 @@ constexpr double kRadPerDigit = kTurn / 3'600'000.0;  // angles come in 1/10000 
 constexpr uint32_t kMostBeams = 4000;
 constexpr uint32_t kMostChannels = 5;
 
-/// Takes fields one after the other in either dialect; ok() turns false at the first bad one.
+/// Extracts consecutive fields in either dialect; ok() becomes false at the first bad one.
 class ColaFields {
  public:
   ColaFields(ColaDialect dialect, std::string_view fields) : dialect_(dialect), rest_(fields) {}
 
-  /// An unsigned number of so many bits.
+  /// An unsigned number of this many bits.
   uint32_t number(int bits) {
     return dialect_ == ColaDialect::kA ? hexadecimal(bits) : bigEndian(bits / 8);
   }
@@ -99,7 +99,7 @@ void readHead(ColaFields& fields, ColaScan& scan) {
   }
 }
 
-/// One channel of values of 8 or 16 bits; true if it was the ranges.
+/// Reads one channel of 8 or 16 bit values; true if it was the ranges.
 bool readChannel(ColaFields& fields, int bits, ColaScan& scan) {
   const bool ranges = fields.name() == "DIST1" && bits == 16;
   const double scale = fields.real();
@@ -142,7 +142,7 @@ std::string implausible(const ColaScan& scan) {
   if (scan.scale < 0.1 || scan.scale > 100.0) return "scale factor outside 0.1..100 mm";
   if (scan.scan_frequency < 1.0 || scan.scan_frequency > 200.0)
     return "scan frequency outside 1..200 Hz";
-  if (scan.layer != 0) return "a layer beside the scan plane";
+  if (scan.layer != 0) return "a layer outside of the scan plane";
   return {};
 }
 
@@ -153,7 +153,7 @@ ColaScan parseColaScan(ColaDialect dialect, std::string_view bytes, std::string&
   ColaScan scan;
   readHead(fields, scan);
   const bool channels = readChannels(fields, scan);
-  // Position, name and comment follow: what lacks them was cut off.
+  // Position, name and comment follow: a telegram without them was truncated.
   fields.skip(16, 3);
   if (!fields.ok())
     problem = "a field is missing or no number";

@@ -11,10 +11,10 @@ namespace {
 
 constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
 constexpr int64_t kPatience = 1'000'000;  // [us]: a new variant takes the scanner half a second
-constexpr size_t kLongest = 812;          // of a payload: 401 values and what is around them
+constexpr size_t kLongest = 812;          // of a payload: 401 values and the fields around them
 constexpr double kTurnsPerSecond = 75.0;
 constexpr double kRangeMin = 0.05;  // [m] nearer is the window
-/// From here below the largest value on, values are words: dazzled, no echo, too far.
+/// The topmost values below the largest are codes: dazzled, no echo, too far.
 constexpr uint32_t kWords = 8;
 
 unsigned byteAt(std::string_view bytes, size_t at) {
@@ -45,7 +45,7 @@ unsigned answerTo(const std::string& step) {
   return step == "variant" ? 0xBB : 0xA0;
 }
 
-/// Field of view and resolution by the number of values, which is another one for each variant.
+/// Field of view and resolution by the number of values, which differs for each variant.
 bool geometryOf(uint32_t values, RangeScan& scan) {
   struct Variant {
     uint32_t values;
@@ -57,7 +57,7 @@ bool geometryOf(uint32_t values, RangeScan& scan) {
     if (variant.values == values) {
       scan.angle_first = -0.5 * variant.field * kRadPerDeg;
       scan.angle_step = variant.step * kRadPerDeg;
-      // Finer beams are measured over several turns, each between those of the last.
+      // Finer beams are measured over several revolutions, each between those of the last.
       scan.duration_us = std::llround(1e6 / kTurnsPerSecond * (1.0 / variant.step - 1.0 + 0.5));
       return true;
     }
@@ -106,7 +106,7 @@ void LmsSession::forget() {
 
 void LmsSession::receive(std::string_view bytes, int64_t now) {
   while (!bytes.empty()) {
-    if (buffer_.size() < 4) frame_began_ = now;  // a lone byte may be noise of long ago
+    if (buffer_.size() < 4) frame_began_ = now;  // a lone byte may be old noise
     const size_t piece = std::min<size_t>(bytes.size(), 2048);
     buffer_.append(bytes.substr(0, piece));
     bytes.remove_prefix(piece);
@@ -135,7 +135,7 @@ bool LmsSession::cutFrame(std::string& payload, int64_t now) {
   }
 }
 
-/// What follows bytes that were no frame began to come now, or not long before.
+/// The bytes after skipped ones have only just arrived, or shortly before.
 void LmsSession::skip(size_t bytes, int64_t now) {
   if (bytes == 0) return;
   skipUnreadable("bytes outside of frames", now,
@@ -147,12 +147,12 @@ void LmsSession::skip(size_t bytes, int64_t now) {
 void LmsSession::takeFrame(std::string_view payload, int64_t now) {
   const unsigned kind = byteAt(payload, 0);
   if (kind == 0xB0) {
-    // One of a stream that is being switched off is not known to be new.
+    // A scan from a stream that is being switched off may be old.
     if (streaming()) return takeScan(payload, now);
     return count("scans before the start");
   }
   const std::string& name = awaited().name;
-  if (name.empty() || kind != answerTo(name)) return count("telegrams that nobody asked for");
+  if (name.empty() || kind != answerTo(name)) return count("unexpected telegrams");
   if (name == "configuration") return takeConfiguration(payload, now);
   const bool done = name == "variant" ? byteAt(payload, 1) == 1 : byteAt(payload, 1) == 0;
   if (done) return answered(now);
@@ -184,7 +184,7 @@ std::string LmsSession::convert(std::string_view payload, RangeScan& scan) const
   const uint32_t head = wordAt(payload, 1);
   const uint32_t values = head & 0x1ff;
   if (head & 0x3e00) return "a part of a scan";
-  if (payload.size() != 4 + 2 * values) return "not so many values as it says";
+  if (payload.size() != 4 + 2 * values) return "another number of values than stated";
   if (!geometryOf(values, scan)) return "a number of values that no variant has";
   if (head >> 14 > 1) return "a unit that is neither cm nor mm";
   if ((byteAt(payload, payload.size() - 1) & 7) > 2) return "the device reports an error";

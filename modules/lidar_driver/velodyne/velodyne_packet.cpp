@@ -14,7 +14,7 @@ constexpr size_t kBlocks = 12;
 constexpr size_t kBlock = 100;
 constexpr double kLaserPeriod = 2.304;  // [us] from laser to laser
 constexpr double kFullTurn = 36000.0;   // [0.01 deg]
-/// At 20 turns a second a block of two firings turns by 0.8 degree [0.01 deg].
+/// At 20 revolutions a second a block of two firings turns by 0.8 degree [0.01 deg].
 constexpr double kMostTurn = 120.0;
 constexpr double kRangeUnit = 0.002;  // [m]
 constexpr uint32_t kHour = 3'600'000'000U;
@@ -27,7 +27,7 @@ uint32_t wordAt(std::string_view bytes, size_t at) {
   return byteAt(bytes, at) | byteAt(bytes, at + 1) << 8;
 }
 
-/// Where a laser looks, in the order of firing (manual, table 9-1).
+/// Direction of a laser, in the order of firing (manual, table 9-1).
 struct Laser {
   double elevation;  // [deg]
   double up;         // [mm] of its origin
@@ -66,7 +66,7 @@ constexpr Lasers kHiRes = {{{-10.0, 7.4},
                             {-0.67, 0.9},
                             {10.0, -7.4}}};
 
-/// Names by the factory bytes; the old HDL-64E has others there.
+/// Names by the factory bytes; the old HDL-64E uses them differently.
 std::string nameOf(unsigned product) {
   static const std::map<unsigned, std::string> kNames{
       {0x21, "HDL-32E"}, {0x23, "VLP-32A or B"}, {0x28, "VLP-32C"}, {0x31, "Velarray"},
@@ -87,13 +87,14 @@ const Lasers* lasersOf(unsigned product) {
   return nullptr;
 }
 
-/// Azimuth between the blocks, from one to the next [0.01 deg]; nothing if they do not run on.
+/// Change of azimuth between consecutive blocks [0.01 deg]; nullopt if they are not continuous.
 std::optional<double> turnBetween(double from, double to) {
   const double turn = std::fmod(to - from + kFullTurn, kFullTurn);
   return turn <= kMostTurn ? std::optional(turn) : std::nullopt;
 }
 
-/// The 16 ranges from `at` on; the azimuth is that of the first laser, `turn` by the next firing.
+/// The 16 ranges from `at` on; the azimuth is the first laser's, and `turn` its change until the
+/// next firing.
 VelodyneFiring firingOf(std::string_view bytes, size_t at, double azimuth, double turn,
                         const Lasers& lasers) {
   VelodyneFiring firing;
@@ -144,7 +145,7 @@ std::optional<VelodynePacket> parseVelodynePacket(std::string_view bytes, std::s
   VelodynePacket packet;
   packet.past_hour = wordAt(bytes, 1200) | wordAt(bytes, 1202) << 16;
   if (packet.past_hour >= kHour) return refuse("packets of more than an hour past the hour");
-  // With two returns each pair of blocks is of the same firings: first the last returns.
+  // With two returns each pair of blocks belongs to the same firings: the last returns come first.
   const size_t stride = mode == kDualReturn ? 2 : 1;
   double turn = 0.0;
   for (size_t block = 0; block < kBlocks; block += stride) {
@@ -152,7 +153,7 @@ std::optional<VelodynePacket> parseVelodynePacket(std::string_view bytes, std::s
     if (azimuth >= kFullTurn) return refuse("packets with an azimuth beyond 360 degrees");
     if (block + stride < kBlocks) {
       const auto next = turnBetween(azimuth, wordAt(bytes, kBlock * (block + stride) + 2));
-      if (!next) return refuse("packets whose azimuths do not run on");
+      if (!next) return refuse("packets with discontinuous azimuths");
       turn = *next;
     }
     for (size_t half = 0; half < 2; ++half)

@@ -46,7 +46,7 @@ void VelodyneSession::open(int64_t now) {
 void VelodyneSession::close() {
   if (!open_) return;
   open_ = false;
-  // What was read of a capture before its end is still played.
+  // Data read from a capture before its end are still played.
   if (!capture_) forget();
   capture_.reset();
   capture_offset_.reset();
@@ -97,7 +97,7 @@ void VelodyneSession::receiveCapture(std::string_view bytes, int64_t now) {
     }
     int64_t due = datagram->time + capture_offset_.value_or(now - datagram->time);
     const int64_t before = waiting_.empty() ? now : std::max(now, waiting_.back().time);
-    // Times that go back or leap are no pace.
+    // Times that go back or jump do not determine the pace.
     if (due < before - kLongestPause || due > before + kLongestPause) due = before;
     capture_offset_ = due - datagram->time;
     datagram->time = std::max(due, waiting_.empty() ? due : waiting_.back().time);
@@ -151,7 +151,7 @@ void VelodyneSession::takePacket(std::string_view bytes, int64_t arrival) {
 }
 
 int64_t VelodyneSession::hostTime(uint32_t past_hour, int64_t arrival) {
-  // At the full hour it begins anew.
+  // At the full hour it restarts.
   const int64_t back = int64_t{last_past_hour_.value_or(past_hour)} - past_hour;
   if (back > kHour / 2) hours_ += kHour;
   last_past_hour_ = past_hour;
@@ -180,7 +180,7 @@ void VelodyneSession::finishSlice() {
   if (scans_.size() < kMostScans)
     scans_.push_back(std::move(slice));
   else
-    count("slices dropped: nobody took them");
+    count("slices dropped: not fetched");
 }
 
 }  // namespace tread::lidar

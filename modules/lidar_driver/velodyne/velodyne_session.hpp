@@ -12,8 +12,8 @@
 
 #include "common/capture/pcap_stream.hpp"
 #include "common/config/config_reader.hpp"
-#include "modules/lidar_driver/core/tick_clock.hpp"
 #include "modules/lidar_driver/core/scan_device.hpp"
+#include "modules/lidar_driver/core/tick_clock.hpp"
 #include "modules/lidar_driver/velodyne/velodyne_packet.hpp"
 
 namespace tread::lidar {
@@ -22,7 +22,7 @@ namespace tread::lidar {
 struct VelodyneConfig {
   int64_t packets = 19;    ///< of 1.33 ms in one slice of points: 40 slices a second
   int64_t every = 2;       ///< n-th firing is kept; 19 packets and 2: 3648 points, 44 kB a slice
-  double latency = 0.002;  ///< [s] from a packet's last firing to its arrival on the shortest way
+  double latency = 0.002;  ///< [s] shortest delay from a packet's last firing to its arrival
 };
 
 /// Reads the section `velodyne`; throws ConfigError with file:line, also for slices too large to
@@ -30,12 +30,11 @@ struct VelodyneConfig {
 VelodyneConfig readVelodyneConfig(ConfigReader& reader);
 
 /// A Velodyne that sends UDP packets, or a capture of them, as slices of points.
-/** It is asked nothing. The times of its packets are the device's own, brought to the host's clock
- * by the shortest way; a lost packet ends a slice, so that a point's index tells its time. A
- * capture is played once, at the pace of its own times. The library's driver is not used: it opens
- * a socket of its own, stamps scans with the host's clock until the first position packet and with
- * the device's date from then on, has no state for the end of a capture, and cannot run in virtual
- * time. */
+/** It needs no commands. Packets have the device's own time, mapped to the host's clock by the
+ * shortest delay; a lost packet ends a slice, so that a point's index gives its time. A capture is
+ * played once, at its own pace. The library's driver is not used: it opens a socket of its own,
+ * stamps scans with the host's clock until the first position packet and with the device's date
+ * afterwards, has no state for the end of a capture, and cannot run in virtual time. */
 class VelodyneSession final : public ScanDevice {
  public:
   explicit VelodyneSession(const VelodyneConfig& config) : config_(config) {}
@@ -47,20 +46,19 @@ class VelodyneSession final : public ScanDevice {
   std::vector<RangeScan> take(int64_t now) override;
   bool hungry() const override { return waiting_.size() < kAhead; }
   std::string shortcomings() const override {
-    return "Velodyne: checksums (a packet has none), free space (what comes back from nowhere "
-           "marks "
+    return "Velodyne: checksums (a packet has none), free space (a beam without a return marks "
            "nothing); reflectivity, first and strongest of two returns are not read";
   }
 
  private:
   static constexpr size_t kAhead = 50;
 
-  /// Cuts packets out of the bytes of a network line, whose datagrams need not come one by one.
+  /// Extracts packets from the bytes of a network line, whose datagrams need not arrive one by one.
   void receiveLive(std::string_view bytes, int64_t now);
   void receiveCapture(std::string_view bytes, int64_t now);
   void refuseOfCapture(int64_t now);
   void takePacket(std::string_view bytes, int64_t arrival);
-  /// Host time [us] of a device's time that arrived now.
+  /// Host time [us] of a device time that arrived now.
   int64_t hostTime(uint32_t past_hour, int64_t arrival);
   void append(const VelodynePacket& packet);
   void finishSlice();
@@ -78,8 +76,8 @@ class VelodyneSession final : public ScanDevice {
   RangeScan slice_;
   int64_t packets_ = 0;      ///< in the slice
   int64_t end_ = 0;          ///< [us] where the slice's last packet ends
-  size_t firing_ = 0;        ///< number of the next one, to keep every n-th
-  int64_t last_packet_ = 0;  ///< [us] when a good one came
+  size_t firing_ = 0;        ///< number of the next one, for keeping every n-th
+  int64_t last_packet_ = 0;  ///< [us] of the last good one
   int64_t opened_at_ = 0;
   bool open_ = false;
   std::vector<RangeScan> scans_;

@@ -11,16 +11,17 @@
 namespace tread::mapping {
 namespace {
 
-/// A defect explains at least so many points, this share of those that the reference must have seen
-/// under it, and of what it explains this share stands where the reference saw nothing: what it
-/// could not see may be new. Not so if it is old: then walls ahead seem to be farther away.
+/// A defect explains at least this many points and this share of those that the reference must have
+/// seen under it; and this share of the explained points is where the reference saw free space,
+/// because places hidden from it may be new. The latter does not apply to old scans, in which walls
+/// ahead appear farther away.
 constexpr int kLeastExplained = 12;
 constexpr double kLeastShare = 0.75;
 constexpr double kLeastMissedShare = 1.0 / 3.0;
-/// Each point that it breaks counts as so many.
+/// Weight of each point that it breaks.
 constexpr int kBroken = 4;
-/// It explains points in so many of twelve sectors, or else so far from where they were told that
-/// no thing can have moved there [m, m/s].
+/// It explains points in this many of twelve sectors, or at such a distance from their claimed
+/// positions that no object can have moved there [m, m/s].
 constexpr int kLeastSectors = 3;
 constexpr double kLeastJump = 0.5;
 constexpr double kFastest = 8.0;
@@ -31,11 +32,11 @@ constexpr double kDelayStep = 0.1;  // [s]
 constexpr double kLeastDelay = 0.2;
 constexpr double kMostDelay = 1.55;
 
-/// Of some points: those that a place of the scan explains.
+/// Of some points: those that an alignment of the scan explains.
 struct Explained {
   int points = 0;
   int unexplained = 0;
-  double jump = 0.0;  ///< [m] summed: how far that is from where they were told
+  double jump = 0.0;  ///< [m] summed distance from their claimed positions
   std::array<bool, 12> sectors{};
 };
 
@@ -96,7 +97,7 @@ std::vector<ScanSuspicion> scanHypotheses() {
       all.push_back({ScanDefect::kTurned, 0.0, angle, 0.0, false});
       all.push_back({ScanDefect::kTurned, 0.0, angle, 0.0, true});
     }
-    // Of motion alone, mirrored and turned is hardly told from turned.
+    // By motion alone, mirrored plus rotated is hardly distinguishable from rotated.
     all.push_back({ScanDefect::kMirrored, 0.0, angle, 0.0, false});
     if (angle == 0.0) all.push_back({ScanDefect::kMirrored, 0.0, angle, 0.0, true});
   }
@@ -107,7 +108,7 @@ std::vector<ScanSuspicion> scanHypotheses() {
 }
 
 bool agree(const ScanSuspicion& a, const ScanSuspicion& b) {
-  // What needs no motion to be sure may change: far ranges that repeat are frozen ones, too.
+  // Defects detected without motion may change: far ranges that repeat are a frozen scan, too.
   const auto plain = [](ScanDefect defect) {
     return defect != ScanDefect::kNone && defect <= ScanDefect::kSeesThrough;
   };
@@ -126,12 +127,12 @@ std::string describe(const ScanSuspicion& suspicion) {
     case ScanDefect::kEmpty:
       return "no beam of its scans measures anything: is it covered or dazzled, or broken?";
     case ScanDefect::kFrozen:
-      return "it repeats bit for bit what it saw before the robot moved";
+      return "it repeats bit for bit its scans from before the robot moved";
     case ScanDefect::kSeesThrough:
       return "its scans see nothing where something stood a moment ago: is it covered or broken?";
     case ScanDefect::kMirrored:
-      return "its scans fit the motion only if they are mirrored: is it upside down, or does it "
-             "number its beams the other way round?";
+      return "its scans fit the motion only if they are mirrored: is it upside down, or are its "
+             "beams numbered in reverse?";
     case ScanDefect::kTurned:
       line << "its scans fit the motion only if they are turned by about " << std::setprecision(0)
            << std::abs(wrapAngle(suspicion.angle)) * 180.0 / kPi

@@ -10,8 +10,7 @@ namespace {
 
 const std::string kNotAtRest = "the stick was not seen at rest: let it go once";
 
-/// Stopping is never delayed: what is nearer to zero is given at once, and what grows, grows from
-/// there.
+/// Stopping is never delayed: a smaller command is given at once, and growth starts from there.
 double limited(double wanted, double given, double growth) {
   const double from = wanted * given > 0.0 ? std::abs(given) : 0.0;
   return std::copysign(std::min(std::abs(wanted), from + growth), wanted);
@@ -20,18 +19,18 @@ double limited(double wanted, double given, double growth) {
 }  // namespace
 
 std::string ManualControl::receive(const ManualNotice& notice, int64_t now) {
-  // Where the stick's place is not known (NaN), what the message says of the buttons counts.
+  // With an unknown stick position (NaN), the message's buttons still count.
   if (std::abs(notice.left) > 1.0 || std::abs(notice.right) > 1.0)
     return "a command that is no share of the largest, -1 to 1";
   const bool same = notice.station == last_.station;
-  if (same && notice.seq <= last_.seq) return "overtaken on its way";
+  if (same && notice.seq <= last_.seq) return "out of order";
   const OperatorNotice seen{
       notice.station, std::to_string(notice.station), true, notice.seen_utime, 0, ""};
   switch (lease_.receive(seen, now)) {
     case OperatorLease::Receipt::kTaken:
       break;
     case OperatorLease::Receipt::kOfAnother:
-      return "another program drives by hand";
+      return "another program has manual control";
     default:
       return "its program has not seen the robot within " +
              std::to_string(limits_.lease_us / 1000) + " ms";
@@ -52,7 +51,7 @@ void ManualControl::update(int64_t now, bool has, bool armed) {
   lease_.update(now, false);
   fresh_ = lease_.valid(now);
   live_ = fresh_ && last_.hold && !last_.give_back;
-  // After a stop the stick may still be where it was: arming must not move the robot.
+  // After a stop the stick may still be deflected: arming must not move the robot.
   if (!fresh_ || (!armed && !atRest())) must_rest_ = true;
   if (has) return;
   command_ = TrackCommand{};

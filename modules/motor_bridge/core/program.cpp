@@ -73,7 +73,7 @@ const char* describe(ProgramRefusal refusal) {
     case ProgramRefusal::kNone:
       return "accepted";
     case ProgramRefusal::kFromFuture:
-      return "its utime lies in the future";
+      return "its utime is in the future";
     case ProgramRefusal::kTooOld:
       return "older than the lease";
     case ProgramRefusal::kOutOfOrder:
@@ -91,7 +91,7 @@ const char* describe(ProgramRefusal refusal) {
 ProgramRefusal ProgramGate::checkTime(const Program& program, int64_t now) const {
   if (program.lease_us <= 0) return ProgramRefusal::kBadLease;
   if (program.utime > now + limits_.max_future_us) return ProgramRefusal::kFromFuture;
-  // The difference to any utime would overflow: compare with a time near now.
+  // The difference to an arbitrary utime could overflow: compare with a time near now.
   if (program.utime < now - std::min(program.lease_us, limits_.lease_us))
     return ProgramRefusal::kTooOld;
   return newer(program) ? ProgramRefusal::kNone : ProgramRefusal::kOutOfOrder;
@@ -99,7 +99,7 @@ ProgramRefusal ProgramGate::checkTime(const Program& program, int64_t now) const
 
 bool ProgramGate::newer(const Program& program) const {
   if (!run_id_ || program.utime != newest_utime_) return !run_id_ || program.utime > newest_utime_;
-  // The order of utimes also holds between runs: all planners read the clock of this host.
+  // The order of utimes also holds between runs, because all planners read this host's clock.
   return program.run_id != *run_id_ || program.seq > newest_seq_;
 }
 

@@ -32,7 +32,7 @@ std::string sealed(std::string packet) {
   return packet;
 }
 
-/// Data of a command to a channel: its name and no flags.
+/// Data of a command to a channel: its name without flags.
 std::string dataFor(char channel) {
   return {channel, '\0'};
 }
@@ -48,7 +48,7 @@ std::string describe(KangarooError error) {
     case KangarooError::kControl:
       return "has lost control of its motor: check encoder, motor and Sabertooth, then arm again";
     case KangarooError::kWrongMode:
-      return "is tuned for another mode than its switches say";
+      return "is tuned for another mode than its switches select";
     case KangarooError::kBadParameter:
       return "refuses a parameter";
     case KangarooError::kSerialTimeout:

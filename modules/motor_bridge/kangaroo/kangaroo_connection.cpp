@@ -16,7 +16,7 @@ constexpr int64_t kSetUpRepeat = 500'000;     // [us]
 constexpr int64_t kTimeoutStep = 62'500;      // [us] 1/16 s
 constexpr int64_t kStatusMaxAge = 1'000'000;  // [us]
 
-/// What a start clears: the channel stood before and stands behind it.
+/// Errors cleared by a start: the channel is at rest before and after it.
 bool isCleared(int32_t error) {
   const auto kind = static_cast<KangarooError>(error);
   return kind == KangarooError::kNotStarted || kind == KangarooError::kSerialTimeout;
@@ -46,7 +46,7 @@ KangarooConfig readKangarooConfig(ConfigReader& reader, const DriveDescription& 
 }
 
 std::string KangarooConnection::commandBytes(const TrackCommand& command) const {
-  // NaN becomes zero: this is the last place that can look.
+  // NaN becomes zero: this is the last check.
   const auto unitsOf = [&](double speed, bool invert) {
     if (!std::isfinite(speed)) return int64_t{0};
     const double held = std::clamp(speed, -config_.full_speed, config_.full_speed);
@@ -184,8 +184,8 @@ MotorTelemetry KangarooConnection::telemetry() const {
 }
 
 std::string KangarooConnection::notice() const {
-  return "a Kangaroo does not tell its serial timeout, and any packet keeps it from expiring; try "
-         "it with the tracks off the ground";
+  return "a Kangaroo does not report its serial timeout, and any packet restarts it; test it with "
+         "the tracks off the ground";
 }
 
 std::map<std::string, int64_t> KangarooConnection::counted() const {

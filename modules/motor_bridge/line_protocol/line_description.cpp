@@ -50,7 +50,7 @@ std::string plainOf(ConfigReader& reader, const std::string& key) {
   return text.empty() ? text : templateOf(reader, key, text, kNone, true).format({});
 }
 
-/// What a reply may hold of a robot.
+/// The readings that a robot's reply may contain.
 std::set<std::string> readingsOf(const LineDescription& line) {
   if (line.invert_wheels.empty()) return kReadings;
   std::set<std::string> names{"watchdog", "battery_voltage", "temperature", "faults"};
@@ -108,7 +108,7 @@ void readCommands(ConfigReader& reader, LineDescription& line) {
   for (const std::string& name : names) {
     if (std::none_of(line.command.begin(), line.command.end(),
                      [&](const LineTemplate& text) { return text.has(name); }))
-      throw reader.error("command", "nowhere says {" + name + "}; give " +
+      throw reader.error("command", "never contains {" + name + "}; give " +
                                         (car              ? "throttle and steering"
                                          : wheels.empty() ? "both tracks"
                                                           : "all wheels"));

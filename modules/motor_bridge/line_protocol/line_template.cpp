@@ -79,7 +79,8 @@ LineTemplate::LineTemplate(const std::string& text) : text_(text) {
   std::string literal;
   for (size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
-    if (c < ' ' || c > '~') throw std::invalid_argument("holds a character that is not printable");
+    if (c < ' ' || c > '~')
+      throw std::invalid_argument("contains a character that is not printable");
     const bool twice = i + 1 < text.size() && text[i + 1] == c;
     if ((c == '{' || c == '}') && twice) {
       literal += c;

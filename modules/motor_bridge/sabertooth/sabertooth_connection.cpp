@@ -11,13 +11,13 @@ namespace tread::motor {
 namespace {
 
 constexpr char kBaudingCharacter = static_cast<char>(170);
-constexpr int kForward[] = {0, 4};  // by motor; one more is backwards
+constexpr int kForward[] = {0, 4};  // by motor; the next code is backwards
 constexpr int kSerialTimeout = 14;
 constexpr double kFullPower = 127.0;
 constexpr int64_t kTimeoutStep = 100'000;  // [us]
 constexpr int64_t kSetUpRepeat = 500'000;  // [us]
 
-/// Power of a track, -127..127. NaN becomes zero: this is the last place that can look.
+/// Power of a track, -127..127. NaN becomes zero: this is the last check.
 int powerOf(double value, bool invert, double full_scale) {
   const double share = value / full_scale;
   if (!std::isfinite(share)) return 0;
@@ -65,7 +65,8 @@ std::string SabertoothConnection::setUp() const {
 }
 
 std::string SabertoothConnection::startupRequest(int step) const {
-  // What a killed predecessor left in it is completed with zeros, or dropped for its checksum.
+  // Half a packet left by a killed predecessor is completed with zeros, or dropped for its
+  // checksum.
   if (step == kBaud) return std::string(4, '\0') + kBaudingCharacter;
   return step == kTimeout ? setUp() : zero();
 }
@@ -88,8 +89,8 @@ std::string SabertoothConnection::talk(int64_t now) {
 }
 
 std::string SabertoothConnection::notice() const {
-  return "a Sabertooth does not answer: whether it is there, hears us, has taken its watchdog or "
-         "has a fault cannot be verified; try its watchdog with the tracks off the ground";
+  return "a Sabertooth does not answer: its presence, reception, watchdog setting and faults "
+         "cannot be verified; test its watchdog with the tracks off the ground";
 }
 
 std::map<std::string, int64_t> SabertoothConnection::counted() const {

@@ -96,7 +96,7 @@ TEST_CASE("with a key a sealed message reaches every handler of its channel, onc
   CHECK(sealed.node().marks == 1);
   CHECK(sealed.refused("replayed") == 1);
   CHECK(sealed.bus.statistics("hearing").last_refusal ==
-        "MARK: a message refused: replayed; it was recorded or held up on its way");
+        "MARK: a message refused: replayed; it was recorded, or delayed in transit");
 }
 
 TEST_CASE("with a key what is forged, changed, moved or held up is refused, counted and told") {

@@ -189,7 +189,7 @@ TEST_CASE("where the robot's clock begins anew times go on, and it is told") {
     }
     const Result result = dated(ticks);
     CHECK(result.farthest <= 20 * kMs);
-    requireOneNote(result, "the robot's clock began anew at");
+    requireOneNote(result, "the robot's clock restarted at");
   }
 }
 
@@ -200,7 +200,7 @@ TEST_CASE("parts in the wrong order, or another log of the same clock, follow ea
   for (size_t i = 1000; i < ticks.size(); ++i) ticks[i].truth += 1000 * kPeriod;
   const Result result = dated(ticks);
   CHECK(result.farthest <= 20 * kMs);
-  requireOneNote(result, "the robot's clock began anew at 10.0 s");
+  requireOneNote(result, "the robot's clock restarted at 10.0 s");
 }
 
 TEST_CASE("an event both clocks of which say another year ends in the present") {
@@ -211,7 +211,7 @@ TEST_CASE("an event both clocks of which say another year ends in the present") 
   }
   const Result result = dated(ticks);
   CHECK(result.farthest <= 20 * kMs);
-  requireOneNote(result, "the robot's clock began anew at");
+  requireOneNote(result, "the robot's clock restarted at");
 }
 
 TEST_CASE("of two robots in one log the one that is heard first gives the time") {

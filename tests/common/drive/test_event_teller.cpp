@@ -2,8 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "common/messages/blank.hpp"
 #include "common/drive/event_teller.hpp"
+#include "common/messages/blank.hpp"
 
 using namespace tread;
 
@@ -87,7 +87,7 @@ TEST_CASE("a process that is ill, well again and started again is told, one that
   story.add(kHealth, health(health_t::HEALTH_DEGRADED, "no INS for 2 s"));
   story.add(kHealth, health(health_t::HEALTH_OK, ""));
   story.add(kHealth, health(health_t::HEALTH_OK, "", 2));
-  REQUIRE(story.lines == Lines{"learner: DEGRADED: no INS for 2 s", "learner: is well again",
+  REQUIRE(story.lines == Lines{"learner: DEGRADED: no INS for 2 s", "learner: recovered",
                                "learner: has started again"});
 }
 

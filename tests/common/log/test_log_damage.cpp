@@ -88,7 +88,7 @@ TEST_CASE("a length that lies costs its event, no memory and no neighbours") {
 TEST_CASE("what is no log at all is told") {
   std::string problem;
   CHECK(eventsIn("name: not a log\n", problem).empty());
-  CHECK_THAT(problem, Catch::Contains("no whole event in it; is this an LCM log?"));
+  CHECK_THAT(problem, Catch::Contains("no complete event in it; is this an LCM log?"));
   CHECK_THROWS_WITH(
       LogReader("/tmp/no such log"),
       "log /tmp/no such log: cannot be read (No such file or directory); check the path");

@@ -49,7 +49,7 @@ TEST_CASE("a packed file that was cut off gives what is whole, and says so") {
   CHECK(text.size() > 10'000);
   CHECK(numbers().rfind(text, 0) == 0);
   CHECK_THAT(file.reasonOf(file.path() + ":3: no number"),
-             Catch::StartsWith(packed.path + ": what gzip packed is damaged or cut off") &&
+             Catch::StartsWith(packed.path + ": the gzip data is damaged or cut off") &&
                  Catch::Contains(packed.path + ":3: no number"));
 }
 

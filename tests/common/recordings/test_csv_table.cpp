@@ -89,7 +89,7 @@ TEST_CASE("a header is found behind a # and below other lines") {
   CHECK(read.line(0) == 6);
   CHECK_THROWS_WITH(read.number(0, "y"), "a.csv:5: no column y; there are t, x");
   CHECK(complaint("0,1\n2,3\n") ==
-        "a.csv:1: numbers stand where the names of the columns should be; without names, say "
+        "a.csv:1: there are numbers where the names of the columns should be; without names, set "
         "header: false in the mapping");
   CHECK(complaint("5,0.5\n6,-2.25\nt,x\n0,0.5\n", layout) ==
         "a.csv:3: a header below rows of numbers; were two files joined? Part them here");
@@ -182,7 +182,7 @@ TEST_CASE("text in another encoding and lost bytes are named") {
   CHECK_THAT(complaint("\xFF\xFE" + wide), Contains("a.csv: is UTF-16 text; save it as UTF-8"));
   CHECK_THAT(complaint(wide), Contains("a.csv: is UTF-16 text"));
   CHECK(complaint(std::string("t,x\n0,1\n\0\0\0\0", 12)) ==
-        "a.csv:3: holds NUL bytes, as after a loss of power; take them out (tr -d '\\000')");
+        "a.csv:3: contains NUL bytes, as after a power failure; remove them (tr -d '\\000')");
   CHECK(complaint("") == "a.csv: cannot be read or is empty; give a CSV file with a header line");
   CHECK(complaint("\n# t\n\n") ==
         "a.csv: cannot be read or is empty; give a CSV file with a header line");

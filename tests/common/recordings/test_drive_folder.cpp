@@ -139,7 +139,7 @@ TEST_CASE("a robot is chosen by the beginning or a part of its name") {
   CHECK(chooseRobot(sessions, "ROVER") == "Rover (tracks, 5 kg)");
   CHECK(chooseRobot(sessions, "stone") == "Rolling stone");
   CHECK(complaint(requestOf(path, "ro")) ==
-        "'ro' may be any of 'Rover (tracks, 5 kg)', 'Rolling stone'; say more of the name");
+        "'ro' may be any of 'Rover (tracks, 5 kg)', 'Rolling stone'; give more of the name");
   CHECK(complaint(requestOf(path, "horse")) ==
         "no robot is called 'horse'; there are 'Rover (tracks, 5 kg)', 'Rolling stone'");
   CHECK(complaint(requestOf(path, "")) ==

@@ -137,7 +137,8 @@ TEST_CASE("the heading's lag behind the gyro is found, and told by the fit alone
   REQUIRE(match);
   REQUIRE(match->lag == Approx(0.4).margin(0.03));
   REQUIRE(match->slope == Approx(1.0).margin(0.02));
-  REQUIRE(lineWith(makeDrive(made), "the fit says (INS latency)") != "");
+  REQUIRE(lineWith(makeDrive(made), "the fit determines the delay of the heading (INS latency)") !=
+          "");
   REQUIRE(lineWith(makeDrive(made), "0.4") == "");
   made.pose_lag = 0.0;
   made.gyro_lag = 0.16;
@@ -164,7 +165,7 @@ TEST_CASE("commands that alternate evenly are not taken for a flipped sign") {
 TEST_CASE("a mirrored map does not fit its headings") {
   Made mirrored;
   mirrored.mirror = -1.0;
-  REQUIRE_THAT(fatal(makeDrive(mirrored)), Catch::Contains("y (or x) counts the other way"));
+  REQUIRE_THAT(fatal(makeDrive(mirrored)), Catch::Contains("y (or x) is inverted"));
 }
 
 TEST_CASE("a clock of the INS that leaves that of MOTOR is found, and from when to when") {
@@ -321,7 +322,7 @@ TEST_CASE("there is no heading beside a gyro that is missing, or where nothing w
   for (InsSample& sample : silent.segments[0].ins) sample.omega = kNotMeasured;
   CHECK_FALSE(headingBesideGyro(silent));
   CHECK_FALSE(headingBesideGyro(Drive{}));
-  CHECK(lineWith(silent, "no gyro beside the heading") != "");
+  CHECK(lineWith(silent, "no gyro to compare with the heading") != "");
   CHECK(fatal(silent) == "");
 }
 
@@ -380,7 +381,7 @@ TEST_CASE("what changes its meaning on the way is fatal, with its time") {
   SECTION("frozen for ten seconds, and to the end") {
     made.frozen = true;
     made.to = 90.0;
-    CHECK(refused(made, "the INS is frozen: it says the same 101 times from 79.9 to 89.9 s"));
+    CHECK(refused(made, "the INS is frozen: it repeats the same 101 times from 79.9 to 89.9 s"));
     made.to = 200.0;
     CHECK(refused(made, "the INS is frozen"));
   }

@@ -96,7 +96,7 @@ TEST_CASE("messages within messages are heard, with all their values") {
 
 TEST_CASE("comments of a type and of its fields stay with them, also over two lines") {
   const MessageType& motor = *treadTypes().find("motor_t");
-  REQUIRE_THAT(motor.comment, Catch::StartsWith("What the motors do. Channel MOTOR"));
+  REQUIRE_THAT(motor.comment, Catch::StartsWith("State of the motors. Channel MOTOR"));
   REQUIRE(motor.field("battery_voltage")->comment == "[V]; NaN unknown");
   REQUIRE_THAT(motor.field("measured")->comment, Catch::EndsWith("[rad] + left; NaN unknown"));
   const MessageType& program = *treadTypes().find("program_t");

@@ -7,14 +7,14 @@
 namespace tread::planner {
 namespace {
 
-constexpr int64_t kSteady = 2'000'000;  // [us] a link must have been good
-constexpr int64_t kPause = 3'000'000;   // [us] before it sets off: whoever stands near must notice
-constexpr int64_t kListen = 3'000'000;  // [us] at a place before it goes on
+constexpr int64_t kSteady = 2'000'000;  // [us] for which a link must have been good
+constexpr int64_t kPause = 3'000'000;   // [us] before it sets off, so that people nearby notice it
+constexpr int64_t kListen = 3'000'000;  // [us] at a place before it continues
 constexpr double kSpacing = 0.5;        // [m] between remembered places
-constexpr double kStep = 3.0;           // [m] to the next place if nobody is heard
+constexpr double kStep = 3.0;           // [m] to the next place if there is no operator
 constexpr double kReached = 0.5;        // [m]
-constexpr double kThere = 0.7;          // [m] as it coasts on where it was to stop
-constexpr double kMoreStd = 1.0;        // [m] by which the pose may have become more uncertain
+constexpr double kThere = 0.7;          // [m] coasting distance beyond a stopping place
+constexpr double kMoreStd = 1.0;        // [m] by which the pose's uncertainty may have grown
 constexpr size_t kMostPlaces = 4000;    // 2 km
 
 }  // namespace
@@ -53,8 +53,8 @@ void WayBack::remember(const LinkReading& link) {
   if (places_.size() > kMostPlaces) places_.pop_front();
 }
 
-/// An INS that never tells is taken at its word: it knows a position, or there is no pose. One that
-/// tells no more is not.
+/// An INS that never reports its accuracy is trusted while it has a position. One that stops
+/// reporting it is not.
 bool WayBack::uncertain(const LinkReading& link) const {
   const double std = places_.back().std;
   return std::isfinite(std) && !(link.position_std <= std + kMoreStd);
@@ -82,7 +82,7 @@ std::optional<Goal> WayBack::follow(const LinkReading& link) {
   if (there) there_since_ = there_since_.value_or(link.now);
   if (there_since_ && link.now - *there_since_ > kListen) {
     if (places_.size() == 1) {
-      giveUp("it is where its way began, and nobody is heard");
+      giveUp("it is where its path began, and there is no operator");
       return std::nullopt;
     }
     stepBack();

@@ -158,7 +158,7 @@ TEST_CASE("degrees taken for radians, and radians for degrees") {
              Contains("degrees"));
   CHECK_THAT(named([&](DriveRow& row) { row.gyro /= degree; }), Contains("are these degrees per"));
   CHECK_THAT(named([&](DriveRow& row) { row.yaw *= degree; }),
-             Contains("if that is in radians; as degrees it does not"));
+             Contains("if that is in radians, but not in degrees"));
   CHECK_THAT(named([&](DriveRow& row) { row.gyro *= degree; }),
              Contains("is the gyro in rad/s, not in degrees per second?"));
 }
@@ -193,10 +193,8 @@ TEST_CASE("sides in the wrong columns, with the wrong sign, and a body's speeds 
 }
 
 TEST_CASE("mirrored, swapped and turned axes") {
-  CHECK_THAT(named([](DriveRow& row) { row.y = -row.y; }),
-             Contains("y (or x) counts the other way"));
-  CHECK_THAT(named([](DriveRow& row) { row.x = -row.x; }),
-             Contains("y (or x) counts the other way"));
+  CHECK_THAT(named([](DriveRow& row) { row.y = -row.y; }), Contains("y (or x) is inverted"));
+  CHECK_THAT(named([](DriveRow& row) { row.x = -row.x; }), Contains("y (or x) is inverted"));
   CHECK_THAT(named([](DriveRow& row) { std::swap(row.x, row.y); }),
              Contains("x and y are swapped"));
   CHECK_THAT(named([](DriveRow& row) { row.yaw = -row.yaw; }),

@@ -353,7 +353,7 @@ TEST_CASE("packed recordings are read, and those of other packers are named") {
   const auto whole = std::filesystem::file_size(path + ".gz");
   std::filesystem::resize_file(path + ".gz", whole * 2 / 3);
   CHECK(exitOf("true", path + ".gz") != 0);
-  CHECK_THAT(words(), Catch::Contains(path + ".gz: what gzip packed is damaged or cut off"));
+  CHECK_THAT(words(), Catch::Contains(path + ".gz: the gzip data is damaged or cut off"));
   if (std::system("command -v xz > /dev/null") != 0) return;
   CHECK(exitOf("xz -kf", path + ".xz") == 2);
   CHECK_THAT(words(), Catch::Contains("is packed by xz; unpack it first: xz -dk " + path + ".xz"));
