@@ -48,7 +48,7 @@ struct PlanNote : Note {
   int16_t state = 0;  ///< plan_t::PLAN_*
   Reason reason;      ///< while it drives: of a planned stop
   int64_t goal_id = 0;
-  bool news = false;                ///< it no longer drives as before, or stands for another reason
+  bool news = false;                ///< the driving state or the reason for standing changed
   std::optional<Pose2> T_map_next;  ///< end of its first pattern; nullopt: no plan
   int64_t duration = 0;             ///< [us] of that pattern; 0 before its set is known
 };

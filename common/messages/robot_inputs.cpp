@@ -93,9 +93,8 @@ void RobotInputs::take(const arm_t& message) {
   takeHolder(before);
 }
 
-/// The motor bridge arms only for the holder, so whoever it has armed for holds the robot, whatever
-/// was received here. Processes that start at different times may have received another operator
-/// first.
+/// The motor bridge arms only for the holder. The operator it is armed for is therefore the holder,
+/// even if this process started at another time and received another operator first.
 void RobotInputs::takeHolder(bool granted_before) {
   if (!granted_before && permission_.granted()) operator_.holdBy(permission_.armedBy(), bus_.now());
 }
