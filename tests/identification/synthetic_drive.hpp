@@ -20,9 +20,8 @@ struct SyntheticNoise {
   double ground = 0.03;    ///< [1] of speed and yaw rate, per pattern; half of it is correlated
 };
 
-/// A drive of two-second patterns simulated by a model: commands, INS at 50 Hz, executions.
-/** The kernel simulates it, so forms match exactly: it tests the mathematics, not the value of the
- * workflow (see tests/study). */template <class Random>
+/// A random command over all that the vehicle accepts, with speeds up to 1.
+template <class Random>
 Command drawnCommand(const VehicleModel& vehicle, Random& random) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   if (vehicle.isOmni()) {
@@ -49,9 +48,9 @@ inline void give(OmniKernel& kernel, const Command& command) {
   kernel.give(command);
 }
 
-/// A drive of two-second patterns that a model makes: commands, INS at 50 Hz, executions.
-/** The kernel simulates it, so that forms match exactly: for tests of the mathematics, not of what
- * the workflow is worth (tests/study is for that). */
+/// A drive of two-second patterns simulated by a model: commands, INS at 50 Hz, executions.
+/** The kernel simulates it, so forms match exactly: it tests the mathematics, not the value of the
+ * workflow (see tests/study). */
 template <class Kernel>
 Drive syntheticDriveBy(Kernel kernel, const ModelDocument& truth, double seconds, uint64_t seed,
                        const SyntheticNoise& noise) {

@@ -38,7 +38,7 @@ struct TransitionErrors {
   SequenceErrors sequences;
   std::vector<MethodErrors> all_patterns;  ///< by all_patterns_after
   std::vector<MethodErrors> development;   ///< by execution
-  FirstExecutions first;             ///< of random patterns
+  FirstExecutions first;                   ///< of random patterns
   /// remembered surfaces before the transition, mean over excitation runs
   std::vector<double> remembered;
 };
@@ -46,8 +46,8 @@ struct TransitionErrors {
 /// Section V on one set of recordings.
 struct ExperimentErrors {
   std::vector<TransitionErrors> transitions;  ///< from each surface to each other one, in order
-  std::vector<MethodErrors> unchanged;              ///< by surface, in the long run, with random patterns
-  std::vector<MethodErrors> unchanged_sequences;    ///< the same over the test sequences
+  std::vector<MethodErrors> unchanged;        ///< by surface, in the long run, with random patterns
+  std::vector<MethodErrors> unchanged_sequences;  ///< the same over the test sequences
   std::vector<FirstExecutions> unchanged_first;   ///< by surface
   /// Width of the pattern `watched` by rule, over executions on unchanged ground; see driveDrift().
   std::vector<std::vector<double>> drift;
@@ -227,10 +227,10 @@ struct Batch {
   std::string source;              ///< the world or folder, in words
   std::vector<std::string> notes;  ///< about the recordings
   std::vector<Tables> sets;
-  Tables tables;                  ///< combined over all sets of recordings
+  Tables tables;                     ///< combined over all sets of recordings
   std::vector<TrialGround> grounds;  ///< of the first set of recordings
-  ExperimentErrors first;         ///< its errors, for the pictures
-  std::vector<Variant> variants;  ///< if the request has `extras`
+  ExperimentErrors first;            ///< its errors, for the pictures
+  std::vector<Variant> variants;     ///< if the request has `extras`
   double seconds = 0.0;              ///< of the trials, without recording
 };
 

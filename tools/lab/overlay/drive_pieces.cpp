@@ -55,7 +55,7 @@ bool moves(const std::vector<Pose2>& poses) {
   return path > kLeastPath || turn > kLeastTurn;
 }
 
-/// A model's motion under the drive's commands, starting from rest.
+/// The poses of a piece relative to the first one, as measured by an INS with these properties.
 std::vector<Pose2> posesOf(const std::vector<MotionSample>& motion, const MeasurementModel& ins,
                            double begin, size_t samples) {
   const auto at = [&](size_t sample) {
@@ -203,7 +203,7 @@ std::vector<ComparedPiece> replay(const gap::Drive& drive, const std::vector<Mod
     if (model.vehicle.kind != drive.kind)
       throw std::runtime_error(
           "model " + model.vehicle.name +
-          " takes another kind of command than the log has (power or track speed); give a model of "
+          " needs another kind of command than the log has (power or track speed); give a model of "
           "the same vehicle");
   std::vector<ComparedPiece> pieces;
   for (const gap::Segment& segment : drive.segments)

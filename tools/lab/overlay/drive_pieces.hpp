@@ -12,9 +12,8 @@
 namespace tread::overlay {
 
 /// Reads LCM logs that are parts of one recording, in order, as tread-gap does.
-/** `problem`: one clear line of what is wrong with the log; empty if nothing is. Throws
- * std::runtime_error with one clear line if a log cannot be read, if MOTOR or INS is not in them,
- * or if nothing was driven. */
+/** `problem`: damage of the log in one line; empty if none. Throws std::runtime_error with one
+ * clear line if a log cannot be read, if MOTOR or INS is missing, or if nothing was driven. */
 gap::Drive readLoggedDrive(const std::vector<std::string>& logs, std::string& problem);
 
 inline constexpr double kSample = 0.1;  ///< [s] between the poses of a piece
@@ -31,8 +30,8 @@ struct ComparedPiece {
 };
 
 /// Cuts a drive into pieces of a length [s], and leaves out those with little motion, an INS gap
-/// above 0.3 s, or less than 3 s of log before them.
-/** Each model simulates the preceding 3 s from rest, which initializes its tracks and delays. It
+/// above 0.3 s, or a segment (see Drive) that begins less than 3 s before them.
+/** Each model simulates its segment from the beginning, which initializes its tracks and delays. It
  * gets slopes and battery from the log, and its INS part is applied to its poses. Throws
  * std::runtime_error if the models need another kind of command. */
 std::vector<ComparedPiece> replay(const gap::Drive& drive, const std::vector<ModelDocument>& models,

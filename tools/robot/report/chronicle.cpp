@@ -12,11 +12,11 @@ namespace {
 
 constexpr double kContinuous = 5.0;  // [Hz] a channel of this rate is never silent for long
 constexpr double kHole = 0.5;        // [s] of silence of a channel of 5 Hz or more
-constexpr double kTogether = 0.3;    // [s] between beginnings, and ends, of the same hole
+constexpr double kTogether = 0.3;    // [s] between beginnings, and between ends, of one hole
 constexpr size_t kMostLines = 30;    // of a kind
 
 bool isContinuous(const std::string& channel) {
-  // These come while an operator's program runs.
+  // Only while an operator's program runs.
   if (channel == kOperator.name || channel == kManual.name) return false;
   return std::any_of(kChannels.begin(), kChannels.end(), [&](const ChannelSpec& spec) {
     return channel == spec.name && spec.rate_hz >= kContinuous;
@@ -55,7 +55,7 @@ std::vector<GoalStory> goalsOf(const std::vector<PlanNote>& plans) {
     if (given) goals.push_back({plan.goal_id, plan.time, plan.time, false, ""});
     if (goals.empty() || goals.back().arrived) continue;
     GoalStory& goal = goals.back();
-    // Without a goal: why the planner follows the last one no more.
+    // Without a goal the planner gives its reason for dropping the last one.
     if (plan.goal_id != 0 || !plan.reason.words.empty()) goal.reason = plan.reason.words;
     if (plan.goal_id == 0) continue;
     goal.ended = plan.time;
@@ -65,7 +65,7 @@ std::vector<GoalStory> goalsOf(const std::vector<PlanNote>& plans) {
   return goals;
 }
 
-/// Of one channel each, in the order of their beginnings.
+/// Silences of each channel, ordered by their beginnings.
 std::vector<Hole> silencesOf(const DriveTimeline& drive) {
   std::vector<Hole> silences;
   for (const auto& [channel, times] : drive.heard)
@@ -78,12 +78,12 @@ std::vector<Hole> silencesOf(const DriveTimeline& drive) {
   return silences;
 }
 
-/// Whether the last loss, a fault or E-stop, lasts to the log's end.
+/// Whether the last loss, a fault or E-stop, lasts until the end of the log.
 bool lossLasts(const DriveTimeline& drive) {
   if (drive.losses.empty() || !isSevere(drive.losses.back())) return false;
   const PermissionLoss& last = drive.losses.back();
   const auto [from, to] = notesBetween(drive.motors, last.event, drive.messages);
-  // A fault after an E-stop is no better an end.
+  // A fault after an E-stop does not end the loss.
   return std::all_of(from, to, [&](const MotorNote& note) {
     return note.state == last.state || note.state == motor_t::STATE_FAULT;
   });
@@ -140,7 +140,7 @@ std::string Chronicle::words() const {
   words += linesOf(holes, [](const Hole& hole) {
     std::string names;
     for (const std::string& channel : hole.channels) names += (names.empty() ? "" : ", ") + channel;
-    return formatted("%7.1f s  nothing for %.1f s of ", hole.begin, hole.length) + names;
+    return formatted("%7.1f s  no message for %.1f s on ", hole.begin, hole.length) + names;
   });
   return words;
 }

@@ -10,16 +10,16 @@
 
 namespace tread::report {
 
-/// What became of a goal.
+/// The outcome of a goal.
 struct GoalStory {
   int64_t id = 0;
   double given = 0.0;  ///< [s] since the log began, when the planner first had it
-  double ended = 0.0;  ///< [s] of the arrival, or when the planner had it last
+  double ended = 0.0;  ///< [s] of the arrival, or of the planner's last message with it
   bool arrived = false;
-  std::string reason;  ///< the planner's last one, where it did not arrive
+  std::string reason;  ///< the planner's last reason, if it did not arrive
 };
 
-/// A time in which channels were silent that spoke before and after it.
+/// A gap of channels that had messages before and after it.
 struct Hole {
   double begin = 0.0;   ///< [s] since the log began
   double length = 0.0;  ///< [s]
@@ -30,16 +30,16 @@ struct Hole {
 struct Chronicle {
   std::vector<GoalStory> goals;
   std::vector<PermissionLoss> incidents;
-  std::vector<Hole> holes;      ///< channels that fell silent and came back together are one
-  bool incident_lasts = false;  ///< the last one, a fault or E-stop, to the log's end
+  std::vector<Hole> holes;      ///< channels with the same gap share one hole
+  bool incident_lasts = false;  ///< the last one, a fault or E-stop, until the end of the log
 
   explicit Chronicle(const DriveTimeline& drive);
   /// Whether the last goal was reached, and no fault or E-stop lasts to the log's end.
   bool endsWell() const { return !goals.empty() && goals.back().arrived && !incident_lasts; }
-  /// What became of it all, for one line; empty where nothing followed the first goal but
-  /// `disarmed` losses of the permission.
+  /// Everything that followed, in one line; empty if only `disarmed` losses of the permission
+  /// followed the first goal.
   std::string summary(int disarmed) const;
-  /// Some lines; empty for a log with one goal at most, where nothing else happened.
+  /// Some lines; empty for a log with at most one goal and no other events.
   std::string words() const;
 };
 

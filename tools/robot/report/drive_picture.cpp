@@ -67,7 +67,7 @@ void drawSurfaces(Panel& panel, const DriveScene& scene, const Bounds& bounds) {
     panel.polygon(rough.corners, {0.35, 0.25, 0.15, 0.18});
 }
 
-/// What mapping published: obstacles dark; free and unknown cells do not hide the world.
+/// The map published by mapping: obstacles dark; free and unknown cells do not hide the world.
 void drawMap(Panel& panel, const TileMap& map) {
   for (const auto& [index, tile] : map.tiles()) {
     const CellIndex lower{index.first * map.tileCells(), index.second * map.tileCells()};
@@ -131,11 +131,11 @@ void drawWay(Picture& picture, const DriveScene& scene) {
   }
   panel.legendEntry({kGreen, 6.0, false, "start"});
   panel.legendEntry({kRed, 6.0, false, "goal"});
-  panel.legendEntry({{0.15, 0.15, 0.15}, 6.0, false, "obstacle as mapped"});
+  panel.legendEntry({{0.15, 0.15, 0.15}, 6.0, false, "mapped obstacle"});
   panel.finish();
 }
 
-/// Patterns that a running mean of errors takes together, the newest last.
+/// Number of patterns in a running mean of errors, the newest last.
 constexpr size_t kRunning = 5;
 constexpr Colour kRuleColours[] = {kGrey, kOrange, kGreen, kPink, kRed, kBlack};
 
@@ -176,7 +176,7 @@ void drawErrors(Picture& picture, Box box, const std::string& title, const std::
   double last = -1e9;
   for (const Crossing& crossing : scene.crossings) {
     panel.verticalLine(crossing.time, {kRed, 1.2, true, ""});
-    // Names that would overlap step down.
+    // Overlapping names move down.
     height = crossing.time - last < 0.16 * scene.duration ? height - 0.07 : 1.07;
     last = crossing.time;
     panel.text({crossing.time, height * largest}, " " + crossing.to, kRed);
@@ -218,7 +218,7 @@ Colour sideColour(size_t i) {
   return kSideColours[i % std::size(kSideColours)];
 }
 
-/// The way alone: ground, obstacles, where it drove, stopped and touched.
+/// Only the path: ground, obstacles, track, stops and contacts.
 void drawSide(Picture& picture, Box box, const DriveScene& scene, const Bounds& bounds,
               Colour colour) {
   Panel panel(picture, box,
@@ -275,7 +275,7 @@ void drawSideBySide(const std::string& path, const std::string& title,
   drawSideErrors(picture, {60, 680, half - 80.0, 190},
                  "prediction error of each pattern and mean of the last five: position", "[m]",
                  scenes, &PatternError::position);
-  drawSideErrors(picture, {60 + half, 680, half - 80.0, 190}, "the same: yaw", "[rad]", scenes,
+  drawSideErrors(picture, {60 + half, 680, half - 80.0, 190}, "the same in yaw", "[rad]", scenes,
                  &PatternError::yaw);
   picture.save(path);
 }

@@ -52,7 +52,7 @@ void Latencies::add(const LogEvent& event, bool lost) {
     const auto found = unplanned_.find(plan.set_version);
     if (found == unplanned_.end()) return;
     note(set_to_plan_, found->second, received);
-    // Versions that another has overtaken were never planned with.
+    // Versions overtaken by a newer one were never used for planning.
     unplanned_.erase(unplanned_.begin(), std::next(found));
   } else if (decode(event, kLearning, learning)) {
     hear(learning);
@@ -82,9 +82,9 @@ void Latencies::hear(const pattern_set_part_t& message, int64_t received) {
       awaited_sets_.erase(awaited);
     }
   }
-  // A repetition of a version that is known already is nothing new to plan with.
+  // A repetition of a known version is not a new set.
   if (++parts_[version] == message.part_count && version > newest_version_) {
-    // The first set of a log may have been planned with long before.
+    // The first set of a log may have been in use long before.
     if (newest_version_ > 0) unplanned_[version] = received;
     newest_version_ = version;
   }
@@ -92,7 +92,7 @@ void Latencies::hear(const pattern_set_part_t& message, int64_t received) {
 
 namespace {
 
-/// The last plans before the goal are short; the richest one made farther away [m] is drawn.
+/// The last plans before the goal are short, so the richest one farther away [m] is drawn.
 constexpr double kNear = 8.0;
 constexpr double kTrackStep = 0.05;  // [m]
 
@@ -160,7 +160,7 @@ void takePatterns(DriveRecord& drive) {
   }
 }
 
-/// Mapping says which robot it was; logs from before robots were described do not.
+/// The robot's outline is in mapping's messages; older logs do not have it.
 std::optional<FootprintSize> outlineIn(const DriveTimeline& log) {
   const auto config = log.configs.find("mapping");
   if (config == log.configs.end()) return std::nullopt;
@@ -181,7 +181,7 @@ std::string latencyLine(const char* name, const Durations& durations) {
                    durations.quantile(0.99), durations.count());
 }
 
-/// Borders that the robot crossed, from the true surface along the way; short visits left out.
+/// Borders that the robot crossed, from the true surface along its path; short visits are left out.
 std::vector<Crossing> crossingsOf(const DriveRecord& drive, const SimulationTruth& truth) {
   constexpr double kVisit = 0.5;  // [s]
   std::vector<Crossing> crossings;
@@ -231,7 +231,7 @@ DriveRecord readDrive(const std::vector<std::string>& logs) {
         arrived = arrived || arrivesNow(log);
         if (!arrived) takeTree(event, log, drive.tree);
       });
-  // A file of another kind has nothing to tell.
+  // A file of another format has no messages.
   if (drive.log.messages == 0 && !drive.log.problem.empty())
     throw std::runtime_error(drive.log.problem);
   takeFirstDrive(drive);
@@ -242,7 +242,7 @@ DriveRecord readDrive(const std::vector<std::string>& logs) {
 
 namespace {
 
-/// What became of the first drive.
+/// The outcome of the first drive.
 std::string driveLine(const DriveRecord& drive, const SimulationTruth& truth) {
   if (!drive.has_goal) return "no goal in this log";
   std::string line =
@@ -282,7 +282,7 @@ std::string reportOf(const DriveRecord& drive, const SimulationTruth& truth,
   for (const Crossing& crossing : crossingsOf(drive, truth))
     changes.push_back(drive.begun + std::llround(crossing.time * 1e6));
   if (!by_rule.rules.empty()) words += reportOf(by_rule, changes);
-  words += "latency, as the logger received:\n";
+  words += "latency, by the logger's reception times:\n";
   words += latencyLine("INS to learner's set", drive.latencies.insToSet());
   words += latencyLine("set to plan", drive.latencies.setToPlan());
   words += latencyLine("scan to tile", drive.latencies.scanToTile());

@@ -33,84 +33,85 @@ struct TreeEdge {
   bool chosen = false;
 };
 
-/// Where the vehicle was at a time.
+/// The vehicle's position at a time.
 struct TrackPoint {
   double time = 0.0;  ///< [s] since the drive began
   Pose2 T_map_body;
 };
 
-/// How far a pattern ended from its prediction.
+/// Distance of a pattern's end from its prediction.
 struct PatternError {
   double time = 0.0;      ///< [s] of its end
   double position = 0.0;  ///< [m]
   double yaw = 0.0;       ///< [rad]
 };
 
-/// The same executions, predicted by a rule of learning.
+/// The same executions, predicted by a learning rule.
 struct RuleSeries {
   std::string rule;
   std::vector<PatternError> errors;
 };
 
-/// A change of the true surface under the robot. Who turns round on a border crosses it again.
+/// A change of the true surface under the robot. A robot that turns round on a border crosses it
+/// again.
 struct Crossing {
   double time = 0.0;  ///< [s] since the drive began
   std::string from;
   std::string to;
 };
 
-/// All that a picture of a drive shows. What is empty is left out.
+/// The content of a drive's picture. Empty parts are left out.
 struct DriveScene {
   std::string title;
-  std::string name;                            ///< in a picture of several; may be empty
-  std::optional<sim::WorldDescription> world;  ///< true ground and obstacles, if they are known
-  TileMap map{0.1, 32};                        ///< what mapping published
+  std::string name;                            ///< only in a picture of several drives
+  std::optional<sim::WorldDescription> world;  ///< true ground and obstacles, if known
+  TileMap map{0.1, 32};                        ///< published by mapping
   std::vector<TreeEdge> tree;
   std::vector<TrackPoint> track;
   std::optional<FootprintSize> outline;  ///< of the vehicle, drawn along the track
   Pose2 T_map_start;
   Pose2 T_map_goal;
   std::vector<Eigen::Vector2d> contacts;  ///< p_map [m]
-  std::vector<Eigen::Vector2d> stops;     ///< where it came to rest on its way, p_map [m]
+  std::vector<Eigen::Vector2d> stops;     ///< where it stopped on its path, p_map [m]
   std::vector<PatternError> errors;       ///< as driven
   std::vector<RuleSeries> by_rule;        ///< drawn as running means
   std::vector<Crossing> crossings;
   double duration = 1.0;  ///< [s]
 };
 
-/// Draws ground, map, obstacles, track and tree beside the prediction error of each pattern.
+/// Draws ground, map, obstacles, track and tree and the prediction error of each pattern.
 /** Throws std::runtime_error with one clear line if the file cannot be written. */
 void drawDrive(const std::string& path, const DriveScene& scene);
 
-/// Draws drives through the same world side by side, each under its title, and the prediction
-/// errors of all over time below.
+/// Draws drives through the same world side by side, each with its title, and their prediction
+/// errors over time below.
 /** Throws std::runtime_error with one clear line if the file cannot be written. */
 void drawSideBySide(const std::string& path, const std::string& title,
                     const std::vector<DriveScene>& scenes);
 
-/// The branches of a tree as it is published.
+/// The branches of a published tree.
 std::vector<TreeEdge> edgesOf(const plan_tree_t& message);
 
-/// The executions of one drive, predicted by several rules of learning.
+/// The executions of one drive, predicted by several learning rules.
 struct RuleErrors {
-  std::string problem;  ///< why there are none, one line; empty = there are
-  std::string driven;   ///< rule that the robot drove with
+  std::string problem;  ///< the reason in one line if there are none; else empty
+  std::string driven;   ///< the robot's rule during the drive
   std::vector<learner::Rule> rules;
-  std::vector<report::ShadowedExecution> executions;  ///< in the order in which they ended
+  std::vector<report::ShadowedExecution> executions;  ///< ordered by their ends
 };
 
 /// Replays the log's INS, EXECUTION and MOTOR through a learner process for each rule.
-/** Configured as the log's CONFIG of the learner says, with the shipped set that it names: in the
- * log, or among the pattern files of `patterns_folder`. Each begins with that set and remembers no
- * surface, whatever the robot had learned before. `logs`: parts of one recording, in order. */
+/** Configured by the log's CONFIG of the learner, with the shipped set named there: from the log,
+ * or from the pattern files of `patterns_folder`. Each starts with that set and without remembered
+ * surfaces, whatever the robot had learned before. `logs`: parts of one recording, in order. */
 RuleErrors errorsByRule(const std::vector<std::string>& logs, const std::string& patterns_folder,
                         const std::vector<learner::Rule>& rules);
 
-/// Means side by side, some lines. `changes`: when the ground became another [us], ascending;
-/// empty = not known.
+/// Means side by side, some lines. `changes`: times of changes of ground [us], ascending; empty =
+/// not known.
 std::string reportOf(const RuleErrors& errors, const std::vector<int64_t>& changes);
 
-/// Times that something took [ms].
+/// A set of durations [ms].
 class Durations {
  public:
   void add(double milliseconds) { values_.push_back(milliseconds); }
@@ -122,13 +123,13 @@ class Durations {
   std::vector<double> values_;
 };
 
-/// How long messages wait for each other, by the times at which the logger received them.
+/// Delays between related messages, by the logger's reception times.
 /** INS to set: from the INS message that passes the end of an execution to the first part of the
  * set that was learned from it. Set to plan: from the last part of a set's first appearance to the
  * first PLAN made with it. Scan to tile: from SCAN to the next MAP message that holds it. */
 class Latencies {
  public:
-  /// `lost`: the log does not say when the event was received; what needs that is left out.
+  /// `lost`: the time of reception is unknown; measures that need it are left out.
   void add(const LogEvent& event, bool lost = false);
 
   const Durations& insToSet() const { return ins_to_set_; }
@@ -145,17 +146,18 @@ class Latencies {
   void hear(const learning_t& message);
   void hear(const pattern_set_part_t& message, int64_t received);
 
-  std::deque<Received> ins_;                 ///< of the last seconds
-  std::deque<Received> scans_;               ///< not yet in a tile
-  std::map<int64_t, int64_t> first_part_;    ///< by version: when its first part came
-  std::map<int64_t, int64_t> awaited_sets_;  ///< by version: when the INS came that allowed it
-  std::map<int64_t, int64_t> unplanned_;     ///< by version: when it was complete
-  std::map<int64_t, int> parts_;             ///< by version: parts so far
+  std::deque<Received> ins_;               ///< of recent seconds
+  std::deque<Received> scans_;             ///< not yet in a tile
+  std::map<int64_t, int64_t> first_part_;  ///< by version: reception of its first part
+  /// by version: reception of the INS that completed its execution
+  std::map<int64_t, int64_t> awaited_sets_;
+  std::map<int64_t, int64_t> unplanned_;  ///< by version: reception of its last part
+  std::map<int64_t, int> parts_;          ///< by version: number of parts so far
   int64_t newest_version_ = 0;
   Durations ins_to_set_, set_to_plan_, scan_to_tile_;
 };
 
-/// One drive in a log: from the first goal to the arrival, or to the log's end.
+/// One drive in a log: from the first goal to the arrival, or to the end of the log.
 struct DriveRecord {
   DriveTimeline log;
   bool has_goal = false;
@@ -164,13 +166,13 @@ struct DriveRecord {
   int64_t ended = 0;  ///< [us] of the arrival, else of the last INS
   bool arrived = false;
   std::string last_status;           ///< the planner's last reason
-  int refused = 0;                   ///< executions that were no fair measurement
+  int refused = 0;                   ///< executions that gave no fair measurement
   int disarmed = 0;                  ///< times that a permission to drive was lost
   std::vector<PatternError> errors;  ///< time since begun
-  std::vector<TrackPoint> track;     ///< as the INS measured, time since begun
+  std::vector<TrackPoint> track;     ///< measured by the INS, time since begun
   Odometer odometer;
-  std::vector<TreeEdge> tree;            ///< the richest one on the way
-  std::optional<FootprintSize> outline;  ///< of the robot; none = the log does not say
+  std::vector<TreeEdge> tree;            ///< the richest one on the path
+  std::optional<FootprintSize> outline;  ///< of the robot; none = not in the log
   Latencies latencies;
 
   double sinceBegin(int64_t utime) const { return static_cast<double>(utime - begun) * 1e-6; }
@@ -182,21 +184,21 @@ struct DriveRecord {
 /// Reads logs (parts of one recording, in order) from front to back; throws std::runtime_error.
 DriveRecord readDrive(const std::vector<std::string>& logs);
 
-/// Ground truth, known in a simulation only.
+/// Ground truth, known only in a simulation.
 struct SimulationTruth {
   std::optional<sim::WorldDescription> world;
   std::vector<sim::TruthRow> rows;  ///< empty = no record
 };
 
-/// The report as text: the result in one line, errors as driven and by rule, latencies.
+/// The report as text: one line with the result, errors as driven and by rule, delays.
 std::string reportOf(const DriveRecord& drive, const SimulationTruth& truth,
                      const RuleErrors& by_rule);
-/// The one line of result alone: of the first drive, and of the whole log where there is more.
+/// Only the line with the result: of the first drive, and of the whole log if it has more.
 std::string resultLine(const DriveRecord& drive, const SimulationTruth& truth);
-/// Whether the robot arrived, at the last goal, too, and the log ends in no fault or E-stop;
-/// nothing was touched.
+/// Whether the robot arrived, also at the last goal, the log does not end in a fault or E-stop, and
+/// there was no contact.
 bool endedWell(const DriveRecord& drive, const SimulationTruth& truth);
-/// The drive to be drawn.
+/// The scene to draw.
 DriveScene sceneOf(const DriveRecord& drive, const SimulationTruth& truth,
                    const RuleErrors& by_rule);
 

@@ -13,17 +13,17 @@
 namespace tread::report {
 namespace {
 
-constexpr double kTravels = 0.15;  // [m] less is no way
-constexpr double kTurns = 0.1;     // [rad] less is no turn
+constexpr double kTravels = 0.15;  // [m] below this there was no travel
+constexpr double kTurns = 0.1;     // [rad] below this there was no turn
 constexpr double kSameDirection = 30.0 * kPi / 180.0;
-constexpr int64_t kPoseGap = 200'000;  // [us] between poses, and to the one looked for
+constexpr int64_t kPoseGap = 200'000;  // [us] between poses, and to the requested time
 constexpr size_t kMostReasons = 3;
 
 double secondsOf(int64_t us) {
   return static_cast<double>(us) * 1e-6;
 }
 
-/// A motion from the body's place: how far, to where, how much turned.
+/// A motion relative to the body: distance, end and turn.
 struct BodyMotion {
   explicit BodyMotion(const Pose2& T_start_end)
       : length(std::hypot(T_start_end.x, T_start_end.y)),
@@ -72,9 +72,9 @@ std::optional<Pose2> poseAt(const Places& places, int64_t utime) {
   return placed->T_map_body;
 }
 
-/// `places`, `end` [us]: of the time in the hand.
+/// `places`, `end` [us]: of the manual control.
 void compare(const PlanNote& plan, const Places& places, int64_t end, ShadowComparison& result) {
-  constexpr int64_t kLook = 1'000'000;  // [us] what a person does where the planner has no way
+  constexpr int64_t kLook = 1'000'000;  // [us] of the person's motion, if the planner has no plan
   if (plan.goal_id == 0 || (plan.T_map_next && plan.duration == 0)) return;
   const int64_t duration = plan.T_map_next ? plan.duration : kLook;
   const std::optional<Pose2> here = poseAt(places, plan.utime);
@@ -132,19 +132,19 @@ HandRecord::HandRecord(const DriveTimeline& drive) {
 std::string HandRecord::words() const {
   if (taken_over + armed_for_hand == 0) return "";
   std::string words = formatted(
-      "by hand: %.1f s (%.1f s moving, %.1f m); taken over %d times, armed for the hand %d times; "
-      "given back %d times, stopped %d times\n",
+      "manual control: %.1f s (%.1f s moving, %.1f m); taken over %d times, armed for it %d times; "
+      "handed back %d times, stopped %d times\n",
       seconds, moving, distance, taken_over, armed_for_hand, given_back, stopped);
-  words += formatted("  it taught %d patterns, %d of them fair\n", taught, fair);
+  words += formatted("  it gave %d patterns to learn from, %d of them fair\n", taught, fair);
   if (shadow.plans == 0) return words + "  the planner had no goal meanwhile\n";
   words += formatted("  the planner would have made the same motion in %.0f %% of %d plans",
                      percent(shadow.same, shadow.plans), shadow.plans);
   if (!shadow.turned_away.empty())
-    words += formatted("; where both travelled: directions %.0f deg apart, ",
+    words += formatted("; when both moved: directions %.0f deg apart, ",
                        median(shadow.turned_away) * 180.0 / kPi) +
-             formatted("%.2f m/s by hand, %.2f m/s by the planner (medians)",
+             formatted("%.2f m/s by the person, %.2f m/s by the planner (medians)",
                        median(shadow.person_speed), median(shadow.planner_speed));
-  words += formatted("\n  it would have stood in %.0f %% while the person moved\n",
+  words += formatted("\n  it would have stopped in %.0f %% while the person moved\n",
                      percent(shadow.would_stand, shadow.plans));
   size_t lines = 0;
   for (const auto& [why, count] : shadow.why)

@@ -13,7 +13,7 @@
 namespace tread::report {
 namespace {
 
-/// The set under the numbers of a shipped one: as a pattern file has it.
+/// The set with the numbers of a shipped one, as in a pattern file.
 std::optional<PatternSet> asShipped(const PatternSet& set, int64_t version) {
   PatternSetContent content = set.content();
   content.version = version;
@@ -33,7 +33,7 @@ std::optional<PatternSet> shippedInLog(const RobotLog& log, int64_t checksum) {
       const auto shipped = version < 1 ? std::nullopt : asShipped(*set, version);
       if (shipped && shipped->checksum() == checksum) return shipped;
     }
-    return std::nullopt;  // what has been learned since hides it
+    return std::nullopt;  // changed by later learning
   }
   return std::nullopt;
 }

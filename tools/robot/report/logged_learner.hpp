@@ -10,9 +10,9 @@
 
 namespace tread::report {
 
-/// The learner's configuration as the log's CONFIG has it, with the shipped set that it names;
-/// `overrides` are KEY=VALUE in the place of what it says.
-/** The set is found by its checksum: as the log's first version, else among the pattern files of
+/// The learner's configuration from the log's CONFIG, with the shipped set named there; `overrides`
+/// are KEY=VALUE that replace its values.
+/** The checksum identifies the set: the log's first version, else one of the pattern files of
  * `patterns_folder`. Throws std::runtime_error with one clear line. */
 learner::LearnerNodeConfig learnerConfigOf(const RobotLog& log, const std::string& patterns_folder,
                                            const std::vector<std::string>& overrides = {});

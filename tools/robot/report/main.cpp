@@ -45,9 +45,10 @@ int run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Tells and draws a drive from its LCM log: result, prediction errors, latencies. Exit code 1 "
-      "where the robot did not arrive, at the last goal, too, where the log ends in a fault or "
-      "E-stop, or where something was touched.",
+      "Reports a drive from its LCM log: result, prediction errors, latencies, picture. Exit "
+      "status 1 "
+      "if the robot did not reach the first or the last goal, if the log ends in a fault or "
+      "E-stop, or if the robot touched something.",
       "tread-report"};
   Arguments arguments;
   app.add_option("logs", arguments.logs, "LCM log; several are parts of one recording, in order")
@@ -57,10 +58,10 @@ int main(int argc, char** argv) {
   std::vector<std::string> names = learner::ruleNames();
   names.push_back("none");
   app.add_option("--rules", arguments.rules,
-                 "rules of learning that predict the drive's executions side by side, or none")
+                 "learning rules to compare on the drive's executions, or none")
       ->delimiter(',')
       ->check(CLI::IsMember(names));
-  Outputs(app).file("--picture", arguments.picture, "file of the picture (PNG)");
+  Outputs(app).file("--picture", arguments.picture, "PNG file for a picture of the drive");
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   return runProgram("tread-report", [&] { return run(arguments); });
 }

@@ -16,7 +16,7 @@ namespace {
 
 using Executions = std::vector<const report::ShadowedExecution*>;
 
-/// Executions wholly on one surface, each with its number on it, from 1; and on which segment.
+/// Executions entirely on one surface, with their numbers on it, from 1, and their segments.
 struct Numbered {
   const report::ShadowedExecution* execution = nullptr;
   size_t segment = 0;
@@ -38,7 +38,7 @@ std::vector<Numbered> numbered(const RuleErrors& errors, const std::vector<int64
   return result;
 }
 
-/// The last five of each segment that has a change behind it.
+/// The last five of each segment after a change.
 Executions beforeChanges(const std::vector<Numbered>& all, size_t changes) {
   Executions chosen;
   for (size_t i = 0; i < all.size(); ++i)
@@ -73,7 +73,7 @@ RuleErrors errorsByRule(const std::vector<std::string>& logs, const std::string&
   RuleErrors errors;
   errors.rules = rules;
   try {
-    // The learner does not need the large ones.
+    // Without large channels, which the learner does not need.
     const RobotLog log =
         readRobotLog(logs, {kScan.name, kPlanTree.name, kMap.name, kLearnerState.name});
     const learner::LearnerNodeConfig config = report::learnerConfigOf(log, patterns_folder);

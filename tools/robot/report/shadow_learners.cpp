@@ -63,7 +63,7 @@ class ShadowLearners::Shadow {
   }
 
  private:
-  /// Where the patterns of a set end, from a time on.
+  /// The ends of a set's patterns, valid from a time on.
   struct Predictions {
     int64_t since = 0;
     std::map<int, Pose2> ends;  ///< by pattern id
@@ -74,7 +74,7 @@ class ShadowLearners::Shadow {
       learning_t report;
       if (decode(event, kLearning, report))
         reports_.insert({{report.learned_run_id, report.learned_execution_id}, report});
-      // A planner has a set when the last part of it has come.
+      // A planner has a set after its last part.
       pattern_set_part_t part;
       if (node_.set().version() != version_ && decode(event, kPatternSet, part) &&
           part.set_version == node_.set().version() && part.part + 1 == part.part_count)
@@ -122,8 +122,8 @@ void ShadowLearners::note(const program_slot_t& slot, int64_t run_id, int64_t ut
 }
 
 int64_t ShadowLearners::decisionTime(const ExecutionKey& key) const {
-  // A set that comes in time makes the planner decide anew: 130 ms before an execution it freezes
-  // what it has handed over, and a step and a search come before that.
+  // A set that arrives in time changes the planner's decision: the planner freezes its command 130
+  // ms before an execution, after a step and a search.
   constexpr int64_t kSetInTime = 200'000;
   const auto decided = decisions_.find(key);
   const auto began = began_.find(key);
@@ -171,7 +171,7 @@ std::vector<ShadowedExecution> ShadowLearners::executions() const {
                              : shadow->errorOf(report->second, decided);
       if (error) execution.by_rule.push_back(*error);
     }
-    // The gates are the same, so all have measured it or none.
+    // The gates are equal, so either all have measured it or none.
     execution.measured = execution.by_rule.size() == shadows_.size();
     if (!execution.measured) execution.by_rule.clear();
     executions.push_back(std::move(execution));

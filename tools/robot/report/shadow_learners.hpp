@@ -26,35 +26,34 @@ struct ShadowedExecution {
   int64_t began = 0;  ///< [us]; 0 = not known
   int64_t ended = 0;  ///< [us]
   bool measured = false;
-  std::vector<PredictionError> by_rule;  ///< in the order of the rules; empty where not measured
+  std::vector<PredictionError> by_rule;  ///< in the order of the rules; empty if not measured
 };
 
-/// One learner process per rule, all listening to the same drive.
-/** Each receives INS, EXECUTION and MOTOR, gates and learns as the robot's learner does; its
- * messages are discarded, so every rule sees the same executions. Each begins with the shipped set
- * and no memory. Every rule's score of an execution uses the newest set that the rule had published
- * when the planner decided on the execution, or would have decided with it (PROGRAM; without that,
- * when it began). */
+/// One learner process for each rule, all with the messages of one drive.
+/** Each receives INS, EXECUTION and MOTOR, gates and learns like the robot's learner. Its messages
+ * are discarded, so every rule processes the same executions. Each starts with the shipped set and
+ * without memory. A rule's prediction of an execution comes from the newest set that it had
+ * published when the planner decided on the execution (by PROGRAM; otherwise, when it began). */
 class ShadowLearners {
  public:
   ShadowLearners(const learner::LearnerNodeConfig& config, std::vector<learner::Rule> rules,
                  int64_t boot_id);
   ~ShadowLearners();
 
-  /// Takes any message of the drive at the robot's time [us], which must not decrease.
+  /// Processes a message of the drive at the robot's time [us], which must not decrease.
   void hear(int64_t utime, const LogEvent& event);
-  /// Whether messages of this channel are used.
+  /// Whether this channel is used.
   bool hears(const std::string& channel) const;
-  /// Call after the last message: lets pending executions finish.
+  /// Call after the last message: finishes pending executions.
   void finish();
 
   const std::vector<learner::Rule>& rules() const { return rules_; }
-  /// All executions scored so far, in the order of their end.
+  /// All executions with predictions so far, ordered by their ends.
   std::vector<ShadowedExecution> executions() const;
 
  private:
   class Shadow;
-  /// The pattern that the planner chose for an execution, and since when.
+  /// The planner's pattern for an execution, and the time of that decision.
   struct Decision {
     int32_t pattern_id = 0;
     int64_t set_version = 0;

@@ -13,13 +13,16 @@
 namespace tread::why {
 namespace {
 
-constexpr double kTogether = 1.5;    // [s] between reasons of one stop
-constexpr double kFirst = 0.6;       // [s] in which the nearest reason to the cause is looked for
-constexpr double kBefore = 1.5;      // [s] before a stop in which its cause lies
-constexpr double kAfterwards = 8.0;  // [s] after it in which processes complain or start again
-constexpr double kHealthLate = 1.4;  // [s] between HEALTH, which comes every second
+constexpr double kTogether = 1.5;  // [s] between reasons of one stop
+// [s] after the first reason, in which the nearest one to the cause is searched
+constexpr double kFirst = 0.6;
+constexpr double kBefore = 1.5;  // [s] before a stop, in which its cause is searched
+// [s] after it, in which complaints and restarts of processes are searched
+constexpr double kAfterwards = 8.0;
+// [s] longest normal interval of HEALTH, which has a period of 1 s
+constexpr double kHealthLate = 1.4;
 constexpr int64_t kManyGarbled = 100;
-constexpr double kOneHeading = 0.03;  // [rad] the same
+constexpr double kOneHeading = 0.03;  // [rad] tolerance of an unchanged heading
 constexpr double kOnePlace = 0.05;    // [m] noise of an INS that does not move
 
 /// A reason that was published.
@@ -30,14 +33,14 @@ struct Signal {
   std::string reason;
 };
 
-/// Reasons that belong to one stop.
+/// Reasons of one stop.
 struct Incident {
   std::vector<Signal> signals;
   double until = 0.0;
 
   double time() const { return signals.front().time; }
-  /// Whether what comes next is another stop: the first that an input or the bridge is to blame
-  /// for.
+  /// Whether the next reason begins another stop: the first one with an input or the bridge as
+  /// cause.
   bool endsBefore(const Signal& next) const {
     const auto takesPermission = [](const Signal& signal) {
       return signal.channel == std::string("MOTOR") || signal.code == StopReason::kNoMap ||
@@ -46,12 +49,12 @@ struct Incident {
     return takesPermission(next) && next.time > time() + kFirst &&
            std::none_of(signals.begin(), signals.end(), takesPermission);
   }
-  /// What has no code says least.
+  /// Reasons without a code have the least information.
   static int rankOf(const Signal& signal) {
     return signal.code == StopReason::kUnsaid ? std::numeric_limits<int>::max()
                                               : static_cast<int>(signal.code);
   }
-  /// The one nearest to the cause.
+  /// The reason nearest to the cause.
   const Signal& main() const {
     const Signal* best = &signals.front();
     for (const Signal& signal : signals)
@@ -69,7 +72,7 @@ bool stops(const PlanNote& plan) {
          plan.state == plan_t::PLAN_IDLE;
 }
 
-/// All reasons that tell of something wrong, in the order of time.
+/// All reasons that report a problem, ordered by time.
 std::vector<Signal> signalsOf(const DriveTimeline& drive) {
   std::vector<Signal> signals;
   const auto add = [&](const Note& note, const Reason& reason, const char* channel) {
@@ -94,7 +97,7 @@ std::vector<Signal> signalsOf(const DriveTimeline& drive) {
   return signals;
 }
 
-/// When the planner drove again after a time; the log's end if it did not.
+/// Time of the planner's next motion after a time; the end of the log if there is none.
 double drivesAgain(const DriveTimeline& drive, double time) {
   for (const PlanNote& plan : drive.plans)
     if (plan.news && plan.time > time && drives(plan)) return plan.time;
@@ -104,7 +107,7 @@ double drivesAgain(const DriveTimeline& drive, double time) {
 std::vector<Incident> incidentsOf(const DriveTimeline& drive) {
   std::vector<Incident> incidents;
   for (Signal& signal : signalsOf(drive)) {
-    // What takes the permission away is a stop of its own, whatever the planner had found before.
+    // A loss of the permission is a separate stop, whatever the planner had reported before.
     const bool same = !incidents.empty() && !incidents.back().endsBefore(signal) &&
                       (signal.time - incidents.back().signals.back().time < kTogether ||
                        signal.time <= incidents.back().until);
@@ -137,7 +140,7 @@ class CauseSearch {
         estop();
         break;
       case StopReason::kRangeFinder:
-        say("range_finder", "what the range finder shows was not believed: " + main_.reason);
+        say("range_finder", "mapping rejected the range finder's scans: " + main_.reason);
         proveComplaint("mapping", t_ - kBefore);
         break;
       case StopReason::kDisarmed:
@@ -145,7 +148,7 @@ class CauseSearch {
         quote("ARM", "disarms");
         break;
       case StopReason::kControllerVoltage:
-        say("battery", "the motor controller ran short of voltage: " + main_.reason);
+        say("battery", "the motor controller had low voltage: " + main_.reason);
         break;
       case StopReason::kControllerLost:
       case StopReason::kControllerStarts:
@@ -157,7 +160,7 @@ class CauseSearch {
       case StopReason::kMotorStale:
       case StopReason::kNoMotor:
         if (!processFault("motor_bridge", "MOTOR", 0.2))
-          say("motor_bridge_hung", "motor_bridge was held up: " + main_.reason);
+          say("motor_bridge_hung", "motor_bridge was stalled: " + main_.reason);
         break;
       case StopReason::kOperatorLost:
       case StopReason::kNoOperator:
@@ -187,12 +190,12 @@ class CauseSearch {
         break;
       case StopReason::kTilt:
       case StopReason::kTiltUnknown:
-        say("tilt", "it leaned too far: " + main_.reason);
+        say("tilt", "the robot tilted too far: " + main_.reason);
         break;
       case StopReason::kFenceNear:
       case StopReason::kFenceBlind:
       case StopReason::kFencesLost:
-        say("fence", "a fence stopped it: " + main_.reason);
+        say("fence", "a fence stopped the robot: " + main_.reason);
         break;
       case StopReason::kInsJump:
       case StopReason::kInsFrozen:
@@ -238,19 +241,19 @@ class CauseSearch {
   void prove(double time, const std::string& channel, const std::string& words) {
     finding_.evidence.push_back({time, channel, words});
   }
-  /// What a process complained of from then until some time after the stop.
+  /// Adds complaints of a process from that time until some time after the stop.
   void proveComplaint(const std::string& process, double from) {
     if (const auto* const note = drive_.complaintOf(process, from, t_ + kAfterwards))
       prove(note->time, "HEALTH", process + ": " + note->message.health_reason);
   }
-  /// A vehicle that is not its model any more moves otherwise than it was planned.
+  /// Adds evidence of a vehicle that differs from its model, so that motions differ from plans.
   void proveGap() {
     const GapNote* last = nullptr;
     for (const GapNote& note : drive_.gaps)
       if (note.time <= t_) last = &note;
     if (last != nullptr && last->holds) prove(last->time, "MARK", "gap_watch: " + last->words);
   }
-  /// What a person said shortly before.
+  /// A person's order shortly before.
   const Event* quote(const char* channel, const std::string& what) {
     const EventNote* last = nullptr;
     for (const EventNote& note : drive_.events)
@@ -274,7 +277,7 @@ class CauseSearch {
 
   void operatorLost() {
     if (const auto silence = drive_.silenceOf("OPERATOR", t_ - 0.5, 0.6)) {
-      say("operator_lost", "the operator's program fell silent: " + main_.reason);
+      say("operator_lost", "the operator's program went silent: " + main_.reason);
       prove(silence->from, "OPERATOR",
             formatted("nothing from here on for %.1f s", silence->length()));
       return;
@@ -283,27 +286,27 @@ class CauseSearch {
     lost("OPERATOR", "the operator's program", "motor_bridge");
   }
 
-  /// Whether a process that publishes on a channel had died or hung; tells it then.
+  /// Whether a process that publishes on a channel had died or hung; then adds the finding.
   bool processFault(const std::string& process, const std::string& channel, double longest) {
     if (const auto restart = drive_.restartOf(process, t_ - kBefore, t_ + kAfterwards)) {
-      say(process + "_died", process + " died and was started again");
+      say(process + "_died", process + " died and was restarted");
       prove(*restart, "HEALTH", process + ": another boot_id");
       return true;
     }
     if (const auto death = drive_.deathOf(process); death && *death < t_ + 1.5) {
-      say(process + "_died", process + " died, and nobody started it again");
+      say(process + "_died", process + " died and was not restarted");
       prove(*death, "HEALTH", process + ": its last message");
       return true;
     }
     const auto silence = drive_.silenceOf(channel, t_, longest);
     if (!silence) return false;
     if (!healthLate(process, *silence)) return false;
-    say(process + "_hung", process + formatted(" did nothing for %.2f s", silence->length()));
+    say(process + "_hung", process + formatted(" was stalled for %.2f s", silence->length()));
     prove(silence->from, channel, formatted("nothing from here on for %.2f s", silence->length()));
     return true;
   }
 
-  /// Whether a process' HEALTH was late, too: it did nothing at all.
+  /// Whether the process's HEALTH was late, too, so that all of it was stalled.
   bool healthLate(const std::string& process, const DriveTimeline::Silence& silence) const {
     const auto found = drive_.health.find(process);
     if (found == drive_.health.end()) return true;
@@ -311,13 +314,13 @@ class CauseSearch {
     for (size_t i = 1; i < notes.size(); ++i) {
       const bool around = notes[i - 1].time < silence.to && notes[i].time > silence.from;
       const double period = notes[i].time - notes[i - 1].time;
-      // It was due within the silence and came when that had ended.
+      // It was due within the silence and came after its end.
       const double due = notes[i - 1].time + 1.0;
       const bool at_end =
           due > silence.from + 0.02 && due < silence.to - 0.06 && notes[i].time > silence.to - 0.06;
       if (around && (period > kHealthLate || at_end)) return true;
     }
-    // A short one may lie between two of them: what else says the process?
+    // A short silence may lie between two HEALTH messages: check other evidence.
     return silence.length() < 1.0 && !dueWithin(notes, silence) &&
            !deviceComplains(process, silence);
   }
@@ -327,13 +330,14 @@ class CauseSearch {
       return note.time > silence.from + 0.02 && note.time < silence.to - 0.02;
     });
   }
-  /// A driver that says what is wrong with its device lives.
+  /// A driver that reports a fault of its device is alive.
   bool deviceComplains(const std::string& process, const DriveTimeline::Silence& silence) const {
     const bool of_device = process == "ins_driver" || process == "lidar_driver";
     return of_device && drive_.complaintOf(process, t_ - 1.0, silence.to + 1.0) != nullptr;
   }
 
-  /// What was sent and did not come in time: lost, late or broken where the receiver counted that.
+  /// Messages that were sent but not received in time: lost, late, or damaged if the receiver
+  /// counted them.
   void lost(const std::string& channel, const std::string& from, const std::string& to) {
     say("lost_" + channel, channel + " was sent by " + from + ", and did not reach " + to +
                                " in time: messages were lost or late between them");
@@ -343,7 +347,7 @@ class CauseSearch {
     const auto within = std::upper_bound(sent.begin(), sent.end(), t_) -
                         std::lower_bound(sent.begin(), sent.end(), t_ - 1.0);
     prove(t_, channel, formatted("%td messages within the second before", within));
-    // Several senders share this channel, and nobody counts what is missing of it.
+    // Several senders share this channel, so its losses are not counted.
     if (channel == "OPERATOR") return;
     const Said<health_t>* const before = drive_.healthAt(to, t_ - 1.0);
     const Said<health_t>* const after = drive_.healthAt(to, t_ + kAfterwards);
@@ -354,7 +358,7 @@ class CauseSearch {
     prove(after->time, "HEALTH",
           to + ": since a second before the stop " +
               (missing > kMostLost
-                   ? std::string("numbers of messages that cannot be")
+                   ? std::string("impossible message numbers")
                    : formatted("%lld messages lost", static_cast<long long>(missing))) +
               formatted(", %lld late, %lld broken", static_cast<long long>(late),
                         static_cast<long long>(broken)));
@@ -369,7 +373,7 @@ class CauseSearch {
     if (!silence)
       return lost("INS", "ins_driver",
                   main_.channel == std::string("PLAN") ? "planner" : "motor_bridge");
-    say("ins_device", formatted("the INS gave nothing usable for %.2f s", silence->length()));
+    say("ins_device", formatted("the INS gave no usable pose for %.2f s", silence->length()));
     prove(silence->from, "INS", formatted("nothing from here on for %.2f s", silence->length()));
     proveComplaint("ins_driver", t_ - 1.0);
   }
@@ -378,13 +382,13 @@ class CauseSearch {
     const auto blind = std::find_if(drive_.ins.begin(), drive_.ins.end(), [&](const InsNote& note) {
       return note.time > t_ - kBefore && note.time < t_ + 1.0 && !note.placed;
     });
-    // What motor_bridge took for no position had one when it was sent.
+    // motor_bridge had no valid position, although the INS message had one when sent.
     if (blind == drive_.ins.end()) return lost("INS", "ins_driver", "motor_bridge");
     const int64_t garbled = garbledSince(t_ - kBefore);
     if (garbled > kManyGarbled) {
-      say("ins_device", "what the INS says arrives garbled, and no pose comes of it");
+      say("ins_device", "data of the INS are corrupted, so there is no pose");
       prove(t_, "HEALTH",
-            formatted("ins_driver: %lld bytes or sentences more that make no sense",
+            formatted("ins_driver: %lld more bytes or sentences that cannot be decoded",
                       static_cast<long long>(garbled)));
     } else {
       say("ins_no_fix", "the INS lost its position or heading");
@@ -393,7 +397,7 @@ class CauseSearch {
     proveComplaint("ins_driver", t_ - 1.0);
   }
 
-  /// How many bytes and sentences ins_driver counted as senseless from then to 3 s later.
+  /// Bytes and sentences that ins_driver could not decode, from then to 3 s later.
   int64_t garbledSince(double time) const {
     const Said<health_t>* const before = drive_.healthAt("ins_driver", time);
     const Said<health_t>* const after = drive_.healthAt("ins_driver", time + 3.0);
@@ -421,15 +425,16 @@ class CauseSearch {
     if (main_.code == StopReason::kInsJump)
       return say("ins_jump", "the INS jumped: " + main_.reason);
     if (frozen())
-      return say("ins_frozen", "the INS repeated one place while the robot moved: " + main_.reason);
+      return say("ins_frozen",
+                 "the INS repeated one position while the robot moved: " + main_.reason);
     if (main_.code == StopReason::kTrackDead)
       return say("drive", "the drive failed: " + main_.reason);
     if (main_.code == StopReason::kStuck || main_.code == StopReason::kInsFrozen)
-      return say("stuck", "it got stuck: " + main_.reason);
-    say("ins_drift", "the pose moved in a way that the commands do not explain: " + main_.reason);
+      return say("stuck", "the robot got stuck: " + main_.reason);
+    say("ins_drift", "the motion of the pose does not match the commands: " + main_.reason);
   }
 
-  /// Whether the pose stayed in one place for a while after the robot had moved.
+  /// Whether the pose stayed constant for a while after motion of the robot.
   bool frozen() {
     const auto last = drive_.poseAt(t_);
     if (!last) return false;
@@ -442,7 +447,7 @@ class CauseSearch {
     const auto before = drive_.poseAt(since - 0.5);
     const bool moved = before && !atOnePlace(*before, *last, 3.0);
     if (t_ - since < 0.3 || !moved) return false;
-    prove(since, "INS", formatted("one place for %.2f s", t_ - since));
+    prove(since, "INS", formatted("one position for %.2f s", t_ - since));
     return true;
   }
 
@@ -456,15 +461,15 @@ class CauseSearch {
     if (processFault("lidar_driver", "SCAN", 0.35)) return;
     if (processFault("mapping", "MAP", 0.6)) return;
     if (const auto silence = drive_.silenceOf("SCAN", t_, 0.35)) {
-      say("range_finder", formatted("the range finder gave nothing for %.1f s", silence->length()));
+      say("range_finder", formatted("the range finder gave no scan for %.1f s", silence->length()));
       prove(silence->from, "SCAN", formatted("nothing from here on for %.1f s", silence->length()));
       return;
     }
     lost("MAP", "mapping", "planner");
   }
 
-  /// Of the cells that became obstacles shortly before, those about the one nearest to the robot;
-  /// whether they went again afterwards.
+  /// Of new obstacle cells, those around the one nearest to the robot; whether they disappeared
+  /// afterwards.
   void obstacle() {
     const auto pose = drive_.poseAt(t_);
     const CellNote* nearest = nullptr;
@@ -475,16 +480,17 @@ class CauseSearch {
       if (cell.came && cell.time > t_ - 3.0 && cell.time <= t_ + 0.3 &&
           (nearest == nullptr || distance(cell) < distance(*nearest)))
         nearest = &cell;
-    if (nearest == nullptr) return say("no_way", "no way was free: " + main_.reason);
+    if (nearest == nullptr) return say("no_way", "no path was free: " + main_.reason);
     const auto ghost = drive_.ghostAt(nearest->p_map, t_ - 3.0, t_ + 0.3);
     const std::string where = formatted("x %.1f m, y %.1f m, %.1f m from the robot",
                                         nearest->p_map.x(), nearest->p_map.y(), distance(*nearest));
-    prove(nearest->time, "MAP",
-          formatted("%d cells there became obstacles, %d went again", ghost.came, ghost.went));
+    prove(
+        nearest->time, "MAP",
+        formatted("%d cells there became obstacles, %d became free again", ghost.came, ghost.went));
     if (ghost.alone && ghost.went * 2 >= ghost.came)
       return say("ghost", "an obstacle appeared at " + where +
-                              ", and went again: something passed, or the range finder saw what "
-                              "was not there");
+                              ", and disappeared: something passed, or the range finder had "
+                              "false echoes");
     say("obstacle", "an obstacle came into view at " + where);
   }
 

@@ -11,7 +11,7 @@
 namespace tread::why {
 namespace {
 
-/// A YAML text that programs wrote, as lines "section.key" with their values.
+/// The lines "section.key" with values of a YAML text written by programs.
 std::map<std::string, std::string> keysOf(const std::string& process, const std::string& text) {
   std::map<std::string, std::string> keys;
   std::vector<std::pair<size_t, std::string>> sections;
@@ -84,14 +84,13 @@ std::vector<Difference> driveDifferences(const Debrief& before, const Debrief& n
                                 : std::nan("");
   };
   addFigure(differences, "goals reached", a.reached, b.reached, 1.0, "%.0f");
-  addFigure(differences, "stops that nobody had planned", a.stops, b.stops, 1.0, "%.0f");
-  // What half the patterns stayed below scatters by about a fifth from drive to drive.
+  addFigure(differences, "unplanned stops", a.stops, b.stops, 1.0, "%.0f");
+  // The median varies by about a fifth between drives.
   addFigure(differences, "median error at a pattern's end [m]", a.error_position, b.error_position,
             0.2 * a.error_position + 0.01, "%.3f");
   addFigure(differences, "median error in yaw [deg]", a.error_yaw * 57.2957795,
             b.error_yaw * 57.2957795, 0.2 * a.error_yaw * 57.2957795 + 0.3, "%.2f");
-  addFigure(differences, "patterns that were fair measurements [%]", share(a), share(b), 10.0,
-            "%.0f");
+  addFigure(differences, "patterns with fair measurements [%]", share(a), share(b), 10.0, "%.0f");
   addFigure(differences, "battery at the end [V]", a.battery_end, b.battery_end, 0.3, "%.1f");
   const std::map<std::string, int> old_causes = causesOf(before), new_causes = causesOf(now);
   for (const auto& [cause, count] : new_causes)

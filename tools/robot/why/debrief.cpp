@@ -13,12 +13,12 @@
 namespace tread::why {
 namespace {
 
-constexpr double kDetour = 1.3;      // [1] of the straight line
-constexpr double kLostShare = 0.03;  // [1] of a process' messages between two of its HEALTH
+constexpr double kDetour = 1.3;      // [1] times the straight line
+constexpr double kLostShare = 0.03;  // [1] of a process's messages between two of its HEALTH
 constexpr int64_t kLostLeast = 5;
 constexpr double kInTheWay = 3.0;     // [m] from the robot
-constexpr int kGhostCells = 4;        // that came within a second
-constexpr double kGhostPause = 12.0;  // [s] within which they are told once
+constexpr int kGhostCells = 4;        // that appeared within a second
+constexpr double kGhostPause = 12.0;  // [s] within which they are reported once
 
 std::vector<double> errorsOf(const DriveTimeline& drive, double learning_t::*error) {
   std::vector<double> errors;
@@ -59,7 +59,7 @@ bool isNear(const std::vector<Finding>& findings, double time, const std::string
   });
 }
 
-/// Processes that died without a stop of the robot.
+/// Processes that died without stopping the robot.
 void addProcesses(const DriveTimeline& drive, std::vector<Finding>& findings) {
   for (const auto& [process, notes] : drive.health) {
     for (size_t i = 1; i < notes.size(); ++i) {
@@ -71,7 +71,7 @@ void addProcesses(const DriveTimeline& drive, std::vector<Finding>& findings) {
       finding.time = notes[i - 1].time;
       finding.until = notes[i].time;
       finding.cause = process + "_died";
-      finding.sentence = process + " died and was started again; the robot was not stopped by it";
+      finding.sentence = process + " died and was restarted; the robot did not stop";
       finding.evidence.push_back({notes[i].time, "HEALTH", process + ": another boot_id"});
       findings.push_back(std::move(finding));
     }
@@ -82,13 +82,13 @@ void addProcesses(const DriveTimeline& drive, std::vector<Finding>& findings) {
     finding.time = *death;
     finding.until = drive.duration;
     finding.cause = process + "_died";
-    finding.sentence = process + " died, and nobody started it again";
+    finding.sentence = process + " died and was not restarted";
     finding.evidence.push_back({*death, "HEALTH", process + ": its last message"});
     findings.push_back(std::move(finding));
   }
 }
 
-/// What processes complained of, each complaint once, where no stop tells it already.
+/// Complaints of processes, each once, unless a stop already reports it.
 void addComplaints(const DriveTimeline& drive, std::vector<Finding>& findings) {
   bool drove = false;
   double first_drive = drive.duration;
@@ -129,7 +129,7 @@ void addLosses(const DriveTimeline& drive, std::vector<Finding>& findings) {
     for (size_t i = 1; i < notes.size(); ++i) {
       const health_t &before = notes[i - 1].message, &now = notes[i].message;
       if (before.boot_id != now.boot_id) continue;
-      // More within a second is a broken number.
+      // A larger loss within a second is a wrong counter.
       const int64_t missing = now.lost - before.lost > kMostLost ? 0 : now.lost - before.lost;
       const int64_t bad = missing + now.late - before.late + now.undecodable - before.undecodable;
       const int64_t all = now.received - before.received + missing;
@@ -158,7 +158,7 @@ void addLosses(const DriveTimeline& drive, std::vector<Finding>& findings) {
   }
 }
 
-/// Obstacles that came and went again although nothing stopped the robot.
+/// Obstacles that appeared and disappeared without stopping the robot.
 void addGhosts(const DriveTimeline& drive, std::vector<Finding>& findings) {
   double told = -kGhostPause;
   for (const CellNote& first : drive.cells) {
@@ -177,18 +177,18 @@ void addGhosts(const DriveTimeline& drive, std::vector<Finding>& findings) {
     finding.time = first.time;
     finding.until = ghost.gone;
     finding.cause = "ghost";
-    finding.sentence = formatted(
-        "an obstacle appeared at x %.1f m, y %.1f m on ground that had been free, and went again",
-        first.p_map.x(), first.p_map.y());
+    finding.sentence =
+        formatted("an obstacle appeared at x %.1f m, y %.1f m on free ground, and disappeared",
+                  first.p_map.x(), first.p_map.y());
     finding.evidence.push_back(
         {first.time, "MAP",
-         formatted("%d cells became obstacles, %d went again by %.1f s, none is left", ghost.came,
-                   ghost.went, ghost.gone)});
+         formatted("%d cells became obstacles, %d were free again by %.1f s, none remained",
+                   ghost.came, ghost.went, ghost.gone)});
     findings.push_back(std::move(finding));
   }
 }
 
-/// The pose that jumped or went away without a stop.
+/// Jumps or losses of the pose without a stop.
 void addInsEvents(const DriveTimeline& drive, std::vector<Finding>& findings) {
   for (const InsNote& note : drive.ins) {
     if ((note.status & ins_t::STATUS_JUMP) == 0 || note.time < 1.0) continue;
@@ -200,13 +200,13 @@ void addInsEvents(const DriveTimeline& drive, std::vector<Finding>& findings) {
     finding.kind = FindingKind::kProcess;
     finding.time = finding.until = note.time;
     finding.cause = "ins_jump";
-    finding.sentence = "the INS jumped further than the vehicle can";
+    finding.sentence = "the INS jumped further than the vehicle can move";
     finding.evidence.push_back({note.time, "INS", "STATUS_JUMP"});
     findings.push_back(std::move(finding));
   }
 }
 
-/// Length of the way between two times [m].
+/// Length of the path between two times [m].
 double wayBetween(const DriveTimeline& drive, double from, double to) {
   std::optional<Pose2> last;
   double way = 0.0;
@@ -220,7 +220,7 @@ double wayBetween(const DriveTimeline& drive, double from, double to) {
   return way;
 }
 
-/// The first known obstacle on a line; nothing if it is free.
+/// The first known obstacle on a line; nothing if the line is free.
 std::optional<Eigen::Vector2d> firstObstacle(const TileMap& map, const Pose2& from,
                                              const Pose2& to) {
   const double length = distanceBetween(from, to);
@@ -237,7 +237,7 @@ std::optional<Eigen::Vector2d> firstObstacle(const TileMap& map, const Pose2& fr
   return std::nullopt;
 }
 
-/// Ways that were much longer than the straight line, and goals that were not reached.
+/// Paths that were much longer than the straight line, and goals that were not reached.
 void addGoals(const DriveTimeline& drive, std::vector<Finding>& findings) {
   for (size_t i = 0; i < drive.goals.size(); ++i) {
     const Note& goal = drive.goals[i];
@@ -267,17 +267,19 @@ void addGoals(const DriveTimeline& drive, std::vector<Finding>& findings) {
           formatted("the goal at x %.1f m, y %.1f m was not reached", T_map_goal.x, T_map_goal.y);
       if (last != nullptr) {
         const bool drives = last->state == plan_t::PLAN_DRIVING || last->reason.words.empty();
-        const std::string why = drives ? "it still drove when the log ended" : last->reason.words;
+        const std::string why =
+            drives ? "the robot was still driving when the log ended" : last->reason.words;
         finding.sentence += ": " + why;
         finding.evidence.push_back({last->time, "PLAN", why});
       } else {
-        finding.evidence.push_back({goal.time, "GOAL", "no plan followed it"});
+        finding.evidence.push_back({goal.time, "GOAL", "no plan followed"});
       }
       findings.push_back(std::move(finding));
     } else if (arrived >= 0.0 && straight > 3.0 && way > kDetour * straight) {
       finding.kind = FindingKind::kDetour;
       finding.cause = "detour";
-      finding.sentence = formatted("it drove %.1f m for a straight line of %.1f m", way, straight);
+      finding.sentence =
+          formatted("the path was %.1f m long, the straight line %.1f m", way, straight);
       finding.evidence.push_back({arrived, "INS", formatted("%.1f m driven", way)});
       const auto obstacle =
           drive.map ? firstObstacle(*drive.map, *start, T_map_goal) : std::nullopt;
@@ -293,7 +295,7 @@ void addGoals(const DriveTimeline& drive, std::vector<Finding>& findings) {
   }
 }
 
-/// How much a finding counts: what stopped the robot first, and most what it had no part in.
+/// Importance of a finding: unexpected stops most; obstacles and goals hardly any.
 int weightOf(const Finding& finding) {
   const std::string& cause = finding.cause;
   if (cause == "obstacle" || cause == "no_way" || cause == "goal") return 1;

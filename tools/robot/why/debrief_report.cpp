@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kNear = 5.0;      // [s] around a moment that was asked for
+constexpr double kNear = 5.0;      // [s] around the requested time
 constexpr size_t kMostShown = 40;  // findings on the terminal
 
 std::string timeOf(double seconds) {
@@ -29,7 +29,7 @@ std::string headlineOf(const Debrief& debrief) {
       formatted("%.1f m in %s, ", figures.distance, timeOf(figures.duration).c_str());
   line += figures.goals == 0 ? std::string("no goal")
                              : formatted("%d of %d goals reached", figures.reached, figures.goals);
-  line += formatted(", %d stops that nobody had planned", figures.stops);
+  line += formatted(", %d unplanned stops", figures.stops);
   return line;
 }
 
@@ -45,7 +45,7 @@ std::vector<std::string> figureLines(const Debrief& debrief) {
   lines.push_back(formatted("%d patterns driven to their end, %d aborted, %d fair measurements",
                             figures.patterns, figures.aborted, figures.measured));
   if (std::isfinite(figures.error_position))
-    lines.push_back(formatted("half of them ended within %.3f m and %.2f deg of their prediction",
+    lines.push_back(formatted("half of them ended within %.3f m and %.2f deg of their predictions",
                               figures.error_position, figures.error_yaw * 57.2957795));
   if (std::isfinite(figures.battery_begin))
     lines.push_back(formatted("battery %.1f V at the beginning, %.1f V at the end",
@@ -93,7 +93,7 @@ std::string textOf(const Debrief& debrief, double at) {
     for (const Evidence& evidence : finding.evidence) text += "    " + evidenceOf(evidence) + "\n";
   }
   if (more > 0) text += formatted("\nand %zu more; --json has all\n", more);
-  if (at >= 0.0 && shown == 0) text += "nothing happened within 5 s of " + timeOf(at) + "\n";
+  if (at >= 0.0 && shown == 0) text += "no findings within 5 s of " + timeOf(at) + "\n";
   return text;
 }
 
@@ -114,8 +114,7 @@ std::string htmlOf(const Debrief& debrief, const Debrief* other) {
     for (const Evidence& evidence : finding.evidence) points.items.push_back(evidenceOf(evidence));
     events.blocks.push_back(points);
   }
-  if (debrief.findings.empty())
-    events.blocks.push_back(report::Paragraph{"Nothing that nobody had planned."});
+  if (debrief.findings.empty()) events.blocks.push_back(report::Paragraph{"No unplanned events."});
   page.sections.push_back(std::move(events));
   if (other != nullptr) {
     page.sections.push_back(

@@ -39,19 +39,20 @@ int run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Tells why a drive went as it did: every stop, detour, refusal and surprise with its cause, "
-      "its evidence and the moment to look at.",
+      "Explains a drive from its LCM log: each stop, detour, refusal and surprise with its cause, "
+      "its evidence and the time to inspect.",
       "tread-why"};
   Arguments arguments;
   app.add_option("logs", arguments.logs, "LCM log; several are parts of one recording, in order")
       ->required();
-  app.add_option("--at", arguments.at, "only what happened near this time [s since the log began]")
+  app.add_option("--at", arguments.at,
+                 "only findings within 5 s of this time [s since the log began]")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--against", arguments.against,
-                 "another log: what is different, in the drive and in the configuration");
+                 "another log: lists the differences of drive and configuration");
   Outputs outputs(app);
-  outputs.file("--html", arguments.html, "also write the page into this file");
-  outputs.file("--json", arguments.json, "also write everything into this file, for programs");
+  outputs.file("--html", arguments.html, "also write the findings to this HTML file");
+  outputs.file("--json", arguments.json, "also write all findings to this JSON file");
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   return runProgram("tread-why", [&] { return run(arguments); });
 }

@@ -11,11 +11,11 @@ namespace {
 
 using Pattern = Said<learning_t>;
 
-constexpr double kMuchWorse = 2.5;  // [1] of the errors before
+constexpr double kMuchWorse = 2.5;  // [1] times the previous errors
 constexpr size_t kManyRefused = 3;
-constexpr size_t kRun = 4;  // patterns that are compared with those before
+constexpr size_t kRun = 4;  // patterns in a run that is compared with those before
 
-/// Patterns that ended far from their predictions from the first on, until they had been corrected.
+/// Patterns far from their predictions from the start on, until corrected.
 void addBeginning(const std::vector<const Pattern*>& measured, std::vector<Finding>& findings) {
   if (measured.size() < 4 * kRun) return;
   std::vector<double> first, later;
@@ -30,8 +30,8 @@ void addBeginning(const std::vector<const Pattern*>& measured, std::vector<Findi
   finding.time = measured.front()->time;
   finding.until = measured[kRun - 1]->time;
   finding.sentence = formatted(
-      "the first patterns ended %.2f m from their predictions, later ones %.2f m: the set that it "
-      "began with was another vehicle's or ground's",
+      "the first patterns ended %.2f m from their predictions, later ones %.2f m: the initial set "
+      "belongs to another vehicle or ground",
       begun, usual);
   for (size_t i = 0; i < kRun; ++i)
     finding.evidence.push_back({measured[i]->time, "LEARNING",
@@ -40,7 +40,7 @@ void addBeginning(const std::vector<const Pattern*>& measured, std::vector<Findi
   findings.push_back(std::move(finding));
 }
 
-/// Stretches in which patterns ended much further from their predictions than before.
+/// Stretches with patterns that ended much further from their predictions than before.
 void addPredictions(const DriveTimeline& drive, std::vector<Finding>& findings) {
   std::vector<const Pattern*> measured;
   for (const Pattern& note : drive.patterns)
@@ -75,7 +75,7 @@ void addPredictions(const DriveTimeline& drive, std::vector<Finding>& findings) 
       std::string words =
           pattern.learned_pattern_name +
           formatted(": %.2f m, %.1f deg", pattern.error_position, pattern.error_yaw * 180.0 / kPi);
-      if (pattern.ground_changed > 0.5) words += ", the learner takes it for another ground";
+      if (pattern.ground_changed > 0.5) words += ", the learner assumes another ground";
       if (!wordsOf(pattern).empty()) words += "; " + wordsOf(pattern);
       finding.evidence.push_back({measured[k]->time, "LEARNING", words});
     }
@@ -92,15 +92,15 @@ void addPredictions(const DriveTimeline& drive, std::vector<Finding>& findings) 
         [](const Pattern* note) { return note->message.ground_changed > 0.5; });
     if (changed != measured.begin() + static_cast<long>(i + kRun))
       finding.sentence += (*changed)->message.surface > 0
-                              ? formatted(": the ground became another, known as surface %d",
+                              ? formatted(": the ground changed to the known surface %d",
                                           (*changed)->message.surface)
-                              : ": the ground became another, which was not known";
+                              : ": the ground changed to an unknown one";
     findings.push_back(std::move(finding));
     i += kRun;
   }
 }
 
-/// Patterns of which the learner took no measurement, by reason.
+/// Patterns without a measurement of the learner, by reason.
 void addRefusals(const DriveTimeline& drive, std::vector<Finding>& findings) {
   std::map<std::string, std::vector<const Pattern*>> by_reason;
   size_t refused = 0;
@@ -123,7 +123,7 @@ void addRefusals(const DriveTimeline& drive, std::vector<Finding>& findings) {
                                 notes.front()->message.learned_pattern_name + ": " + reason});
   }
   finding.sentence =
-      formatted("the learner refused %zu of %zu patterns: ", refused, drive.patterns.size()) +
+      formatted("the learner rejected %zu of %zu patterns: ", refused, drive.patterns.size()) +
       joined(words);
   findings.push_back(std::move(finding));
 }

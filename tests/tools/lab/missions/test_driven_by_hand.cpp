@@ -115,7 +115,7 @@ TEST_CASE("driven by hand the robot learns and plans on, and given back it goes 
   CHECK(full.fair >= 1);
   CHECK(full.arrived);
   CHECK_THAT(full.report, Catch::Contains("taken over 1 times") &&
-                              Catch::Contains("given back 1 times") &&
+                              Catch::Contains("handed back 1 times") &&
                               Catch::Contains("the planner would have made the same motion"));
 }
 

@@ -63,7 +63,7 @@ TEST_CASE("who drove how long, how often taken over and given back") {
   const HandRecord stopped = tenSeconds(none, motor_t::STATE_ESTOP);
   CHECK(stopped.given_back == 0);
   CHECK(stopped.stopped == 1);
-  CHECK_THAT(stopped.words(), Catch::Contains("by hand: 10.0 s (5.0 s moving, 5.0 m)") &&
+  CHECK_THAT(stopped.words(), Catch::Contains("manual control: 10.0 s (5.0 s moving, 5.0 m)") &&
                                   Catch::Contains("stopped 1 times"));
 }
 
@@ -87,7 +87,7 @@ TEST_CASE("a planner that would have turned away does not agree, and one that sa
   const HandRecord record = tenSeconds(none, motor_t::STATE_STOPPING);
   CHECK(record.shadow.would_stand == record.shadow.plans);
   CHECK_THAT(record.words(),
-             Catch::Contains("would have stood in 100 %") && Catch::Contains("no way: boxed in"));
+             Catch::Contains("would have stopped in 100 %") && Catch::Contains("no way: boxed in"));
 }
 
 TEST_CASE("a log that nobody drove by hand says nothing of it") {
@@ -102,7 +102,7 @@ TEST_CASE("patterns that a person's driving taught are counted, those of the pla
   events.push_back(eventOf(kLearning, learningAt(2.0, true, 0.1, 0.0)));
   events.push_back(eventOf(kLearning, learningAt(3.0, false, 0.1, 0.0)));
   CHECK_THAT(HandRecord(timelineOf(DriveReader(std::move(events)))).words(),
-             Catch::Contains("it taught 2 patterns, 1 of them fair"));
+             Catch::Contains("it gave 2 patterns to learn from, 1 of them fair"));
 }
 
 }  // namespace tread::report

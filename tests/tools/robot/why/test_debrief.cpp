@@ -183,7 +183,7 @@ TEST_CASE("measurements that the learner refused are told by their reason, where
   const Debrief found = debriefOf(drive);
   REQUIRE(found.findings.size() == 1);
   CHECK(found.findings[0].sentence ==
-        "the learner refused 8 of 20 patterns: 8 for entered in another motion");
+        "the learner rejected 8 of 20 patterns: 8 for entered in another motion");
   CHECK(found.findings[0].evidence.size() == 1);
 }
 
@@ -197,7 +197,7 @@ TEST_CASE("another drive is compared: figures, causes and keys of the configurat
   CHECK(keys[0].before == "0.2");
   CHECK(keys[0].now == "0.3");
   const std::string text = textOfDifferences(before, now);
-  CHECK_THAT(text, Catch::Contains("stops that nobody had planned: 1 -> 0"));
+  CHECK_THAT(text, Catch::Contains("unplanned stops: 1 -> 0"));
   CHECK_THAT(text, Catch::Contains("cause ins_device: 1 times -> -"));
   CHECK_THAT(textOfDifferences(now, now), Catch::Contains("configuration: the same"));
 }
@@ -209,8 +209,8 @@ TEST_CASE("tread-why prints, writes a page and JSON, and looks at one moment") {
                                    folder.path("why.html") + " --json " + folder.path("why.json"));
   CAPTURE(why.printed);
   REQUIRE(why.status == 0);
-  CHECK(why.says("why: 8.0 s: the INS gave nothing usable"));
-  CHECK_THAT(folder.text("why.html"), Catch::Contains("the INS gave nothing usable"));
+  CHECK(why.says("why: 8.0 s: the INS gave no usable pose"));
+  CHECK_THAT(folder.text("why.html"), Catch::Contains("the INS gave no usable pose"));
   const auto json = nlohmann::json::parse(folder.text("why.json"));
   CHECK(json["findings"][json["worst"].get<size_t>()]["cause"] == "ins_device");
   CHECK_FALSE(json["findings"][0]["evidence"].empty());
