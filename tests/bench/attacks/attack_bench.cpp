@@ -198,7 +198,7 @@ class AttackBench {
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Forged, changed and repeated messages to the robot with a key: standing, driving, and "
+      "Sends forged, changed and repeated messages to a robot with a key: at rest, driving, and "
       "while it is stopped.",
       "bench-attacks"};
   double rate = 10'000.0;

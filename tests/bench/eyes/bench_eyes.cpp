@@ -138,11 +138,11 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Drives for hours with a healthy range finder and counts how often it is blamed.",
+  CLI::App app{"Drives for hours with a healthy range finder and counts false alarms about it.",
                "bench-eyes"};
   Arguments arguments;
   app.add_option("--hours", arguments.hours, "of driving")->check(CLI::Range(0.01, 10000.0));
-  app.add_option("--seed", arguments.seed, "of the first drive; the others count up from it");
+  app.add_option("--seed", arguments.seed, "seed of the first drive; the others count up from it");
   app.add_option("--beams", arguments.beams, "of a scan")->check(CLI::Range(31, 1081));
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   return runProgram("bench-eyes", [&] { return run(arguments); });

@@ -218,30 +218,32 @@ int printTable(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Drives seeded missions under seeded faults and looks at the rules from outside.",
+  CLI::App app{"Drives seeded missions with seeded faults and checks the rules from outside.",
                "bench-faults"};
   Arguments arguments;
   app.add_option("--missions", arguments.missions, "how many")->check(CLI::Range(1, 1000000));
   app.add_option("--seed", arguments.seed,
                  "seed of the first mission; the others count up from it");
-  app.add_flag("--only", arguments.only, "that seed alone, with its faults in words");
-  app.add_flag("--go-back", arguments.go_back,
-               "instead: the operator falls silent for good, and the robot shall return");
+  app.add_flag("--only", arguments.only, "only this seed, with a list of its faults");
+  app.add_flag(
+      "--go-back", arguments.go_back,
+      "instead of faults: the operator goes silent permanently, and the robot should return");
   app.add_flag("--lies", arguments.lies,
-               "each mission with a pad, keyboard or page that never tells a rest");
-  app.add_flag("--eyes", arguments.eyes,
-               "instead: only the range finder lies, from a drawn moment on; is it named?")
+               "each mission with a pad, keyboard or page that never reports rest");
+  app.add_flag(
+         "--eyes", arguments.eyes,
+         "instead of faults: false range finder data from a random moment on; is it detected?")
       ->excludes("--go-back");
-  app.add_option("--fault", arguments.fault, "with --eyes: missions with this one alone")
-      ->needs("--eyes");
+  app.add_option("--fault", arguments.fault, "with --eyes: only this fault")->needs("--eyes");
   app.add_flag("--table", arguments.table,
-               "instead: each lie of each input in so many missions, and how soon it stops")
+               "instead of faults: number of missions for each fault of each input; prints "
+               "stopping times")
       ->excludes("--go-back")
       ->excludes("--eyes");
-  app.add_flag("--bare", arguments.bare, "without fences, driving by hand, tilts and returns");
+  app.add_flag("--bare", arguments.bare, "without fences, manual control, tilts and returns");
   app.add_option("--seconds", arguments.run.duration, "of each mission")
       ->check(CLI::Range(8.0, 600.0));
-  app.add_option("--beams", arguments.run.beams, "of each scan; 541 as the range finder has it")
+  app.add_option("--beams", arguments.run.beams, "beams of each scan; the range finder has 541")
       ->check(CLI::Range(91, 1081));
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   return runProgram("bench-faults", [&] {

@@ -203,15 +203,15 @@ int judge(const std::vector<Kill>& kills) {
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Kills or freezes processes of the driving robot, or cuts its operator off, and measures "
-      "when the motors stand.",
+      "Kills or freezes processes of the driving robot, or disconnects its operator, and measures "
+      "when the motors stop.",
       "bench-kills"};
   int count = 50;
   uint64_t seed = 1;
   app.add_option("--kills", count, "how many")->check(CLI::Range(1, 10000));
   app.add_option("--seed", seed, "of the moments");
   std::string only;
-  app.add_option("--only", only, "this process alone: planner, motor_bridge, ins_driver, operator");
+  app.add_option("--only", only, "only this process: planner, motor_bridge, ins_driver, operator");
   CLI11_PARSE(app, argc, argv);
   std::vector<std::pair<std::string, int>> ways;
   for (const int signal : {SIGKILL, SIGSTOP})

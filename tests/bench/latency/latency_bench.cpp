@@ -100,9 +100,10 @@ void measure(double seconds) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Latencies in the driving robot, beside LCM's own.", "bench-latency"};
+  CLI::App app{"Measures delays of messages in the driving robot, and LCM's own latency.",
+               "bench-latency"};
   double seconds = 60.0;
-  app.add_option("--seconds", seconds, "how long to drive")->check(CLI::Range(5.0, 3600.0));
+  app.add_option("--seconds", seconds, "duration of the drive")->check(CLI::Range(5.0, 3600.0));
   CLI11_PARSE(app, argc, argv);
   try {
     measure(seconds);

@@ -77,14 +77,14 @@ int drive(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Drives seeded missions among fences, or between hills and pits.", "bench-limits"};
+  CLI::App app{"Drives seeded missions with fences, or with hills and pits.", "bench-limits"};
   Arguments arguments;
   app.add_option("--missions", arguments.missions, "how many")->check(CLI::Range(1, 1000000));
   app.add_option("--seed", arguments.seed,
                  "seed of the first mission; the others count up from it");
   app.add_flag("--slopes", arguments.slopes, "hills and pits instead of fences");
   app.add_flag("--verbose", arguments.verbose, "a line for each mission");
-  app.add_option("--seconds", arguments.options.seconds, "of each mission at most")
+  app.add_option("--seconds", arguments.options.seconds, "time limit of each mission")
       ->check(CLI::Range(8.0, 600.0));
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   return runProgram("bench-limits", [&] { return drive(arguments); });

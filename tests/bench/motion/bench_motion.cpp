@@ -197,11 +197,11 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Drives for hours with nothing wrong and counts the stops of the motor bridge.",
+  CLI::App app{"Drives for hours without faults and counts the stops of the motor bridge.",
                "bench-motion"};
   Arguments arguments;
   app.add_option("--hours", arguments.hours, "of motion")->check(CLI::Range(0.01, 10000.0));
-  app.add_option("--seed", arguments.seed, "of the first drive; the others count up from it");
+  app.add_option("--seed", arguments.seed, "seed of the first drive; the others count up from it");
   if (const auto code = parseCommandLine(app, argc, argv)) return *code;
   return runProgram("bench-motion", [&] { return run(arguments); });
 }

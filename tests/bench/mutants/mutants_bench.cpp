@@ -126,13 +126,13 @@ Tally run(const Message& sample, int64_t count, uint64_t seed) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Mutated messages of each channel's type through its decoder.", "bench-mutants"};
+  CLI::App app{"Decodes mutated messages of each channel's type.", "bench-mutants"};
   int64_t count = 1'000'000;
   uint64_t seed = 1;
   std::string only;
   app.add_option("--count", count, "of each type")->check(CLI::Range(1, 1'000'000'000));
   app.add_option("--seed", seed, "of the mutations");
-  app.add_option("--only", only, "this channel alone");
+  app.add_option("--only", only, "only this channel");
   CLI11_PARSE(app, argc, argv);
 #ifndef __SANITIZE_ADDRESS__  // it reserves far more
   const rlimit memory{kMemory, kMemory};

@@ -128,12 +128,12 @@ void hideInRecording(const SemiArguments& arguments) {
 void addSemiOptions(CLI::App& semi, SemiArguments& arguments) {
   std::vector<std::string> names;
   for (const SemiEffect& effect : semiEffects()) names.push_back(effect.name);
-  semi.add_option("--log", arguments.log, "LCM log of a recording, as tread-import makes it")
+  semi.add_option("--log", arguments.log, "LCM log of a recording from tread-import")
       ->required()
       ->check(CLI::ExistingFile);
   semi.add_option("--effect", arguments.effect)->required()->check(CLI::IsMember(names));
   semi.add_option("--size", arguments.size, "1 or 2")->check(CLI::Range(1, 2));
-  semi.add_option("--seed", arguments.seed, "of the sign and of the time of a change");
+  semi.add_option("--seed", arguments.seed, "seed for the sign and the time of a change");
   semi.add_option("--name", arguments.name, "of the case")->capture_default_str();
   semi.add_option("--out", arguments.out, "folder that gets blind/ and truth/")->required();
 }
@@ -149,15 +149,15 @@ void addOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--suite", arguments.suite, "all cases of a study")
       ->check(CLI::IsMember(suiteNames()));
   app.add_option("--shard", arguments.shard, "I/N: every N-th case of the suite from the I-th");
-  app.add_option("--case", arguments.kind, "kind of one case; default: what the effects make it")
+  app.add_option("--case", arguments.kind, "kind of one case; default: by its effects")
       ->check(CLI::IsMember({"null", "single", "pair", "out_of_catalogue", "degenerate", "bad"}));
-  app.add_flag("--null", arguments.null, "nothing hidden: the plain vehicle");
+  app.add_flag("--null", arguments.null, "hides nothing: the plain vehicle");
   app.add_option("--effect", arguments.plan.effects, "one, or two with a comma")->delimiter(',');
   app.add_option_function<std::string>("--effect-file", addEffectOfFile,
                                        "effect of a file (YAML, as in config/effects), to be "
                                        "hidden by its formula; --effect names it")
       ->trigger_on_parse();
-  app.add_option("--bad", arguments.plan.defect, "spoils the log in this way")
+  app.add_option("--bad", arguments.plan.defect, "corrupts the log in this way")
       ->check(CLI::IsMember(defectNames()));
   app.add_option("--size", arguments.plan.size, "1 is hardly visible, 2 usual, 4 large")
       ->check(CLI::Range(0.01, 4.0))
@@ -165,7 +165,7 @@ void addOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--noise", arguments.plan.noise)
       ->check(CLI::IsMember({"low", "mid", "high"}))
       ->capture_default_str();
-  app.add_option("--programme", arguments.programme, "which motion patterns are driven")
+  app.add_option("--programme", arguments.programme, "motion patterns to drive")
       ->check(CLI::IsMember({"full", "five_forward", "forward", "one_speed", "straight"}))
       ->capture_default_str();
   app.add_option("--minutes", arguments.minutes, "of each log")
@@ -179,11 +179,11 @@ int parseAndRun(int argc, char** argv) {
   Arguments arguments;
   CLI::App app{"Hides effects in the simulator's ground truth: logs for blind tests"};
   addOptions(app, arguments);
-  CLI::App* names = app.add_subcommand("list", "effects and bad logs that can be made");
+  CLI::App* names = app.add_subcommand("list", "lists the effects and the kinds of bad logs");
   std::string suite = "small";
   uint64_t seed = 1;
-  CLI::App* conditions =
-      app.add_subcommand("conditions", "name and noise of a suite's cases: what is no secret");
+  CLI::App* conditions = app.add_subcommand(
+      "conditions", "lists name and noise of a suite's cases, which are not secret");
   conditions->add_option("--suite", suite)->required()->check(CLI::IsMember(suiteNames()));
   conditions->add_option("--seed", seed)->capture_default_str();
   SemiArguments semi;

@@ -167,8 +167,8 @@ Section sectionOf(const std::string& title, const std::vector<ComparisonRow>& ro
   section.blocks.emplace_back(nameTable(rows));
   if (Table runaway = runawayTable(rows); !runaway.rows.empty()) {
     section.blocks.emplace_back(
-        Paragraph{"Sizes that ran away: no vehicle is like that, and another one beside them may "
-                  "make up for it"});
+        Paragraph{"Implausible sizes: no vehicle has them, and another effect may "
+                  "compensate them"});
     section.blocks.emplace_back(std::move(runaway));
   }
   if (const auto remarks = remarksOf(rows); !remarks.empty())
@@ -272,7 +272,7 @@ struct TextWriter {
 Page comparisonPage(const ComparisonReport& report) {
   Page page;
   page.title = "tread-compare-models";
-  page.verdict = "Errors of models that did not see the driving that judges them";
+  page.verdict = "Errors of models on held-out driving";
   page.mood = "change";
   page.first = {Points{
       {"ideal: " + (report.model.empty() ? "an ideal differential drive with the track that each "
@@ -289,13 +289,13 @@ Page comparisonPage(const ComparisonReport& report) {
        "(SINDy, "
        "Brunton et al. 2016); what it leaves is fitted in the same way",
        "discovered: what tread-gap find --calibrate finds",
-       "encoders + gyro: dead reckoning that has seen the motion"}}};
+       "encoders + gyro: dead reckoning with the measured motion"}}};
   page.sections.push_back(
-      sectionOf("Each log: one half of its blocks judged by what the other half taught",
+      sectionOf("Each log: one half of its blocks, predicted by models fitted to the other half",
                 report.comparison.nested));
   if (report.comparison.pooled.empty()) return page;
   page.sections.push_back(
-      sectionOf("Each log judged by what all others taught", report.comparison.pooled));
+      sectionOf("Each log, predicted by models fitted to all others", report.comparison.pooled));
   page.sections.back().blocks.emplace_back(Paragraph{agreement(report.comparison.pooled)});
   return page;
 }

@@ -32,10 +32,10 @@ struct Options {
 constexpr const char* kFooter =
     "Rungs: the ideal model; gain and track fitted; powertrain and centre of rotation; the\n"
     "literature's slip regression; a black box; least squares over all parameters of the\n"
-    "catalogue; a sparse regression on its effects (SINDy); what find discovers. Each is judged\n"
-    "on driving that it was not fitted to: alternate blocks of the log; with --pool also the\n"
-    "log that all others did not see. Without --model the ideal one is a differential drive\n"
-    "with the track that an imported recording names. Into --out: comparison.json and\n"
+    "catalogue; a sparse regression on its effects (SINDy); the discovered model. Each is tested\n"
+    "on held-out driving: alternate blocks of the log; with --pool also the log that the\n"
+    "others were not fitted to. Without --model the ideal one is a differential drive\n"
+    "with the track width of the imported recording. Writes into --out: comparison.json and\n"
     "comparison.md. Exit status 0, or 2 for bad input. The same files and the same seed give\n"
     "the same bytes, with any number of threads.";
 
@@ -131,16 +131,17 @@ void compare(const Options& options) {
 }  // namespace tread::gap
 
 int main(int argc, char** argv) {
-  CLI::App app{"How good is what tread-gap discovers, beside the models that others use?",
+  CLI::App app{"Compares tread-gap's discovered model with models from the literature.",
                "tread-compare-models"};
   tread::gap::Options options;
   app.footer(tread::gap::kFooter);
   app.add_option("--log", options.logs, "logs of drives")->required()->expected(-1);
   app.add_option("--model", options.model, "the ideal model (YAML), without effects");
   tread::Outputs(app)
-      .folder("--out", options.out, "folder for comparison.json and comparison.md; made if needed")
+      .folder("--out", options.out,
+              "folder for comparison.json and comparison.md; created if needed")
       ->required();
-  app.add_flag("--pool", options.pool, "also judge each log by what all others teach");
+  app.add_flag("--pool", options.pool, "also predict each log by models fitted to all others");
   app.add_option("--seed", options.seed, "seed of the random numbers in the tests")
       ->capture_default_str()
       ->check(CLI::Range(int64_t{0}, int64_t{9'000'000'000'000'000'000}));

@@ -184,7 +184,7 @@ TEST_CASE("a size that runs to the end of what is plausible is told beside the e
   }
   CHECK(std::isfinite(errorsOf(row, Rung::kAllParameters).position.rms));
   const std::string text = comparisonText(report);
-  const size_t told = text.find("Sizes that ran away");
+  const size_t told = text.find("Implausible sizes");
   REQUIRE(told != std::string::npos);
   CHECK(text.find("motor_deadband.speed", told) != std::string::npos);
 }

@@ -52,7 +52,7 @@ Json verdictOf(const rivals::Answer& answer) {
 int run(int argc, char** argv) {
   std::string method, model_file, log, out;
   bool calibrate = false;
-  CLI::App app{"The answer of a rival method, in the form of tread-gap's verdict.json",
+  CLI::App app{"Runs a rival method; its answer has the format of tread-gap's verdict.json.",
                "tread-rival"};
   app.add_option("method", method, "all: least squares over all parameters; sparse: as SINDy")
       ->required()

@@ -18,10 +18,10 @@ using namespace tread::blindtest;
 namespace {
 
 constexpr const char* kFooter =
-    "Into --out: nominal/ (models, made once), shard-IofN/ (cases.jsonl),\n"
-    "and of a whole study or a merged one scores.json, table.txt, cases.csv,\n"
-    "confusion.png, scores.html. Started again it goes on where it was stopped.\n"
-    "Exit status: 0, or 2 with one line of what is wrong.";
+    "Writes into --out: nominal/ (models, made once), shard-IofN/ (cases.jsonl),\n"
+    "and for a complete or merged study scores.json, table.txt, cases.csv,\n"
+    "confusion.png, scores.html. A restarted study continues where it stopped.\n"
+    "Exit status: 0, or 2 with one line that explains the error.";
 
 struct Arguments {
   Study study;
@@ -38,12 +38,12 @@ void addOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--out", study.out, "folder")->required();
   app.add_option(
          "--rival", study.rival,
-         "another method answers instead: all (least squares over all parameters) or sparse "
+         "another method to test instead: all (least squares over all parameters) or sparse "
          "(sequentially thresholded regression on the catalogue's directions, as SINDy)")
       ->check(CLI::IsMember({"all", "sparse"}));
   app.add_option("--seed", study.seed)->capture_default_str();
   app.add_option("--shard", arguments.shard, "I/N: every N-th case from the I-th");
-  app.add_option("--jobs", study.jobs, "logs at a time; no influence on any byte")
+  app.add_option("--jobs", study.jobs, "logs processed in parallel; no influence on any byte")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   app.add_option("--minutes", study.minutes, "of each log")
@@ -52,14 +52,14 @@ void addOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--calibration-minutes", study.hour, "of the log for the nominal model")
       ->check(CLI::Range(1.0, 120.0))
       ->capture_default_str();
-  app.add_option("--nominal", study.nominal, "model file for all cases instead of calibrating")
+  app.add_option("--nominal", study.nominal, "model file for all cases instead of a calibration")
       ->check(CLI::ExistingFile);
   app.add_option("--recordings", study.recordings,
                  "folder of real logs NAME.lcmlog with NAME.yaml, the model to begin with: effects "
                  "are hidden in them, too (medium, full)");
-  app.add_flag("--keep", study.keep, "logs and reports stay");
+  app.add_flag("--keep", study.keep, "keep logs and reports");
   app.add_option("--merge", arguments.merge,
-                 "folders of shards (or --out of several): join and score them only");
+                 "folders of shards (or their --out): only joins and scores them");
 }
 
 void readShard(const std::string& text, Study& study) {
@@ -79,7 +79,9 @@ void score(const std::vector<std::string>& lines, const std::string& folder,
 
 int parseAndRun(int argc, char** argv) {
   Arguments arguments;
-  CLI::App app{"Blind test of tread-gap: hides effects, lets it find them, scores.", "tread-blind"};
+  CLI::App app{
+      "Blind test of tread-gap: hides effects, lets tread-gap find them, scores the answers.",
+      "tread-blind"};
   addOptions(app, arguments);
   if (const auto code = tread::parseCommandLine(app, argc, argv)) return *code;
   Study& study = arguments.study;

@@ -79,7 +79,7 @@ void drawConfusion(const Confusion& confusion, const std::string& path) {
   const auto rows = static_cast<double>(confusion.hidden.size());
   Picture picture(static_cast<int>(std::max(kLeast, kLeft + kCell * columns + 20.0)),
                   static_cast<int>(kTop + kCell * rows + 60.0),
-                  "What was hidden (rows, cases) and what was named (columns) [% of the cases]");
+                  "Hidden effects (rows, cases) and named effects (columns) [% of the cases]");
   // The last three columns are not effects.
   for (size_t i = 0; i < confusion.named.size(); ++i)
     picture.text(kLeft + kCell * static_cast<double>(i) + 3.0, kTop - 6.0, std::to_string(i + 1),
