@@ -32,7 +32,7 @@ inline bool startsWith(const std::string& text, const std::string& prefix) {
   return text.compare(0, prefix.size(), prefix) == 0;
 }
 
-/// The first `parts` components of a path: modules/planner of
+/// The first `parts` components of a path: modules/planner for
 /// modules/planner/core/search/pattern_search.hpp.
 inline std::string head(const std::string& path, int parts) {
   size_t end = 0;
@@ -48,7 +48,7 @@ inline std::vector<std::string> foldersOf(const std::string& folder) {
   return names;
 }
 
-/// Where what begins at `at` ends, if it is a comment, a literal or a preprocessor line; else `at`.
+/// The end of the comment, literal or preprocessor line that begins at `at`; else `at`.
 inline size_t skipped(const std::string& text, size_t at) {
   const auto past = [&](const std::string& end, size_t from) {
     const size_t found = text.find(end, from);
@@ -86,7 +86,7 @@ inline std::string codeOf(const std::string& text) {
   return code;
 }
 
-/// Names of the types that a source defines in a named namespace, with that namespace.
+/// Names of the types that a source defines in a named namespace, with the namespace.
 inline std::vector<std::string> typesIn(const std::string& text) {
   static const std::regex kNamespace(R"re((?:inline\s+)?namespace(?:\s+([\w:]+))?\s*)re");
   static const std::regex kType(

@@ -47,7 +47,7 @@ TEST_CASE("no type is defined twice in one namespace") {
   }
 }
 
-// Who looks for a name finds one thing. Types in the unnamed namespace of one source do not count.
+// A name has one meaning. Types in the unnamed namespace of one source do not count.
 TEST_CASE("the name of a type stands once in the product, whatever its namespace") {
   constexpr size_t kMost = 2;  // falls only
   std::map<std::string, std::set<std::string>> types;
@@ -78,7 +78,7 @@ TEST_CASE("a source has the header of its own name") {
   CHECK(without.size() <= kMost);
 }
 
-// common/ is tread itself, but for folders that others would take for something else.
+// common/ uses the namespace tread, except folders whose names would be misunderstood.
 TEST_CASE("a folder and its namespace have one name") {
   constexpr size_t kMost = 11;  // falls only
   const std::regex opens(R"((?:^|\n)namespace tread(?:::(\w+))?)");
@@ -98,8 +98,8 @@ TEST_CASE("a folder and its namespace have one name") {
   CHECK(others.size() <= kMost);
 }
 
-// One place for each: common/statistics has median and quantile, common/geometry a pose with its
-// time, common/pattern a command with its time.
+// Each exists once: median and quantile in common/statistics, a pose with its time in
+// common/geometry, a command with its time in common/pattern.
 TEST_CASE("what has a place in common is not made again") {
   struct Place {
     const char* file;

@@ -10,8 +10,8 @@
 
 namespace tread::gap {
 
-/// A full-size car as the model of a car is none: four gears whose force the throttle asks for, air
-/// drag, and one track of tyres that saturate, with load transfer along and across.
+/// A full-size car that the car model does not describe: four gears with a force set by the
+/// throttle, air drag, and saturating tyres with longitudinal and lateral load transfer.
 struct FullSizeCar {
   double v = 0.0, v_y = 0.0, omega = 0.0;  ///< [m/s], [m/s], [rad/s] of the centre of mass
   double steering = 0.0, engine = 0.0;     ///< [rad], [1]
@@ -26,7 +26,7 @@ struct FullSizeCar {
     return grip * std::sin(1.5 * std::atan(9.0 * slip));
   }
 
-  /// Both tyres of an axle, of which one carries `shifted` more than the other.
+  /// Both tyres of an axle; `shifted` is the load transfer from one to the other.
   static double axle(double slip, double load, double shifted) {
     const double shift = std::min(std::abs(shifted), 0.45 * load);
     return tyre(slip, 0.5 * load + shift) + tyre(slip, 0.5 * load - shift);
@@ -69,8 +69,8 @@ struct FullSizeCar {
   }
 };
 
-/// Its drive by throttle (a driver who holds speeds up to a fastest one) and steering, INS at 50 Hz
-/// on its rear axle.
+/// A drive with throttle (a driver holds random speeds up to `fastest`) and steering, INS at 50 Hz
+/// on the rear axle.
 inline Drive fullSizeDrive(double seconds, unsigned seed, double fastest = 24.0) {
   std::mt19937 random(seed);
   std::normal_distribution<double> gauss;

@@ -116,7 +116,7 @@ inline Drive syntheticDrive(const ModelDocument& truth, double seconds, uint64_t
   return syntheticDriveBy(VehicleKernel(truth.vehicle, EntryState{}), truth, seconds, seed, noise);
 }
 
-/// A car of 1 m/s, a wheelbase of .9 m.
+/// A car of 1 m/s with a wheelbase of .9 m.
 inline ModelDocument syntheticCar() {
   ModelDocument model;
   model.vehicle.name = "synthetic car";
@@ -128,7 +128,7 @@ inline ModelDocument syntheticCar() {
   return model;
 }
 
-/// A holonomic base on three wheels, .4 m from its middle.
+/// A holonomic base with three wheels, .4 m from its centre.
 inline ModelDocument syntheticOmni() {
   ModelDocument model;
   model.vehicle.name = "synthetic omni";

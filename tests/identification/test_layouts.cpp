@@ -15,7 +15,7 @@ using namespace tread::gap;
 
 namespace {
 
-/// What is found with a model on a drive of its vehicle in which numbers were changed.
+/// Result of find with a model on a drive of its vehicle with modified numbers.
 GapFinding findWith(const ModelDocument& model, const samples::Values& hidden, uint64_t seed) {
   ModelDocument truth = model;
   for (const auto& [path, value] : hidden) *findParameter(truth, path) = value;

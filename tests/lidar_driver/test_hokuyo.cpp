@@ -236,7 +236,7 @@ TEST_CASE("a line that is too slow for a Hokuyo's scans is named, with what to d
     if (line.now % 100'000 == 0) line.device.add(ScipLine::sweep(line.now));
     line.device.receive(line.session.poll(line.now), line.now);
     const std::string sent = line.device.transmit(line.now);
-    // A device drops a scan while it still sends the last one.
+    // A device drops a scan while it is still sending the previous one.
     if (waiting.size() < 2000) waiting += sent;
     const size_t carried = std::min<size_t>(waiting.size(), 1);  // 9600 baud
     line.session.receive(waiting.substr(0, carried), line.now);

@@ -20,10 +20,10 @@ namespace {
 struct Life {
   std::string name;
   Process& process;
-  int beats = 0;  ///< when they were last looked at
+  int beats = 0;  ///< at the last check
 };
 
-/// The lives of programs beside each other; `pass_a_moment` lets some 50 ms pass.
+/// Checks programs in parallel; `pass_a_moment` lets some 50 ms pass.
 class Lives {
  public:
   Lives(Starter& starter, std::vector<Life> lives, std::function<void()> pass_a_moment)

@@ -24,7 +24,7 @@ double distanceTo(const Box& box, const Eigen::Vector2d& p_map) {
   return outside + std::min(std::max(dx, dy), 0.0);
 }
 
-/// Distance along a ray from a point of a box's own frame until it enters; infinite if it does not.
+/// Distance along a ray, from a point in the box's frame, to the box; infinite if it misses.
 double enter(const Box& box, const Eigen::Vector2d& p, double angle) {
   const double heading = angle - box.T_map_box.yaw;
   const double direction[2] = {std::cos(heading), std::sin(heading)};
@@ -64,8 +64,8 @@ Corners cornersOf(const Box& box) {
           box.T_map_box * Eigen::Vector2d(l, w), box.T_map_box * Eigen::Vector2d(-l, w)};
 }
 
-/// Largest gap between a box and the corners of another along the first one's axes; negative if
-/// they overlap along both.
+/// Largest gap between a box and another box's corners along the first one's axes; negative if
+/// they overlap on both axes.
 double gapAlongAxes(const Box& box, const Corners& others) {
   const Pose2 T_box_map = inverse(box.T_map_box);
   Eigen::Array2d least = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
@@ -79,8 +79,8 @@ double gapAlongAxes(const Box& box, const Corners& others) {
   return (least - half).max(-half - most).maxCoeff();
 }
 
-/// Distance between two boxes; how far they overlap, negative, where they touch. The nearest points
-/// of two boxes apart are a corner of one of them and a point of the other.
+/// Distance between two boxes; negative overlap if they intersect. The nearest points of separate
+/// boxes are a corner of one box and a point of the other.
 double distanceBetween(const Box& a, const Box& b) {
   const Corners of_a = cornersOf(a);
   const Corners of_b = cornersOf(b);

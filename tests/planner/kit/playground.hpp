@@ -29,7 +29,7 @@ class Playground {
   const std::vector<Box>& boxes() const { return boxes_; }
 
   bool isObstacle(const Eigen::Vector2d& p_map) const;
-  /// Least distance between the footprint's edge and any box [m]; 0 or less at a contact.
+  /// Least distance between the footprint and any box [m]; 0 or less at a contact.
   double clearance(const FootprintSize& size, const Pose2& T_map_body) const;
   /// The truth as a grid over a rectangle: any obstacle in a cell blocks it.
   Grid paint(double cell_size, const Eigen::Vector2d& lower, const Eigen::Vector2d& upper) const;
@@ -40,7 +40,7 @@ class Playground {
   std::vector<Box> boxes_;
 };
 
-/// The boxes that a range finder at one place can see.
+/// The boxes in the range of a range finder at a position.
 class Sight {
  public:
   Sight(const Playground& ground, const Eigen::Vector2d& p_map, double range);

@@ -13,10 +13,10 @@
 // status 2.
 namespace tread::gap {
 
-/// A model for a command whose manoeuvres are of two tracks; another one is refused.
+/// The model for a command with manoeuvres of two tracks; throws for other vehicles.
 ModelDocument readTwoTracks(const std::string& path, const std::string& command);
 
-/// --effects: adds the effects of a folder to the catalogue as soon as it is read.
+/// --effects: adds the effects of a folder to the catalogue as soon as the option is parsed.
 void addEffectsOption(CLI::App& command);
 void addPlan(CLI::App& app, int& status);
 void addWhatIf(CLI::App& app);

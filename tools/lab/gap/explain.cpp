@@ -200,7 +200,7 @@ const Advice& adviceFor(GapVerdict verdict) {
 
 namespace {
 
-/// Which vehicles have an effect; empty where all do.
+/// Vehicles that can have an effect; empty if all can.
 std::string vehiclesWith(const Effect& effect) {
   std::vector<std::string> names;
   const auto all = {VehicleLayout::kTracks, VehicleLayout::kCar, VehicleLayout::kOmni};

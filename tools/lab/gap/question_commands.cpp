@@ -238,7 +238,7 @@ void whatIf(const WhatIfOptions& options) {
   const bool svg = endsWith(options.out, ".svg");
   if (!options.out.empty() && !svg && !endsWith(options.out, ".html"))
     throw std::runtime_error(options.out + ": unknown kind of file; end it with .html or .svg");
-  // Only on a log do other vehicles than those of the manoeuvres drive.
+  // The manoeuvres are for two tracks; a log may be of any vehicle.
   const ModelDocument model = options.log.empty()
                                   ? readTwoTracks(options.model, "what-if without --log")
                                   : readModelDocument(options.model);

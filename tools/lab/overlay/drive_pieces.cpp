@@ -28,7 +28,7 @@ bool isDriven(const gap::Segment& segment) {
       [](const gap::CommandSample& sample) { return sample.command != TrackCommand{}; });
 }
 
-/// The poses that the INS measured.
+/// The poses measured by the INS.
 std::vector<MotionSample> measuredIn(const gap::Segment& segment) {
   std::vector<MotionSample> motion;
   for (const gap::InsSample& sample : segment.ins)

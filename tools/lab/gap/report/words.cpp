@@ -21,7 +21,7 @@ std::string plainSentence(const FoundEffect& effect) {
                                                                 : withoutStop(known.sentence);
 }
 
-/// A sentence about two tracks, said of a vehicle on wheels.
+/// Adapts a sentence about two tracks to a vehicle on wheels.
 std::string ofVehicle(VehicleLayout layout, std::string text) {
   static constexpr std::pair<const char*, const char*> kWords[] = {
       {"difference of the tracks", "steering angle"},
