@@ -16,7 +16,7 @@
 namespace tread::testing {
 namespace {
 
-/// The life of one program; `pass50ms` lets 50 ms pass.
+/// A program with its life signs, on its own bus.
 struct Life {
   std::string name;
   Process& process;
