@@ -9,6 +9,7 @@
 #include "common/pattern/pattern.hpp"
 #include "common/recordings/recordings.hpp"
 #include "common/report/text.hpp"
+#include "common/statistics/statistics.hpp"
 
 namespace tread::recordings {
 namespace {
@@ -55,10 +56,7 @@ double usualMaxSpeed(const PatternSet& set, const SurfaceRecordings& recordings)
     for (const Execution& poses : recordings.executions[p])
       if (isWhole(poses, set.patterns()[p].commands.size()))
         speeds.push_back(fastest(poses, set.periodSeconds()));
-    if (speeds.empty()) continue;
-    const auto middle = speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2);
-    std::nth_element(speeds.begin(), middle, speeds.end());
-    largest = std::max(largest, *middle);
+    largest = std::max(largest, upperMedian(std::move(speeds)));
   }
   return std::max(kLeastMaxSpeed, kMedianMargin * largest);
 }

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "common/recordings/csv_table.hpp"
+#include "common/statistics/statistics.hpp"
 
 namespace tread::recordings {
 namespace {
@@ -104,10 +105,9 @@ Vector6 plausibleDifference(const std::vector<Vector6>& differences, size_t coun
   Vector6 bound;
   count = std::min(count, differences.size());
   for (Eigen::Index c = 0; c < 6; ++c) {
-    Eigen::VectorXd sizes(static_cast<Eigen::Index>(count));
-    for (size_t i = 0; i < count; ++i)
-      sizes[static_cast<Eigen::Index>(i)] = std::abs(differences[i][c]);
-    bound[c] = kPlausible * std::max(kSmall[c], kMadToSigma * medianOf(sizes));
+    std::vector<double> sizes;
+    for (size_t i = 0; i < count; ++i) sizes.push_back(std::abs(differences[i][c]));
+    bound[c] = kPlausible * std::max(kSmall[c], kMadToSigma * medianOf(std::move(sizes), 0.0));
   }
   return bound;
 }

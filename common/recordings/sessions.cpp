@@ -8,6 +8,7 @@
 
 #include "common/recordings/csv_table.hpp"
 #include "common/report/text.hpp"
+#include "common/statistics/statistics.hpp"
 
 namespace tread::recordings {
 namespace {
@@ -112,13 +113,7 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
-double quantileOf(std::vector<double> values, double quantile) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<size_t>(quantile * static_cast<double>(values.size() - 1))];
-}
-
-/// The different values of a field over the sessions, in their order.
+/// What sessions have in a field, each once, in their order.
 std::vector<std::string> distinct(const std::vector<Session>& sessions,
                                   std::string Session::*field) {
   std::vector<std::string> values;
@@ -264,7 +259,8 @@ BodyCommand reachOf(const Session& session) {
     v.push_back(std::abs(command.v));
     w.push_back(std::abs(command.w));
   }
-  return {quantileOf(v, kReachQuantile), quantileOf(w, kReachQuantile)};
+  return {lowerQuantile(std::move(v), kReachQuantile, 0.0),
+          lowerQuantile(std::move(w), kReachQuantile, 0.0)};
 }
 
 SessionChoice comparableSessions(const std::vector<Session>& sessions, const std::string& robot,

@@ -35,9 +35,6 @@ struct HuberLimits {
 Eigen::VectorXd huberFit(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
                          const Eigen::VectorXd& prior, const HuberLimits& limits);
 
-/// Median of the entries; 0 if there are none.
-double medianOf(Eigen::VectorXd values);
-
 /// A pose at a time within its window [s].
 struct WindowPose {
   double time = 0.0;

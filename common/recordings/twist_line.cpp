@@ -7,6 +7,8 @@
 
 #include <Eigen/QR>
 
+#include "common/statistics/statistics.hpp"
+
 namespace tread::recordings {
 namespace {
 
@@ -24,11 +26,10 @@ Eigen::VectorXd lengths(const Eigen::VectorXd& residuals, int group) {
 }
 
 double scaleOf(const Eigen::VectorXd& length, const Eigen::VectorXd& prior, double least) {
-  Eigen::VectorXd counted(length.size());
-  Eigen::Index n = 0;
+  std::vector<double> counted;
   for (Eigen::Index i = 0; i < length.size(); ++i)
-    if (prior[i] > 0.0) counted[n++] = length[i];
-  return std::max(least, kMadToSigma * medianOf(counted.head(n)));
+    if (prior[i] > 0.0) counted.push_back(length[i]);
+  return std::max(least, kMadToSigma * medianOf(std::move(counted), 0.0));
 }
 
 constexpr double kMaxGap = 0.4;          // [s] between poses, and to either end of the window
@@ -101,13 +102,6 @@ std::string rounded(double value) {
 }
 
 }  // namespace
-
-double medianOf(Eigen::VectorXd values) {
-  if (values.size() == 0) return 0.0;
-  std::sort(values.data(), values.data() + values.size());
-  const Eigen::Index half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
 
 Eigen::VectorXd huberFit(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
                          const Eigen::VectorXd& prior, const HuberLimits& limits) {

@@ -7,6 +7,7 @@
 
 #include "common/messages/ins_messages.hpp"
 #include "common/soundness/reading.hpp"
+#include "common/statistics/statistics.hpp"
 
 namespace tread::gap {
 namespace {
@@ -49,7 +50,7 @@ bool samePace(const std::vector<Stamp>& stamps) {
       paces.push_back(logged / static_cast<double>(stamps[i].utime - before.utime));
   }
   if (paces.empty()) return true;
-  const double usual = quantile(std::move(paces));
+  const double usual = quantileOf(std::move(paces), 0.5);
   return usual > 0.8 && usual < 1.25;
 }
 

@@ -10,6 +10,7 @@
 #include "common/execution/stop_reason.hpp"
 #include "common/geometry/se3.hpp"
 #include "common/messages/ins_messages.hpp"
+#include "common/statistics/statistics.hpp"
 
 namespace tread::gap {
 namespace {
@@ -23,8 +24,7 @@ double usualPeriod(const SortedLog& log) {
   for (size_t i = 1; i < log.motor.size(); ++i)
     steps.push_back(log.motor[i].utime - log.motor[i - 1].utime);
   if (steps.empty()) return 0.05;
-  std::nth_element(steps.begin(), steps.begin() + static_cast<long>(steps.size() / 2), steps.end());
-  return std::min(kLongestSilence, 1e-6 * static_cast<double>(steps[steps.size() / 2]));
+  return std::min(kLongestSilence, 1e-6 * static_cast<double>(upperMedian(std::move(steps))));
 }
 
 class SpanFinder {

@@ -115,7 +115,8 @@ TEST_CASE(
     const bool is_core = core.rfind("/core") == core.size() - 5;
     std::set<std::string> concepts{"common/capture",  "common/execution", "common/fence",
                                    "common/geometry", "common/grid",      "common/ground",
-                                   "common/parallel", "common/pattern",   "common/vehicle"};
+                                   "common/parallel", "common/pattern",   "common/statistics",
+                                   "common/vehicle"};
     // A device's folder reads its own section of the configuration.
     if (!is_core) concepts.insert("common/config");
     for (const Include& include : includesUnder(core)) {
@@ -145,9 +146,9 @@ TEST_CASE(
 }
 
 TEST_CASE("concepts link no bus and include no message type") {
-  for (const char* folder :
-       {"common/capture", "common/execution", "common/fence", "common/geometry", "common/grid",
-        "common/ground", "common/parallel", "common/pattern", "common/vehicle"})
+  for (const char* folder : {"common/capture", "common/execution", "common/fence",
+                             "common/geometry", "common/grid", "common/ground", "common/parallel",
+                             "common/pattern", "common/statistics", "common/vehicle"})
     for (const Include& include : includesUnder(folder)) {
       CAPTURE(include.file, include.target);
       CHECK_FALSE(startsWith(include.target, "lcm/"));

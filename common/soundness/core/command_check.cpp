@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/soundness/core/heading_fit.hpp"
+#include "common/statistics/statistics.hpp"
 
 namespace tread::gap {
 namespace {
@@ -22,7 +23,7 @@ double nearlyLargest(std::vector<double> values) {
                               [](double value) { return !std::isfinite(value); }),
                values.end());
   for (double& value : values) value = std::abs(value);
-  return values.empty() ? 0.0 : quantile(std::move(values), kNearlyAll);
+  return quantileOf(std::move(values), kNearlyAll, 0.0);
 }
 
 /// Measured over commanded, and the unit that it suggests.

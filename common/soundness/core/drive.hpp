@@ -17,14 +17,6 @@ namespace tread::gap {
 
 inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-/// The nearest-rank quantile: `share` of the values do not exceed it; NaN for no values.
-inline double quantile(std::vector<double> values, double share = 0.5) {
-  if (values.empty()) return kNotMeasured;
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<size_t>(at)];
-}
-
 /// A command that acts on the motors until the next one.
 struct CommandSample {
   double time = 0.0;  ///< [s] since the log's first message

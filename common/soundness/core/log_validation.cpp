@@ -7,6 +7,7 @@
 #include <map>
 
 #include "common/soundness/core/command_check.hpp"
+#include "common/statistics/statistics.hpp"
 
 namespace tread::gap {
 namespace {
@@ -181,9 +182,9 @@ void markOutliers(const std::map<size_t, double>& values, double least,
   if (values.size() < kFewest) return;
   std::vector<double> all;
   for (const auto& [segment, value] : values) all.push_back(value);
-  const double middle = quantile(all);
+  const double middle = quantileOf(all, 0.5);
   for (double& value : all) value = std::abs(value - middle);
-  const double limit = std::max(least, kFar * 1.4826 * quantile(all));
+  const double limit = std::max(least, kFar * 1.4826 * quantileOf(all, 0.5));
   for (const auto& [segment, value] : values)
     if (std::abs(value - middle) > limit) marked.push_back(segment);
 }

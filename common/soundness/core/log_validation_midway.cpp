@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/soundness/core/command_check.hpp"
+#include "common/statistics/statistics.hpp"
 
 namespace tread::gap {
 namespace {
@@ -115,7 +116,7 @@ void checkSign(const Followed& followed, const std::vector<Window>& windows, Dia
     if (match) slopes.push_back(std::abs(match->slope));
   }
   if (slopes.empty()) return;
-  const double usual = quantile(slopes);
+  const double usual = quantileOf(slopes, 0.5);
   std::vector<int> signs;
   std::vector<bool> sure;
   for (const std::optional<LagMatch>& match : matches) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/soundness/core/log_validation.hpp"
+#include "common/statistics/statistics.hpp"
 
 namespace tread::gap {
 namespace {
@@ -107,7 +108,7 @@ class Spread {
 };
 
 std::string range(std::vector<double>& values, const std::string& unit) {
-  return digits(quantile(values, 0.01), 2) + " to " + digits(quantile(values, 0.99), 2) + " " +
+  return digits(quantileOf(values, 0.01), 2) + " to " + digits(quantileOf(values, 0.99), 2) + " " +
          unit;
 }
 
@@ -168,7 +169,7 @@ void checkPoses(const Drive& drive, const std::vector<PoseIncrement>& increments
   if (steps.durations.empty()) return;
   const auto count = static_cast<double>(steps.durations.size());
   const double longest = *std::max_element(steps.durations.begin(), steps.durations.end());
-  notes.note("new poses every " + digits(quantile(steps.durations, 0.5), 2) +
+  notes.note("new poses every " + digits(quantileOf(steps.durations, 0.5), 2) +
              " s as a rule, longest " + digits(longest, 2) + " s; " +
              digits(100.0 * (1.0 - (count + 1.0) / static_cast<double>(steps.readings)), 0) +
              " % of the INS messages have none");

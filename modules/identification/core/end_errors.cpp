@@ -9,6 +9,7 @@
 #include <random>
 
 #include "common/soundness/core/log_validation.hpp"
+#include "common/statistics/statistics.hpp"
 
 namespace tread::gap {
 
@@ -40,12 +41,8 @@ Pose2 predictedBetween(const std::vector<MotionSample>& motion, const Measuremen
 ErrorFigure figureOf(std::vector<double> errors) {
   ErrorFigure figure;
   if (errors.empty()) return figure;
-  for (double error : errors) figure.rms += error * error;
-  figure.rms = std::sqrt(figure.rms / static_cast<double>(errors.size()));
-  std::sort(errors.begin(), errors.end());
-  const size_t middle = errors.size() / 2;
-  figure.median =
-      errors.size() % 2 == 1 ? errors[middle] : (errors[middle - 1] + errors[middle]) / 2.0;
+  figure.rms = rmsOf(errors);
+  figure.median = medianOf(std::move(errors));
   return figure;
 }
 
@@ -81,7 +78,7 @@ double medianOver(const std::map<int, BlockErrors>& blocks, const std::vector<in
 
 double deviationOf(const std::vector<double>& values) {
   const auto count = static_cast<double>(values.size());
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+  const double mean = meanOf(values);
   double square = 0.0;
   for (const double value : values) square += (value - mean) * (value - mean);
   return std::sqrt(square / (count - 1.0));
@@ -153,10 +150,7 @@ std::vector<double> factorsOf(const std::vector<Shown>& all) {
           (shown.overlay.measured[point].position() - shown.overlay.after[point].position()).norm();
       ratios.push_back(shown.spread[point] > 0.0 ? apart / shown.spread[point] : 0.0);
     }
-    const auto at = ratios.begin() +
-                    static_cast<std::ptrdiff_t>(kShare * static_cast<double>(ratios.size() - 1));
-    std::nth_element(ratios.begin(), at, ratios.end());
-    factors.push_back(*at);
+    factors.push_back(lowerQuantile(std::move(ratios), kShare));
   }
   return factors;
 }
@@ -350,7 +344,7 @@ double scaleOf(std::vector<Rates> rates, double offset) {
 double offsetOf(const std::vector<Rates>& rates, double scale) {
   std::vector<double> rest;
   for (const Rates& r : rates) rest.push_back(r.following - scale * r.leading);
-  return quantile(std::move(rest));
+  return quantileOf(std::move(rest), 0.5);
 }
 
 /// Lateral motion per v omega, from poses alone [s].

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/statistics/statistics.hpp"
+
 namespace tread::gap {
 namespace {
 
@@ -28,7 +30,7 @@ double negativeLogLikelihood(const ChannelResiduals& of, const ChannelNoise& noi
 double medianSize(std::vector<double> values) {
   if (values.empty()) return kLeastScale;
   for (double& value : values) value = std::abs(value);
-  return std::max(kLeastScale, quantile(std::move(values)));
+  return std::max(kLeastScale, quantileOf(std::move(values), 0.5));
 }
 
 /// Least negative log likelihood by steps along either logarithm, halved if none helps.

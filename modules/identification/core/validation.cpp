@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "common/statistics/statistics.hpp"
 #include "modules/identification/core/rest.hpp"
 #include "modules/identification/core/screening.hpp"
 
@@ -328,7 +329,7 @@ double ScoreTest::usualOverdispersion() const {
   std::vector<double> all;
   for (Eigen::Index c = 0; c < candidates(); ++c)
     if (information_[c] > 0.0) all.push_back(overdispersion(c));
-  return all.empty() ? 1.0 : quantile(std::move(all));
+  return quantileOf(std::move(all), 0.5, 1.0);
 }
 
 double ScoreTest::sparseScore(Eigen::Index candidate, double usual) const {

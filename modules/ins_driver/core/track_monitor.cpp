@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "common/statistics/statistics.hpp"
+
 namespace tread::ins {
 namespace {
 
@@ -16,10 +18,7 @@ constexpr size_t kFewestIntervals = 3;
 int64_t TrackMonitor::typicalPeriod() const {
   if (period_us_ > 0) return period_us_;
   if (intervals_.size() < kFewestIntervals) return 0;
-  std::vector<int64_t> sorted(intervals_.begin(), intervals_.end());
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return *middle;
+  return upperMedian(std::vector<int64_t>(intervals_.begin(), intervals_.end()));
 }
 
 bool TrackMonitor::isGap(int64_t utime) {

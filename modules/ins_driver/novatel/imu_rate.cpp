@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/geometry/se2.hpp"
+#include "common/statistics/statistics.hpp"
 
 namespace tread::ins {
 namespace {
@@ -43,9 +44,7 @@ void ImuRate::addYaw(int64_t time, double yaw) {
   sum_per_sample_ = 0.0;
   samples_ = 0;
   if (ratios_.size() < kRatios) return;
-  std::nth_element(ratios_.begin(), ratios_.begin() + kRatios / 2, ratios_.end());
-  const double median = ratios_[kRatios / 2];
-  ratios_.clear();
+  const double median = valueAtRank(std::exchange(ratios_, {}), kRatios / 2);
   for (const double usual : kUsualRates) {
     if (std::abs(median / usual - 1.0) < kFit) rate_ = usual;
   }

@@ -9,6 +9,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "common/statistics/statistics.hpp"
+
 namespace tread::scan_matching {
 namespace {
 
@@ -75,10 +77,7 @@ double scaleOf(const std::vector<Pair>& pairs, bool lines, double least) {
   std::vector<double> sizes;
   for (const Pair& pair : pairs)
     if (pair.isLine() == lines) sizes.push_back(std::abs(pair.residual()));
-  if (sizes.empty()) return least;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return std::max(least, 1.4826 * *middle);
+  return std::max(least, 1.4826 * upperMedian(std::move(sizes)));
 }
 
 /// The end of the piece of one object that begins at a pair.
@@ -126,10 +125,8 @@ double sharedError(const std::vector<Pair>& pairs, const std::vector<Piece>& pie
       offsets.push_back(std::abs(piece.offset));
   const size_t count = offsets.size();
   if (count < kFewestPieces) return std::max(least, kUsualShared);
-  const auto middle = offsets.begin() + static_cast<std::ptrdiff_t>(count / 2);
-  std::nth_element(offsets.begin(), middle, offsets.end());
   const double fitted = std::sqrt(static_cast<double>(count) / static_cast<double>(count - 3));
-  return std::max(least, 1.4826 * *middle * fitted);
+  return std::max(least, 1.4826 * upperMedian(std::move(offsets)) * fitted);
 }
 
 /// Reduces the weights to those that the errors behind the residuals allow. The nearest leaf is

@@ -7,6 +7,7 @@
 
 #include "common/report/page.hpp"
 #include "common/report/text.hpp"
+#include "common/statistics/statistics.hpp"
 #include "common/store/store.hpp"
 #include "tools/lab/experiment/tables.hpp"
 
@@ -144,7 +145,7 @@ std::string textOfRemembered(const Batch& batch) {
       for (const TransitionErrors& transition : batch.first.transitions)
         if (batch.grounds[transition.from].surface == ground.surface)
           counts.push_back(transition.remembered[i]);
-      if (counts.front() >= 0.0) line += formatted("%12.1f", median(counts));
+      if (counts.front() >= 0.0) line += formatted("%12.1f", medianOf(counts));
     }
     if (line.size() > 25) text += line;
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/report/text.hpp"
+#include "common/statistics/statistics.hpp"
 #include "tools/lab/experiment/tables.hpp"
 
 namespace tread::experiment {
@@ -22,7 +23,7 @@ std::vector<double> ratios(const std::vector<Row>& rows, const std::string& quan
 }
 
 double largest(const std::vector<double>& values) {
-  return values.empty() ? median(values) : *std::max_element(values.begin(), values.end());
+  return values.empty() ? kNoFigure : *std::max_element(values.begin(), values.end());
 }
 
 double medianCost(const std::vector<Row>& rows, const std::string& quantity,
@@ -31,7 +32,7 @@ double medianCost(const std::vector<Row>& rows, const std::string& quantity,
   for (const Row& row : rows)
     if (row.quantity == quantity && row.rule == rule && row.k == k)
       costs.push_back(row.estimate.value);
-  return median(costs);
+  return medianOf(costs);
 }
 
 double worst(const std::vector<Row>& rows, const std::string& quantity, const std::string& rule,
@@ -41,7 +42,7 @@ double worst(const std::vector<Row>& rows, const std::string& quantity, const st
 
 double reduced(const std::vector<Row>& rows, const std::string& quantity, const std::string& rule,
                int k) {
-  return 100.0 * (1.0 - median(ratios(rows, quantity, rule, "single", k)));
+  return 100.0 * (1.0 - medianOf(ratios(rows, quantity, rule, "single", k)));
 }
 
 /// One column of the key figures: its function of a table's rows after k executions.

@@ -188,9 +188,6 @@ std::string textOfAgreement(const Tables& tables, const Setting& setting,
 std::string textOfKeyFigures(const Tables& tables, const Setting& setting,
                              const std::vector<Tables>& sets);
 
-/// The median; NaN if empty.
-double median(std::vector<double> values);
-
 /// Options of the command line.
 struct Request {
   std::string world;                   ///< file; empty: `recordings` is used

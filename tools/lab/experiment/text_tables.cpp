@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/report/text.hpp"
+#include "common/statistics/statistics.hpp"
 #include "tools/lab/experiment/tables.hpp"
 
 namespace tread::experiment {
@@ -171,13 +172,6 @@ std::vector<std::vector<std::string>> columnGroups(const Setting& setting) {
                           rules.begin() + static_cast<long>(rules.size() * (part + 1) / parts));
   }
   return groups;
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return Estimate{}.value;
-  std::sort(values.begin(), values.end());
-  const size_t n = values.size();
-  return n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2.0;
 }
 
 std::string textOfErrors(const Tables& tables, const Setting& setting) {

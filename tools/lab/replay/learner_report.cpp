@@ -10,6 +10,7 @@
 
 #include "common/report/plot.hpp"
 #include "common/report/text.hpp"
+#include "common/statistics/statistics.hpp"
 
 namespace tread::replay {
 namespace {
@@ -18,19 +19,6 @@ namespace {
 constexpr size_t kRunning = 15;
 
 constexpr double kDegrees = 180.0 / kPi;
-
-double mean(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  const size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2.0;
-}
 
 using report::Panel;
 using report::Picture;
@@ -255,7 +243,8 @@ ErrorSummary summarise(const std::vector<learning_t>& learned) {
     position.push_back(one.error_position);
     yaw.push_back(std::abs(one.error_yaw));
   }
-  return {position.size(), mean(position), median(position), mean(yaw), median(yaw)};
+  return {position.size(), meanOf(position, 0.0), medianOf(position, 0.0), meanOf(yaw, 0.0),
+          medianOf(yaw, 0.0)};
 }
 
 namespace {

@@ -13,6 +13,7 @@
 
 #include "common/messages/ins_messages.hpp"
 #include "common/report/plot.hpp"
+#include "common/statistics/statistics.hpp"
 
 namespace tread {
 namespace {
@@ -103,25 +104,14 @@ void addPairs(const Stretch& stretch, const FarEnough& far_enough, Sums& sums) {
   }
 }
 
-double rms(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
-}
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<size_t>(share * static_cast<double>(values.size() - 1))];
-}
-
 void say(std::ostream& out, const char* name, const MotionErrors& errors) {
   out << "  " << name << ", " << errors.yaw.size() << " pairs: median "
-      << quantile(errors.position, 0.5) << " m " << quantile(errors.yaw, 0.5) << " rad, rms "
-      << rms(errors.position) << " m " << rms(errors.yaw) << " rad, 95 % "
-      << quantile(errors.position, 0.95) << " m " << quantile(errors.yaw, 0.95)
-      << " rad; over told deviation " << std::setprecision(2) << errors.normalized_position << " "
-      << errors.normalized_yaw << ", within two " << 100.0 * errors.within_two << " %\n"
+      << lowerQuantile(errors.position, 0.5, 0.0) << " m " << lowerQuantile(errors.yaw, 0.5, 0.0)
+      << " rad, rms " << rmsOf(errors.position, 0.0) << " m " << rmsOf(errors.yaw, 0.0)
+      << " rad, 95 % " << lowerQuantile(errors.position, 0.95, 0.0) << " m "
+      << lowerQuantile(errors.yaw, 0.95, 0.0) << " rad; over told deviation "
+      << std::setprecision(2) << errors.normalized_position << " " << errors.normalized_yaw
+      << ", within two " << 100.0 * errors.within_two << " %\n"
       << std::setprecision(4);
 }
 
@@ -277,12 +267,13 @@ std::string reportOf(const MatchingReplay& replay) {
   if (!replay.problem.empty()) out << "  " << replay.problem << '\n';
   out << reportOf(replay.comparison) << std::setprecision(4)
       << "  three consecutive scans, each pair matched separately: " << replay.closure.yaw.size()
-      << " triangles, open by a median of " << quantile(replay.closure.position, 0.5) << " m "
-      << quantile(replay.closure.yaw, 0.5) << " rad, 95 % "
-      << quantile(replay.closure.position, 0.95) << " m " << quantile(replay.closure.yaw, 0.95)
-      << " rad; over told deviation " << std::setprecision(2) << replay.closure.normalized_position
-      << " " << replay.closure.normalized_yaw << ", within two "
-      << 100.0 * replay.closure.within_two << " %\n";
+      << " triangles, open by a median of " << lowerQuantile(replay.closure.position, 0.5, 0.0)
+      << " m " << lowerQuantile(replay.closure.yaw, 0.5, 0.0) << " rad, 95 % "
+      << lowerQuantile(replay.closure.position, 0.95, 0.0) << " m "
+      << lowerQuantile(replay.closure.yaw, 0.95, 0.0) << " rad; over told deviation "
+      << std::setprecision(2) << replay.closure.normalized_position << " "
+      << replay.closure.normalized_yaw << ", within two " << 100.0 * replay.closure.within_two
+      << " %\n";
   return out.str();
 }
 

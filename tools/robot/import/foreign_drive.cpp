@@ -7,6 +7,7 @@
 
 #include "common/drive/odometer.hpp"
 #include "common/report/text.hpp"
+#include "common/statistics/statistics.hpp"
 
 namespace tread::import {
 
@@ -99,10 +100,7 @@ void takeJumpsOut(std::vector<Fix>& poses, const std::function<std::string(size_
 double usualPeriod(const std::vector<double>& times) {
   std::vector<double> steps;
   for (size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
-  if (steps.empty()) return 0.0;
-  const auto middle = steps.begin() + static_cast<long>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return upperMedian(std::move(steps));
 }
 
 std::optional<std::string> timeUnitProblem(std::vector<double> times, double unit) {

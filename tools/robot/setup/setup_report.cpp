@@ -78,7 +78,7 @@ std::string patternChart(const PatternSet& set) {
   return chart.svg();
 }
 
-std::vector<std::string> row(const std::string& what, const Interval& value,
+std::vector<std::string> row(const std::string& what, const ConfidenceInterval& value,
                              const std::string& unit, int decimals, double scale = 1.0) {
   return {what, fixed(scale * value.value, decimals) + " " + unit,
           fixed(scale * value.low, decimals) + " to " + fixed(scale * value.high, decimals)};

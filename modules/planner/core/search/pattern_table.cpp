@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "common/statistics/statistics.hpp"
+
 namespace tread::planner {
 namespace {
 
@@ -127,11 +129,7 @@ double PatternTable::medianDuration() const {
     if (pattern.entry != rest_class_ && pattern.exit != rest_class_)
       joining.push_back(pattern.duration);
   }
-  std::vector<double>& counted = joining.empty() ? all : joining;
-  if (counted.empty()) return 0.0;
-  const auto middle = counted.begin() + static_cast<std::ptrdiff_t>(counted.size() / 2);
-  std::nth_element(counted.begin(), middle, counted.end());
-  return *middle;
+  return upperMedian(std::move(joining.empty() ? all : joining));
 }
 
 void PatternTable::index(size_t classes, double top_speed) {

@@ -199,7 +199,7 @@ TEST_CASE("the minute's numbers hold: speed, mounting, place of the INS, lag, wi
     const WiringReport report = checkWiring(driven.commands, driven.fixes, {});
     REQUIRE(report.unsure.empty());
     const auto [truth, rise] = steadySpeed(hidden);
-    Interval full = report.full_left;
+    ConfidenceInterval full = report.full_left;
     full.value = (full.value + report.full_right.value) / 2.0;
     full.low = (full.low + report.full_right.low) / 2.0;
     full.high = (full.high + report.full_right.high) / 2.0;

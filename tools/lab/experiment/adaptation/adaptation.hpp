@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "common/statistics/statistics.hpp"
 #include "modules/learner/core/rules/learning_rule.hpp"
 #include "tools/lab/experiment/adaptation/driving.hpp"
 
@@ -89,15 +90,8 @@ using Progress = std::function<void(size_t done, size_t all)>;
 AdaptationErrors runAdaptation(const std::vector<SampledSession>& sessions,
                                const Settings& settings, const Progress& progress);
 
-/// A mean over sessions with its 95 % interval (bootstrap over sessions); NaN if there is none.
-struct Interval {
-  double mean = std::numeric_limits<double>::quiet_NaN();
-  double low = std::numeric_limits<double>::quiet_NaN();
-  double high = std::numeric_limits<double>::quiet_NaN();
-};
-
 /// Mean and interval of one number per session; no interval for a single session.
-Interval intervalOf(const std::vector<double>& values, uint64_t seed);
+ConfidenceInterval intervalOf(const std::vector<double>& values, uint64_t seed);
 
 /// Comparison of the judged rule with another, by the differences of their ratios per session.
 enum class Verdict { kUnknown, kBetter, kLevel, kWorse };
@@ -106,7 +100,7 @@ const char* nameOf(Verdict verdict);
 /// One quantity of one rule after k executions at one horizon.
 struct Standing {
   double error = std::numeric_limits<double>::quiet_NaN();  ///< [m] or [deg], mean over sessions
-  Interval ratio;                                           ///< [1] relative to no learning
+  ConfidenceInterval ratio = kNoInterval;                   ///< [1] relative to no learning
   double worst = std::numeric_limits<double>::quiet_NaN();  ///< [1] largest ratio of a session
   std::string worst_session;
   Verdict judged = Verdict::kUnknown;  ///< judged rule compared with this one

@@ -35,11 +35,11 @@ std::string errorCell(const SummaryLine& line) {
 
 std::string ratioCell(const SummaryLine& line) {
   if (line.sessions == 0) return "-";
-  return both(ratio(line.position.ratio.mean), ratio(line.yaw.ratio.mean));
+  return both(ratio(line.position.ratio.value), ratio(line.yaw.ratio.value));
 }
 
 std::string intervalCell(const SummaryLine& line) {
-  const auto of = [](const Interval& interval) {
+  const auto of = [](const ConfidenceInterval& interval) {
     return fixed(interval.low, 2) + ".." + fixed(interval.high, 2);
   };
   if (!std::isfinite(line.position.ratio.low)) return "-";
@@ -137,8 +137,8 @@ std::vector<std::string> findings(const std::vector<Group>& groups, const Report
     }
     const auto change = [](double ratio) { return formatted("%+.1f %%", 100.0 * (ratio - 1.0)); };
     points.push_back(titleOf(group) + ", after " + std::to_string(kEarly) + " executions: " +
-                     kJudged + " relative to no learning " + change(judged.position.ratio.mean) +
-                     " position, " + change(judged.yaw.ratio.mean) + " yaw; worst session " +
+                     kJudged + " relative to no learning " + change(judged.position.ratio.value) +
+                     " position, " + change(judged.yaw.ratio.value) + " yaw; worst session " +
                      change(judged.position.worst) + " (" + judged.position.worst_session + "), " +
                      change(judged.yaw.worst) + " (" + judged.yaw.worst_session + "). " +
                      (judged.sessions < 2 ? "One session: no interval."
@@ -187,7 +187,7 @@ std::string numberCsv(double value) {
 
 std::string standingCsv(const Standing& standing) {
   std::string text;
-  for (const double value : {standing.error, standing.ratio.mean, standing.ratio.low,
+  for (const double value : {standing.error, standing.ratio.value, standing.ratio.low,
                              standing.ratio.high, standing.worst})
     text += "," + numberCsv(value);
   return text + "," + standing.worst_session + "," + numberCsv(standing.difference) + "," +

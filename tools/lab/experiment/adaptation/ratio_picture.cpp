@@ -38,7 +38,7 @@ void drawPanel(report::Picture& picture, const report::Box& box, const Group& gr
     curves.emplace_back();
     for (size_t k = 0; k < kExecutions.size(); ++k) {
       const SummaryLine& line = group.of(rule, kExecutions[k]);
-      const double ratio = (yaw ? line.yaw : line.position).ratio.mean;
+      const double ratio = (yaw ? line.yaw : line.position).ratio.value;
       if (!std::isfinite(ratio)) continue;
       curves.back().emplace_back(static_cast<double>(k), ratio);
       axes.y_min = std::min(axes.y_min, ratio);

@@ -10,6 +10,7 @@
 #include "common/recordings/imported_log.hpp"
 #include "common/recordings/sessions.hpp"
 #include "common/soundness/drive_log.hpp"
+#include "common/statistics/statistics.hpp"
 #include "tools/lab/experiment/adaptation/driving.hpp"
 
 namespace tread::adaptation {
@@ -50,7 +51,7 @@ class StepJoiner {
     for (size_t i = 1; i < drive.fixes.size(); ++i)
       if (!drive.fixes[i].new_track)
         between.push_back(drive.fixes[i].time - drive.fixes[i - 1].time);
-    usual_ = gap::quantile(between);
+    usual_ = quantileOf(between, 0.5);
   }
 
   std::vector<gap::Segment> segments() {

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "common/geometry/degrees.hpp"
+#include "common/statistics/statistics.hpp"
 #include "tools/lab/experiment/adaptation/adaptation.hpp"
 #include "tools/lab/experiment/trials.hpp"
 
@@ -13,12 +14,6 @@ namespace {
 
 constexpr int kResamples = 2000;
 constexpr double kNoDifference = 1e-6;  // [1] rounding error of ratios
-
-double meanOf(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
 
 /// Values of one quantity, one per session.
 struct Columns {
@@ -66,10 +61,10 @@ const char* nameOf(Verdict verdict) {
   return "-";
 }
 
-Interval intervalOf(const std::vector<double>& values, uint64_t seed) {
-  Interval interval;
+ConfidenceInterval intervalOf(const std::vector<double>& values, uint64_t seed) {
+  ConfidenceInterval interval = kNoInterval;
   if (values.empty()) return interval;
-  interval.mean = meanOf(values);
+  interval.value = meanOf(values);
   if (values.size() < 2) return interval;
   std::mt19937_64 random(seed);
   std::vector<double> means;

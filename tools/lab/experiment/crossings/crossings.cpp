@@ -10,6 +10,7 @@
 #include "common/config/scalars.hpp"
 #include "common/recordings/csv_table.hpp"
 #include "common/report/text.hpp"
+#include "common/statistics/statistics.hpp"
 #include "tools/lab/experiment/adaptation/rivals.hpp"
 #include "tools/lab/experiment/end_region.hpp"
 #include "tools/lab/experiment/rival_rule.hpp"
@@ -134,9 +135,8 @@ double sizeOf(const Command& command) {
 
 /// The variance for which sums of squares of normal numbers have this median.
 double varianceOf(std::vector<double> sums, double freedom) {
-  const auto middle = sums.begin() + static_cast<std::ptrdiff_t>(sums.size() / 2);
-  std::nth_element(sums.begin(), middle, sums.end());
-  return *middle / (freedom * std::pow(1.0 - 2.0 / (9.0 * freedom), 3.0));  // Wilson, Hilferty
+  return upperMedian(std::move(sums)) /
+         (freedom * std::pow(1.0 - 2.0 / (9.0 * freedom), 3.0));  // Wilson, Hilferty
 }
 
 Pose2 meanEnd(const CrossingRun& run, size_t known) {

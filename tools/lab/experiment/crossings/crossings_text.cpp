@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/report/text.hpp"
+#include "common/statistics/statistics.hpp"
 #include "tools/lab/experiment/crossings/crossings.hpp"
 
 namespace tread::experiment {
@@ -32,11 +33,6 @@ std::string rowsOf(const std::vector<CrossingErrors>& errors, const Cell& cell) 
     text += "\n";
   }
   return text;
-}
-
-double medianDelay(std::vector<double> delays) {
-  std::sort(delays.begin(), delays.end());
-  return delays.empty() ? std::nan("") : delays[delays.size() / 2];
 }
 
 }  // namespace
@@ -81,7 +77,7 @@ std::string textOf(const std::vector<CrossingErrors>& errors) {
     text += one.rule + std::string(kRuleWidth - std::min(kRuleWidth, one.rule.size()), ' ') +
             formatted("   %3zu of %3zu, %5.0f s %22zu %6zu %6zu %5zu  %.2f s\n", notices.false_runs,
                       notices.runs, notices.undisturbed, notices.within(0.5), notices.within(0.8),
-                      notices.delays.size(), notices.real, medianDelay(notices.delays));
+                      notices.delays.size(), notices.real, upperMedian(notices.delays, kNoFigure));
   }
   return text;
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "common/statistics/statistics.hpp"
+
 namespace tread::gap {
 
 using namespace report;
@@ -190,11 +192,7 @@ double fullColourOf(const std::vector<PlaceError>& places) {
     errors.push_back(place.before);
     errors.push_back(place.after);
   }
-  if (errors.empty()) return 0.0;
-  const auto at =
-      errors.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(errors.size() - 1));
-  std::nth_element(errors.begin(), at, errors.end());
-  return *at;
+  return lowerQuantile(std::move(errors), 0.95, 0.0);
 }
 
 std::string placePicture(const std::vector<PlaceError>& places, bool after, double full_colour,

@@ -143,14 +143,14 @@ class CarCheck {
   void judge() {
     const bool dead = steeringIsDead(reading_);
     if (mirrored_ || (contradicts_ && !dead)) report_.faults.push_back(insMirrored(mirrored_));
-    const Interval& yaw = report_.mounting_yaw;
+    const ConfidenceInterval& yaw = report_.mounting_yaw;
     if (yaw.low > tolerance_.turn || yaw.high < -tolerance_.turn)
       report_.faults.push_back(insTurned(
           yaw,
           std::abs(yaw.value) > 0.9 * kPi && !expected_.seen
               ? "; or throttle and steering are both reversed: look in which direction it drives"
               : ""));
-    const Interval &x = report_.antenna_x, &y = report_.antenna_y;
+    const ConfidenceInterval &x = report_.antenna_x, &y = report_.antenna_y;
     if (!dead && std::hypot(x.value, y.value) > tolerance_.elsewhere &&
         (!x.holds(0.0) || !y.holds(0.0)))
       report_.faults.push_back(insElsewhere(x, y));
@@ -170,7 +170,7 @@ class CarCheck {
                    ? ", unless the INS is mirrored: so short a drive does not show which"
                    : ""));
     const double askew = expected_.brief ? kAskewInSeconds : kAskewSteering;
-    const Interval& straight = report_.steering_straight;
+    const ConfidenceInterval& straight = report_.steering_straight;
     if (!dead && (straight.low > askew || straight.high < -askew))
       add(FaultKind::kSteeringAskew, straight.value,
           "with no steering its wheels stand " + inDegrees(straight.value) +

@@ -29,7 +29,7 @@ std::string inDegrees(double angle) {
   return fixedText(toDegrees(angle), 0) + " deg";
 }
 
-Interval leavingOneOut(double best, const std::vector<double>& parts, bool is_angle) {
+ConfidenceInterval leavingOneOut(double best, const std::vector<double>& parts, bool is_angle) {
   const auto count = static_cast<double>(parts.size());
   const auto off = [&](double part) { return is_angle ? wrapAngle(part - best) : part - best; };
   double mean = 0.0, squares = 0.0;
@@ -50,7 +50,7 @@ WiringFault insMirrored(bool by_path) {
                     "to the right; check its mounting and axes, and repeat"};
 }
 
-WiringFault insTurned(const Interval& yaw, const std::string& or_else) {
+WiringFault insTurned(const ConfidenceInterval& yaw, const std::string& or_else) {
   return {FaultKind::kInsTurned,
           {},
           yaw.value,
@@ -59,7 +59,7 @@ WiringFault insTurned(const Interval& yaw, const std::string& or_else) {
               ") from its configured mounting; set ins: mounting of robot.yaml" + or_else};
 }
 
-WiringFault insElsewhere(const Interval& x, const Interval& y) {
+WiringFault insElsewhere(const ConfidenceInterval& x, const ConfidenceInterval& y) {
   return {FaultKind::kInsElsewhere,
           {},
           std::hypot(x.value, y.value),

@@ -30,12 +30,12 @@ std::string inMetres(double value);
 std::string inDegrees(double angle);
 
 /// A value with its 95 % interval from the jackknife estimates `parts`.
-Interval leavingOneOut(double best, const std::vector<double>& parts, bool is_angle);
+ConfidenceInterval leavingOneOut(double best, const std::vector<double>& parts, bool is_angle);
 
 /// `by_path`: the INS's heading turns opposite to its path; else it contradicts the observation.
 WiringFault insMirrored(bool by_path);
-WiringFault insTurned(const Interval& yaw, const std::string& or_else);
-WiringFault insElsewhere(const Interval& x, const Interval& y);
+WiringFault insTurned(const ConfidenceInterval& yaw, const std::string& or_else);
+WiringFault insElsewhere(const ConfidenceInterval& x, const ConfidenceInterval& y);
 WiringFault nothingMoves();
 
 }  // namespace tread::setup

@@ -92,7 +92,7 @@ class Check {
       parts.push_back(oneIsDead() ? geometryOfOne(fit, report_.dead[0] ? 1 : 0).of
                                   : geometryOf(fit, best.swapped).of);
     }
-    Interval* const intervals[kQuantities] = {
+    ConfidenceInterval* const intervals[kQuantities] = {
         &report_.full_left,    &report_.full_right, &report_.gauge,
         &report_.mounting_yaw, &report_.antenna_x,  &report_.antenna_y,
         &report_.delay,        &report_.lag,        &report_.dead_power};
@@ -114,7 +114,7 @@ class Check {
     report_.full_right = meanOf(right);
   }
 
-  static Interval meanOf(const std::vector<double>& values) {
+  static ConfidenceInterval meanOf(const std::vector<double>& values) {
     const auto count = static_cast<double>(values.size());
     double mean = 0.0, squares = 0.0;
     for (const double value : values) mean += value / count;
@@ -126,8 +126,8 @@ class Check {
     return {mean, mean - reach, mean + reach};
   }
 
-  static Interval intervalOf(size_t q, const Quantities& best,
-                             const std::vector<Quantities>& parts) {
+  static ConfidenceInterval intervalOf(size_t q, const Quantities& best,
+                                       const std::vector<Quantities>& parts) {
     std::vector<double> values;
     for (const Quantities& part : parts) values.push_back(part[q]);
     return leavingOneOut(best[q], values, q == kYaw);
@@ -152,7 +152,7 @@ class Check {
 
   void judgeIns() {
     if (mirrored_ || contradicts_) report_.faults.push_back(insMirrored(mirrored_));
-    const Interval& yaw = report_.mounting_yaw;
+    const ConfidenceInterval& yaw = report_.mounting_yaw;
     // With one dead track the vehicle may turn about another point than the middle of that track.
     const double least = oneIsDead() ? kTurnedBesideDead : tolerance_.turn;
     if (yaw.low > least || yaw.high < -least)
@@ -191,8 +191,8 @@ class Check {
 
   void judgeStrength() {
     const bool left_is_weak = report_.full_left.value < report_.full_right.value;
-    const Interval& weak = left_is_weak ? report_.full_left : report_.full_right;
-    const Interval& strong = left_is_weak ? report_.full_right : report_.full_left;
+    const ConfidenceInterval& weak = left_is_weak ? report_.full_left : report_.full_right;
+    const ConfidenceInterval& strong = left_is_weak ? report_.full_right : report_.full_left;
     const double share = weak.value / strong.value;
     if (share > tolerance_.weak || weak.high > strong.low) return;
     const Side side = left_is_weak ? Side::kLeft : Side::kRight;
@@ -204,7 +204,7 @@ class Check {
   }
 
   void judgeGauge() {
-    const Interval& gauge = report_.gauge;
+    const ConfidenceInterval& gauge = report_.gauge;
     if (expected_.gauge <= 0.0 || gauge.holds(expected_.gauge) ||
         std::abs(gauge.value / expected_.gauge - 1.0) < tolerance_.gauge)
       return;

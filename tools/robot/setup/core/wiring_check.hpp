@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/statistics/statistics.hpp"
 #include "tools/robot/setup/core/wiring_fit.hpp"
 
 namespace tread::setup {
@@ -19,15 +20,6 @@ constexpr const char* nameOf(Side side) {
 constexpr Side otherOf(Side side) {
   return side == Side::kLeft ? Side::kRight : Side::kLeft;
 }
-
-/// A measured quantity with its 95 % interval.
-struct Interval {
-  double value = 0.0;
-  double low = 0.0;
-  double high = 0.0;
-
-  bool holds(double truth) const { return low <= truth && truth <= high; }
-};
 
 /// The sides that move if one side is commanded forward.
 struct SideMotion {
@@ -76,19 +68,19 @@ struct WiringReport {
   /// The sides that the configured left and right side really move.
   std::array<SideMotion, 2> moves{SideMotion{Side::kLeft, true}, SideMotion{Side::kRight, true}};
   std::array<bool, 2> dead{false, false};  ///< configured left and right side
-  Interval full_left;          ///< [m/s] of the real left track at full command, on this ground
-  Interval full_right;         ///< [m/s]
-  Interval gauge;              ///< [m] effective: track speed difference over yaw rate
-  Interval mounting_yaw;       ///< [rad] correction of the configured one
-  Interval antenna_x;          ///< [m] in body, of the INS's point relative to the configured one
-  Interval antenna_y;          ///< [m]
-  Interval delay;              ///< [s] from a command to its effect in the INS
-  Interval lag;                ///< [s]
-  Interval dead_power;         ///< [1]
-  Interval steering_left;      ///< [rad] of a car at full steering to the left
-  Interval steering_right;     ///< [rad] the same to the right, negative
-  Interval steering_straight;  ///< [rad] at zero command
-  Interval steering_lag;       ///< [s]
+  ConfidenceInterval full_left;   ///< [m/s] of the real left track at full command, on this ground
+  ConfidenceInterval full_right;  ///< [m/s]
+  ConfidenceInterval gauge;       ///< [m] effective: track speed difference over yaw rate
+  ConfidenceInterval mounting_yaw;  ///< [rad] correction of the configured one
+  ConfidenceInterval antenna_x;  ///< [m] in body, of the INS's point relative to the configured one
+  ConfidenceInterval antenna_y;  ///< [m]
+  ConfidenceInterval delay;      ///< [s] from a command to its effect in the INS
+  ConfidenceInterval lag;        ///< [s]
+  ConfidenceInterval dead_power;         ///< [1]
+  ConfidenceInterval steering_left;      ///< [rad] of a car at full steering to the left
+  ConfidenceInterval steering_right;     ///< [rad] the same to the right, negative
+  ConfidenceInterval steering_straight;  ///< [rad] at zero command
+  ConfidenceInterval steering_lag;       ///< [s]
   WiringFit fit;
   std::vector<WiringFault> faults;
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/bus/channels.hpp"
+#include "common/statistics/statistics.hpp"
 #include "common/types/message_json.hpp"
 
 namespace tread::view {
@@ -57,10 +58,10 @@ void Feed::keep(const LogEvent& event) {
   if (channel.bytes <= most) return;
   std::vector<int64_t> times;
   for (const auto& [part, other] : channel.parts) times.push_back(other.event.utime);
-  const auto quarter = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 4);
-  std::nth_element(times.begin(), quarter, times.end());
+  const size_t quarter = times.size() / 4;
+  const int64_t oldest_kept = valueAtRank(std::move(times), quarter);
   for (auto part = channel.parts.begin(); part != channel.parts.end();) {
-    const bool old = part->second.event.utime <= *quarter;
+    const bool old = part->second.event.utime <= oldest_kept;
     if (old) channel.bytes -= part->second.event.bytes.size();
     part = old ? channel.parts.erase(part) : std::next(part);
   }
