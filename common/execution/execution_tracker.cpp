@@ -114,17 +114,16 @@ ExecutionTracker::Event ExecutionTracker::follow(const RobotReadings& readings) 
 ExecutionTracker::Event ExecutionTracker::followExecutions(const RobotReadings& readings) {
   Event event = Event::kNone;
   bool begun = false;
-  bool completed = false;  // our newest execution that the bridge knows
-  for (const ExecutionReading& record : readings.executions) {
+  bool completed = false;  // the newest of ours that the bridge knows
+  for (const ExecutionRecord& record : readings.executions) {
     if (record.run_id != run_id_) continue;
     if (record.execution_id > running_.execution_id && adopt(record.execution_id, record.started))
       event = Event::kSwitched;
     const bool is_running = record.execution_id == running_.execution_id;
     const bool is_previous = previous_id_ != 0 && record.execution_id == previous_id_;
     if (!is_running && !is_previous) continue;
-    if (record.state == ExecutionReading::State::kAborted)
-      return finish(Event::kAborted, record.reason);
-    completed = record.state == ExecutionReading::State::kCompleted;
+    if (record.outcome == ExecutionOutcome::kAborted) return finish(Event::kAborted, record.reason);
+    completed = record.completed();
     if (!is_running) continue;
     begun = true;
     started_ = record.started;

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/execution/stop_reason.hpp"
-#include "common/geometry/se2.hpp"
+#include "common/execution/execution_record.hpp"
+#include "common/geometry/track.hpp"
 #include "common/pattern/pattern.hpp"
 
 namespace tread {
@@ -18,10 +18,8 @@ namespace tread {
 /// (run id, execution id): a permanent name of one execution.
 using ExecutionKey = std::pair<int64_t, int64_t>;
 
-/// A measured pose of the vehicle.
-struct PoseReading {
-  int64_t utime = 0;  ///< [us] of the measurement
-  Pose2 T_map_body;
+/// Where the vehicle was measured to be.
+struct PoseReading : TimedPose {
   std::optional<Twist2> twist;                                     ///< v_body, if it is measured
   double position_std = std::numeric_limits<double>::quiet_NaN();  ///< [m] of an axis
   double slope =
@@ -45,24 +43,14 @@ struct BridgeReading {
   }
 };
 
-/// One execution as recorded by the motor bridge.
-struct ExecutionReading {
-  enum class State { kRunning, kCompleted, kAborted };
-  int64_t run_id = 0;
-  int64_t execution_id = 0;
-  int64_t started = 0;  ///< [us]
-  State state = State::kRunning;
-  Reason reason;  ///< why aborted
-};
-
-/// What the driving process knows about the robot at one instant.
+/// What whoever drives the robot knows about it at one moment.
 struct RobotReadings {
   int64_t now = 0;  ///< [us]
   std::optional<PoseReading> pose;
   std::optional<BridgeReading> bridge;
-  std::vector<ExecutionReading> executions;  ///< the last ones, oldest first
-  bool armed_by_operator = false;  ///< an ARM was received since the start and since the last stop
-  int64_t armed_since = 0;         ///< [us] when it came
+  std::vector<ExecutionRecord> executions;  ///< the last ones, oldest first
+  bool armed_by_operator = false;            ///< ARM came since the start and since the last stop
+  int64_t armed_since = 0;                   ///< [us] when it came
   bool estopped = false;
 };
 

@@ -69,7 +69,8 @@ class Cutter {
   int64_t duration() const { return static_cast<int64_t>(pattern_.trajectory.size()) * period_us_; }
 
   void checkRecord() {
-    if (!cut_.completed && !cut_.beginning) close(Gate::kAborted, "aborted: " + cut_.outcome.words);
+    if (!cut_.completed() && !cut_.beginning)
+      close(Gate::kAborted, "aborted: " + cut_.reason.words);
     if (cut_.beginning && cut_.ended - cut_.started < limits_.shortest_us)
       close(Gate::kAborted, "only " + fixed(seconds(cut_.ended - cut_.started), 2) +
                                 " s of it were driven, needed " +

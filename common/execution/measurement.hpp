@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/execution/stop_reason.hpp"
+#include "common/execution/execution_record.hpp"
 #include "common/geometry/track.hpp"
 #include "common/pattern/pattern.hpp"
 
@@ -55,19 +55,15 @@ struct MeasurementLimits {
   double max_slope = 0.20;       ///< [rad] mean inclination during the execution
 };
 
-/// An execution as described by its record.
-struct ExecutionCut {
-  int64_t started = 0;  ///< [us] when the first command took effect
-  int64_t ended = 0;    ///< [us] end of the last command's period
-  bool completed = false;
-  /// Only its beginning, up to `ended`: it is still running, or was stopped early.
+/// An execution as its record tells of it.
+struct ExecutionCut : ExecutionRecord {
+  /// Only its beginning, up to `ended`: it still runs, or was stopped before its end.
   bool beginning = false;
   /// The entry class's command was held for long enough before it: the entry is the class's,
   /// whatever twist that gives on this ground.
   bool steady_before = false;
-  Reason outcome;  ///< why it was aborted
-  /// A command that differed from the pattern's, in words; empty = none.
-  std::string unexpected_command;
+  /// A command that differed from the pattern's, in words; empty = none seen.
+  std::string unexpected_command{};
 };
 
 /// Conditions that may change the motion besides the ground; NaN = unknown.

@@ -17,9 +17,15 @@ struct TimedPose {
   Pose2 T_map_body;   ///< yaw unwrapped along the track
 };
 
-/// The recent track of a body: timed poses in order, yaw made continuous, interpolated between
-/// poses, never extrapolated.
-/** Replaces CPose2DInterpolator, which turns the short way round and accepts any gap. */
+/// The same where drives are analysed: in seconds, since when is said where it is kept.
+struct PoseSample {
+  double time = 0.0;  ///< [s]
+  Pose2 T_map_body;   ///< yaw unwrapped along the track
+};
+
+/// The recent track of a body: timed poses in order, yaw made continuous, interpolated between,
+/// never extrapolated.
+/** Own code instead of CPose2DInterpolator, which turns the short way round and accepts any gap. */
 class PoseTrack {
  public:
   /// Keeps poses that are at most `span_us` older than the newest.

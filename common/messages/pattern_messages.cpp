@@ -292,21 +292,29 @@ bool mayDrive(int16_t bridge_state) {
   return reading.armed();
 }
 
-std::vector<ExecutionReading> readingsFrom(const execution_t& message) {
-  std::vector<ExecutionReading> readings;
-  for (const execution_record_t& record : message.records) {
-    ExecutionReading reading;
-    reading.run_id = record.record_run_id;
-    reading.execution_id = record.record_execution_id;
-    reading.started = record.started;
-    if (record.outcome == execution_record_t::OUTCOME_COMPLETED)
-      reading.state = ExecutionReading::State::kCompleted;
-    if (record.outcome == execution_record_t::OUTCOME_ABORTED)
-      reading.state = ExecutionReading::State::kAborted;
-    reading.reason = {stopReasonFrom(record.outcome_code), record.outcome_reason};
-    readings.push_back(reading);
-  }
-  return readings;
+ExecutionRecord recordFrom(const execution_record_t& message) {
+  ExecutionRecord record{message.record_run_id,
+                         message.record_execution_id,
+                         message.record_pattern_id,
+                         message.record_set_version,
+                         message.started,
+                         message.ended,
+                         message.commands_played,
+                         message.commands_total,
+                         ExecutionOutcome::kRunning,
+                         {}};
+  if (message.outcome == execution_record_t::OUTCOME_COMPLETED)
+    record.outcome = ExecutionOutcome::kCompleted;
+  if (message.outcome == execution_record_t::OUTCOME_ABORTED)
+    record.outcome = ExecutionOutcome::kAborted;
+  record.reason = {stopReasonFrom(message.outcome_code), message.outcome_reason};
+  return record;
+}
+
+std::vector<ExecutionRecord> recordsFrom(const execution_t& message) {
+  std::vector<ExecutionRecord> records;
+  for (const execution_record_t& record : message.records) records.push_back(recordFrom(record));
+  return records;
 }
 
 program_slot_t toMessage(const PlannedExecution& slot) {

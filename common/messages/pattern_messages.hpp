@@ -65,7 +65,8 @@ class PatternSetAssembler {
 BridgeReading readingFrom(const motor_t& message);
 /// Whether the motor bridge may drive in this state (motor_t::STATE_*).
 bool mayDrive(int16_t bridge_state);
-std::vector<ExecutionReading> readingsFrom(const execution_t& message);
+ExecutionRecord recordFrom(const execution_record_t& message);
+std::vector<ExecutionRecord> recordsFrom(const execution_t& message);
 /// The command of a MOTOR message; 0 for channels that the robot does not have.
 Command commandFrom(const motor_t& message);
 /// The kinds of the channels being played; empty while nothing is played.

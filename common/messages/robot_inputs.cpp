@@ -133,7 +133,7 @@ void RobotInputs::take(const execution_t& message) {
   if (on_execution) on_execution(message);
   if (message.utime < executions_utime_) return;
   executions_utime_ = message.utime;
-  readings_.executions = readingsFrom(message);
+  readings_.executions = recordsFrom(message);
 }
 
 program_t programOf(const ExecutionTracker& tracker, const Bus& bus, int64_t utime, int64_t seq,

@@ -91,7 +91,19 @@ class Command {
   std::array<double, kMaxChannels> values_{};
 };
 
-/// The drive of a vehicle, which determines the meaning of its commands.
+/// A command with the time from which on it was given.
+struct TimedCommand {
+  int64_t utime = 0;  ///< [us]
+  Command command;
+};
+
+/// The same with a time in seconds, for the analysis of drives.
+struct CommandSample {
+  double time = 0.0;  ///< [s]
+  Command command{};
+};
+
+/// What moves a vehicle, and so what its commands are.
 enum class VehicleLayout {
   kTracks = 1,  ///< left and right
   kCar = 2,     ///< throttle or speed, and a steering angle

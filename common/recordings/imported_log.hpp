@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/drive/drive_log.hpp"
-#include "common/geometry/se2.hpp"
+#include "common/geometry/track.hpp"
 #include "common/pattern/pattern.hpp"
 #include "common/recordings/sessions.hpp"
 
@@ -28,9 +28,8 @@ namespace tread::recordings {
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// A pose as it was measured; NaN = not measured.
-struct Fix {
-  double time = 0.0;  ///< [s] of the measurement: pose lag removed
-  Pose2 T_map_body;
+/** The pose lag is removed from its time. */
+struct Fix : PoseSample {
   double z = 0.0;          ///< [m]
   double roll = kUnknown;  ///< [rad] in the map
   double pitch = kUnknown;

@@ -47,7 +47,7 @@ void readQuality(const std::string& path, std::vector<Session>& sessions) {
 
 /// Poses of a window, by their time in its settled part.
 struct SettledPoses {
-  std::vector<WindowPose> poses;
+  std::vector<PoseSample> poses;
   double duration = 0.0;  ///< [s] of that part
 };
 

@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "common/geometry/se2.hpp"
+#include "common/geometry/track.hpp"
 #include "common/pattern/pattern.hpp"
 
 // A folder of recorded drives: sessions.csv (robot, surface, geometry, lag of the poses),
@@ -35,12 +35,6 @@ struct HuberLimits {
 Eigen::VectorXd huberFit(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
                          const Eigen::VectorXd& prior, const HuberLimits& limits);
 
-/// A pose at a time within its window [s].
-struct WindowPose {
-  double time = 0.0;
-  Pose2 T_map_body;  ///< yaw unwrapped
-};
-
 /// Mean and change of the body twist over a window.
 struct TwistLine {
   Twist2 mean;   ///< [m/s, m/s, rad/s] at the middle of the window
@@ -61,10 +55,10 @@ inline constexpr double kSettle = 1.8;
 
 /// Why a window cannot be smoothed, in words (a gap of more than 0.4 s, fewer than 5 poses); empty
 /// if it can.
-std::string windowProblem(const std::vector<WindowPose>& poses, double duration);
+std::string windowProblem(const std::vector<PoseSample>& poses, double duration);
 
 /// The profile that fits the poses of a window best. windowProblem() must be empty.
-TwistLine smoothed(const std::vector<WindowPose>& poses, double duration);
+TwistLine smoothed(const std::vector<PoseSample>& poses, double duration);
 
 /// Poses after each of `samples` periods, relative to the start: the profile integrated.
 std::vector<Pose2> integrated(const TwistLine& profile, size_t samples, double period);

@@ -48,12 +48,12 @@ double yawAt(const Eigen::VectorXd& c, double centred) {
   return c[0] + centred * (c[1] + centred * c[2]);
 }
 
-Eigen::VectorXd fitYaw(const std::vector<WindowPose>& poses, double duration) {
+Eigen::VectorXd fitYaw(const std::vector<PoseSample>& poses, double duration) {
   const auto n = static_cast<Eigen::Index>(poses.size());
   Eigen::MatrixXd A(n, 3);
   Eigen::VectorXd b(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const WindowPose& pose = poses[static_cast<size_t>(i)];
+    const PoseSample& pose = poses[static_cast<size_t>(i)];
     const double centred = pose.time - duration / 2.0;
     A.row(i) << 1.0, centred, centred * centred;
     b[i] = pose.T_map_body.yaw;
@@ -78,7 +78,7 @@ void advance(HeadingIntegrals& integrals, const Eigen::VectorXd& yaw, double fro
 }
 
 /// p_0, v_x, v_x', v_y, v_y' as a vector of six.
-Eigen::VectorXd fitPosition(const std::vector<WindowPose>& poses, const Eigen::VectorXd& yaw,
+Eigen::VectorXd fitPosition(const std::vector<PoseSample>& poses, const Eigen::VectorXd& yaw,
                             double duration) {
   const auto n = static_cast<Eigen::Index>(poses.size());
   Eigen::MatrixXd A(2 * n, 6);
@@ -86,7 +86,7 @@ Eigen::VectorXd fitPosition(const std::vector<WindowPose>& poses, const Eigen::V
   HeadingIntegrals k;
   double reached = poses.front().time;
   for (Eigen::Index i = 0; i < n; ++i) {
-    const WindowPose& pose = poses[static_cast<size_t>(i)];
+    const PoseSample& pose = poses[static_cast<size_t>(i)];
     advance(k, yaw, reached, pose.time, duration);
     reached = pose.time;
     A.row(2 * i) << 1.0, 0.0, k.cosine, k.timed_cosine, -k.sine, -k.timed_sine;
@@ -140,10 +140,10 @@ TwistLine TwistLine::mirrored() const {
   return {{mean.v_x, -mean.v_y, -mean.omega}, {slope.v_x, -slope.v_y, -slope.omega}};
 }
 
-std::string windowProblem(const std::vector<WindowPose>& poses, double duration) {
+std::string windowProblem(const std::vector<PoseSample>& poses, double duration) {
   double last = 0.0;
   double gap = 0.0;
-  for (const WindowPose& pose : poses) {
+  for (const PoseSample& pose : poses) {
     gap = std::max(gap, pose.time - last);
     last = pose.time;
   }
@@ -154,7 +154,7 @@ std::string windowProblem(const std::vector<WindowPose>& poses, double duration)
   return "";
 }
 
-TwistLine smoothed(const std::vector<WindowPose>& poses, double duration) {
+TwistLine smoothed(const std::vector<PoseSample>& poses, double duration) {
   const Eigen::VectorXd yaw = fitYaw(poses, duration);
   const Eigen::VectorXd motion = fitPosition(poses, yaw, duration);
   return {{motion[2], motion[4], yaw[1]}, {motion[3], motion[5], 2.0 * yaw[2]}};

@@ -89,10 +89,8 @@ struct Motion {
 constexpr Motion kAlone{};
 constexpr Motion kTogetherWithMotor{0.08, 0.1};
 
-/// The pose next to a pause, and the robot's motion there.
-struct Beside {
-  int64_t utime = 0;
-  Pose2 pose;
+/// The pose beside a pause, and how the robot moves there.
+struct Beside : TimedPose {
   Motion motion;
 
   bool moves(const Motion& least) const {
@@ -107,12 +105,12 @@ std::optional<Beside> beside(const std::vector<ins_t>& ins, size_t index, int di
     if (std::abs(ins[i].utime - ins[index].utime) > kMotionWindow) break;
     const auto pose = planarPose(ins[i]);
     if (!pose) continue;
-    if (!found) found = Beside{ins[i].utime, *pose, {0.0, 0.0}};
+    if (!found) found = Beside{{ins[i].utime, *pose}, {0.0, 0.0}};
     const int64_t since = std::abs(ins[i].utime - found->utime);
     if (since < kShortest) continue;
     const double time = 1e-6 * static_cast<double>(since);
-    found->motion.speed = (pose->position() - found->pose.position()).norm() / time;
-    found->motion.rate = std::abs(wrapAngle(pose->yaw - found->pose.yaw)) / time;
+    found->motion.speed = (pose->position() - found->T_map_body.position()).norm() / time;
+    found->motion.rate = std::abs(wrapAngle(pose->yaw - found->T_map_body.yaw)) / time;
   }
   return found;
 }
@@ -164,8 +162,8 @@ Pause pauseBetween(const Beside& before, const Beside& after, int64_t step) {
   Pause pause;
   pause.length = 1e-6 * static_cast<double>(step);
   pause.rest = 1e-6 * static_cast<double>(after.utime - before.utime - step) + kMessage;
-  pause.moved = (after.pose.position() - before.pose.position()).norm();
-  pause.turned = std::abs(wrapAngle(after.pose.yaw - before.pose.yaw));
+  pause.moved = (after.T_map_body.position() - before.T_map_body.position()).norm();
+  pause.turned = std::abs(wrapAngle(after.T_map_body.yaw - before.T_map_body.yaw));
   pause.motion.speed = std::max(before.motion.speed, after.motion.speed);
   pause.motion.rate = std::max(before.motion.rate, after.motion.rate);
   return pause;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/geometry/track.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "common/soundness/reading.hpp"
 
@@ -77,13 +78,7 @@ Grid commandGrid(const std::vector<HeardSpan>& spans, double step) {
   return grid;
 }
 
-/// A pose with its time [s].
-struct TimedPose {
-  double time;
-  Pose2 pose;
-};
-
-Grid motionGrid(const std::vector<TimedPose>& poses, double step) {
+Grid motionGrid(const std::vector<PoseSample>& poses, double step) {
   Grid grid(poses.front().time, poses.back().time, step);
   for (size_t i = 0, before = 0; i < poses.size(); ++i) {
     while (poses[i].time - poses[before].time > kLongestMotion) ++before;
@@ -91,7 +86,7 @@ Grid motionGrid(const std::vector<TimedPose>& poses, double step) {
     while (from + 1 < i && poses[i].time - poses[from + 1].time >= kShortestMotion) ++from;
     const double time = poses[i].time - poses[from].time;
     if (time < kShortestMotion) continue;
-    const Pose2 moved = between(poses[from].pose, poses[i].pose);
+    const Pose2 moved = between(poses[from].T_map_body, poses[i].T_map_body);
     grid.put(0.5 * (poses[from].time + poses[i].time), step, moved.x / time,
              wrapAngle(moved.yaw) / time);
   }
@@ -134,7 +129,7 @@ Offsets offsets(const Grid& commands, const Grid& motion, double step, double fr
 }  // namespace
 
 void checkOffset(const SortedLog& log, const std::vector<HeardSpan>& spans, Diagnostics& notes) {
-  std::vector<TimedPose> poses;
+  std::vector<PoseSample> poses;
   for (const ins_t& ins : log.ins)
     if (const auto pose = planarPose(ins)) poses.push_back({log.seconds(ins.utime), *pose});
   if (spans.empty() || poses.size() < 2) return;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/geometry/se2.hpp"
+#include "common/geometry/track.hpp"
 #include "common/pattern/pattern.hpp"
 #include "common/vehicle/added_effects.hpp"
 #include "common/vehicle/model.hpp"
@@ -150,10 +150,8 @@ MotionClass classOf(const VehicleModel& model, const std::string& name, const Co
 void predict(const VehicleModel& model, double period, const MotionClass& entry,
              MotionPattern& pattern);
 
-/// Pose and yaw rate at one instant, true or measured by the INS.
-struct MotionSample {
-  double time = 0.0;   ///< [s] since the start of the session
-  Pose2 T_map_body;    ///< yaw unwrapped
+/// Pose and yaw rate at one moment, of the vehicle or as the INS says.
+struct MotionSample : PoseSample {
   double omega = 0.0;  ///< [rad/s]
 };
 

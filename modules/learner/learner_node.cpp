@@ -441,18 +441,14 @@ void LearnerNode::handle(const execution_record_t& record) {
 
 ExecutionCut LearnerNode::cutOf(const execution_record_t& record,
                                 const MotionPattern& pattern) const {
-  ExecutionCut cut;
-  cut.started = record.started;
-  cut.ended = record.ended;
-  cut.completed = record.outcome == execution_record_t::OUTCOME_COMPLETED;
-  cut.outcome = {stopReasonFrom(record.outcome_code), record.outcome_reason};
+  ExecutionCut cut{recordFrom(record)};
   const PatternSet& set = learner_.set();
   cut.unexpected_command =
       commands_.unexpectedCommand(keyOf(record), pattern, set.content().channels);
-  // When a failsafe stops the robot it may have been held: that is not the ground's influence.
-  cut.beginning = learner_.learnsParts() && !cut.completed &&
-                  (cut.outcome.code == StopReason::kStoppedByPlanner ||
-                   cut.outcome.code == StopReason::kLeftByHand);
+  // Where a failsafe stops the robot it may have been held: that is no ground.
+  cut.beginning = learner_.learnsParts() && !cut.completed() &&
+                  (cut.reason.code == StopReason::kStoppedByPlanner ||
+                   cut.reason.code == StopReason::kLeftByHand);
   cut.steady_before = hand_.steadyBefore(set.classNamed(pattern.entry_class).steady, record.started,
                                          set.content().period_us);
   return cut;

@@ -194,8 +194,8 @@ execution_record_t toMessage(const ExecutionRecord& record) {
   message.record_execution_id = record.execution_id;
   message.record_pattern_id = record.pattern_id;
   message.record_set_version = record.set_version;
-  message.started = record.start_utime;
-  message.ended = record.end_utime;
+  message.started = record.started;
+  message.ended = record.ended;
   message.commands_played = record.commands_played;
   message.commands_total = record.commands_total;
   message.outcome = static_cast<int16_t>(record.outcome);

@@ -69,11 +69,7 @@ void ExecutionCollector::judge(const execution_record_t& record) {
 
 Measurement ExecutionCollector::measure(const execution_record_t& record,
                                         const MotionPattern& pattern) const {
-  ExecutionCut cut;
-  cut.started = record.started;
-  cut.ended = record.ended;
-  cut.completed = record.outcome == execution_record_t::OUTCOME_COMPLETED;
-  cut.outcome = {stopReasonFrom(record.outcome_code), record.outcome_reason};
+  ExecutionCut cut{recordFrom(record)};
   cut.unexpected_command = commands_.unexpectedCommand(
       {record.record_run_id, record.record_execution_id}, pattern, set_.content().channels);
   return tread::measure(ins_.history(), cut, pattern, set_.classNamed(pattern.entry_class),

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Two definitions of a type with different members in one namespace are undefined behaviour in a
-// program that links both, and no compiler reports it.
+// A type that is defined twice in one namespace, with different members, is undefined behaviour in
+// every program that links both, and no compiler says so.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -49,7 +50,7 @@ TEST_CASE("no type is defined twice in one namespace") {
 
 // A name has one meaning. Types in the unnamed namespace of one source do not count.
 TEST_CASE("the name of a type stands once in the product, whatever its namespace") {
-  constexpr size_t kMost = 1;  // falls only
+  constexpr size_t kMost = 0;  // falls only
   std::map<std::string, std::set<std::string>> types;
   for (const char* folder : {"common", "modules", "tools"})
     for (const fs::path& path : sourcesUnder(folder))
@@ -64,7 +65,7 @@ TEST_CASE("the name of a type stands once in the product, whatever its namespace
 }
 
 TEST_CASE("a source has the header of its own name") {
-  constexpr size_t kMost = 114;  // falls only
+  constexpr size_t kMost = 10;  // falls only
   std::vector<std::string> without;
   for (const char* folder : {"common", "modules", "tools"})
     for (fs::path path : sourcesUnder(folder)) {
@@ -72,28 +73,35 @@ TEST_CASE("a source has the header of its own name") {
       const bool is_main = stem == "main" || stem.find("_main") != std::string::npos;
       if (path.extension() == ".hpp" || is_main || path.filename() == "headers.cpp") continue;
       const std::string file = fs::relative(path, TREAD_SOURCE_DIR);
-      if (!fs::exists(path.replace_extension(".hpp"))) without.push_back(file);
+      // What stands in another source's place has that one's header.
+      const std::string own = stem.substr(0, stem.rfind("_absent")) + ".hpp";
+      if (!fs::exists(path.replace_filename(own))) without.push_back(file);
     }
   CAPTURE(without);
   CHECK(without.size() <= kMost);
 }
 
-// common/ uses the namespace tread, except folders whose names would be misunderstood.
+// common/ is tread itself, but for folders that others would take for something else. Where the
+// name is a keyword the namespace has another form of it.
 TEST_CASE("a folder and its namespace have one name") {
-  constexpr size_t kMost = 11;  // falls only
+  const std::set<std::string> keywords{"export: exporting", "operator: operators"};
+  constexpr size_t kMost = 7;  // falls only
   const std::regex opens(R"((?:^|\n)namespace tread(?:::(\w+))?)");
   std::set<std::string> others;
   for (const char* folder : {"modules", "tools/robot", "tools/lab"})
-    for (const std::string& name : foldersOf(folder))
+    for (const std::string& name : foldersOf(folder)) {
+      const std::vector<std::string> parts = foldersOf(std::string(folder) + "/" + name);
       for (const fs::path& path : sourcesUnder(std::string(folder) + "/" + name)) {
         const std::string text = contentOf(path);
-        const std::string parent = path.parent_path().filename();
         for (std::sregex_iterator found(text.begin(), text.end(), opens), end; found != end;
              ++found) {
           const std::string space = (*found)[1];
-          if (space != name && space != parent) others.insert(name + ": " + space);
+          const bool is_part = std::find(parts.begin(), parts.end(), space) != parts.end();
+          if (space != name && !is_part && keywords.count(name + ": " + space) == 0)
+            others.insert(name + ": " + space);
         }
       }
+    }
   CAPTURE(others);
   CHECK(others.size() <= kMost);
 }
@@ -108,9 +116,10 @@ TEST_CASE("what has a place in common is not made again") {
   };
   const std::string start = R"(struct\s+\w+\s*\{\s+(?:int64_t\s+utime|double\s+time)[^;]*;)";
   const std::vector<Place> places{
-      {"common/statistics/", std::regex("nth_element"), 3},
-      {"common/geometry/track.hpp", std::regex(start + R"(\s+Pose2\s+\w+[^;]*;\s*\};)"), 6},
-      {"common/pattern/command.hpp", std::regex(start + R"(\s+(?:Track)?Command\s+\w+[^;]*;)"), 6}};
+      {"common/statistics/", std::regex("nth_element"), 0},
+      {"common/geometry/track.hpp", std::regex(start + R"(\s+Pose2\s+\w+[^;]*;\s*\};)"), 0},
+      {"common/pattern/command.hpp", std::regex(start + R"(\s+(?:Track)?Command\s+command[^;]*;)"),
+       1}};
   std::map<std::string, std::set<std::string>> beside;
   for (const char* folder : {"common", "modules", "tools"})
     for (const fs::path& path : sourcesUnder(folder)) {

@@ -48,7 +48,7 @@ ExecutionCut completed() {
   ExecutionCut cut;
   cut.started = kStart;
   cut.ended = kStart + kSecond;
-  cut.completed = true;
+  cut.outcome = ExecutionOutcome::kCompleted;
   return cut;
 }
 
@@ -92,8 +92,8 @@ TEST_CASE("yaw is unwrapped along a pattern that turns more than once around") {
 
 TEST_CASE("an execution that was aborted is refused with its reason") {
   ExecutionCut cut = completed();
-  cut.completed = false;
-  cut.outcome = {StopReason::kProgramLate, "lease expired"};
+  cut.outcome = ExecutionOutcome::kAborted;
+  cut.reason = {StopReason::kProgramLate, "lease expired"};
   const Measurement result = measured({}, cut);
   REQUIRE(result.gate == Gate::kAborted);
   REQUIRE(result.reason == "aborted: lease expired");
@@ -244,7 +244,7 @@ TEST_CASE("the largest speed of a set is that of its fastest class, command or s
 
 TEST_CASE("the beginning of an execution is measured as far as it was driven") {
   ExecutionCut cut = completed();
-  cut.completed = false;
+  cut.outcome = ExecutionOutcome::kAborted;
   cut.beginning = true;
   cut.ended = kStart + 500'000;
   const Measurement result = measured({}, cut);

@@ -8,6 +8,7 @@
 #include <tread/ins_t.hpp>
 #include <tread/program_t.hpp>
 
+#include "common/messages/pattern_messages.hpp"
 #include "modules/motor_bridge/core/program.hpp"
 #include "modules/motor_bridge/core/series_player.hpp"
 
@@ -54,12 +55,7 @@ inline ins_t makeIns(int64_t utime, int64_t seq) {
 /// The newest record, with the fields that a planner needs.
 inline std::optional<ExecutionRecord> newest(const execution_t& message) {
   if (message.records.empty()) return std::nullopt;
-  const execution_record_t& newest = message.records.back();
-  ExecutionRecord record;
-  record.run_id = newest.record_run_id;
-  record.execution_id = newest.record_execution_id;
-  record.outcome = static_cast<ExecutionOutcome>(newest.outcome);
-  return record;
+  return recordFrom(message.records.back());
 }
 
 }  // namespace tread::motor

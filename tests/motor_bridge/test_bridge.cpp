@@ -33,8 +33,8 @@ TEST_CASE("armed with a planner and an INS it drives, series joined to series wi
   }
   const auto& records = world.bridge.executions().records();
   for (size_t i = 0; i + 1 < records.size(); ++i) {
-    CHECK(records[i].end_utime == records[i + 1].start_utime);
-    CHECK(records[i].end_utime - records[i].start_utime == 400'000);
+    CHECK(records[i].ended == records[i + 1].started);
+    CHECK(records[i].ended - records[i].started == 400'000);
     CHECK(records[i].commands_played == records[i].commands_total);
   }
 }
@@ -43,7 +43,7 @@ TEST_CASE("it gives the planner's commands, unchanged, with their execution and 
   BridgeWorld world;
   world.drive();
   world.run(10'000'000);
-  const int64_t since_start = world.now - world.last().start_utime;
+  const int64_t since_start = world.now - world.last().started;
   CHECK(world.out.execution_id == world.last().execution_id);
   CHECK(world.out.command_index == since_start / 50'000);
   CHECK(world.out.run_id == 1);
@@ -94,7 +94,7 @@ TEST_CASE(
     world.bridge.receive(last, world.now);
   }
   CHECK(isZero(world.out.command));
-  CHECK(world.now == world.last().end_utime);
+  CHECK(world.now == world.last().ended);
   CHECK(world.last().outcome == ExecutionOutcome::kCompleted);
   CHECK(world.state() == State::kStopping);
   world.planner_alive = true;

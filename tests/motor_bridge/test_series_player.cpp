@@ -45,8 +45,8 @@ TEST_CASE("the next slot begins at the scheduled time even if the step is late")
   CHECK(advance.switched);
   CHECK_FALSE(advance.ended);
   CHECK(player.current().execution_id == 2);
-  CHECK(player.log().records()[0].end_utime == kStart + 200'000);
-  CHECK(player.log().records()[1].start_utime == kStart + 200'000);
+  CHECK(player.log().records()[0].ended == kStart + 200'000);
+  CHECK(player.log().records()[1].started == kStart + 200'000);
 }
 
 TEST_CASE("a chain of 1000 series does not drift, with steps that are always late") {
@@ -61,7 +61,7 @@ TEST_CASE("a chain of 1000 series does not drift, with steps that are always lat
     player.give();
   }
   const ExecutionRecord& last = player.log().records().back();
-  CHECK(last.start_utime == kStart + (last.execution_id - 1) * 200'000);
+  CHECK(last.started == kStart + (last.execution_id - 1) * 200'000);
 }
 
 TEST_CASE("the log keeps the last eight executions with their times and outcome") {
@@ -83,7 +83,7 @@ TEST_CASE("the log keeps the last eight executions with their times and outcome"
   CHECK(records.back().set_version == 7);
   CHECK(records.back().run_id == 1);
   CHECK(records.back().outcome == ExecutionOutcome::kAborted);
-  CHECK(records.back().end_utime == kStart + 11 * 200'000 + 70'000);
+  CHECK(records.back().ended == kStart + 11 * 200'000 + 70'000);
   CHECK(records.back().commands_played == 1);
   CHECK(records.back().commands_total == 4);
   CHECK(records.back().reason == Reason(StopReason::kEstopEngaged));

@@ -16,7 +16,7 @@ namespace {
 constexpr int64_t kRun = 5;
 using tread::testing::kSecond;
 using Event = ExecutionTracker::Event;
-using Outcome = ExecutionReading::State;
+using Outcome = ExecutionOutcome;
 
 PlannerInputs at(int64_t now) {
   PlannerInputs s;
@@ -36,12 +36,12 @@ PlannerInputs playing(int64_t now, int64_t execution_id, int index = 0) {
   return s;
 }
 
-ExecutionReading record(int64_t id, int64_t started, Outcome outcome, int64_t run = kRun) {
-  ExecutionReading reading;
+ExecutionRecord record(int64_t id, int64_t started, Outcome outcome, int64_t run = kRun) {
+  ExecutionRecord reading;
   reading.run_id = run;
   reading.execution_id = id;
   reading.started = started;
-  reading.state = outcome;
+  reading.outcome = outcome;
   return reading;
 }
 

@@ -10,23 +10,16 @@
 #include <string>
 #include <vector>
 
-#include "common/geometry/se2.hpp"
+#include "common/geometry/track.hpp"
 #include "common/pattern/pattern.hpp"
 
 namespace tread::gap {
 
 inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-/// A command that acts on the motors until the next one.
-struct CommandSample {
-  double time = 0.0;  ///< [s] since the log's first message
-  Command command{};
-};
-
-/// One reading of the INS.
-struct InsSample {
-  double time = 0.0;   ///< [s] of the measurement, since the log's first message
-  Pose2 T_map_body{};  ///< yaw unwrapped within a segment; all NaN for a reading of the gyro alone
+/// One reading of the INS. Times are since the log's first message; the pose is all NaN where only
+/// the gyro spoke.
+struct InsSample : PoseSample {
   double omega = kNotMeasured;  ///< [rad/s] of the gyro
   double roll = kNotMeasured;   ///< [rad] left side up positive
   double pitch = kNotMeasured;  ///< [rad] nose down positive

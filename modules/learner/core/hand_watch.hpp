@@ -11,10 +11,8 @@
 
 namespace tread::learner {
 
-/// The command to the motors from a time on.
-struct GivenCommand {
-  int64_t utime = 0;  ///< [us]
-  Command command;
+/// What the motors were given from a time on, and by whom.
+struct GivenCommand : TimedCommand {
   bool by_hand = false;
 };
 

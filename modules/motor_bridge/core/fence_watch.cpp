@@ -45,8 +45,8 @@ void FenceWatch::receive(const InsMotion& ins) {
 }
 
 void FenceWatch::command(const Command& motion, int64_t now) {
-  if (given_.empty() || given_.back().motion != motion) given_.push_back({now, motion});
-  // The last one before the window acts in it, too.
+  if (given_.empty() || given_.back().command != motion) given_.push_back({now, motion});
+  // The last one before the window holds in it, too.
   const int64_t begin = now - toMicroseconds(motion_.delay);
   while (given_.size() > 1 && given_[1].utime <= begin) given_.pop_front();
   if (motion[0] > 0.0 || motion[1] > 0.0) ahead_ = now;
@@ -80,10 +80,11 @@ std::vector<Twist2> FenceWatch::twists(int64_t now) const {
   std::vector<double> rates;
   if (std::isfinite(ins_.yaw_rate)) rates.push_back(ins_.yaw_rate);
   if (!given_.empty()) {
-    const auto fastest = std::max_element(
-        given_.begin(), given_.end(),
-        [](const Given& a, const Given& b) { return effort(a.motion) < effort(b.motion); });
-    for (const Command& motion : {given_.back().motion, fastest->motion}) {
+    const auto fastest = std::max_element(given_.begin(), given_.end(),
+                                          [](const TimedCommand& a, const TimedCommand& b) {
+                                            return effort(a.command) < effort(b.command);
+                                          });
+    for (const Command& motion : {given_.back().command, fastest->command}) {
       const double left = motion_.speed_per_command * motion[0];
       const double right = motion_.speed_per_command * motion[1];
       const double aside = motion_.speed_per_command * motion[kSideways];

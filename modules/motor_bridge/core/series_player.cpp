@@ -10,7 +10,7 @@ void ExecutionLog::begin(int64_t run_id, const ProgramSlot& slot, int64_t start_
   record.execution_id = slot.execution_id;
   record.pattern_id = slot.pattern_id;
   record.set_version = slot.set_version;
-  record.start_utime = start_utime;
+  record.started = start_utime;
   record.commands_total = static_cast<int32_t>(slot.series.size());
   records_.push_back(record);
   if (records_.size() > kCapacity) records_.pop_front();
@@ -24,7 +24,7 @@ void ExecutionLog::countCommand() {
 void ExecutionLog::close(ExecutionOutcome outcome, int64_t end_utime, const Reason& reason) {
   if (!running()) return;
   records_.back().outcome = outcome;
-  records_.back().end_utime = end_utime;
+  records_.back().ended = end_utime;
   records_.back().reason = reason;
   ++revision_;
 }

@@ -8,29 +8,12 @@
 #include <optional>
 #include <string>
 
-#include "common/execution/stop_reason.hpp"
+#include "common/execution/execution_record.hpp"
 #include "modules/motor_bridge/core/program.hpp"
 
 namespace tread::motor {
 
-/// Outcome of an execution; the numbers are those of execution_record_t.
-enum class ExecutionOutcome : int16_t { kRunning = 0, kCompleted = 1, kAborted = 2 };
-
-/// One execution as it took place.
-struct ExecutionRecord {
-  int64_t run_id = 0;
-  int64_t execution_id = 0;
-  int32_t pattern_id = 0;
-  int64_t set_version = 0;
-  int64_t start_utime = 0;      ///< [us] when the first command was due
-  int64_t end_utime = -1;       ///< [us] end of the last period, or of the abort; -1 = running
-  int32_t commands_played = 0;  ///< actually given to the controller
-  int32_t commands_total = 0;
-  ExecutionOutcome outcome = ExecutionOutcome::kRunning;
-  Reason reason;  ///< why aborted; otherwise none
-};
-
-/// The most recent executions, oldest first.
+/// The last executions, oldest first.
 class ExecutionLog {
  public:
   static constexpr size_t kCapacity = 8;

@@ -191,11 +191,10 @@ void RecordingDrive::step(const RobotReadings& readings, const RecordingProgress
 /// Slots that the bridge never started get no result.
 void RecordingDrive::forgetUnplayed(const RobotReadings& readings) {
   for (auto it = under_way_.begin(); it != under_way_.end();) {
-    const bool known =
-        std::any_of(readings.executions.begin(), readings.executions.end(),
-                    [&](const ExecutionReading& record) {
-                      return record.run_id == tracker_.runId() && record.execution_id == it->first;
-                    });
+    const bool known = std::any_of(
+        readings.executions.begin(), readings.executions.end(), [&](const ExecutionRecord& record) {
+          return record.run_id == tracker_.runId() && record.execution_id == it->first;
+        });
     it = known ? std::next(it) : under_way_.erase(it);
   }
 }

@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "common/geometry/se2.hpp"
+#include "common/geometry/track.hpp"
 #include "modules/scan_matching/core/local_map.hpp"
 #include "modules/scan_matching/core/motion_filter.hpp"
 #include "modules/scan_matching/core/registration.hpp"
@@ -57,11 +57,9 @@ enum class MatchOutcome {
   kNotNewer       ///< its time is not after the previous scan's
 };
 
-/// Pose of the body at the last beam of a scan.
-struct MatchedPose {
-  int64_t utime = 0;  ///< [us]
+/// Where the body was at the last beam of a scan.
+struct MatchedPose : TimedPose {
   MatchOutcome outcome = MatchOutcome::kFirst;
-  Pose2 T_map_body;  ///< yaw unwrapped
   Twist2 v_body;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y, yaw in map, since the start
   Eigen::Matrix3d local = Eigen::Matrix3d::Zero();  ///< the same relative to the newest key scan

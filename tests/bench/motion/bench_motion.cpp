@@ -69,7 +69,7 @@ class Wanderer : public Node {
     planner_.slots = [this](int64_t id) { return next(id); };
     bus_.subscribe<execution_t>(kExecution, [this](const execution_t& message) {
       last_ = motor::newest(message);
-      const bool aborted = last_ && last_->outcome == motor::ExecutionOutcome::kAborted;
+      const bool aborted = last_ && last_->outcome == ExecutionOutcome::kAborted;
       if (aborted) class_ = rest_;
     });
   }
@@ -103,7 +103,7 @@ class Wanderer : public Node {
   std::mt19937_64 random_;
   motor::EndlessPlanner planner_;
   std::string rest_, class_;
-  std::optional<motor::ExecutionRecord> last_;
+  std::optional<ExecutionRecord> last_;
 };
 
 struct Counts {

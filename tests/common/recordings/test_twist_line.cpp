@@ -12,12 +12,12 @@ namespace {
 const TwistLine kTurn{{2.1, -0.2, 0.9}, {0.1, 0.05, -0.15}};
 
 /// Poses every 0.2 s of a profile, in a map in which the window begins anywhere.
-std::vector<WindowPose> drivenPoses(const TwistLine& profile) {
+std::vector<PoseSample> drivenPoses(const TwistLine& profile) {
   const Pose2 T_map_start{3.0, -2.0, 2.5};
   const std::vector<Pose2> fine = integrated(profile, 400, 0.005);
-  std::vector<WindowPose> poses;
+  std::vector<PoseSample> poses;
   for (size_t i = 20; i <= 400; i += 40) poses.push_back({0.005 * static_cast<double>(i), {}});
-  for (WindowPose& pose : poses)
+  for (PoseSample& pose : poses)
     pose.T_map_body = T_map_start * fine[static_cast<size_t>(std::lround(pose.time / 0.005)) - 1];
   return poses;
 }
@@ -36,7 +36,7 @@ TEST_CASE("smoothing recovers a twist that changes linearly from poses of a wind
 }
 
 TEST_CASE("a pose that jumped hardly moves the smoothed twist") {
-  std::vector<WindowPose> poses = drivenPoses(kTurn);
+  std::vector<PoseSample> poses = drivenPoses(kTurn);
   poses[4].T_map_body.x += 1.0;
   poses[6].T_map_body.yaw += 0.5;
   const TwistLine found = smoothed(poses, 2.0);
@@ -46,10 +46,10 @@ TEST_CASE("a pose that jumped hardly moves the smoothed twist") {
 }
 
 TEST_CASE("mirrored poses smooth to the mirrored twist") {
-  std::vector<WindowPose> poses = drivenPoses(kTurn);
+  std::vector<PoseSample> poses = drivenPoses(kTurn);
   poses[3].T_map_body.y += 0.3;
   const TwistLine straight = smoothed(poses, 2.0);
-  for (WindowPose& pose : poses) {
+  for (PoseSample& pose : poses) {
     pose.T_map_body.y = -pose.T_map_body.y;
     pose.T_map_body.yaw = -pose.T_map_body.yaw;
   }
@@ -57,7 +57,7 @@ TEST_CASE("mirrored poses smooth to the mirrored twist") {
 }
 
 TEST_CASE("a window with a gap or with too few poses is refused in words") {
-  std::vector<WindowPose> poses = drivenPoses(kTurn);
+  std::vector<PoseSample> poses = drivenPoses(kTurn);
   REQUIRE(windowProblem(poses, 2.0).empty());
   poses.erase(poses.begin() + 3, poses.begin() + 5);
   REQUIRE(windowProblem(poses, 2.0) == "no new pose for more than 0.40 s");

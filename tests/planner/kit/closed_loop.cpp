@@ -14,7 +14,7 @@ void ToyBridge::receive(int64_t run_id, const PlannedExecution& running,
                         const PlannedExecution& next, int64_t now) {
   run_id_ = run_id;
   if (running.empty() || !armed_) {
-    if (!current_.empty()) close(ExecutionReading::State::kAborted, StopReason::kStoppedByPlanner);
+    if (!current_.empty()) close(ExecutionOutcome::kAborted, StopReason::kStoppedByPlanner);
     current_ = pending_ = {};
     return;
   }
@@ -32,7 +32,7 @@ void ToyBridge::begin(const PlannedExecution& slot, int64_t started) {
   started_ = started;
   last_id_ = slot.execution_id;
   ++begun_;
-  ExecutionReading record;
+  ExecutionRecord record;
   record.run_id = run_id_;
   record.execution_id = slot.execution_id;
   record.started = started;
@@ -40,15 +40,15 @@ void ToyBridge::begin(const PlannedExecution& slot, int64_t started) {
   if (executions_.size() > 8) executions_.erase(executions_.begin());
 }
 
-void ToyBridge::close(ExecutionReading::State state, const Reason& reason) {
-  executions_.back().state = state;
+void ToyBridge::close(ExecutionOutcome outcome, const Reason& reason) {
+  executions_.back().outcome = outcome;
   executions_.back().reason = reason;
 }
 
 Command ToyBridge::step(int64_t now) {
   while (!current_.empty() && now >= started_ + current_.durationUs()) {
     const int64_t end = started_ + current_.durationUs();
-    close(ExecutionReading::State::kCompleted, {});
+    close(ExecutionOutcome::kCompleted, {});
     const PlannedExecution next = pending_;
     current_ = {};
     if (!next.empty()) begin(next, end);

@@ -24,13 +24,13 @@ class ToyBridge {
   void setArmed(bool armed) { armed_ = armed; }
 
   BridgeReading reading() const { return reading_; }
-  const std::vector<ExecutionReading>& executions() const { return executions_; }
+  const std::vector<ExecutionRecord>& executions() const { return executions_; }
   int64_t executionId() const { return current_.execution_id; }
   int begun() const { return begun_; }
 
  private:
   void begin(const PlannedExecution& slot, int64_t started);
-  void close(ExecutionReading::State outcome, const Reason& reason);
+  void close(ExecutionOutcome outcome, const Reason& reason);
 
   bool armed_ = true;
   int64_t run_id_ = 0;
@@ -40,7 +40,7 @@ class ToyBridge {
   PlannedExecution current_;
   PlannedExecution pending_;
   BridgeReading reading_;
-  std::vector<ExecutionReading> executions_;
+  std::vector<ExecutionRecord> executions_;
 };
 
 /// Deviation of the ground from the learned set: standard deviations, drawn for each execution.

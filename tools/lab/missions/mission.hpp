@@ -95,7 +95,6 @@ struct ScoredExecution {
 };
 
 using report::Crossing;
-using report::TrackPoint;
 
 /// A contact of the true footprint with a true obstacle.
 struct Contact {
@@ -154,7 +153,7 @@ struct MissionResult {
   std::vector<Crossing> crossings;
   std::vector<ScoredExecution> executions;
   std::vector<learner::Rule> shadow_rules;  ///< that predicted the same executions
-  std::vector<TrackPoint> track;            ///< true poses, for pictures
+  std::vector<PoseSample> track;            ///< true poses, for pictures
   std::vector<Contact> contacts;            ///< one per collision
   std::vector<Stop> stops;                  ///< between start and arrival
   std::vector<Disarming> disarmings;

@@ -153,7 +153,7 @@ report::DriveScene driveSceneOf(const MissionResult& result, const MissionScene&
   for (const Contact& contact : result.contacts)
     drive.contacts.push_back(contact.T_map_body.position());
   for (const Stop& stop : result.stops)
-    for (const TrackPoint& point : result.track) {
+    for (const PoseSample& point : result.track) {
       if (point.time < stop.time) continue;
       drive.stops.push_back(point.T_map_body.position());
       break;

@@ -10,6 +10,7 @@
 #include "common/report/plot.hpp"
 #include "common/report/text.hpp"
 #include "common/soundness/drive_log.hpp"
+#include "common/statistics/statistics.hpp"
 #include "common/vehicle/kernel.hpp"
 #include "modules/identification/core/observations.hpp"
 
@@ -23,9 +24,8 @@ constexpr double kLeastPath = 0.3;   // [m] in a piece that counts
 constexpr double kLeastTurn = 0.3;   // [rad]
 
 bool isDriven(const gap::Segment& segment) {
-  return std::any_of(
-      segment.commands.begin(), segment.commands.end(),
-      [](const gap::CommandSample& sample) { return sample.command != TrackCommand{}; });
+  return std::any_of(segment.commands.begin(), segment.commands.end(),
+                     [](const CommandSample& sample) { return sample.command != TrackCommand{}; });
 }
 
 /// The poses measured by the INS.
@@ -82,13 +82,6 @@ void addPieces(const gap::Drive& drive, const gap::Segment& segment,
       piece.predicted.push_back(posesOf(motions[m], models[m].measurement, begin, samples));
     pieces.push_back(std::move(piece));
   }
-}
-
-double medianOf(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 using report::Box;
@@ -217,7 +210,7 @@ MedianErrors medianErrors(const std::vector<ComparedPiece>& pieces, size_t model
     position.push_back(piece.positionError(model, sample));
     yaw.push_back(piece.yawError(model, sample));
   }
-  return {medianOf(std::move(position)), medianOf(std::move(yaw))};
+  return {upperMedian(std::move(position)), upperMedian(std::move(yaw))};
 }
 
 void drawOverlay(const std::string& path, const std::string& title,

@@ -20,8 +20,8 @@ class RawlogDrive {
  public:
   explicit RawlogDrive(ForeignDrive& result) : result_(result) {}
 
-  void operator()(const OdometryPose& pose) {
-    const Pose2& at = pose.T_odom_body;
+  void operator()(const PoseSample& pose) {
+    const Pose2& at = pose.T_map_body;
     const auto time = since(pose.time);
     if (!time || !std::isfinite(at.yaw) || !(std::max(std::abs(at.x), std::abs(at.y)) <= kFarthest))
       return lose("poses: numbers or times out of range");

@@ -72,7 +72,7 @@ class RawlogReading {
 
   void pose(const mrpt::rtti::CObject& object, mrpt::system::TTimeStamp time, const Pose2& pose) {
     if (time == INVALID_TIMESTAMP) return lose(object, "without a time");
-    take_(OdometryPose{mrpt::Clock::toDouble(time), pose});
+    take_(PoseSample{mrpt::Clock::toDouble(time), pose});
   }
 
   void observation(const CObservation& observation) {

@@ -53,9 +53,8 @@ void send(int pipe, Kind kind, double time, const void* data, size_t size) {
 struct Sender {
   int pipe;
 
-  void operator()(const OdometryPose& pose) const {
-    const std::array<double, 3> numbers{pose.T_odom_body.x, pose.T_odom_body.y,
-                                        pose.T_odom_body.yaw};
+  void operator()(const PoseSample& pose) const {
+    const std::array<double, 3> numbers{pose.T_map_body.x, pose.T_map_body.y, pose.T_map_body.yaw};
     send(pipe, Kind::kPose, pose.time, numbers.data(), sizeof numbers);
   }
   void operator()(const RawlogScan& scan) const {
@@ -117,7 +116,7 @@ RawlogRecord recordOf(const Header& header, const std::vector<uint8_t>& bytes) {
   if (header.kind != Kind::kPose || bytes.size() != sizeof numbers)
     return RawlogProblem{"its reader sent an invalid record"};
   std::memcpy(numbers.data(), bytes.data(), sizeof numbers);
-  return OdometryPose{header.time, {numbers[0], numbers[1], numbers[2]}};
+  return PoseSample{header.time, {numbers[0], numbers[1], numbers[2]}};
 }
 
 }  // namespace

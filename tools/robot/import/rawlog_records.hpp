@@ -9,15 +9,9 @@
 
 #include <tread/scan_t.hpp>
 
-#include "common/geometry/se2.hpp"
+#include "common/geometry/track.hpp"
 
 namespace tread::import {
-
-/// The pose of the odometry.
-struct OdometryPose {
-  double time = 0.0;  ///< [s] since 1970
-  Pose2 T_odom_body;
-};
 
 /// One sweep of a range finder, or a slice of one.
 struct RawlogScan {
@@ -36,7 +30,7 @@ struct RawlogProblem {
   std::string what;
 };
 
-using RawlogRecord = std::variant<OdometryPose, RawlogScan, LeftOut, RawlogProblem>;
+using RawlogRecord = std::variant<PoseSample, RawlogScan, LeftOut, RawlogProblem>;
 
 /// Reads an MRPT rawlog in a child process and passes each record on.
 /** MRPT's reader checks neither lengths nor counts: on a damaged file it writes out of bounds,

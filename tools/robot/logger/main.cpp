@@ -56,13 +56,13 @@ int run(int argc, char** argv) {
   const auto folder = std::filesystem::path(options.file).parent_path();
   if (!folder.empty() && std::filesystem::create_directories(folder))
     std::printf("tread-logger: made the folder %s\n", folder.c_str());
-  tread::launch::RecorderSettings settings;
+  tread::logger::RecorderSettings settings;
   settings.file = options.file;
   settings.lcm_url = options.lcm_url;
   settings.keep = options.keep;
   settings.split = 1'000'000LL * options.split_mb;
   settings.quota = 1'000'000LL * options.quota_mb;
-  tread::launch::Recorder recorder(settings);
+  tread::logger::Recorder recorder(settings);
   recorder.run(stop);
   return 0;
 }

@@ -12,7 +12,7 @@
 #include "common/bus/multicast_only.hpp"
 #include "common/config/problem_words.hpp"
 
-namespace tread::launch {
+namespace tread::logger {
 namespace {
 
 constexpr int kQueue = 100'000;                  // messages
@@ -181,4 +181,4 @@ void Recorder::run(const std::atomic<bool>& stop) {
   maintain(hostNow());
 }
 
-}  // namespace tread::launch
+}  // namespace tread::logger

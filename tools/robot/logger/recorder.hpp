@@ -14,7 +14,7 @@ namespace lcm {
 class LCM;
 }
 
-namespace tread::launch {
+namespace tread::logger {
 
 /// Moves FILE.0 to FILE.1, FILE.1 to FILE.2 and so on, up to the first gap, so that FILE.0 is free.
 /// A file that would become FILE.<keep> is removed. Throws std::filesystem::filesystem_error.
@@ -68,4 +68,4 @@ class Recorder {
   HealthReporter health_;
 };
 
-}  // namespace tread::launch
+}  // namespace tread::logger

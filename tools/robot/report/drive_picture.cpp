@@ -50,7 +50,7 @@ Bounds boundsOf(const DriveScene& scene) {
   Bounds bounds;
   bounds.add(scene.T_map_start.position(), 6.0);
   bounds.add(scene.T_map_goal.position(), 6.0);
-  for (const TrackPoint& point : scene.track) bounds.add(point.T_map_body.position(), 4.0);
+  for (const PoseSample& point : scene.track) bounds.add(point.T_map_body.position(), 4.0);
   return bounds;
 }
 
@@ -101,7 +101,7 @@ void drawTree(Panel& panel, const std::vector<TreeEdge>& tree) {
 void drawTrack(Panel& panel, const DriveScene& scene, Colour colour = kBlue) {
   std::vector<Vector2d> points;
   double next_outline = 0.0;
-  for (const TrackPoint& point : scene.track) {
+  for (const PoseSample& point : scene.track) {
     points.push_back(point.T_map_body.position());
     if (!scene.outline || point.time < next_outline) continue;
     panel.polygon(outlineAt(*scene.outline, point.T_map_body),

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "common/drive/drive_timeline.hpp"
-#include "common/geometry/se2.hpp"
+#include "common/geometry/track.hpp"
 #include "common/grid/grid.hpp"
 #include "common/log/event_log.hpp"
 #include "modules/simulator/core/world.hpp"
@@ -33,13 +33,7 @@ struct TreeEdge {
   bool chosen = false;
 };
 
-/// The vehicle's position at a time.
-struct TrackPoint {
-  double time = 0.0;  ///< [s] since the drive began
-  Pose2 T_map_body;
-};
-
-/// Distance of a pattern's end from its prediction.
+/// How far a pattern ended from its prediction.
 struct PatternError {
   double time = 0.0;      ///< [s] of its end
   double position = 0.0;  ///< [m]
@@ -67,7 +61,7 @@ struct DriveScene {
   std::optional<sim::WorldDescription> world;  ///< true ground and obstacles, if known
   TileMap map{0.1, 32};                        ///< published by mapping
   std::vector<TreeEdge> tree;
-  std::vector<TrackPoint> track;
+  std::vector<PoseSample> track;
   std::optional<FootprintSize> outline;  ///< of the vehicle, drawn along the track
   Pose2 T_map_start;
   Pose2 T_map_goal;
@@ -169,7 +163,7 @@ struct DriveRecord {
   int refused = 0;                   ///< executions that gave no fair measurement
   int disarmed = 0;                  ///< times that a permission to drive was lost
   std::vector<PatternError> errors;  ///< time since begun
-  std::vector<TrackPoint> track;     ///< measured by the INS, time since begun
+  std::vector<PoseSample> track;     ///< as the INS measured, time since begun
   Odometer odometer;
   std::vector<TreeEdge> tree;            ///< the richest one on the path
   std::optional<FootprintSize> outline;  ///< of the robot; none = not in the log

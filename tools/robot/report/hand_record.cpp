@@ -9,6 +9,7 @@
 
 #include "common/messages/pattern_messages.hpp"
 #include "common/report/text.hpp"
+#include "common/statistics/statistics.hpp"
 
 namespace tread::report {
 namespace {
@@ -43,12 +44,6 @@ bool sameMotion(const BodyMotion& a, const BodyMotion& b) {
     return std::abs(wrapAngle(a.direction - b.direction)) < kSameDirection;
   if (a.turns() && b.turns()) return a.turn * b.turn > 0.0;
   return a.stands() && b.stands();
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 bool isByHand(const MotorNote& note) {
@@ -140,11 +135,11 @@ std::string HandRecord::words() const {
   words += formatted("  the planner would have made the same motion in %.0f %% of %d plans",
                      percent(shadow.same, shadow.plans), shadow.plans);
   if (!shadow.turned_away.empty())
-    words += formatted("; when both moved: directions %.0f deg apart, ",
-                       median(shadow.turned_away) * 180.0 / kPi) +
-             formatted("%.2f m/s by the person, %.2f m/s by the planner (medians)",
-                       median(shadow.person_speed), median(shadow.planner_speed));
-  words += formatted("\n  it would have stopped in %.0f %% while the person moved\n",
+    words += formatted("; where both travelled: directions %.0f deg apart, ",
+                       upperMedian(shadow.turned_away) * 180.0 / kPi) +
+             formatted("%.2f m/s by hand, %.2f m/s by the planner (medians)",
+                       upperMedian(shadow.person_speed), upperMedian(shadow.planner_speed));
+  words += formatted("\n  it would have stood in %.0f %% while the person moved\n",
                      percent(shadow.would_stand, shadow.plans));
   size_t lines = 0;
   for (const auto& [why, count] : shadow.why)

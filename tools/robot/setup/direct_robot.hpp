@@ -31,8 +31,8 @@ class DirectRobot {
   /// Waits for controller and INS; returns what is missing, one line; empty = ready.
   std::string begin();
 
-  const std::vector<GivenCommand>& commands() const { return commands_; }
-  const std::vector<InsFix>& fixes() const { return fixes_; }
+  const std::vector<TimedCommand>& commands() const { return commands_; }
+  const std::vector<TimedPose>& fixes() const { return fixes_; }
   /// [rad] at the INS's newest fix.
   const YawPitchRoll& attitude() const { return attitude_; }
   /// A pose newer than the last call, if any.
@@ -50,8 +50,8 @@ class DirectRobot {
   std::unique_ptr<Link> motor_link_, ins_link_;
   std::unique_ptr<motor::MotorController> controller_;
   std::unique_ptr<ins::InsSource> ins_;
-  std::vector<GivenCommand> commands_;
-  std::vector<InsFix> fixes_;
+  std::vector<TimedCommand> commands_;
+  std::vector<TimedPose> fixes_;
   YawPitchRoll attitude_;
   bool silent_ = false;  ///< send nothing
   size_t taken_ = 0;     ///< fixes that takePose() has returned

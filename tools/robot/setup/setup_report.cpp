@@ -40,7 +40,7 @@ std::string speedChart(const GroundReport& ground, bool is_car) {
   const int64_t start = ground.commands.front().utime;
   const auto seconds = [start](int64_t utime) { return 1e-6 * static_cast<double>(utime - start); };
   for (size_t i = 5; i < ground.fixes.size(); i += 5) {
-    const InsFix &a = ground.fixes[i - 5], &b = ground.fixes[i];
+    const TimedPose &a = ground.fixes[i - 5], &b = ground.fixes[i];
     const double time = seconds(b.utime) - seconds(a.utime);
     if (time <= 0.0) continue;
     const double yaw = b.T_map_body.yaw - ground.wiring.mounting_yaw.value;
@@ -49,10 +49,10 @@ std::string speedChart(const GroundReport& ground, bool is_car) {
         {seconds(b.utime), (std::cos(yaw) * moved.x() + std::sin(yaw) * moved.y()) / time});
     range.include(measured.back());
   }
-  for (const GivenCommand& given : ground.commands) {
+  for (const TimedCommand& given : ground.commands) {
     // For a car the second channel is the steering.
     const double share =
-        is_car ? given.command.left : 0.5 * (given.command.left + given.command.right);
+        is_car ? given.command[0] : 0.5 * (given.command[0] + given.command[1]);
     commanded.push_back({seconds(given.utime), share * ground.wiring.fullSpeed()});
     range.include(commanded.back());
   }
@@ -129,7 +129,7 @@ std::string reportOf(const SetupResult& result) {
                      : found.robot.name + " is not set up: " + result.problem;
   page.first.emplace_back(deviceTable(found));
   std::vector<Pose2> circle;
-  for (const InsFix& fix : result.ground.fixes) circle.push_back(fix.T_map_body);
+  for (const TimedPose& fix : result.ground.fixes) circle.push_back(fix.T_map_body);
   report::Pictures pictures;
   if (!circle.empty()) pictures.svg.push_back(pathChart("The minute in the circle", circle, {}));
   const std::string speeds = speedChart(result.ground, found.robot.drive.isCar());

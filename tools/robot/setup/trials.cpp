@@ -130,8 +130,8 @@ double coastAfterSilence(DirectRobot& robot, const TrackCommand& command) {
   const auto standing = [&] {
     const auto& fixes = robot.fixes();
     if (fixes.size() < 12) return false;
-    const InsFix& now = fixes.back();
-    const InsFix& then = fixes[fixes.size() - 11];
+    const TimedPose& now = fixes.back();
+    const TimedPose& then = fixes[fixes.size() - 11];
     const double time = 1e-6 * static_cast<double>(now.utime - then.utime);
     const bool stands =
         then.utime > last && distanceBetween(then.T_map_body, now.T_map_body) < kStandsSpeed * time;

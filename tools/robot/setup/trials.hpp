@@ -37,8 +37,8 @@ LiftReport tryWheelsUp(Site& site, Interview& person, const Drivers& drivers);
 /// Wheels down: result of the minute in the free circle.
 struct GroundReport {
   WiringReport wiring;
-  std::vector<GivenCommand> commands;
-  std::vector<InsFix> fixes;
+  std::vector<TimedCommand> commands;
+  std::vector<TimedPose> fixes;
   double watchdog = 0.0;  ///< [s] from the last command to standstill of the INS; 0 = not tested
   std::string problem;    ///< why it ended early; empty if it did not
 };

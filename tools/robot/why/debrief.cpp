@@ -9,6 +9,7 @@
 #include <tread/plan_t.hpp>
 
 #include "common/report/text.hpp"
+#include "common/statistics/statistics.hpp"
 
 namespace tread::why {
 namespace {
@@ -44,8 +45,8 @@ DriveFigures figuresOf(const DriveTimeline& drive) {
   figures.measured = static_cast<int>(
       std::count_if(drive.patterns.begin(), drive.patterns.end(),
                     [](const auto& pattern) { return pattern.message.accepted != 0; }));
-  figures.error_position = median(errorsOf(drive, &learning_t::error_position));
-  figures.error_yaw = median(errorsOf(drive, &learning_t::error_yaw));
+  figures.error_position = upperMedian(errorsOf(drive, &learning_t::error_position), kNoFigure);
+  figures.error_yaw = upperMedian(errorsOf(drive, &learning_t::error_yaw), kNoFigure);
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   figures.battery_begin = drive.battery.empty() ? unknown : drive.battery.front().second;
   figures.battery_end = drive.battery.empty() ? unknown : drive.battery.back().second;
@@ -314,13 +315,6 @@ int weightOf(const Finding& finding) {
 }
 
 }  // namespace
-
-double median(std::vector<double> values) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const size_t middle = values.size() / 2;
-  std::nth_element(values.begin(), values.begin() + static_cast<long>(middle), values.end());
-  return values[middle];
-}
 
 const char* nameOf(FindingKind kind) {
   constexpr const char* kNames[] = {"stop", "process", "messages",  "detour",

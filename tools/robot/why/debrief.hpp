@@ -68,10 +68,7 @@ std::vector<Finding> stopsOf(const DriveTimeline& drive);
 /// without a measurement of the learner.
 std::vector<Finding> patternFindingsOf(const DriveTimeline& drive);
 
-/// The median; NaN without values.
-double median(std::vector<double> values);
-
-/// A difference between two drives or their configurations.
+/// How a drive or its configuration differs from another one.
 struct Difference {
   std::string what;  ///< "planner.margins.growth", "patterns measured"
   std::string before;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/report/text.hpp"
+#include "common/statistics/statistics.hpp"
 #include "tools/robot/why/debrief.hpp"
 
 namespace tread::why {
@@ -22,7 +23,8 @@ void addBeginning(const std::vector<const Pattern*>& measured, std::vector<Findi
   for (size_t i = 0; i < measured.size(); ++i)
     if (i < kRun || i >= 2 * kRun)
       (i < kRun ? first : later).push_back(std::abs(measured[i]->message.error_position));
-  const double begun = median(first), usual = std::max(0.03, median(later));
+  const double begun = upperMedian(first, kNoFigure);
+  const double usual = std::max(0.03, upperMedian(later, kNoFigure));
   if (begun < kMuchWorse * usual) return;
   Finding finding;
   finding.kind = FindingKind::kPrediction;
@@ -49,7 +51,7 @@ void addPredictions(const DriveTimeline& drive, std::vector<Finding>& findings) 
   const auto typical = [&](size_t from, size_t to, double learning_t::*error) {
     std::vector<double> errors;
     for (size_t i = from; i < to; ++i) errors.push_back(std::abs(measured[i]->message.*error));
-    return median(errors);
+    return upperMedian(errors, kNoFigure);
   };
   addBeginning(measured, findings);
   for (size_t i = kRun; i + kRun <= measured.size();) {

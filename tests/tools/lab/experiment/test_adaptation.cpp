@@ -130,11 +130,11 @@ TEST_CASE("intervals are over sessions") {
   CHECK(std::isnan(intervalOf({}, 1).value));
   CHECK(intervalOf({2.0}, 1).value == 2.0);
   CHECK(std::isnan(intervalOf({2.0}, 1).low));
-  const Interval same = intervalOf({1.5, 1.5, 1.5}, 1);
+  const ConfidenceInterval same = intervalOf({1.5, 1.5, 1.5}, 1);
   CHECK(same.low == 1.5);
   CHECK(same.high == 1.5);
   // With two values a quarter of the resamples contain only one, a quarter only the other.
-  const Interval two = intervalOf({0.0, 1.0}, 1);
+  const ConfidenceInterval two = intervalOf({0.0, 1.0}, 1);
   CHECK(two.value == 0.5);
   CHECK(two.low == 0.0);
   CHECK(two.high == 1.0);

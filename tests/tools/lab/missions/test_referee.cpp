@@ -129,7 +129,7 @@ TEST_CASE("a change of surface is a crossing from when the robot came there, seg
   // The time is that of the border, not of its confirmation a second later.
   const auto before =
       std::find_if(result.track.begin(), result.track.end(),
-                   [](const TrackPoint& point) { return point.T_map_body.x > 4.0; });
+                   [](const PoseSample& point) { return point.T_map_body.x > 4.0; });
   REQUIRE(before != result.track.end());
   CHECK(result.crossings[0].time == Approx(before->time).margin(0.35));
 }

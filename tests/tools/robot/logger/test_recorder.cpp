@@ -22,7 +22,7 @@ namespace tread::testing {
 namespace {
 
 namespace fs = std::filesystem;
-using launch::makeRoomForLog;
+using logger::makeRoomForLog;
 
 struct Folder {
   Folder() { fs::create_directories(path); }
@@ -240,7 +240,7 @@ TEST_CASE("a quota removes the oldest files, and never the newest") {
   const Folder own;
   const std::string log = own.path + "/x";
   for (int i = 0; i < 5; ++i) std::ofstream(log + "." + std::to_string(i)) << std::string(100, 'x');
-  launch::keepWithin(log, 250);
+  logger::keepWithin(log, 250);
   CHECK(fs::exists(log + ".0"));
   CHECK(fs::exists(log + ".2"));
   CHECK_FALSE(fs::exists(log + ".3"));

@@ -33,8 +33,8 @@ struct HiddenCar {
 };
 
 struct DrivenCar {
-  std::vector<GivenCommand> commands;
-  std::vector<InsFix> fixes;
+  std::vector<TimedCommand> commands;
+  std::vector<TimedPose> fixes;
   std::string problem;
   double path = 0.0, farthest = 0.0, fastest = 0.0;
 };

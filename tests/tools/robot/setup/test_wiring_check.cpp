@@ -35,8 +35,8 @@ struct Hidden {
 };
 
 struct Driven {
-  std::vector<GivenCommand> commands;
-  std::vector<InsFix> fixes;
+  std::vector<TimedCommand> commands;
+  std::vector<TimedPose> fixes;
   std::string problem;
   double path = 0.0;
   double farthest = 0.0;

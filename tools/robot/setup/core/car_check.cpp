@@ -43,7 +43,7 @@ CarReading readingOf(const CarFit& fit, bool forward, double wheelbase) {
 
 class CarCheck {
  public:
-  CarCheck(const std::vector<GivenCommand>& commands, const std::vector<InsFix>& fixes,
+  CarCheck(const std::vector<TimedCommand>& commands, const std::vector<TimedPose>& fixes,
            const WiringExpectation& expected)
       : rows_(commands, fixes),
         expected_(expected),
@@ -189,8 +189,8 @@ class CarCheck {
 
 }  // namespace
 
-WiringReport checkCar(const std::vector<GivenCommand>& commands, const std::vector<InsFix>& fixes,
-                      const WiringExpectation& expected) {
+WiringReport checkCar(const std::vector<TimedCommand>& commands,
+                      const std::vector<TimedPose>& fixes, const WiringExpectation& expected) {
   return CarCheck(commands, fixes, expected).run();
 }
 

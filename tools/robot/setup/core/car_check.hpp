@@ -16,7 +16,7 @@ namespace tread::setup {
  * 3. A reversed throttle reverses motion and turning, reversed steering only the turning, an INS
  *    turned by 180 deg only the motion. Of two explanations the one with fewer faulty parts holds,
  *    unless `expected.seen` decides. */
-WiringReport checkCar(const std::vector<GivenCommand>& commands, const std::vector<InsFix>& fixes,
-                      const WiringExpectation& expected);
+WiringReport checkCar(const std::vector<TimedCommand>& commands,
+                      const std::vector<TimedPose>& fixes, const WiringExpectation& expected);
 
 }  // namespace tread::setup

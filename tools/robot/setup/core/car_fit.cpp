@@ -50,7 +50,7 @@ std::vector<double> lagged(const std::vector<double>& series, double lag) {
 
 }  // namespace
 
-CarRows::CarRows(const std::vector<GivenCommand>& commands, const std::vector<InsFix>& fixes)
+CarRows::CarRows(const std::vector<TimedCommand>& commands, const std::vector<TimedPose>& fixes)
     : rows_(motionRows(commands, fixes)) {
   for (const TrackCommand& command : heldCommands(commands, fixes)) {
     throttle_.push_back(command.left);

@@ -32,7 +32,7 @@ struct CarFit {
 /// Motions between fixes, with the throttle (left of the command) and steering (right) before them.
 class CarRows {
  public:
-  CarRows(const std::vector<GivenCommand>& commands, const std::vector<InsFix>& fixes);
+  CarRows(const std::vector<TimedCommand>& commands, const std::vector<TimedPose>& fixes);
 
   size_t size() const { return rows_.size(); }
   /// Fits the rows for which `use` is true, as WiringRows does.

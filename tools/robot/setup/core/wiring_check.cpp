@@ -23,7 +23,7 @@ double motionOf(const WiringFit& fit, int side) {
 
 class Check {
  public:
-  Check(const std::vector<GivenCommand>& commands, const std::vector<InsFix>& fixes,
+  Check(const std::vector<TimedCommand>& commands, const std::vector<TimedPose>& fixes,
         const WiringExpectation& expected)
       : commands_(commands),
         fixes_(fixes),
@@ -214,8 +214,8 @@ class Check {
             " is configured; set gauge of robot.yaml");
   }
 
-  const std::vector<GivenCommand>& commands_;
-  const std::vector<InsFix>& fixes_;
+  const std::vector<TimedCommand>& commands_;
+  const std::vector<TimedPose>& fixes_;
   WiringRows rows_;
   WiringExpectation expected_;
   Tolerance tolerance_;
@@ -236,8 +236,8 @@ double WiringReport::fullSpeed() const {
   return std::min(full_left.value, full_right.value);
 }
 
-WiringReport checkWiring(const std::vector<GivenCommand>& commands,
-                         const std::vector<InsFix>& fixes, const WiringExpectation& expected) {
+WiringReport checkWiring(const std::vector<TimedCommand>& commands,
+                         const std::vector<TimedPose>& fixes, const WiringExpectation& expected) {
   if (expected.wheelbase > 0.0) return checkCar(commands, fixes, expected);
   return Check(commands, fixes, expected).run();
 }

@@ -99,7 +99,7 @@ struct WiringReport {
  * 3. A yaw of the wrong sign does not fit the path.
  * 4. Intervals come from leaving out a twelfth of the drive at a time (jackknife).
  * The drive must contain straight motion, turns and each side alone, in both directions. */
-WiringReport checkWiring(const std::vector<GivenCommand>& commands,
-                         const std::vector<InsFix>& fixes, const WiringExpectation& expected);
+WiringReport checkWiring(const std::vector<TimedCommand>& commands,
+                         const std::vector<TimedPose>& fixes, const WiringExpectation& expected);
 
 }  // namespace tread::setup

@@ -40,8 +40,8 @@ Eigen::Vector3d MotionRow::seen(bool mirrored) const {
           mirrored ? -turned : turned};
 }
 
-std::vector<TrackCommand> heldCommands(const std::vector<GivenCommand>& commands,
-                                       const std::vector<InsFix>& fixes) {
+std::vector<TrackCommand> heldCommands(const std::vector<TimedCommand>& commands,
+                                       const std::vector<TimedPose>& fixes) {
   std::vector<TrackCommand> held;
   if (commands.empty() || fixes.empty()) return held;
   const int64_t start = commands.front().utime;
@@ -49,13 +49,13 @@ std::vector<TrackCommand> heldCommands(const std::vector<GivenCommand>& commands
   size_t at = 0;
   for (double t = 0.0; t < seconds(fixes.back().utime) + kFitStep; t += kFitStep) {
     while (at + 1 < commands.size() && seconds(commands[at + 1].utime) <= t) ++at;
-    held.push_back(commands[at].command);
+    held.push_back(commands[at].command.tracks());
   }
   return held;
 }
 
-std::vector<MotionRow> motionRows(const std::vector<GivenCommand>& commands,
-                                  const std::vector<InsFix>& fixes) {
+std::vector<MotionRow> motionRows(const std::vector<TimedCommand>& commands,
+                                  const std::vector<TimedPose>& fixes) {
   std::vector<MotionRow> rows;
   if (commands.empty() || fixes.empty()) return rows;
   const int64_t start = commands.front().utime;
@@ -82,7 +82,8 @@ std::vector<MotionRow> motionRows(const std::vector<GivenCommand>& commands,
   return rows;
 }
 
-WiringRows::WiringRows(const std::vector<GivenCommand>& commands, const std::vector<InsFix>& fixes)
+WiringRows::WiringRows(const std::vector<TimedCommand>& commands,
+                       const std::vector<TimedPose>& fixes)
     : held_(heldCommands(commands, fixes)), rows_(motionRows(commands, fixes)) {}
 
 /// Integral of s up to each step [s].

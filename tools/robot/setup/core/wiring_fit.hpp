@@ -9,22 +9,10 @@
 
 #include <Eigen/Core>
 
-#include "common/geometry/se2.hpp"
+#include "common/geometry/track.hpp"
 #include "common/pattern/pattern.hpp"
 
 namespace tread::setup {
-
-/// A command that holds until the next one.
-struct GivenCommand {
-  int64_t utime = 0;     ///< [us]
-  TrackCommand command;  ///< for the configured left and right, full = 1
-};
-
-/// Pose of the vehicle from the INS, with the configured mounting.
-struct InsFix {
-  int64_t utime = 0;  ///< [us]
-  Pose2 T_map_body;   ///< yaw may be wrapped
-};
 
 /// Response of a vehicle to its commands, independent of the wiring: the sum of both sides.
 /** command -> delay -> dead power -> first-order lag -> s; velocity = response * (s_left, s_right).
@@ -57,11 +45,11 @@ struct MotionRow {
 };
 
 /// Both inputs ordered by time. Gaps of the INS are left out.
-std::vector<MotionRow> motionRows(const std::vector<GivenCommand>& commands,
-                                  const std::vector<InsFix>& fixes);
+std::vector<MotionRow> motionRows(const std::vector<TimedCommand>& commands,
+                                  const std::vector<TimedPose>& fixes);
 /// The command in force at each kFitStep, from the first command to the last fix.
-std::vector<TrackCommand> heldCommands(const std::vector<GivenCommand>& commands,
-                                       const std::vector<InsFix>& fixes);
+std::vector<TrackCommand> heldCommands(const std::vector<TimedCommand>& commands,
+                                       const std::vector<TimedPose>& fixes);
 /// A delayed series of commands [s]; a delay between two steps is interpolated.
 double delayedAt(const std::vector<double>& held, size_t step, double delay);
 /// 0 up to the dead power, above it the excess.
@@ -79,7 +67,7 @@ Shape searchShape(const std::function<double(const Shape&)>& cost);
 class WiringRows {
  public:
   /// Both inputs ordered by time. Gaps of the INS are left out.
-  WiringRows(const std::vector<GivenCommand>& commands, const std::vector<InsFix>& fixes);
+  WiringRows(const std::vector<TimedCommand>& commands, const std::vector<TimedPose>& fixes);
 
   size_t size() const { return rows_.size(); }
   /// Fits the rows for which `use` is true. `mirrored`: the INS's yaw has the wrong sign.

@@ -19,8 +19,8 @@ double angleOf(const Eigen::Vector2d& direction) {
 }
 
 /// Index of the first fix at or after a time.
-size_t fixAt(const std::vector<InsFix>& fixes, int64_t utime) {
-  const auto later = [](const InsFix& fix, int64_t time) { return fix.utime < time; };
+size_t fixAt(const std::vector<TimedPose>& fixes, int64_t utime) {
+  const auto later = [](const TimedPose& fix, int64_t time) { return fix.utime < time; };
   return static_cast<size_t>(std::lower_bound(fixes.begin(), fixes.end(), utime, later) -
                              fixes.begin());
 }
@@ -92,14 +92,14 @@ WiringGeometry geometryOfOne(const WiringFit& fit, int alive) {
   return found;
 }
 
-std::vector<StraightSpeed> straightSpeeds(const std::vector<GivenCommand>& commands,
-                                          const std::vector<InsFix>& fixes,
+std::vector<StraightSpeed> straightSpeeds(const std::vector<TimedCommand>& commands,
+                                          const std::vector<TimedPose>& fixes,
                                           const WiringGeometry& geometry) {
   std::vector<StraightSpeed> speeds;
   const double delay = geometry.of[kDelay], lag = geometry.of[kLag];
   for (size_t i = 0, next = 0; i < commands.size(); i = next) {
     while (next < commands.size() && commands[next].command == commands[i].command) ++next;
-    const TrackCommand real = ofRealSides(commands[i].command, geometry);
+    const TrackCommand real = ofRealSides(commands[i].command.tracks(), geometry);
     if (next == commands.size() || real.left != real.right || std::abs(real.left) < kFull) continue;
     const double held = 1e-6 * static_cast<double>(commands[next].utime - commands[i].utime);
     const double settle = std::min(kSettled * lag, held - kLeastSteady);

@@ -40,8 +40,8 @@ struct StraightSpeed {
 
 /// One entry per period in which both real sides had the same full command for long enough.
 /** Turning drags on both sides, so a fit over all motions is less accurate. */
-std::vector<StraightSpeed> straightSpeeds(const std::vector<GivenCommand>& commands,
-                                          const std::vector<InsFix>& fixes,
+std::vector<StraightSpeed> straightSpeeds(const std::vector<TimedCommand>& commands,
+                                          const std::vector<TimedPose>& fixes,
                                           const WiringGeometry& geometry);
 
 }  // namespace tread::setup
