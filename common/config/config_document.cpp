@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "common/config/config_document.hpp"
+
 #include <algorithm>
 #include <sstream>
 

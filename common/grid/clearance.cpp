@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "common/grid/grid.hpp"
+
+#include "common/grid/clearance.hpp"
 
 #include <algorithm>
 #include <cmath>

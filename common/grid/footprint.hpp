@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/geometry/se2.hpp"
-#include "common/grid/grid.hpp"
+#include "common/grid/clearance.hpp"
 
 namespace tread {
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "common/link/can_link.hpp"
+
 #include <algorithm>
 #include <cerrno>
 

@@ -99,23 +99,7 @@ class DescriptorLink : public Link {
 /// The system's message for an errno value.
 std::string systemReason(int error);
 
-/// A serial line or pseudo-terminal, raw, 8 data bits, no parity, one stop bit, no flow control.
-std::unique_ptr<Link> makeTtyLink(const LinkAddress& address);
-/// A new pseudo-terminal whose other side is reachable by a symlink: an emulated serial device.
-/** The symlink (and its folder) is created here and removed with the link. Unread bytes stay until
- * the line is full, then are lost; opening the other side discards them. */
-std::unique_ptr<Link> makePtyLink(const LinkAddress& address);
-/// A TCP server with one client at a time: an emulated device. Open while a client is connected.
-std::unique_ptr<Link> makeTcpServerLink(const LinkAddress& address);
-/// A client of a TCP server. Connecting continues over several reopen() calls and is given up after
-/// one second.
-/** A host name is resolved once, which may block: use a numeric address on a robot. */
-std::unique_ptr<Link> makeTcpLink(const LinkAddress& address);
-/// Listens on a UDP port (IPv4); datagrams are concatenated into one stream. It never writes.
-std::unique_ptr<Link> makeUdpLink(const LinkAddress& address);
-/// A CAN interface (SocketCAN): a sequence of whole struct can_frame.
-std::unique_ptr<Link> makeCanLink(const LinkAddress& address);
-/// Reads a file once, from start to end, and then stays closed. It never writes.
+/// Reads a file once, from front to end; then it stays closed. It never writes.
 std::unique_ptr<Link> makeFileLink(const LinkAddress& address);
 
 /// The termios constant of a baud rate [1/s]; nullopt if serial lines do not support it.

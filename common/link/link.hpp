@@ -22,13 +22,11 @@ struct LinkAddress {
   int baud = 115200;  ///< tty [1/s]
 };
 
-/// Parses an address; throws std::invalid_argument with one clear line.
-LinkAddress parseLinkAddress(const std::string& text);
-
-/// Byte stream to a device. A vanished line is closed at once and reopened by name with back-off.
-/** Never waits for the device, with two exceptions: completing a partial write, 20 ms at most, and
- * resolving a TCP host name, which takes as long as the resolver does: use a numeric address on a
- * robot. */
+/// Byte stream to a device. A vanished line is closed at once and opened again by name with
+/// back-off.
+/** Nothing waits for the device, with two exceptions: the rest of a half taken write, 20 ms at
+ * most, and the look-up of a TCP host that is given by name, which takes as long as the resolver
+ * does: on a robot write its number. */
 class Link {
  public:
   virtual ~Link() = default;
@@ -54,27 +52,5 @@ class Link {
   /// Why it is closed, in one line; empty when open, or closed by close().
   virtual std::string problem() const = 0;
 };
-
-/// Opens a link from its address: tty:/dev/ttyUSB0?baud=115200 · tcp:host:port · udp:port (listens)
-/// · can:can0 (SocketCAN, struct can_frame of 16 bytes each) · file:path (reads); for emulated
-/// devices pty:path (makes path) · tcp-server:[host:]port.
-/** Throws std::invalid_argument for a malformed address (one clear line). An absent device is no
- * error: the link is closed and reopen() tries again. */
-std::unique_ptr<Link> makeLink(const std::string& address);
-
-/// Throws std::runtime_error with one clear line if another program has this device now: checked at
-/// the start, before anybody believes that this process runs it.
-void requireFree(const Link& link);
-
-/// Throws std::runtime_error with one clear line if a listening address (tcp-server, udp) cannot
-/// listen, for instance because another program has the port: used by --check.
-void requireListening(const std::string& address);
-
-/// Two ends of an in-memory pipe, each direction holding at most `capacity` bytes. For virtual time
-/// and tests.
-std::pair<std::unique_ptr<Link>, std::unique_ptr<Link>> makePipe(size_t capacity = 65536);
-
-/// Cuts or restores a pipe from either end, as unplugging does: unread bytes are lost.
-void setPipeConnected(Link& end, bool connected);
 
 }  // namespace tread

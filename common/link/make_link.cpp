@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "common/link/make_link.hpp"
+
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
@@ -10,8 +12,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "common/link/can_link.hpp"
 #include "common/link/descriptor_link.hpp"
-#include "common/link/link.hpp"
+#include "common/link/serial_links.hpp"
+#include "common/link/socket_links.hpp"
 
 namespace tread {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "common/mcap/mcap_reader.hpp"
 #include "common/types/message_json.hpp"
+#include "common/types/tread_types.hpp"
 
 namespace tread::mcap {
 namespace {

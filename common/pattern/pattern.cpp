@@ -9,6 +9,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "common/pattern/pattern_check.hpp"
+
 namespace tread {
 namespace {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "common/pattern/pattern.hpp"
+
+#include "common/pattern/pattern_check.hpp"
 
 #include <algorithm>
 #include <cmath>

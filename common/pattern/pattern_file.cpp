@@ -11,6 +11,7 @@
 
 #include "common/config/config_reader.hpp"
 #include "common/config/scalars.hpp"
+#include "common/pattern/pattern_check.hpp"
 
 namespace tread {
 namespace {

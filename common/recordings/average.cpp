@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "common/recordings/average.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -7,7 +9,6 @@
 #include <Eigen/Core>
 
 #include "common/pattern/pattern.hpp"
-#include "common/recordings/recordings.hpp"
 #include "common/report/text.hpp"
 #include "common/statistics/statistics.hpp"
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/config/problem_words.hpp"
+#include "common/recordings/average.hpp"
 #include "common/recordings/csv_table.hpp"
 #include "common/report/text.hpp"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "common/recordings/recordings.hpp"
+
+#include "common/recordings/execution_log.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -76,12 +76,6 @@ struct TimedGround {
   std::string name;
 };
 
-/// Which readings of the gyro are kept.
-enum class Gyro {
-  kAtFixes,  ///< the one nearest to each fix
-  kAll       ///< all of them, beside the fixes
-};
-
 /// What a range finder saw.
 struct TimedScan {
   double time = 0.0;  ///< [s] of its first beam
@@ -108,17 +102,6 @@ inline constexpr double kMaxInterpolated = 0.3;
 inline constexpr double kLongestHold = 0.3;
 /// Why a command ended where the recording lacks commands.
 inline constexpr const char* kCommandsMissing = "commands are missing";
-
-/// steps/*.csv: poses are held and late; a new fix where pose_new is set. Throws RecordingError.
-/** For a session without pose lag the poses keep the time at which they were logged. */
-RecordedDrive readSteps(const std::string& path, const Session& session,
-                        Gyro gyro = Gyro::kAtFixes);
-/// aligned/*.csv: lag already removed, poses interpolated to 20 Hz; none inside ICP gaps above 0.3
-/// s.
-RecordedDrive readAligned(const std::string& path, const Session& session);
-/// continuous/*.csv: the whole drive in the map frame, with the operator's part and the battery.
-RecordedDrive readContinuous(const std::string& path, const Session& session,
-                             Gyro gyro = Gyro::kAtFixes);
 
 struct ExecutionLayout {
   double offset = 1.2;  ///< [s] from the first sample with a command to its first execution

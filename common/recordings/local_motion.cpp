@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "common/recordings/local_motion.hpp"
+
 #include "common/recordings/drive_recordings.hpp"
 
 #include <algorithm>

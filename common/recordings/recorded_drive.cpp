@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "common/recordings/imported_log.hpp"
+
+#include "common/recordings/recorded_drive.hpp"
 
 #include <cmath>
 #include <optional>

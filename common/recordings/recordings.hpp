@@ -76,53 +76,15 @@ void requireAddable(const std::string& folder, const PatternSet& executed,
 bool addSurface(const std::string& folder, const PatternSet& executed,
                 const SurfaceRecordings& surface);
 
-/// Executions of one pattern that averaging left out, and why.
-struct AverageNote {
-  std::string pattern;
-  int used = 0;
-  bool by_twist = false;  ///< body twists were averaged, not poses, because the turn is strong
-  std::vector<std::string> rejected;  ///< a line for each execution that was left out
-  std::vector<size_t> left_out;       ///< the same executions by index, from 0
-};
-
-/// When an execution is invalid, and how many valid ones are needed.
-struct AverageLimits {
-  double strong_turn = 0.5;  ///< [rad] from here on twists are averaged
-  double max_speed = 0.0;    ///< [m/s] of a step, over 0.1 s; 0 = 1.5 times the median's largest
-  int min_executions = 3;    ///< fewer valid ones are refused
-};
-
-/// IP_S: the set with averaged trajectories and the recorded spread of each end as its covariance.
-/** Strong turns are averaged as body twists sample by sample, because the mean of such poses is
- * shorter than each of them. The spread is about the mean of the end poses (n - 1). An execution
- * of another length, with a number that is not finite, an impossible speed or a jump of yaw is
- * left out and noted, one note per pattern in the order of the set. Name, version and classes
- * stay; times_learned is 0. Throws RecordingError if a pattern has too few executions. */
-PatternSet averageSet(const PatternSet& patterns, const SurfaceRecordings& recordings,
-                      const AverageLimits& limits, std::vector<AverageNote>& notes);
-
-// Recordings as a robot would have sent them, so that the real learner process can receive them.
-// First all executions on one surface, then those on the other; MARK names the surface. Each
-// execution is a track of its own: INS and MOTOR cover it from `lead` before its start to `tail`
-// after its end, and are silent in between. The windows behind the recordings are steady, so before
-// the first and after the last pose the robot is assumed to move with the recording's mean twist
-// (the twist of the first sample alone would be mostly noise of the lidar's poses).
+// Recordings as a robot would have sent them, so that the real learner process can hear them. First
+// all executions on one surface, then those on the other; MARK names the surface. Each execution is
+// a track of its own: INS and MOTOR tell of it from `lead` before its start to `tail` after its
+// end, and are silent between two. The windows that the recordings come from are steady, so before
+// its first and after its last pose the robot is taken to move by the mean twist of the recording
+// (that of its first sample alone would be mostly noise of the lidar's poses).
 //   INS        100 Hz; between two recorded poses by the constant twist that leads from one to the
 //              other
 //   MOTOR      20 Hz, the steady command; execution and index while the pattern is played
 //   EXECUTION  on start and end, the last eight records; they name the version of the shipped set
-
-struct ExecutionLogRequest {
-  int executions = 40;   ///< on each surface; patterns alternate in a random order
-  uint64_t seed = 1;     ///< seed of that order and of the choice of recordings
-  double lead = 0.5;     ///< [s]
-  double tail = 0.3;     ///< [s]
-  double silence = 1.0;  ///< [s] between two executions
-};
-
-/// The log; `shipped` is the set that the executions name, with the patterns of the recordings.
-/** Throws RecordingError if they do not match. Deterministic: same arguments, same bytes. */
-std::vector<LogEvent> executionLog(const PatternSet& shipped, const SurfaceRecordings& from,
-                                   const SurfaceRecordings& to, const ExecutionLogRequest& request);
 
 }  // namespace tread::recordings

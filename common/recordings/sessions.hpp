@@ -10,6 +10,7 @@
 
 #include "common/geometry/track.hpp"
 #include "common/pattern/pattern.hpp"
+#include "common/recordings/twist_line.hpp"
 
 // A folder of recorded drives: sessions.csv (robot, surface, geometry, lag of the poses),
 // steps_quality.csv (each held command, and whether its step is usable), steps/SESSION.csv (the
@@ -22,48 +23,11 @@ namespace tread::recordings {
 //   p(t)   = p_0 + integral of R(yaw(s)) (v_x(s), v_y(s)) ds.
 // Given yaw(t) the second is linear in p_0, v_x, v_x', v_y, v_y': two robust linear least squares.
 
-/// How a robust fit groups and scales its rows.
-struct HuberLimits {
-  int group = 1;             ///< number of neighbouring rows of one observation
-  double least_scale = 0.0;  ///< [unit of b] lower limit of the residual scale
-};
-
-/// x that minimises the sum of rho(|A x - b| per observation), rho of Huber (k = 1.345 scales).
-/** Solved by iteratively reweighted least squares (QR); the scale is 1.4826 times the median
- * residual length per row, at least `least_scale`. `prior` holds a weight for each observation;
- * zero excludes it. Deterministic. */
-Eigen::VectorXd huberFit(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
-                         const Eigen::VectorXd& prior, const HuberLimits& limits);
-
-/// Mean and change of the body twist over a window.
-struct TwistLine {
-  Twist2 mean;   ///< [m/s, m/s, rad/s] at the middle of the window
-  Twist2 slope;  ///< per second
-
-  /// v_x, v_y, omega, and their slopes.
-  Eigen::Matrix<double, 6, 1> vector() const;
-  static TwistLine of(const Eigen::Matrix<double, 6, 1>& vector);
-  /// The twist `time` seconds after the beginning of a window of `duration`.
-  Twist2 at(double time, double duration) const;
-  /// The motion of the mirrored robot.
-  TwistLine mirrored() const;
-};
-
 /// [s] after a command its motion is steady: a delay of 0.4 s and four time constants of 0.35 s, as
 /// for skid-steer robots of 70 to 500 kg. Earlier measurements are not used.
 inline constexpr double kSettle = 1.8;
 
-/// Why a window cannot be smoothed, in words (a gap of more than 0.4 s, fewer than 5 poses); empty
-/// if it can.
-std::string windowProblem(const std::vector<PoseSample>& poses, double duration);
-
-/// The profile that fits the poses of a window best. windowProblem() must be empty.
-TwistLine smoothed(const std::vector<PoseSample>& poses, double duration);
-
-/// Poses after each of `samples` periods, relative to the start: the profile integrated.
-std::vector<Pose2> integrated(const TwistLine& profile, size_t samples, double period);
-
-/// A wheel command as body motion of an ideal differential drive.
+/// What the wheels are told, as body motion of an ideal differential drive.
 struct BodyCommand {
   double v = 0.0;  ///< [m/s] + forward
   double w = 0.0;  ///< [rad/s] + counter-clockwise

@@ -20,12 +20,7 @@ struct SceneMessage {
   uint64_t part = 0;  ///< identifies the entity of its topic that it replaces
 };
 
-/// The schema (JSON Schema) of such a message, restricted to the fields that we fill.
-std::string sceneSchema(const std::string& name);
-/// Topics with their schemas' names.
-const std::vector<std::pair<std::string, std::string>>& sceneTopics();
-
-/// Draws the robot, the map, the scan and the plan with its tree, and reports events, from Tread's
+/// Draws the robot, the map, the scan, the plan with its tree, and tells events, from Tread's
 /// messages.
 /** Frames: map, body. All times are times of recording: a viewer uses the recorder's clock. */
 class SceneMaker {

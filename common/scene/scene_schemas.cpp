@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "common/scene/scene_schemas.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include "common/scene/scene.hpp"

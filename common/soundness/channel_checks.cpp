@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "common/soundness/channel_checks.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -8,7 +10,7 @@
 
 #include "common/messages/ins_messages.hpp"
 #include "common/messages/pattern_messages.hpp"
-#include "common/soundness/reading.hpp"
+#include "common/soundness/core/log_validation_motion.hpp"
 
 namespace tread::gap {
 namespace {

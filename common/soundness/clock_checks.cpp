@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "common/soundness/clock_checks.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
 #include "common/messages/ins_messages.hpp"
-#include "common/soundness/reading.hpp"
 #include "common/statistics/statistics.hpp"
 
 namespace tread::gap {

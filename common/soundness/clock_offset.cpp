@@ -3,12 +3,13 @@
 // Commands and poses on two clocks: where motion does not follow its commands as a vehicle does, it
 // is looked for over the whole log, speed and turn together, and found where one offset alone
 // explains it.
+#include "common/soundness/clock_offset.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "common/geometry/track.hpp"
 #include "common/messages/ins_messages.hpp"
-#include "common/soundness/reading.hpp"
 
 namespace tread::gap {
 namespace {

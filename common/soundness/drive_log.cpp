@@ -11,8 +11,11 @@
 
 #include "common/config/scalars.hpp"
 #include "common/report/page.hpp"
+#include "common/soundness/channel_checks.hpp"
+#include "common/soundness/clock_checks.hpp"
+#include "common/soundness/clock_offset.hpp"
 #include "common/soundness/core/log_validation.hpp"
-#include "common/soundness/reading.hpp"
+#include "common/soundness/segments.hpp"
 #include "common/store/store.hpp"
 
 namespace tread::gap {

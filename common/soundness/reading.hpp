@@ -97,32 +97,6 @@ struct HeardSpan {
 /// Length of an execution [s].
 inline constexpr double kExecutionLength = 2.0;
 
-/// The segments of a log: spans, cut where the INS starts a new track.
-std::vector<Segment> segmentsOf(const std::vector<HeardSpan>& spans,
-                                const std::vector<EncoderSample>& encoders);
-
-/// The executions to predict; `records` in seconds, in order of time.
-std::vector<Execution> executionsOf(VehicleLayout layout, const std::vector<Segment>& segments,
-                                    const std::vector<Execution>& records);
-
-inline constexpr int64_t kOvertaking = 200'000;  ///< [us] by which messages may arrive out of order
-
-/// Checks for missing channels, commands of two kinds, silences, jumps and frozen poses.
-void checkChannels(const SortedLog& log, const std::vector<HeardSpan>& spans, Diagnostics& notes);
-
-/// Source of the sequence numbers in a log.
-enum class Numbering {
-  kByRobot,   ///< gaps show messages lost by the recorder
-  kByImport,  ///< they number the recorded messages only
-};
-
-/// Checks for clocks that jump or go back, also during pauses in which the robot did not move.
-void checkClocks(const SortedLog& log, Numbering numbering, Diagnostics& notes);
-
-/// Checks for an offset between the clocks of commands and poses, and its size.
-void checkOffset(const SortedLog& log, const std::vector<HeardSpan>& spans, Diagnostics& notes);
-
-/// Checks for two robots (or two publishers of a channel) in one log.
-void checkPublishers(const SortedLog& log, Diagnostics& notes);
+inline constexpr int64_t kOvertaking = 200'000;  ///< [us] by which messages may come out of order
 
 }  // namespace tread::gap

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "common/soundness/reading.hpp"
+
+#include "common/soundness/segments.hpp"
 
 #include <algorithm>
 #include <cmath>

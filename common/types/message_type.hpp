@@ -64,13 +64,7 @@ class MessageTypes {
   std::map<uint64_t, const MessageType*> by_fingerprint_;
 };
 
-/// Tread's own types, those of lcmtypes/tread.
-const MessageTypes& treadTypes();
-
-/// The type of a channel of Tread; nullptr for any other channel.
-const MessageType* typeOfChannel(const std::string& channel);
-
-/// Receives the values of a message in order.
+/// Hears the values of a message one after the other.
 class MessageVisitor {
  public:
   virtual ~MessageVisitor() = default;

@@ -10,6 +10,7 @@
 
 #include "common/execution/stop_reason.hpp"
 #include "common/types/message_json.hpp"
+#include "common/types/tread_types.hpp"
 
 namespace tread {
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "common/types/tread_types.hpp"
+
 #include <algorithm>
 
 #include "common/bus/channels.hpp"
-#include "common/types/message_type.hpp"
 
 namespace tread {
 

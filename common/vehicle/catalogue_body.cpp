@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // Inertia, motion to the side, slopes; what the INS makes of the motion; what is confounded.
+#include "common/vehicle/catalogue_body.hpp"
+
 #include "common/vehicle/catalogue_parts.hpp"
 
 namespace tread {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // From the command to the speed of a track.
+#include "common/vehicle/catalogue_drive.hpp"
+
 #include "common/vehicle/catalogue_parts.hpp"
 
 namespace tread {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // What the ground makes of the tracks: slip, turning and losses of speed.
+#include "common/vehicle/catalogue_ground.hpp"
+
 #include "common/vehicle/catalogue_parts.hpp"
 
 namespace tread {

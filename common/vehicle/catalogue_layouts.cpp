@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Effects that only a car or only a holonomic base can have.
+// What only a car has, or only a holonomic base.
+#include "common/vehicle/catalogue_layouts.hpp"
+
 #include "common/vehicle/catalogue_parts.hpp"
 
 namespace tread {

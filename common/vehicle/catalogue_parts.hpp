@@ -13,24 +13,6 @@
 /// The catalogue by chapters; use effectCatalogue() and confoundedGroups().
 namespace tread {
 
-std::vector<Effect> commandEffects();               ///< of a command on its way to the motor
-std::vector<Effect> powerEffects();                 ///< power that fades or differs by side
-std::vector<Effect> lagEffects();                   ///< lags and play of the drive
-std::vector<Effect> steeringEffects();              ///< of a car's steering
-std::vector<Effect> wheelEffects();                 ///< of the wheels of a holonomic base
-std::vector<Effect> sidewaysEffects();              ///< of the lateral motion of a holonomic base
-std::vector<Effect> slipEffects();                  ///< slip and changes of the ground
-std::vector<Effect> turningEffects();               ///< resistance to turning
-std::vector<Effect> turningChangeEffects();         ///< turning with speed, direction and payload
-std::vector<Effect> gripEffects();                  ///< limits and offsets of the yaw rate
-std::vector<Effect> speedLossEffects();             ///< losses of forward speed
-std::vector<Effect> inertiaEffects();               ///< inertia, centre of rotation, crab
-std::vector<Effect> sideEffects();                  ///< drift and slopes
-std::vector<Effect> timingEffects();                ///< effects that no drive can distinguish
-std::vector<Effect> mountingEffects();              ///< effects that a better drive can distinguish
-std::vector<ConfoundedGroup> groupsOfEveryDrive();  ///< groups that no drive can distinguish
-std::vector<ConfoundedGroup> groupsOfPoorDrives();  ///< groups that a better drive can distinguish
-
 inline constexpr VehicleLayouts kOfTracks = static_cast<VehicleLayouts>(VehicleLayout::kTracks);
 inline constexpr VehicleLayouts kOfCars = static_cast<VehicleLayouts>(VehicleLayout::kCar);
 inline constexpr VehicleLayouts kOfOmni = static_cast<VehicleLayouts>(VehicleLayout::kOmni);

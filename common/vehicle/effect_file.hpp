@@ -39,13 +39,6 @@ void addEntry(EffectEntry entry, const ConfigReader& reader);
 /// Text of an effect's file; reading it gives the same effect.
 std::string formatEffect(const EffectEntry& entry);
 
-/// An unnamed term as an effect of the name, with `share` of the term's values as its size.
-EffectEntry effectOf(const UnnamedTerm& term, const std::string& name);
-
-/// Replaces an unnamed term of a model by the effect of this name, which effectOf() made from it
-/// and which is in the catalogue. The uncertainty of its values becomes that of its share.
-void replaceTerm(ModelDocument& document, const std::string& term, const Effect& effect);
-
 /// The entry of an added effect of the catalogue.
 EffectEntry entryOf(const Effect& effect);
 

@@ -5,6 +5,10 @@
 #include <limits>
 #include <stdexcept>
 
+#include "common/vehicle/catalogue_body.hpp"
+#include "common/vehicle/catalogue_drive.hpp"
+#include "common/vehicle/catalogue_ground.hpp"
+#include "common/vehicle/catalogue_layouts.hpp"
 #include "common/vehicle/catalogue_parts.hpp"
 
 namespace tread {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // An unnamed term that a person keeps as an effect of a catalogue of his own.
+#include "common/vehicle/kept_term.hpp"
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -9,7 +11,6 @@
 
 #include "common/config/scalars.hpp"
 #include "common/vehicle/added_effects.hpp"
-#include "common/vehicle/effect_file.hpp"
 
 namespace tread {
 namespace {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "common/vehicle/model_file.hpp"
+
 #include "common/config/config_reader.hpp"
-#include "common/vehicle/model_document.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,7 @@
 #include "common/config/scalars.hpp"
 #include "common/geometry/degrees.hpp"
 #include "common/vehicle/effect_file.hpp"
+#include "common/vehicle/omni_wheels_file.hpp"
 
 namespace tread {
 namespace {

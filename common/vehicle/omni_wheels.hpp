@@ -66,9 +66,4 @@ class OmniWheels {
 /// Channels of a holonomic base's commands, in the whole range of a kind: wheel1, wheel2, ...
 CommandChannels omniChannels(CommandKind kind, size_t wheels);
 
-/// The list `wheels` of a description: angle and distance of each wheel from the body origin, or
-/// its position; throws ConfigError with file:line.
-/** `inverted`: whether each motor is mounted in reverse; may be null. */
-OmniWheels readOmniWheels(ConfigReader& reader, std::vector<bool>* inverted = nullptr);
-
 }  // namespace tread

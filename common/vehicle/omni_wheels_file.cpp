@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "common/vehicle/omni_wheels_file.hpp"
+
 #include <cmath>
 
 #include "common/config/config_reader.hpp"
 #include "common/geometry/degrees.hpp"
-#include "common/vehicle/omni_wheels.hpp"
 
 namespace tread {
 namespace {

@@ -7,6 +7,7 @@
 #include "common/config/config_reader.hpp"
 #include "common/fence/fence_book.hpp"
 #include "common/geometry/degrees.hpp"
+#include "common/vehicle/omni_wheels_file.hpp"
 
 namespace tread {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 #include "common/bus/shell.hpp"
-#include "common/link/link.hpp"
+#include "common/link/make_link.hpp"
 #include "modules/ins_driver/ins_driver_node.hpp"
 
 int main(int argc, char** argv) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "modules/learner/learner_memory.hpp"
+
 #include "modules/learner/learner_node.hpp"
 
 #include <algorithm>
@@ -7,6 +9,7 @@
 
 #include "common/messages/blank.hpp"
 #include "common/messages/pattern_messages.hpp"
+#include "modules/learner/core/state_text.hpp"
 
 namespace tread::learner {
 namespace {

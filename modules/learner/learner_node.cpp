@@ -10,6 +10,8 @@
 #include "common/messages/blank.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/vehicle/robot_description.hpp"
+#include "modules/learner/core/rules/make_rule.hpp"
+#include "modules/learner/core/state_text.hpp"
 
 namespace tread::learner {
 namespace {

@@ -3,7 +3,7 @@
 #include <iostream>
 
 #include "common/bus/shell.hpp"
-#include "common/link/link.hpp"
+#include "common/link/make_link.hpp"
 #include "modules/lidar_driver/lidar_driver_node.hpp"
 
 namespace {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "common/link/make_link.hpp"
 #include "modules/lidar_driver/carmen/carmen_player.hpp"
 #include "modules/lidar_driver/hokuyo/scip_session.hpp"
 #include "modules/lidar_driver/rplidar/rplidar_session.hpp"

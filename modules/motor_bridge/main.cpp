@@ -3,7 +3,7 @@
 #include <iostream>
 
 #include "common/bus/shell.hpp"
-#include "common/link/link.hpp"
+#include "common/link/make_link.hpp"
 #include "modules/motor_bridge/motor_bridge_node.hpp"
 #include "modules/motor_bridge/real_time.hpp"
 

@@ -8,6 +8,7 @@
 #include "common/messages/blank.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "common/vehicle/robot_description.hpp"
+#include "modules/planner/core/search/swept_footprint.hpp"
 
 namespace tread::planner {
 namespace {

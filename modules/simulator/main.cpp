@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "common/bus/shell.hpp"
+#include "common/link/make_link.hpp"
 #include "modules/simulator/model_vehicle.hpp"
 #include "modules/simulator/simulator_files.hpp"
 #include "modules/simulator/simulator_node.hpp"

@@ -8,6 +8,9 @@
 
 #include <tread/health_t.hpp>
 
+#include "common/link/make_link.hpp"
+#include "common/vehicle/model_file.hpp"
+
 namespace tread::sim {
 namespace {
 

@@ -8,7 +8,8 @@
 #include <sstream>
 
 #include "common/execution/measurement.hpp"
-#include "modules/learner/core/learner.hpp"
+#include "modules/learner/core/rules/make_rule.hpp"
+#include "modules/learner/core/state_text.hpp"
 #include "tests/fuzz/reading.hpp"
 #include "tests/fuzz/targets.hpp"
 #include "tests/helpers.hpp"

@@ -7,6 +7,7 @@
 
 #include "core_rig.hpp"
 #include "modules/identification/core/discovery.hpp"
+#include "modules/identification/core/variables.hpp"
 
 using namespace tread;
 using namespace tread::gap;

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "core_rig.hpp"
+#include "modules/identification/core/current_witness.hpp"
 #include "modules/identification/core/discovery.hpp"
 #include "modules/identification/core/witness.hpp"
 

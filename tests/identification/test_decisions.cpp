@@ -4,7 +4,7 @@
 
 #include "core_rig.hpp"
 #include "modules/identification/core/discovery.hpp"
-#include "modules/identification/core/search.hpp"
+#include "modules/identification/core/search_steps.hpp"
 
 using namespace tread;
 using namespace tread::gap;

@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "core_rig.hpp"
+#include "modules/identification/core/candidates.hpp"
 #include "modules/identification/core/discovery.hpp"
 
 // A search ends: by itself, and when its time is over.

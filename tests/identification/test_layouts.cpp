@@ -5,8 +5,8 @@
 #include <set>
 
 #include "foreign_car.hpp"
+#include "modules/identification/core/candidates.hpp"
 #include "modules/identification/core/discovery.hpp"
-#include "modules/identification/core/screening.hpp"
 #include "synthetic_drive.hpp"
 #include "tests/identification/core_rig.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "modules/identification/core/observations.hpp"
+#include "modules/identification/core/likelihood.hpp"
 
 using namespace tread;
 using namespace tread::gap;

@@ -4,6 +4,7 @@
 
 #include "core_rig.hpp"
 #include "modules/identification/core/moved_terms.hpp"
+#include "modules/identification/core/search_steps.hpp"
 
 // Given terms that have changed, and effects that replace several changes.
 

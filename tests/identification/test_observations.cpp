@@ -4,6 +4,7 @@
 
 #include "core_rig.hpp"
 #include "modules/identification/core/discovery.hpp"
+#include "modules/identification/core/pruning.hpp"
 
 using namespace tread;
 using namespace tread::gap;

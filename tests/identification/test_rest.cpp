@@ -3,9 +3,10 @@
 #include <catch2/catch.hpp>
 
 #include "core_rig.hpp"
+#include "modules/identification/core/adequacy.hpp"
 #include "modules/identification/core/discovery.hpp"
-#include "modules/identification/core/fit.hpp"
 #include "modules/identification/core/screening.hpp"
+#include "modules/identification/core/variables.hpp"
 
 // Further stages: change points, and the test of the residuals.
 

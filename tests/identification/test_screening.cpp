@@ -7,7 +7,9 @@
 #include <tuple>
 
 #include "core_rig.hpp"
-#include "modules/identification/core/screening.hpp"
+#include "modules/identification/core/candidates.hpp"
+#include "modules/identification/core/pruning.hpp"
+#include "modules/identification/core/search_steps.hpp"
 
 using namespace tread;
 using namespace tread::gap;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core_rig.hpp"
+#include "modules/identification/core/adequacy.hpp"
 #include "modules/identification/core/smooth_test.hpp"
 
 // Functions of all conditions together that are in no list of variables.

@@ -3,7 +3,9 @@
 #include <catch2/catch.hpp>
 
 #include "core_rig.hpp"
-#include "modules/identification/core/search.hpp"
+#include "modules/identification/core/lag_structure.hpp"
+#include "modules/identification/core/pruning.hpp"
+#include "modules/identification/core/search_steps.hpp"
 
 using namespace tread;
 using namespace tread::gap;

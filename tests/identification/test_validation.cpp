@@ -6,6 +6,7 @@
 
 #include "core_rig.hpp"
 #include "modules/identification/core/observations.hpp"
+#include "modules/identification/core/pruning.hpp"
 #include "modules/identification/core/screening.hpp"
 
 using namespace tread;

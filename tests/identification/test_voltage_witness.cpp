@@ -4,6 +4,7 @@
 
 #include "core_rig.hpp"
 #include "modules/identification/core/discovery.hpp"
+#include "modules/identification/core/voltage_witness.hpp"
 #include "modules/identification/core/witness.hpp"
 
 using namespace tread;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/bus/virtual_bus.hpp"
+#include "common/link/make_link.hpp"
 #include "common/messages/blank.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "modules/ins_driver/ins_driver_node.hpp"

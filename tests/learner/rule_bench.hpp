@@ -10,7 +10,7 @@
 
 #include "common/geometry/se2.hpp"
 #include "common/pattern/pattern.hpp"
-#include "modules/learner/core/rules/learning_rule.hpp"
+#include "modules/learner/core/rules/make_rule.hpp"
 #include "modules/learner/core/rules/multi_model.hpp"
 #include "tests/learner/samples.hpp"
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "modules/learner/core/state_text.hpp"
 #include "tests/learner/bench.hpp"
 
 using namespace tread;

@@ -5,6 +5,7 @@
 #include <random>
 #include <set>
 
+#include "modules/learner/core/state_text.hpp"
 #include "tests/learner/bench.hpp"
 
 using namespace tread;

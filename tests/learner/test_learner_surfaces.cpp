@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "modules/learner/core/learner.hpp"
+#include "modules/learner/core/state_text.hpp"
 #include "tests/learner/bench.hpp"
 
 using namespace tread;

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <random>
 
-#include "modules/learner/core/learner.hpp"
+#include "modules/learner/core/state_text.hpp"
 #include "tests/fuzz/reading.hpp"
 #include "tests/learner/samples.hpp"
 

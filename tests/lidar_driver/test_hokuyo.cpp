@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "common/link/make_link.hpp"
 #include "modules/lidar_driver/hokuyo/scip_session.hpp"
 #include "modules/lidar_driver/scan_connection.hpp"
 #include "modules/simulator/emulators/hokuyo/scip_emulator.hpp"

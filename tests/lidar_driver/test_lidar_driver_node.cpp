@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/bus/virtual_bus.hpp"
+#include "common/link/make_link.hpp"
 #include "modules/lidar_driver/lidar_driver_node.hpp"
 
 using namespace tread;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "common/link/make_link.hpp"
 #include "modules/lidar_driver/scan_connection.hpp"
 #include "modules/lidar_driver/scan_devices.hpp"
 #include "modules/lidar_driver/sick_cola/cola_session.hpp"

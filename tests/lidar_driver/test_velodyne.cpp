@@ -11,6 +11,7 @@
 #include <fstream>
 #include <random>
 
+#include "common/link/make_link.hpp"
 #include "modules/lidar_driver/scan_connection.hpp"
 #include "modules/lidar_driver/velodyne/velodyne_session.hpp"
 #include "modules/simulator/emulators/velodyne/velodyne_emulator.hpp"

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/bus/virtual_bus.hpp"
+#include "common/link/make_link.hpp"
 #include "common/messages/operator_beacon.hpp"
 #include "modules/motor_bridge/motor_bridge_node.hpp"
 #include "modules/motor_bridge/roboteq/roboteq_connection.hpp"

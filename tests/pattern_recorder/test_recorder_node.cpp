@@ -9,6 +9,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/pattern/pattern_file.hpp"
+#include "common/recordings/average.hpp"
 #include "modules/pattern_recorder/recorder_node.hpp"
 #include "tools/lab/missions/robot_system.hpp"
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "modules/planner/core/search/swept_footprint.hpp"
 #include "tests/helpers.hpp"
 #include "tests/planner/kit/path_bench.hpp"
 #include "tests/planner/kit/vehicle.hpp"

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "modules/planner/core/search/swept_footprint.hpp"
 #include "tests/helpers.hpp"
 #include "tests/planner/kit/path_bench.hpp"
 #include "tests/planner/kit/vehicle.hpp"

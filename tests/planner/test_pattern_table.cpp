@@ -7,7 +7,7 @@
 #include "common/pattern/pattern_file.hpp"
 #include "modules/planner/core/execution/driving_state.hpp"
 #include "modules/planner/core/map/collision_checker.hpp"
-#include "modules/planner/core/search/pattern_table.hpp"
+#include "modules/planner/core/search/swept_footprint.hpp"
 #include "tests/planner/kit/playground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"
 #include "tests/planner/kit/vehicle.hpp"

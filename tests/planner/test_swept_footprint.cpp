@@ -7,6 +7,7 @@
 #include <random>
 
 #include "modules/planner/core/map/collision_checker.hpp"
+#include "modules/planner/core/search/swept_footprint.hpp"
 #include "tests/helpers.hpp"
 #include "tests/planner/kit/random_ground.hpp"
 #include "tests/planner/kit/sample_patterns.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "modules/scan_matching/core/motion_filter.hpp"
-#include "modules/scan_matching/core/registration.hpp"
+#include "modules/scan_matching/core/pose_search.hpp"
 #include "modules/scan_matching/core/scan_matcher.hpp"
 
 namespace tread::scan_matching {

@@ -8,10 +8,10 @@
 
 #include <tread/config_t.hpp>
 
-#include "common/link/link.hpp"
+#include "common/link/make_link.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "common/vehicle/kernel.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tests/system/robot_run.hpp"
 #include "tests/system/worlds.hpp"
 

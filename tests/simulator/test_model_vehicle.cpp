@@ -12,8 +12,9 @@
 
 #include "common/bus/virtual_bus.hpp"
 #include "common/geometry/se3.hpp"
+#include "common/link/make_link.hpp"
 #include "common/vehicle/kernel.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "modules/ins_driver/nmea/nmea_ins.hpp"
 #include "modules/simulator/model_vehicle.hpp"
 #include "modules/simulator/simulator_node.hpp"

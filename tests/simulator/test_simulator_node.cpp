@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/bus/virtual_bus.hpp"
+#include "common/link/make_link.hpp"
 #include "modules/simulator/simulator_node.hpp"
 #include "tests/simulator/shipped_robot.hpp"
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/soundness/core/heading_fit.hpp"
+#include "common/soundness/core/log_validation_motion.hpp"
 #include "common/statistics/statistics.hpp"
 
 namespace tread::gap {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/soundness/core/log_validation.hpp"
+#include "common/soundness/core/lag_table.hpp"
 
 // Whether commands explain the motion, and if not, which recording mistake does.
 //   1. Speeds and turns beyond any ground vehicle are wrong units: degrees for radians, mm for m.

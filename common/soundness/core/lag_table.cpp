@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "common/soundness/core/log_validation.hpp"
+
+#include "common/soundness/core/lag_table.hpp"
 
 #include <algorithm>
 #include <cmath>

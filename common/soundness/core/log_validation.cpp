@@ -7,6 +7,8 @@
 #include <map>
 
 #include "common/soundness/core/command_check.hpp"
+#include "common/soundness/core/log_validation_midway.hpp"
+#include "common/soundness/core/log_validation_motion.hpp"
 #include "common/statistics/statistics.hpp"
 
 namespace tread::gap {

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // Measurements that change their meaning on the way: frozen, of another sign, turned.
+#include "common/soundness/core/log_validation_midway.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "common/soundness/core/command_check.hpp"
+#include "common/soundness/core/log_validation_motion.hpp"
 #include "common/statistics/statistics.hpp"
 
 namespace tread::gap {

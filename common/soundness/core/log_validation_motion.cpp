@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "common/soundness/core/log_validation_motion.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "common/soundness/core/log_validation.hpp"
+#include "common/soundness/core/lag_table.hpp"
 #include "common/statistics/statistics.hpp"
 
 namespace tread::gap {

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "modules/identification/core/adequacy.hpp"
+
+#include "modules/identification/core/candidates.hpp"
 #include "modules/identification/core/discovery.hpp"
 
 #include <algorithm>
@@ -9,7 +12,6 @@
 
 #include "modules/identification/core/observations.hpp"
 #include "modules/identification/core/rest.hpp"
-#include "modules/identification/core/screening.hpp"
 #include "modules/identification/core/smooth_test.hpp"
 
 namespace tread::gap {

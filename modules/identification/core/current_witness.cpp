@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Evidence of the motor currents about found effects.
+// What motor currents say of the effects that were found.
+#include "modules/identification/core/current_witness.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,7 +10,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "common/soundness/core/log_validation.hpp"
+#include "common/soundness/core/lag_table.hpp"
 #include "modules/identification/core/motion_bins.hpp"
 #include "modules/identification/core/witness.hpp"
 #include "modules/identification/core/witness_blocks.hpp"

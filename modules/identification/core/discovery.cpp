@@ -9,11 +9,15 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "common/soundness/core/log_validation.hpp"
+#include "common/soundness/core/lag_table.hpp"
+#include "modules/identification/core/adequacy.hpp"
+#include "modules/identification/core/current_witness.hpp"
 #include "modules/identification/core/end_errors.hpp"
 #include "modules/identification/core/moved_terms.hpp"
 #include "modules/identification/core/rest.hpp"
+#include "modules/identification/core/search_steps.hpp"
 #include "modules/identification/core/unnamed.hpp"
+#include "modules/identification/core/voltage_witness.hpp"
 #include "modules/identification/core/witness.hpp"
 
 namespace tread::gap {

@@ -13,32 +13,8 @@
 // What a drive reveals about a model, and what the residuals still depend on.
 namespace tread::gap {
 
-/// A quantity on which residuals may depend, at each observation.
-struct Variable {
-  std::string name;  ///< "v", "yaw rate", "v x yaw rate", ...
-  std::string unit;
-  Eigen::VectorXd values;  ///< rows x 1
-};
-
-/// All such quantities, from the simulated motion, the INS's roll and pitch, and the time.
-std::vector<Variable> variablesOf(const Observations& data, const ModelDocument& model);
-
-/// Simple conditions of the motion, the commands and the recent past on which the residuals may
-/// depend; speed and yaw rate first.
-std::vector<Variable> inputsOf(const Observations& data, const ModelDocument& model);
-
-/// Tests every channel of the residuals for each variable, with the state's free parameters, and
-/// for any smooth function of all conditions together.
-/** For the strongest remainders it names the effect of the catalogue, on or off, that they resemble
- * most in their channel. They are not attributed to that effect: its size was already free, or a
- * test or a person excluded it. The error probability is `alpha` over all variables, plus half of
- * it for the smooth functions, so that these do not reduce the variables' power; smooth functions
- * are reported for channels without a variable, by their most important condition. If the fitter
- * predicts a rest, both are tested for what exceeds it. */
-Adequacy testAdequacy(const Fitter& fitter, const FitState& state, double alpha, uint64_t seed);
-
-/// The residuals of two models: curves of every channel over the standard variables and over the
-/// unexplained ones, and maps over speed and yaw rate.
+/// Where the residuals of two models are: curves of every channel over variables that a person
+/// looks at and over those of what is unexplained, and maps over speed and yaw rate.
 /** The interval of a curve's cell is from the scatter of its blocks' means; cells that exclude 0
  * after correction for the number of cells (Bonferroni, 5 %) are marked. */
 ResidualAtlas residualAtlas(const Observations& observations, const ModelDocument& before,

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <random>
 
-#include "common/soundness/core/log_validation.hpp"
+#include "common/soundness/core/lag_table.hpp"
 #include "common/statistics/statistics.hpp"
 
 namespace tread::gap {

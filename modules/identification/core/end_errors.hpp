@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "modules/identification/core/finding.hpp"
-#include "modules/identification/core/observations.hpp"
+#include "modules/identification/core/likelihood.hpp"
 
 namespace tread::gap {
 

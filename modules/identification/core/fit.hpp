@@ -11,7 +11,7 @@
 
 #include "common/parallel/parallel_for.hpp"
 #include "common/vehicle/unnamed_terms.hpp"
-#include "modules/identification/core/observations.hpp"
+#include "modules/identification/core/likelihood.hpp"
 
 namespace tread::gap {
 

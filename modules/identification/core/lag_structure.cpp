@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "modules/identification/core/lag_structure.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "modules/identification/core/search.hpp"
+#include "modules/identification/core/pruning.hpp"
 
 namespace tread::gap {
 namespace {

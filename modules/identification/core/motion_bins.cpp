@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include "modules/identification/core/motion_bins.hpp"
 
-#include "modules/identification/core/search.hpp"
+#include "modules/identification/core/pruning.hpp"
 
 namespace tread::gap {
 namespace {

@@ -8,6 +8,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "modules/identification/core/search_steps.hpp"
+
 namespace tread::gap {
 namespace {
 

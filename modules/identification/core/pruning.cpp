@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/identification/core/search.hpp"
+
+#include "modules/identification/core/pruning.hpp"
 
 #include <algorithm>
 #include <cmath>

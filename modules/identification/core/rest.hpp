@@ -10,6 +10,7 @@
 
 #include "modules/identification/core/discovery.hpp"
 #include "modules/identification/core/fit.hpp"
+#include "modules/identification/core/variables.hpp"
 
 // Deviations that a model left unexplained when it was made are no news when they appear again: the
 // rest of a model document is predicted with the model, and has a prior like any other term.

@@ -7,7 +7,7 @@
 
 #include <Eigen/LU>
 
-#include "modules/identification/core/observations.hpp"
+#include "modules/identification/core/likelihood.hpp"
 
 namespace tread::gap {
 namespace {

@@ -8,6 +8,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "modules/identification/core/candidates.hpp"
+
 namespace tread::gap {
 namespace {
 

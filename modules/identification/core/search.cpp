@@ -6,8 +6,11 @@
 #include <cmath>
 
 #include "common/soundness/core/log_validation.hpp"
+#include "modules/identification/core/candidates.hpp"
+#include "modules/identification/core/lag_structure.hpp"
 #include "modules/identification/core/moved_terms.hpp"
 #include "modules/identification/core/rest.hpp"
+#include "modules/identification/core/search_steps.hpp"
 #include "modules/identification/core/unnamed.hpp"
 
 namespace tread::gap {

@@ -2,14 +2,17 @@
 // Copyright (c) 2026 The Tread authors
 // Steps of a search beside adding and removing: taking in what a person has accepted, one effect in
 // the place of two, and the proof on driving that sizes were not fitted to.
+#include "modules/identification/core/search_steps.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <set>
 
+#include "modules/identification/core/candidates.hpp"
 #include "modules/identification/core/end_errors.hpp"
-#include "modules/identification/core/search.hpp"
+#include "modules/identification/core/pruning.hpp"
 #include "modules/identification/core/witness.hpp"
 
 namespace tread::gap {

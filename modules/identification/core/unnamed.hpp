@@ -9,7 +9,7 @@
 
 #include "modules/identification/core/finding.hpp"
 #include "modules/identification/core/fit.hpp"
-#include "modules/identification/core/search.hpp"
+#include "modules/identification/core/pruning.hpp"
 
 // A remainder that no effect explains but that has a shape becomes a term of the model: a curve
 // over one condition known to the kernel during simulation, times a second one.

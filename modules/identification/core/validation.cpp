@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "modules/identification/core/validation.hpp"
+
 #include "common/statistics/statistics.hpp"
 #include "modules/identification/core/rest.hpp"
 #include "modules/identification/core/screening.hpp"

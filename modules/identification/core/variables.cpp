@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // Quantities on which residuals may depend.
+#include "modules/identification/core/variables.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "modules/identification/core/discovery.hpp"
-#include "modules/identification/core/observations.hpp"
 
 namespace tread::gap {
 namespace {

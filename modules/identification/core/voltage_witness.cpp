@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// Evidence of the battery voltage about found effects.
+// What the battery voltage says of the effects that were found.
+#include "modules/identification/core/voltage_witness.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>

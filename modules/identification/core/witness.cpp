@@ -7,8 +7,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "common/soundness/core/log_validation.hpp"
-#include "modules/identification/core/search.hpp"
+#include "common/soundness/core/lag_table.hpp"
+#include "modules/identification/core/pruning.hpp"
 #include "modules/identification/core/witness_blocks.hpp"
 
 namespace tread::gap {

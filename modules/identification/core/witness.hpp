@@ -23,21 +23,4 @@ namespace tread::gap {
 std::map<std::string, WheelWitness> wheelWitnesses(const Fitter& fitter, const FitState& state,
                                                    const std::vector<std::string>& effects);
 
-/// Rise of the motor currents with each effect, beyond their usual dependence on the tracks' speed,
-/// its change and dry friction; with 95 % intervals over blocks.
-/** A load that reduces the speed draws current; a weak drive or slipping tracks do not. Only
- * torques count, so `currents` must be those of the motors, not of the battery. No entry without
- * currents, for currents that do not follow the motion (stuck, cut off, of another machine), for
- * lags and other effects on changes only, for the INS, for lateral motion, and for an effect that
- * resembles the usual dependence (a factor on all motion, a dry friction). */
-std::map<std::string, CurrentWitness> currentWitnesses(const Fitter& fitter, const FitState& state,
-                                                       const std::vector<std::string>& effects);
-
-/// Share of each intermittent effect that the battery voltage also shows; with 95 % intervals over
-/// blocks.
-/** A motor's speed is proportional to its voltage. No entry without a measured voltage, and for
- * effects that are not one factor on the motion that changes between blocks. */
-std::map<std::string, VoltageWitness> voltageWitnesses(const Fitter& fitter, const FitState& state,
-                                                       const std::vector<std::string>& effects);
-
 }  // namespace tread::gap

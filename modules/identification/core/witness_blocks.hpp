@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "modules/identification/core/observations.hpp"
+#include "modules/identification/core/likelihood.hpp"
 
 namespace tread::gap {
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "modules/learner/core/rules/make_rule.hpp"
+
 namespace tread::learner {
 namespace {
 

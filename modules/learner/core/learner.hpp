@@ -155,16 +155,4 @@ struct LearnerState {
   std::vector<ExecutionKey> handled;  ///< the most recently handled executions, oldest first
 };
 
-/// The state as text, a line each; restores bit for bit. Includes the rule's name for human
-/// readers.
-/** Commands, classes and names are not included: they are those of the shipped set, which is
- * identified by checksum. */
-std::string formatState(const LearnerState& state, const PatternSet& shipped,
-                        const RuleConfig& config);
-
-/// The state from its text; nullopt and one clear line in `why` if it is damaged or of another
-/// shipped set.
-std::optional<LearnerState> parseState(const std::string& text, const PatternSet& shipped,
-                                       std::string& why);
-
 }  // namespace tread::learner

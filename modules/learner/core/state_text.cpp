@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/learner/core/learner.hpp"
+
+#include "modules/learner/core/state_text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,6 +9,8 @@
 #include <cstdint>
 #include <sstream>
 #include <system_error>
+
+#include "modules/learner/core/rules/make_rule.hpp"
 
 namespace tread::learner {
 namespace {

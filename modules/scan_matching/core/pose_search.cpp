@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "modules/scan_matching/core/pose_search.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/LU>
-
-#include "modules/scan_matching/core/registration.hpp"
 
 namespace tread::scan_matching {
 namespace {

@@ -55,9 +55,4 @@ Registration registerScan(const std::vector<ScanPoint>& points, const LocalMap& 
                           const Pose2& start, const PosePrior& prior,
                           const Eigen::Vector2d& p_body_sensor, const RegistrationConfig& config);
 
-/// The pose with most returns on points of the map, within a window around the prior of 2.5
-/// standard deviations, at most 1.5 m and 0.6 rad.
-/** Source: Olson 2009, correlative scan matching, in two resolutions. */
-Pose2 searchPose(const std::vector<ScanPoint>& points, const LocalMap& map, const PosePrior& prior);
-
 }  // namespace tread::scan_matching

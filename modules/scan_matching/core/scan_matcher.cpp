@@ -8,6 +8,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "modules/scan_matching/core/pose_search.hpp"
+
 namespace tread::scan_matching {
 namespace {
 

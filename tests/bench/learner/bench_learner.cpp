@@ -12,6 +12,7 @@
 
 #include "common/vehicle/kernel.hpp"
 #include "modules/learner/core/learner.hpp"
+#include "modules/learner/core/rules/make_rule.hpp"
 
 namespace {
 

@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/config/command_line.hpp"
+#include "common/link/make_link.hpp"
 #include "common/messages/operator_beacon.hpp"
 #include "modules/simulator/simulator_node.hpp"
 #include "tests/motor_bridge/endless_planner.hpp"

@@ -9,7 +9,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "common/grid/grid.hpp"
+#include "common/grid/clearance.hpp"
 
 namespace tread::bench {
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/grid/clearance.hpp"
 #include "tests/common/grid/worlds.hpp"
 
 using namespace tread;

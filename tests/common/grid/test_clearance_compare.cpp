@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "common/grid/grid.hpp"
+#include "common/grid/clearance.hpp"
 #include "tests/common/grid/worlds.hpp"
 #include "tests/helpers.hpp"
 

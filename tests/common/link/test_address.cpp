@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "common/link/link.hpp"
+#include "common/link/make_link.hpp"
 
 namespace tread {
 

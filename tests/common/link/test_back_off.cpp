@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/link/descriptor_link.hpp"
-#include "common/link/link.hpp"
+#include "common/link/make_link.hpp"
 
 namespace tread {
 

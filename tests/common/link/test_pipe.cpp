@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "common/link/link.hpp"
+#include "common/link/make_link.hpp"
 #include "link_helpers.hpp"
 
 namespace tread {

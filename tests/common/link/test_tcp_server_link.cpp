@@ -2,7 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "common/link/link.hpp"
+#include "common/link/make_link.hpp"
 #include "tests/common/link/link_helpers.hpp"
 
 namespace tread {

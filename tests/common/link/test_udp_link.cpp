@@ -6,7 +6,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "common/link/link.hpp"
+#include "common/link/make_link.hpp"
 #include "link_helpers.hpp"
 
 namespace tread {

@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "common/recordings/average.hpp"
 #include "tests/common/recordings/samples.hpp"
 #include "tests/helpers.hpp"
 

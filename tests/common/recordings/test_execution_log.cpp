@@ -6,10 +6,10 @@
 #include <cstdlib>
 
 #include "common/recordings/csv_table.hpp"
-#include "common/recordings/recordings.hpp"
+#include "common/recordings/execution_log.hpp"
 #include "tests/common/recordings/synthetic_drives.hpp"
 #include "tests/helpers.hpp"
-#include "tools/lab/replay/learner_replay.hpp"
+#include "tools/lab/replay/learner_report.hpp"
 
 using namespace tread;
 using namespace tread::recordings;

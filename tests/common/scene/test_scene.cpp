@@ -9,6 +9,7 @@
 #include "common/drive/drive_log.hpp"
 #include "common/messages/blank.hpp"
 #include "common/scene/scene.hpp"
+#include "common/scene/scene_schemas.hpp"
 
 using namespace tread;
 

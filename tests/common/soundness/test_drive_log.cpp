@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "common/recordings/imported_log.hpp"
+#include "common/recordings/recorded_drive.hpp"
 #include "common/report/page.hpp"
 #include "common/soundness/drive_log.hpp"
 #include "common/store/store.hpp"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "common/soundness/core/log_validation.hpp"
+#include "common/soundness/core/lag_table.hpp"
 
 using namespace tread;
 using namespace tread::gap;

@@ -9,6 +9,7 @@
 #include "common/log/event_log.hpp"
 #include "common/messages/blank.hpp"
 #include "common/types/message_json.hpp"
+#include "common/types/tread_types.hpp"
 
 using namespace tread;
 

@@ -13,8 +13,9 @@
 
 #include "common/config/config_reader.hpp"
 #include "common/vehicle/added_effects.hpp"
-#include "common/vehicle/effect_file.hpp"
+#include "common/vehicle/kept_term.hpp"
 #include "common/vehicle/kernel.hpp"
+#include "common/vehicle/model_file.hpp"
 
 using namespace tread;
 

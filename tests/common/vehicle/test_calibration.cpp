@@ -8,7 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/vehicle/kernel.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 
 using namespace tread;
 

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/config/config_reader.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 
 using namespace tread;
 

@@ -7,7 +7,7 @@
 
 #include "common/config/config_reader.hpp"
 #include "common/vehicle/kernel.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 
 using namespace tread;
 

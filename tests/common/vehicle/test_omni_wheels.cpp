@@ -7,8 +7,9 @@
 #include "common/config/config_reader.hpp"
 #include "common/geometry/degrees.hpp"
 #include "common/vehicle/kernel.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "common/vehicle/omni_kernel.hpp"
+#include "common/vehicle/omni_wheels_file.hpp"
 #include "common/vehicle/robot_description.hpp"
 
 using namespace tread;

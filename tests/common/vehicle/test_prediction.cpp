@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 
 #include "common/vehicle/kernel.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 
 using namespace tread;
 

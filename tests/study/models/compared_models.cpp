@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "modules/identification/core/screening.hpp"
+#include "modules/identification/core/candidates.hpp"
 #include "tests/study/models/twist_dictionary.hpp"
 #include "tests/study/rivals/rivals.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "common/store/output_file.hpp"
 #include "common/store/store.hpp"
-#include "tools/lab/gap/report/report.hpp"
+#include "tools/lab/gap/report/sections.hpp"
 
 namespace tread::gap {
 

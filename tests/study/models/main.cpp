@@ -13,7 +13,7 @@
 #include "common/config/command_line.hpp"
 #include "common/config/outputs.hpp"
 #include "common/soundness/drive_log.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tests/study/models/comparison_output.hpp"
 #include "tools/lab/gap/report/report.hpp"
 

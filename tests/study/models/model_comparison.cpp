@@ -8,7 +8,7 @@
 
 #include "modules/identification/core/discovery.hpp"
 #include "modules/identification/core/end_errors.hpp"
-#include "modules/identification/core/search.hpp"
+#include "modules/identification/core/search_steps.hpp"
 
 namespace tread::gap {
 namespace {

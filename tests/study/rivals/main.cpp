@@ -13,6 +13,7 @@
 #include "common/config/command_line.hpp"
 #include "common/config/problem_words.hpp"
 #include "common/soundness/drive_log.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tests/study/rivals/rivals.hpp"
 
 namespace {

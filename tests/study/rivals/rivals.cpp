@@ -8,6 +8,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "modules/identification/core/candidates.hpp"
 #include "modules/identification/core/search.hpp"
 
 namespace tread::rivals {

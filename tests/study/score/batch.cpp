@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tests/study/score/child.hpp"
 
 namespace fs = std::filesystem;

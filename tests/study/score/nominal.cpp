@@ -14,7 +14,7 @@
 
 #include "common/report/page.hpp"
 #include "common/store/store.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tests/study/score/child.hpp"
 #include "tests/study/score/study.hpp"
 #include "tests/study/score/suites.hpp"

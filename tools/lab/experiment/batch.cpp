@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/lab/experiment/tables.hpp"
+
+#include "tools/lab/experiment/batch.hpp"
 
 #include <algorithm>
 #include <chrono>

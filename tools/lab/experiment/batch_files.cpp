@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/experiment/batch_files.hpp"
+
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
@@ -9,7 +11,10 @@
 #include "common/report/text.hpp"
 #include "common/statistics/statistics.hpp"
 #include "common/store/store.hpp"
-#include "tools/lab/experiment/tables.hpp"
+#include "tools/lab/experiment/figures.hpp"
+#include "tools/lab/experiment/first_executions_text.hpp"
+#include "tools/lab/experiment/key_figures.hpp"
+#include "tools/lab/experiment/text_tables.hpp"
 
 namespace tread::experiment {
 

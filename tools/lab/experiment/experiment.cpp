@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/experiment/experiment.hpp"
+
 #include "tools/lab/experiment/tables.hpp"
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 
 #include "common/parallel/parallel_for.hpp"
 #include "tools/lab/experiment/rival_rule.hpp"
-#include "tools/lab/experiment/trials.hpp"
 
 namespace tread::experiment {
 namespace {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 
+#include "tools/lab/experiment/figures.hpp"
+
 #include <algorithm>
 #include <map>
 

@@ -43,8 +43,4 @@ FirstExecutions driveFirstExecutions(Methods& methods, const TrialSite& site);
 struct Tables;
 struct Setting;
 
-/// By method: shares of ends inside the 90 % regions, errors over all patterns, and the loss on
-/// unchanged ground.
-std::string textOfFirstExecutions(const Tables& tables, const Setting& setting);
-
 }  // namespace tread::experiment

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/experiment/first_executions_text.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/experiment/ground.hpp"
+
+#include "common/recordings/average.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tools/lab/experiment/trials.hpp"
 
 #include <algorithm>
@@ -10,7 +14,6 @@
 
 #include "common/config/config_reader.hpp"
 #include "common/vehicle/kernel.hpp"
-#include "common/vehicle/model_document.hpp"
 
 namespace tread::experiment {
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/experiment/key_figures.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "common/report/text.hpp"
 #include "common/statistics/statistics.hpp"
-#include "tools/lab/experiment/tables.hpp"
 
 namespace tread::experiment {
 namespace {

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/experiment/methods.hpp"
+
 #include "tools/lab/experiment/trials.hpp"
 
 #include <algorithm>
 
+#include "modules/learner/core/rules/make_rule.hpp"
+#include "tools/lab/experiment/adaptation/tuning.hpp"
 #include "tools/lab/experiment/rival_rule.hpp"
 
 namespace tread::experiment {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "tools/lab/experiment/adaptation/tuning.hpp"
+
 namespace tread::experiment {
 namespace {
 

@@ -8,61 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "tools/lab/experiment/first_executions.hpp"
-#include "tools/lab/experiment/trials.hpp"
+#include "tools/lab/experiment/experiment.hpp"
 
 namespace tread::experiment {
-
-/// Settings of an experiment.
-struct ExperimentSettings {
-  std::vector<std::string> rules;  ///< names of methods, see methodOf()
-  learner::RuleConfig config;      ///< of all rules
-  std::vector<Sequence> sequences;
-  int64_t repetitions = 2000;  ///< of a transition; each drives all sequences once
-  int64_t excitations = 40;    ///< excitation runs of a transition, which share the repetitions
-  int64_t excitation = 200;    ///< executions on each surface of one
-  uint64_t seed = 1;
-  int threads = 1;  ///< results do not depend on it
-  bool change_inside = false;
-  std::vector<int> all_patterns_after{1, 2, 3, 10};  ///< executions, ascending
-  size_t development = 30;                           ///< executions of Figure 4
-  size_t drift = 300;                                ///< executions of the drift's figure
-
-  size_t ruleIndex(const std::string& name) const;  ///< rules.size() if absent
-};
-
-/// One ordered pair of surfaces.
-struct TransitionErrors {
-  size_t from = 0;
-  size_t to = 0;
-  SequenceErrors sequences;
-  std::vector<MethodErrors> all_patterns;  ///< by all_patterns_after
-  std::vector<MethodErrors> development;   ///< by execution
-  FirstExecutions first;                   ///< of random patterns
-  /// remembered surfaces before the transition, mean over excitation runs
-  std::vector<double> remembered;
-};
-
-/// Section V on one set of recordings.
-struct ExperimentErrors {
-  std::vector<TransitionErrors> transitions;  ///< from each surface to each other one, in order
-  std::vector<MethodErrors> unchanged;        ///< by surface, in the long run, with random patterns
-  std::vector<MethodErrors> unchanged_sequences;  ///< the same over the test sequences
-  std::vector<FirstExecutions> unchanged_first;   ///< by surface
-  /// Width of the pattern `watched` by rule, over executions on unchanged ground; see driveDrift().
-  std::vector<std::vector<double>> drift;
-};
-
-/// The widest pattern that no sequence executes; nullopt if all are executed or straight.
-std::optional<size_t> neverExecuted(const TrialGround& ground,
-                                    const std::vector<Sequence>& sequences);
-
-/// Progress callback (done, total), called from the threads, one at a time.
-using Progress = std::function<void(size_t done, size_t all)>;
-
-/// Runs all trials. Results do not depend on the number of threads.
-ExperimentErrors runExperiment(const std::vector<TrialGround>& grounds,
-                               const ExperimentSettings& settings, const Progress& progress);
 
 inline constexpr const char* kPosition = "position";
 inline constexpr const char* kOrientation = "orientation";
@@ -171,23 +119,6 @@ struct Setting {
   size_t sets = 1;
 };
 
-/// Groups of rules that fit into one table: the paper's columns a, b, c, d first, then the others.
-std::vector<std::vector<std::string>> columnGroups(const Setting& setting);
-
-/// Table I in the paper's layout: rows from, groups of columns to; a, b, c, d as in the paper,
-/// further rules in additional tables; the paper's numbers below.
-std::string textOfErrors(const Tables& tables, const Setting& setting);
-/// Table II: collective compared with single as in the paper, then every other rule.
-std::string textOfReductions(const Tables& tables, const Setting& setting);
-/// RMS deviations and signs, also of single sets of recordings; empty if there is nothing to
-/// compare.
-std::string textOfAgreement(const Tables& tables, const Setting& setting,
-                            const std::vector<Tables>& sets);
-/// Medians and worst cases by rule: reductions, all patterns, unchanged ground; for several sets of
-/// recordings means and standard deviations.
-std::string textOfKeyFigures(const Tables& tables, const Setting& setting,
-                             const std::vector<Tables>& sets);
-
 /// Options of the command line.
 struct Request {
   std::string world;                   ///< file; empty: `recordings` is used
@@ -230,43 +161,5 @@ struct Batch {
   std::vector<Variant> variants;     ///< if the request has `extras`
   double seconds = 0.0;              ///< of the trials, without recording
 };
-
-/// Runs everything; throws an exception with one line on failure. progress(done share, 0..1).
-Batch runBatch(const Request& request, const std::function<void(double)>& progress);
-
-/// Number of surfaces that methods remember after an excitation run; empty if none has a memory.
-std::string textOfRemembered(const Batch& batch);
-
-/// Key figures of the variants.
-std::string textOfVariants(const Batch& batch);
-
-/// Width of the never executed pattern after 100, 200 and 300 executions on unchanged ground.
-std::string textOfDrift(const Batch& batch);
-
-/// Name of the pattern watched for drift; empty if there is none.
-std::string watchedPattern(const Batch& batch);
-
-/// Writes all files into a folder, which is created if needed.
-void writeBatch(const std::string& folder, const Batch& batch);
-
-/// The transition of the paper's figures: cinder to grass if it exists, else the one with the
-/// largest error without learning. An index into errors.transitions.
-size_t transitionOfFigures(const ExperimentErrors& errors, const ExperimentSettings& settings,
-                           const std::vector<TrialGround>& grounds);
-
-/// For instance "cinder to grass".
-std::string wordsOf(const TransitionErrors& transition, const std::vector<TrialGround>& grounds);
-
-/// Figure 4: mean error and its standard deviation over executions without a reset, by rule (PNG).
-void drawDevelopment(const std::string& path, const TransitionErrors& transition,
-                     const ExperimentSettings& settings, const std::string& words);
-
-/// Figure 5: histogram of the errors over the test sequences, by rule (PNG).
-void drawDistributions(const std::string& path, const TransitionErrors& transition,
-                       const ExperimentSettings& settings, const std::string& words);
-
-/// Predicted width of a never executed pattern over executions on unchanged ground, by rule (PNG).
-void drawDrift(const std::string& path, const std::vector<std::vector<double>>& drift,
-               const ExperimentSettings& settings, const std::string& watched);
 
 }  // namespace tread::experiment

@@ -18,97 +18,9 @@
 #include "common/vehicle/model.hpp"
 #include "modules/learner/core/rules/learning_rule.hpp"
 #include "modules/learner/core/scaling.hpp"
-
-namespace tread::adaptation {
-class Rival;
-}
+#include "tools/lab/experiment/methods.hpp"
 
 namespace tread::experiment {
-
-/// Rivals by name, in their initial state.
-using Rivals = std::map<std::string, std::unique_ptr<adaptation::Rival>>;
-
-/// End of one execution, with its path length and turn.
-struct ExecutionEnd {
-  Pose2 pose;            ///< last pose relative to the start, yaw unwrapped
-  double metres = 0.0;   ///< length of the path from the start through all poses
-  double radians = 0.0;  ///< absolute net yaw
-};
-
-/// All executions of one pattern on one surface (RP_S), contiguous in memory.
-class Executions {
- public:
-  /// Each has `samples` poses.
-  Executions(const std::vector<recordings::Execution>& executions, size_t samples);
-
-  size_t size() const { return ends_.size(); }
-  size_t samples() const { return samples_; }
-  learner::ConstTrajectory of(size_t i) const {
-    return {numbers_.data() + 3 * samples_ * i, static_cast<Eigen::Index>(samples_), 3};
-  }
-  const ExecutionEnd& endOf(size_t i) const { return ends_[i]; }
-
- private:
-  size_t samples_;
-  std::vector<double> numbers_;
-  std::vector<ExecutionEnd> ends_;
-};
-
-/// One surface of an experiment. Test recordings are never averaged nor driven before.
-struct TrialGround {
-  std::string surface;
-  PatternSet averaged;               ///< IP_S, from one half of the recordings
-  std::vector<Pose2> averaged_ends;  ///< its ends, by pattern
-  std::vector<Executions> known;     ///< the same half, used by excitation runs
-  std::vector<Executions> tests;     ///< the other half
-};
-
-ExecutionEnd executionEnd(const learner::ConstTrajectory& trajectory);
-
-/// Splits the recordings of each pattern in two halves, averages one by surface, and arranges both
-/// for the experiment.
-/** Neighbours stay together: recordings from drives come in pairs from one step, which share a
- * local mean. Throws recordings::RecordingError with one line if a pattern has fewer than eight
- * valid executions or there is only one surface. Invalid executions are left out; `notes` gets a
- * line for each, and one if recordings are few. */
-std::vector<TrialGround> groundsOf(const recordings::PatternRecordings& recorded,
-                                   std::vector<std::string>& notes);
-
-/// One surface of a world: the vehicle's model on it.
-struct WorldSurface {
-  std::string name;
-  VehicleModel model;
-};
-
-/// A pattern to execute: commands per sample.
-struct WorldPattern {
-  std::string name;
-  std::vector<TrackCommand> commands;
-};
-
-/// A simulated vehicle on several surfaces, for making recordings (config/worlds, kind:
-/// transitions).
-struct TransitionWorld {
-  std::string name;
-  bool paper_reference = false;  ///< print the paper's numbers for surfaces that it has
-  TrackCommand entry{1.0, 1.0};  ///< [1] each pattern begins in the steady motion of this command
-  double period = 0.05;          ///< [s] a sample
-  int64_t recordings = 300;      ///< executions of each pattern on each surface
-  double position_noise = 0.0;   ///< [m] standard deviation of the INS for x and y of each sample
-  double yaw_noise = 0.0;        ///< [rad]
-  std::vector<WorldPattern> patterns;
-  std::vector<std::vector<std::string>> sequences;  ///< names of patterns
-  std::vector<WorldSurface> surfaces;
-};
-
-/// Throws ConfigError with one line "file:line: error; allowed values".
-TransitionWorld readTransitionWorld(const std::string& path);
-/// The same from text; `name` replaces the file in messages.
-TransitionWorld parseTransitionWorld(const std::string& text, const std::string& name);
-
-/// Executes each pattern on each surface and measures it. Each command is held `length` times as
-/// long. The same seed gives the same recordings.
-recordings::PatternRecordings record(const TransitionWorld& world, uint64_t seed, int length = 1);
 
 /// A random index below `count`, the same on every platform.
 inline size_t drawIndex(std::mt19937_64& random, size_t count) {
@@ -127,85 +39,8 @@ inline uint64_t seedOf(std::initializer_list<uint64_t> numbers) {
   return state;
 }
 
-/// Surfaces that a method has driven on before a transition from surface A to surface B.
-enum class TrialHistory {
-  kNone,        ///< none: the initial rule with IP_A (the paper's protocol)
-  kHome,        ///< A
-  kUnmet,       ///< all but B, A last; for unchanged ground (A = B) all others
-  kRemembered,  ///< all surfaces, A last
-};
-
-/// A compared method: a learning rule or a rival (adaptation/rivals.hpp) with a history. Without a
-/// rule it is the omniscient one.
-struct Method {
-  std::string rule;
-  TrialHistory history = TrialHistory::kNone;
-};
-
 /// The correct set from the beginning, without learning: column d of the paper's Table I.
 inline constexpr const char* kOmniscient = "omniscient";
-
-/// RULE, RULE_home, RULE_unmet or RULE_remembered, or kOmniscient; `off` learns nothing, so it has
-/// no history. nullopt for other names.
-std::optional<Method> methodOf(const std::string& name);
-/// Names of all methods.
-std::vector<std::string> methodNames();
-/// The methods compared by default.
-std::vector<std::string> defaultMethods();
-
-/// Surfaces of an excitation run from A to B, in driving order: A last, the others shuffled.
-std::vector<size_t> excitationOrder(TrialHistory history, size_t surfaces, size_t from, size_t to,
-                                    std::mt19937_64& random);
-
-/// An excitation run: a number of executions of random patterns on each of its surfaces.
-struct ExcitationRun {
-  int64_t executions = 200;
-  uint64_t seed = 1;
-};
-
-/// All methods that learn: learning rules, then rivals.
-std::vector<std::string> learnerNames();
-
-/// The compared methods, prepared for a transition from surface A to surface B.
-/** Each starts with IP_A and executes the excitation run of its history. A = B is unchanged ground.
- */
-class Methods {
- public:
-  Methods(const std::vector<std::string>& names, const learner::RuleConfig& config,
-          const std::vector<TrialGround>& grounds, size_t from, size_t to,
-          const ExcitationRun& excitation);
-  /// The same with rivals already tuned for this transition.
-  Methods(const std::vector<std::string>& names, const learner::RuleConfig& config,
-          const std::vector<TrialGround>& grounds, size_t from, size_t to,
-          const ExcitationRun& excitation, const Rivals& rivals);
-
-  size_t size() const { return all_.size(); }
-  /// Resets all methods to the state before the transition; learning rules do not allocate.
-  void reset();
-  Pose2 predictEnd(size_t i, size_t pattern) const {
-    const State& one = all_[i];
-    return one.fixed != nullptr ? (*one.fixed)[pattern] : one.now->predictEnd(pattern);
-  }
-  /// Covariance of predictEnd(); nullopt if the method has none.
-  std::optional<PoseCovariance> endCovariance(size_t i, size_t pattern) const {
-    return all_[i].now ? all_[i].now->endCovariance(pattern) : std::nullopt;
-  }
-  void learn(size_t i, size_t pattern, const learner::ConstTrajectory& measured) {
-    if (all_[i].now) all_[i].now->learn(pattern, measured, note_);
-  }
-  /// Number of surfaces remembered before the transition; negative = no memory.
-  int remembered(size_t i) const { return all_[i].start ? all_[i].start->remembered() : -1; }
-
- private:
-  struct State {
-    const std::vector<Pose2>* fixed = nullptr;  ///< constant predictions
-    std::unique_ptr<learner::LearningRule> start;
-    std::unique_ptr<learner::LearningRule> now;
-  };
-
-  std::vector<State> all_;
-  learner::RuleNote note_;
-};
 
 /// A value with its 99 % interval.
 struct Estimate {
@@ -269,15 +104,6 @@ struct Histogram {
 
 /// Student's 99.5 % quantile for means of `samples` values.
 double student99(size_t samples);
-
-/// Pattern indices in order of execution.
-using Sequence = std::vector<size_t>;
-
-/// Default test sequences: for the two patterns with the most distant ends, one twice followed by
-/// the other, and the reverse.
-/** Patterns that move in one dimension only are avoided if two others exist. An angle counts as its
- * arc at the mean distance of all ends. Empty if there is only one pattern. */
-std::vector<Sequence> sequencesFor(const PatternSet& set);
 
 /// Errors of all rules, per driven metre and per turned radian.
 struct MethodErrors {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/lab/gap/questions.hpp"
+#include "tools/lab/gap/compare.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,10 @@
 #include "modules/identification/core/end_errors.hpp"
 #include "modules/identification/core/observations.hpp"
 #include "modules/identification/core/search.hpp"
+#include "tools/lab/gap/repeat.hpp"
 #include "tools/lab/gap/report/report.hpp"
+#include "tools/lab/gap/report/words.hpp"
+#include "tools/lab/gap/what_if.hpp"
 
 namespace tread::gap {
 namespace {

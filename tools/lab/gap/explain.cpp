@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/gap/explain.hpp"
+
 #include "tools/lab/gap/report/report.hpp"
 
 #include <algorithm>
 
 #include "common/config/scalars.hpp"
 #include "common/report/text.hpp"
+#include "tools/lab/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {

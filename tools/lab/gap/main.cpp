@@ -16,12 +16,17 @@
 #include "common/soundness/drive_log.hpp"
 #include "common/store/output_file.hpp"
 #include "common/store/store.hpp"
-#include "common/vehicle/effect_file.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/kept_term.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "modules/identification/core/discovery.hpp"
-#include "tools/lab/gap/commands.hpp"
-#include "tools/lab/gap/questions.hpp"
-#include "tools/lab/gap/report/report.hpp"
+#include "tools/lab/gap/compare.hpp"
+#include "tools/lab/gap/explain.hpp"
+#include "tools/lab/gap/question_commands.hpp"
+#include "tools/lab/gap/repeat.hpp"
+#include "tools/lab/gap/report/find_output.hpp"
+#include "tools/lab/gap/report/headline.hpp"
+#include "tools/lab/gap/watch_command.hpp"
+#include "tools/lab/gap/what_if.hpp"
 
 namespace tread::gap {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/lab/gap/questions.hpp"
+
+#include "tools/lab/gap/manoeuvres.hpp"
 
 #include <algorithm>
 #include <cmath>

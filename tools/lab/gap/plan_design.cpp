@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/lab/gap/questions.hpp"
+
+#include "tools/lab/gap/plan_design.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +11,10 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include "modules/identification/core/candidates.hpp"
 #include "modules/identification/core/fit.hpp"
-#include "modules/identification/core/search.hpp"
+#include "modules/identification/core/pruning.hpp"
+#include "tools/lab/gap/what_if.hpp"
 
 namespace tread::gap {
 namespace {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/gap/question_commands.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -15,10 +17,13 @@
 #include "common/soundness/drive_log.hpp"
 #include "common/store/store.hpp"
 #include "common/vehicle/effect_file.hpp"
-#include "common/vehicle/model_document.hpp"
-#include "tools/lab/gap/commands.hpp"
-#include "tools/lab/gap/questions.hpp"
+#include "common/vehicle/model_file.hpp"
+#include "tools/lab/gap/compare.hpp"
+#include "tools/lab/gap/manoeuvres.hpp"
+#include "tools/lab/gap/plan_design.hpp"
+#include "tools/lab/gap/repeat.hpp"
 #include "tools/lab/gap/report/report.hpp"
+#include "tools/lab/gap/report/words.hpp"
 #include "tools/robot/patterns/recipe.hpp"
 
 namespace tread::gap {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/gap/repeat.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,8 +11,9 @@
 #include "modules/identification/core/discovery.hpp"
 #include "modules/identification/core/observations.hpp"
 #include "modules/identification/core/search.hpp"
-#include "tools/lab/gap/questions.hpp"
+#include "tools/lab/gap/compare.hpp"
 #include "tools/lab/gap/report/report.hpp"
+#include "tools/lab/gap/what_if.hpp"
 
 namespace tread::gap {
 namespace {

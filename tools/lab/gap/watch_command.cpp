@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/gap/watch_command.hpp"
+
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -9,7 +11,7 @@
 #include "common/bus/key_option.hpp"
 #include "common/bus/shell.hpp"
 #include "common/seal/key_file.hpp"
-#include "tools/lab/gap/commands.hpp"
+#include "tools/lab/gap/question_commands.hpp"
 #include "tools/lab/gap/watch.hpp"
 #include "tools/lab/gap/watch_node.hpp"
 

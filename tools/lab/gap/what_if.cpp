@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/lab/gap/questions.hpp"
+
+#include "tools/lab/gap/what_if.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +9,13 @@
 
 #include "common/config/scalars.hpp"
 #include "common/report/page.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "modules/identification/core/end_errors.hpp"
 #include "modules/identification/core/observations.hpp"
-#include "tools/lab/gap/report/report.hpp"
+#include "tools/lab/gap/compare.hpp"
+#include "tools/lab/gap/manoeuvres.hpp"
+#include "tools/lab/gap/repeat.hpp"
+#include "tools/lab/gap/report/pictures.hpp"
 
 namespace tread::gap {
 

@@ -11,8 +11,12 @@
 #include "common/config/outputs.hpp"
 #include "common/config/scalars.hpp"
 #include "common/report/text.hpp"
+#include "modules/learner/core/rules/make_rule.hpp"
+#include "tools/lab/missions/comparison_report.hpp"
 #include "tools/lab/missions/given_worlds.hpp"
-#include "tools/lab/missions/report.hpp"
+#include "tools/lab/missions/mission_runner.hpp"
+#include "tools/lab/missions/mission_world.hpp"
+#include "tools/lab/missions/speed_comparison.hpp"
 #include "tools/lab/missions/world_report.hpp"
 
 namespace {

@@ -52,11 +52,6 @@ inline constexpr double kShortestLine = 25.0;
 MissionWorld makeMissionWorld(uint64_t seed, const FootprintSize& robot,
                               double shortest = kShortestLine, const WorldKind& kind = {});
 
-/// The world of a simulator configuration (config/simulators): its world, start and seed, with this
-/// goal in the map. Throws ConfigError with file:line.
-/** Nothing is drawn: line_blocked and surface_changes keep their defaults. */
-MissionWorld readMissionWorld(const std::string& simulator_file, const Eigen::Vector2d& p_map_goal);
-
 /// Narrowest gap between obstacles in a mission [m].
 constexpr double narrowestGap(const FootprintSize& robot) {
   return 2.0 * robot.half_width + 0.4;

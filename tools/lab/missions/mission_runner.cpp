@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/lab/missions/report.hpp"
+
+#include "tools/lab/missions/mission_runner.hpp"
 
 #include <chrono>
 #include <ctime>

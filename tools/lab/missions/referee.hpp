@@ -14,7 +14,7 @@
 #include "common/geometry/se2.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "common/pattern/pattern.hpp"
-#include "tools/lab/missions/report.hpp"
+#include "tools/lab/missions/mission_runner.hpp"
 
 namespace tread::missions {
 

@@ -12,6 +12,7 @@
 #include "common/config/config_reader.hpp"
 #include "common/config/scalars.hpp"
 #include "common/geometry/microseconds.hpp"
+#include "common/link/make_link.hpp"
 #include "common/messages/blank.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "modules/simulator/simulator_files.hpp"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/missions/speed_comparison.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -7,7 +9,6 @@
 #include <ostream>
 
 #include "common/report/text.hpp"
-#include "tools/lab/missions/report.hpp"
 
 namespace tread::missions {
 namespace {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/missions/true_patterns.hpp"
+
 #include "tools/lab/missions/robot_system.hpp"
 
 #include <cmath>

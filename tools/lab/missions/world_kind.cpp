@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "common/config/config_folder.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "modules/simulator/simulator_files.hpp"
 #include "tools/robot/patterns/recipe.hpp"
 

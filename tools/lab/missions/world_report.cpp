@@ -9,6 +9,7 @@
 #include <ostream>
 
 #include "common/report/text.hpp"
+#include "modules/learner/core/rules/make_rule.hpp"
 #include "tools/lab/missions/given_worlds.hpp"
 
 namespace tread::missions {

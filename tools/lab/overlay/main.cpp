@@ -6,7 +6,7 @@
 #include "common/config/command_line.hpp"
 #include "common/config/config_reader.hpp"
 #include "common/config/outputs.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tools/lab/overlay/drive_pieces.hpp"
 
 namespace {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/plan/lattice_file.hpp"
+
 #include <cmath>
 
 #include "common/config/config_reader.hpp"
 #include "common/config/scalars.hpp"
-#include "tools/lab/plan/plan_files.hpp"
+#include "tools/lab/plan/primitives.hpp"
 
 namespace tread::plan {
 namespace {

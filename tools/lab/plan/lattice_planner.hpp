@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "modules/planner/core/search/path_planner.hpp"
-#include "tools/lab/plan/plan_files.hpp"
+#include "tools/lab/plan/primitives.hpp"
 
 // SBPL's lattice problem for our search (SBPL: environment_navxythetalat, BSD).
 namespace tread::plan {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/plan/map_file.hpp"
+
 #include "tools/lab/plan/plan_files.hpp"
 
 #include <algorithm>
@@ -10,6 +12,7 @@
 
 #include "common/config/config_reader.hpp"
 #include "common/config/scalars.hpp"
+#include "common/grid/clearance.hpp"
 #include "tools/lab/plan/tokenizer.hpp"
 
 namespace tread::plan {

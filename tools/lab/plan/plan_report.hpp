@@ -12,6 +12,7 @@
 #include "common/grid/grid.hpp"
 #include "modules/planner/core/search/path_planner.hpp"
 #include "tools/lab/plan/plan_files.hpp"
+#include "tools/lab/plan/query_file.hpp"
 
 namespace tread::plan {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/lab/plan/plan_files.hpp"
+
+#include "tools/lab/plan/primitives.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/plan/query_file.hpp"
+
 #include "tools/lab/plan/plan_files.hpp"
 
 #include <array>

@@ -15,6 +15,8 @@
 #include "common/pattern/pattern_file.hpp"
 #include "common/store/output_file.hpp"
 #include "common/store/store.hpp"
+#include "modules/planner/core/search/swept_footprint.hpp"
+#include "tools/lab/plan/lattice_file.hpp"
 
 namespace tread::plan {
 namespace {

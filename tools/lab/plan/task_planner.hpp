@@ -10,6 +10,7 @@
 
 #include "common/pattern/pattern.hpp"
 #include "tools/lab/plan/lattice_planner.hpp"
+#include "tools/lab/plan/map_file.hpp"
 #include "tools/lab/plan/plan_files.hpp"
 #include "tools/lab/plan/plan_report.hpp"
 

@@ -11,6 +11,8 @@
 #include "common/config/problem_words.hpp"
 #include "common/mcap/mcap_log.hpp"
 #include "common/parallel/parallel_for.hpp"
+#include "tools/lab/replay/robot_learner.hpp"
+#include "tools/lab/replay/robot_planner.hpp"
 #include "tools/lab/replay/robot_replay.hpp"
 #include "tools/robot/report/logged_learner.hpp"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/lab/replay/sensor_replay.hpp"
+#include "tools/lab/replay/ins_replay.hpp"
+
+#include "tools/lab/replay/mapping_replay.hpp"
 
 #include <algorithm>
 #include <ctime>
@@ -11,6 +13,7 @@
 
 #include "common/bus/virtual_bus.hpp"
 #include "common/capture/pcap_stream.hpp"
+#include "common/link/make_link.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "common/report/plot.hpp"
 #include "common/store/store.hpp"

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/replay/learner_lives.hpp"
+
 #include <set>
 #include <stdexcept>
 
 #include "common/messages/pattern_messages.hpp"
+#include "modules/learner/core/state_text.hpp"
 #include "tools/lab/replay/robot_replay.hpp"
 
 namespace tread::replay {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/lab/replay/learner_replay.hpp"
+
+#include "tools/lab/replay/learner_report.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/lab/replay/sensor_replay.hpp"
+
+#include "tools/lab/replay/mapping_recording.hpp"
 
 #include <zlib.h>
 

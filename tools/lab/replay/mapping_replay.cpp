@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/lab/replay/sensor_replay.hpp"
+
+#include "tools/lab/replay/mapping_replay.hpp"
 
 #include <algorithm>
 #include <iomanip>
@@ -9,6 +10,7 @@
 #include "common/bus/virtual_bus.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "common/report/plot.hpp"
+#include "tools/lab/replay/ins_replay.hpp"
 
 namespace tread {
 namespace {

@@ -10,8 +10,9 @@
 
 #include "common/geometry/track.hpp"
 #include "modules/scan_matching/scan_matching_node.hpp"
+#include "tools/lab/replay/ins_replay.hpp"
+#include "tools/lab/replay/mapping_replay.hpp"
 #include "tools/lab/replay/scan_closure.hpp"
-#include "tools/lab/replay/sensor_replay.hpp"
 
 namespace tread {
 

@@ -5,7 +5,8 @@
 #include <cstdint>
 #include <string>
 
-#include "tools/lab/replay/sensor_replay.hpp"
+#include "tools/lab/replay/ins_replay.hpp"
+#include "tools/lab/replay/mapping_replay.hpp"
 
 namespace tread {
 

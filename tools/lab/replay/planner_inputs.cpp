@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/replay/planner_inputs.hpp"
+
 #include "tools/lab/replay/robot_replay.hpp"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/lab/replay/learner_replay.hpp"
+#include "tools/lab/replay/learner_report.hpp"
 
 namespace tread::replay {
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/replay/robot_learner.hpp"
+
+#include "tools/lab/replay/robot_planner.hpp"
 #include "tools/lab/replay/robot_replay.hpp"
 
 #include <filesystem>
@@ -11,6 +14,7 @@
 #include "common/messages/pattern_messages.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/store/store.hpp"
+#include "tools/lab/replay/learner_lives.hpp"
 
 namespace tread::replay {
 namespace {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/replay/robot_planner.hpp"
+
 #include "tools/lab/replay/robot_replay.hpp"
 
 #include <algorithm>
@@ -10,6 +12,8 @@
 #include "common/drive/log_bus.hpp"
 #include "common/drive/robot_log.hpp"
 #include "modules/planner/planner_node.hpp"
+#include "tools/lab/replay/planner_inputs.hpp"
+#include "tools/lab/replay/robot_learner.hpp"
 
 namespace tread::replay {
 namespace {

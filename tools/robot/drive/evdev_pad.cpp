@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/robot/drive/evdev_pad.hpp"
+
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
@@ -9,8 +11,6 @@
 #include <fcntl.h>
 #include <libevdev/libevdev.h>
 #include <unistd.h>
-
-#include "tools/robot/drive/pad.hpp"
 
 namespace tread::drive {
 namespace {

@@ -8,8 +8,8 @@
 #include "common/bus/key_option.hpp"
 #include "common/config/command_line.hpp"
 #include "tools/robot/drive/drive_call.hpp"
+#include "tools/robot/drive/evdev_pad.hpp"
 #include "tools/robot/drive/keyboard.hpp"
-#include "tools/robot/drive/pad.hpp"
 #include "tools/robot/operator/command.hpp"
 
 namespace {

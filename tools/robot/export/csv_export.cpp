@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/robot/export/csv_export.hpp"
+
 #include <map>
 
 #include <nlohmann/json.hpp>
 
 #include "common/store/output_file.hpp"
-#include "tools/robot/export/log_export.hpp"
+#include "common/types/tread_types.hpp"
+#include "tools/robot/export/log_selection.hpp"
 
 namespace tread::exporting {
 namespace {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/robot/export/log_export.hpp"
+
+#include "tools/robot/export/log_selection.hpp"
 
 #include <cmath>
 
 #include "common/types/message_json.hpp"
+#include "common/types/tread_types.hpp"
 
 namespace tread::exporting {
 

@@ -8,7 +8,8 @@
 #include "common/bus/channels.hpp"
 #include "common/config/command_line.hpp"
 #include "common/config/outputs.hpp"
-#include "tools/robot/export/log_export.hpp"
+#include "tools/robot/export/csv_export.hpp"
+#include "tools/robot/export/mcap_export.hpp"
 
 namespace {
 

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/robot/export/mcap_export.hpp"
+
 #include "common/mcap/mcap_writer.hpp"
 #include "common/scene/scene.hpp"
+#include "common/scene/scene_schemas.hpp"
 #include "common/types/message_json.hpp"
-#include "tools/robot/export/log_export.hpp"
+#include "common/types/tread_types.hpp"
+#include "tools/robot/export/log_selection.hpp"
 
 namespace tread::exporting {
 namespace {

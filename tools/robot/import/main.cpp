@@ -16,7 +16,7 @@
 #include "common/pattern/pattern_file.hpp"
 #include "common/recordings/csv_table.hpp"
 #include "common/recordings/drive_recordings.hpp"
-#include "common/recordings/imported_log.hpp"
+#include "common/recordings/recorded_drive.hpp"
 #include "common/soundness/drive_log.hpp"
 #include "common/store/output_file.hpp"
 #include "tools/robot/import/csv_drive.hpp"

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "common/link/link.hpp"
+#include "common/link/make_link.hpp"
 #include "common/report/text.hpp"
 #include "tools/robot/launch/launch_file.hpp"
 

@@ -26,10 +26,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "common/link/link.hpp"
+#include "common/link/make_link.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/seal/key_file.hpp"
 #include "common/store/output_file.hpp"
+#include "tools/robot/launch/supervision.hpp"
 
 namespace tread::launch {
 namespace {

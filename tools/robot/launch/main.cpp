@@ -30,6 +30,7 @@
 #include "tools/robot/launch/host.hpp"
 #include "tools/robot/launch/running_robots.hpp"
 #include "tools/robot/launch/stall_watch.hpp"
+#include "tools/robot/launch/supervision.hpp"
 
 namespace {
 

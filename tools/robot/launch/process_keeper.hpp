@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tools/robot/launch/host.hpp"
+#include "tools/robot/launch/supervision.hpp"
 
 namespace tread::launch {
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/robot/launch/supervision.hpp"
+
 #include "tools/robot/launch/host.hpp"
 
 #include <algorithm>

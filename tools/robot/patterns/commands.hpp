@@ -15,13 +15,4 @@ struct RecordingStopped : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-CLI::App* addMake(CLI::App& app);
-CLI::App* addRecipe(CLI::App& app);
-CLI::App* addRecord(CLI::App& app);
-CLI::App* addAverage(CLI::App& app);
-CLI::App* addFromRecordings(CLI::App& app);
-CLI::App* addShow(CLI::App& app);
-CLI::App* addCheck(CLI::App& app);
-CLI::App* addMirror(CLI::App& app);
-
 }  // namespace tread::patterns

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/robot/patterns/from_recordings_command.hpp"
+
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -12,7 +14,7 @@
 #include "common/pattern/pattern_file.hpp"
 #include "common/recordings/csv_table.hpp"
 #include "common/recordings/drive_recordings.hpp"
-#include "common/recordings/recordings.hpp"
+#include "common/recordings/execution_log.hpp"
 #include "common/store/output_file.hpp"
 #include "common/store/store.hpp"
 #include "tools/robot/patterns/commands.hpp"

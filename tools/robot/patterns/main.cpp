@@ -4,6 +4,10 @@
 
 #include "common/config/command_line.hpp"
 #include "tools/robot/patterns/commands.hpp"
+#include "tools/robot/patterns/from_recordings_command.hpp"
+#include "tools/robot/patterns/recipe_command.hpp"
+#include "tools/robot/patterns/recording_commands.hpp"
+#include "tools/robot/patterns/set_commands.hpp"
 
 int main(int argc, char** argv) {
   return tread::runProgram("tread-patterns", [&] {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // recipe: makes a recipe from the limits of a robot.
+#include "tools/robot/patterns/recipe_command.hpp"
+
 #include <iostream>
 #include <memory>
 #include <string>
@@ -9,7 +11,7 @@
 #include "common/config/outputs.hpp"
 #include "common/report/text.hpp"
 #include "common/store/store.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "common/vehicle/robot_description.hpp"
 #include "tools/robot/patterns/commands.hpp"
 #include "tools/robot/patterns/recipe_text.hpp"

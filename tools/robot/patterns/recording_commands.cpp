@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // record and average: commands for recordings.
+#include "tools/robot/patterns/recording_commands.hpp"
+
 #include <atomic>
 #include <iostream>
 #include <memory>
@@ -14,11 +16,11 @@
 #include "common/config/problem_words.hpp"
 #include "common/pattern/pattern.hpp"
 #include "common/pattern/pattern_file.hpp"
-#include "common/recordings/recordings.hpp"
+#include "common/recordings/average.hpp"
 #include "common/seal/key_file.hpp"
 #include "common/store/output_file.hpp"
 #include "common/store/store.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "modules/pattern_recorder/recorder_node.hpp"
 #include "tools/robot/launch/running_robots.hpp"
 #include "tools/robot/patterns/commands.hpp"

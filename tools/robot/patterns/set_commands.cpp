@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // make, show, check and mirror: commands for pattern files.
+#include "tools/robot/patterns/set_commands.hpp"
+
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -12,9 +14,10 @@
 #include "common/config/outputs.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/store/store.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tools/robot/patterns/commands.hpp"
 #include "tools/robot/patterns/recipe.hpp"
+#include "tools/robot/patterns/set_picture.hpp"
 #include "tools/robot/patterns/set_text.hpp"
 
 namespace tread::patterns {

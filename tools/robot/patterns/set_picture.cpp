@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/robot/patterns/set_picture.hpp"
+
 #include "tools/robot/patterns/set_text.hpp"
 
 #include <algorithm>

@@ -50,15 +50,4 @@ std::string comparison(const PatternSet& a, const std::string& name_a, const Pat
 /// unknown end covariances.
 std::vector<std::string> adviceFor(const PatternSet& set);
 
-/// A set in a picture.
-struct PicturedSet {
-  std::string label;
-  PatternSet set;
-};
-
-/// Draws all trajectories of one or two sets, a panel for each entry class: paths, headings at
-/// their ends, and the ellipse that holds 95 % of the end positions. Throws std::runtime_error if
-/// the PNG cannot be written.
-void drawSets(const std::vector<PicturedSet>& sets, const std::string& path);
-
 }  // namespace tread::patterns

@@ -7,6 +7,7 @@
 #include "common/config/command_line.hpp"
 #include "common/config/config_folder.hpp"
 #include "common/config/outputs.hpp"
+#include "modules/learner/core/rules/make_rule.hpp"
 #include "modules/simulator/simulator_files.hpp"
 #include "tools/robot/report/drive_report.hpp"
 

@@ -12,6 +12,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "common/link/make_link.hpp"
 #include "common/report/text.hpp"
 #include "common/store/store.hpp"
 #include "modules/lidar_driver/scan_devices.hpp"

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "common/messages/ins_messages.hpp"
+#include "common/recordings/average.hpp"
 #include "common/report/text.hpp"
 #include "modules/pattern_recorder/recorder_node.hpp"
 #include "tools/robot/operator/calls.hpp"

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/robot/setup/fit_checks.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "common/report/text.hpp"
 #include "tools/robot/launch/checks.hpp"
-#include "tools/robot/setup/setup.hpp"
 
 namespace tread::setup {
 namespace {

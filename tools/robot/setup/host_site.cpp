@@ -17,6 +17,7 @@
 
 #include "common/bus/host_clock.hpp"
 #include "common/bus/lcm_bus.hpp"
+#include "common/link/make_link.hpp"
 #include "common/seal/key_file.hpp"
 #include "tools/robot/launch/host.hpp"
 #include "tools/robot/launch/launch_file.hpp"

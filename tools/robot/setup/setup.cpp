@@ -12,8 +12,11 @@
 #include "common/pattern/pattern_file.hpp"
 #include "common/report/text.hpp"
 #include "common/store/store.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tools/robot/patterns/recipe.hpp"
 #include "tools/robot/setup/discovery.hpp"
+#include "tools/robot/setup/fit_checks.hpp"
+#include "tools/robot/setup/setup_report.hpp"
 
 namespace tread::setup {
 namespace {

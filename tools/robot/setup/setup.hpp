@@ -33,15 +33,9 @@ struct SetupResult {
   std::string problem;
 };
 
-/// Compares footprint, ranges, stopping distance, rates and leases with each other.
-std::vector<FitCheck> checkFit(const SetupResult& result);
-
 /// Sets up a robot: ports, wiring, motion, patterns, first goal; writes its folder below `robots`.
 /// A failure of the robot does not throw but is the result's problem.
 SetupResult setUp(Site& site, Interview& person, const std::string& robots);
-
-/// One page with pictures, as HTML.
-std::string reportOf(const SetupResult& result);
 
 /// Result of the 10 s test before a drive.
 struct PreDrive {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/robot/setup/setup_report.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "common/geometry/degrees.hpp"
+#include "common/report/chart.hpp"
 #include "common/report/page.hpp"
 #include "common/report/text.hpp"
-#include "tools/robot/setup/setup.hpp"
 
 namespace tread::setup {
 namespace {
@@ -51,8 +53,7 @@ std::string speedChart(const GroundReport& ground, bool is_car) {
   }
   for (const TimedCommand& given : ground.commands) {
     // For a car the second channel is the steering.
-    const double share =
-        is_car ? given.command[0] : 0.5 * (given.command[0] + given.command[1]);
+    const double share = is_car ? given.command[0] : 0.5 * (given.command[0] + given.command[1]);
     commanded.push_back({seconds(given.utime), share * ground.wiring.fullSpeed()});
     range.include(commanded.back());
   }

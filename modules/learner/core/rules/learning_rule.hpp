@@ -199,10 +199,4 @@ class LearningRule {
   virtual bool restore(const TrajectoryTable& predictions, const std::vector<double>& memory) = 0;
 };
 
-/// Names of all rules, in the order of reports.
-std::vector<std::string> ruleNames();
-
-/// The rule that a configuration names, in its initial state for the shipped set.
-std::unique_ptr<LearningRule> makeRule(const RuleConfig& config, const PatternSet& shipped);
-
 }  // namespace tread::learner

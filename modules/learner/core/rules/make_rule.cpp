@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "modules/learner/core/rules/make_rule.hpp"
+
 #include <stdexcept>
 
 #include "modules/learner/core/rules/collective.hpp"

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "modules/planner/core/search/swept_footprint.hpp"
+
 namespace tread::planner {
 namespace {
 

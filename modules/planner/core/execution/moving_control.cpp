@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "modules/planner/core/execution/moving_control.hpp"
+
 #include "modules/planner/core/execution/standing_control.hpp"
 
 #include <algorithm>

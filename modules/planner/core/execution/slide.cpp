@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "modules/planner/core/search/swept_footprint.hpp"
+
 namespace tread::planner {
 namespace {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/grid/grid.hpp"
+#include "common/grid/clearance.hpp"
 #include "modules/planner/core/map/distance_to_goal.hpp"
 
 namespace tread::planner {

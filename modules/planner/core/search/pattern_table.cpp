@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/statistics/statistics.hpp"
+#include "modules/planner/core/search/swept_footprint.hpp"
 
 namespace tread::planner {
 namespace {

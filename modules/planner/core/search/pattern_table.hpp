@@ -36,12 +36,8 @@ struct SweepResolution {
   FootprintSize outline;
 };
 
-/// A step for a footprint with at most this margin [m].
-/** No coarser than `step`, and fine enough that a short vehicle skips nothing. */
-SweepResolution resolutionFor(const FootprintSize& size, double margin, SweepResolution step);
-
-/// A disc around ground that a corner of the outline passes over between two checked poses and that
-/// neither of these covers; in the axes of the sweep's start.
+/// A disc around ground that a corner of the outline passes over between two poses that are checked
+/// and that lies under neither of these; in the axes of the sweep's start.
 struct CornerDisc {
   float x = 0.0F;       ///< [m] its centre
   float y = 0.0F;       ///< [m]
@@ -68,18 +64,6 @@ struct SweptFootprint {
   std::vector<SweptPose> between;
   double front = 0.0;  ///< [m] of the outline for which they were computed
 };
-
-/// Poses along a trajectory of equal periods, without the origin, at most a step apart.
-std::vector<SweptPose> sampleSweep(const std::vector<Pose2>& trajectory, double period,
-                                   const SweepResolution& step);
-
-/// The poses of a trajectory's sweep that suffice for a footprint.
-SweptFootprint sweptFootprintOf(const std::vector<SweptPose>& sweep,
-                                const std::vector<Pose2>& trajectory, double period,
-                                const SweepResolution& step);
-
-/// Pose along a trajectory of equal periods, `time` [s] after its start; held at both ends.
-Pose2 poseAlong(const std::vector<Pose2>& trajectory, double period, double time);
 
 /// Covariance of a planar pose, upper triangle [m2, m rad, rad2]; all 0 = certain.
 struct Uncertainty {

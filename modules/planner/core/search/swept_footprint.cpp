@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "modules/planner/core/search/pattern_table.hpp"
+
+#include "modules/planner/core/search/swept_footprint.hpp"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,8 @@
 
 #include "tests/helpers.hpp"
 #include "tests/tools/lab/experiment/drawn_driving.hpp"
-#include "tools/lab/experiment/adaptation/adaptation.hpp"
+#include "tools/lab/experiment/adaptation/adaptation_report.hpp"
+#include "tools/lab/experiment/adaptation/summary.hpp"
 
 namespace tread::adaptation {
 namespace {

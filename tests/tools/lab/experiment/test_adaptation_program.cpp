@@ -8,7 +8,8 @@
 #include "tests/helpers.hpp"
 #include "tests/tools/called_program.hpp"
 #include "tests/tools/lab/experiment/drawn_driving.hpp"
-#include "tools/lab/experiment/adaptation/adaptation.hpp"
+#include "tools/lab/experiment/adaptation/read_recordings.hpp"
+#include "tools/lab/experiment/adaptation/summary.hpp"
 
 namespace tread::adaptation {
 namespace {

@@ -5,9 +5,10 @@
 #include <catch2/catch.hpp>
 
 #include "common/log/event_log.hpp"
-#include "common/recordings/imported_log.hpp"
+#include "common/recordings/recorded_drive.hpp"
 #include "tests/helpers.hpp"
 #include "tests/tools/lab/experiment/drawn_driving.hpp"
+#include "tools/lab/experiment/adaptation/read_recordings.hpp"
 
 namespace tread::adaptation {
 namespace {

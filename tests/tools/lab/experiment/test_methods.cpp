@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/tools/lab/experiment/small_world.hpp"
+#include "tools/lab/experiment/text_tables.hpp"
 
 namespace tread::experiment {
 namespace {

@@ -7,7 +7,8 @@
 #include <catch2/catch.hpp>
 
 #include "tests/tools/lab/experiment/small_world.hpp"
-#include "tools/lab/experiment/tables.hpp"
+#include "tools/lab/experiment/batch.hpp"
+#include "tools/lab/experiment/text_tables.hpp"
 
 namespace tread::experiment {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "modules/learner/core/rules/learning_rule.hpp"
 #include "tests/helpers.hpp"
-#include "tools/lab/experiment/tables.hpp"
+#include "tools/lab/experiment/batch.hpp"
 
 using namespace tread::experiment;
 

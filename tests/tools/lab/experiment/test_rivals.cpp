@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/tools/lab/experiment/drawn_driving.hpp"
-#include "tools/lab/experiment/adaptation/rivals.hpp"
+#include "tools/lab/experiment/adaptation/tuning.hpp"
 
 namespace tread::adaptation {
 namespace {

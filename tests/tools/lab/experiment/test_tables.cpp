@@ -8,7 +8,9 @@
 #include <catch2/catch.hpp>
 
 #include "tests/tools/lab/experiment/small_world.hpp"
-#include "tools/lab/experiment/tables.hpp"
+#include "tools/lab/experiment/figures.hpp"
+#include "tools/lab/experiment/first_executions_text.hpp"
+#include "tools/lab/experiment/key_figures.hpp"
 
 namespace tread::experiment {
 namespace {
@@ -196,12 +198,6 @@ TEST_CASE("key figures are the numbers of the tables, a dash where there is none
   CHECK(all_after_10 == "-");  // the tables end after 3 executions
   CHECK(all_3 == "-80.0");
   CHECK(unchanged == "2.000");
-}
-
-TEST_CASE("the median of an even number is between the middle ones, of nothing none") {
-  CHECK(median({3.0, 1.0, 2.0}) == 2.0);
-  CHECK(median({4.0, 1.0, 2.0, 3.0}) == 2.5);
-  CHECK(std::isnan(median({})));
 }
 
 TEST_CASE("surfaces that the paper does not have are not compared with it") {

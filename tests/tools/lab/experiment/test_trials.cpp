@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "modules/learner/core/rules/make_rule.hpp"
 #include "tests/helpers.hpp"
 #include "tests/tools/lab/experiment/counted_new.hpp"
 #include "tests/tools/lab/experiment/small_world.hpp"

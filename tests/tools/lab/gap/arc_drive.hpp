@@ -7,7 +7,7 @@
 
 #include "common/log/event_log.hpp"
 #include "common/vehicle/kernel.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tests/tools/lab/gap/gap_program.hpp"
 #include "tests/tools/lab/gap/small_log.hpp"
 

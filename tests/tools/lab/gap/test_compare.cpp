@@ -4,7 +4,9 @@
 
 #include "modules/identification/core/observations.hpp"
 #include "tests/identification/core_rig.hpp"
-#include "tools/lab/gap/questions.hpp"
+#include "tools/lab/gap/compare.hpp"
+#include "tools/lab/gap/repeat.hpp"
+#include "tools/lab/gap/what_if.hpp"
 
 using namespace tread;
 using namespace tread::gap;

@@ -7,9 +7,14 @@
 
 #include <catch2/catch.hpp>
 
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tests/tools/lab/gap/sample_findings.hpp"
-#include "tools/lab/gap/report/report.hpp"
+#include "tools/lab/gap/report/find_output.hpp"
+#include "tools/lab/gap/report/headline.hpp"
+#include "tools/lab/gap/report/pictures.hpp"
+#include "tools/lab/gap/report/sections.hpp"
+#include "tools/lab/gap/report/witness_words.hpp"
+#include "tools/lab/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {

@@ -7,7 +7,11 @@
 #include <catch2/catch.hpp>
 
 #include "tests/tools/lab/gap/sample_findings.hpp"
-#include "tools/lab/gap/report/report.hpp"
+#include "tools/lab/gap/report/find_output.hpp"
+#include "tools/lab/gap/report/headline.hpp"
+#include "tools/lab/gap/report/pictures.hpp"
+#include "tools/lab/gap/report/sections.hpp"
+#include "tools/lab/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {

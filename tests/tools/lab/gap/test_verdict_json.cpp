@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "tests/tools/lab/gap/sample_findings.hpp"
-#include "tools/lab/gap/report/report.hpp"
+#include "tools/lab/gap/report/find_output.hpp"
 
 namespace tread::gap {
 

@@ -9,7 +9,7 @@
 
 #include "common/bus/virtual_bus.hpp"
 #include "common/messages/blank.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tests/tools/lab/gap/gap_program.hpp"
 #include "tests/tools/lab/gap/small_log.hpp"
 #include "tools/lab/gap/watch_node.hpp"

@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/called_program.hpp"
+#include "tools/lab/missions/comparison_report.hpp"
 #include "tools/lab/missions/prediction_errors.hpp"
-#include "tools/lab/missions/report.hpp"
 
 using namespace tread;
 using namespace tread::missions;

@@ -5,8 +5,8 @@
 #include <catch2/catch.hpp>
 
 #include "tests/tools/lab/missions/shipped_robot.hpp"
+#include "tools/lab/missions/mission_runner.hpp"
 #include "tools/lab/missions/prediction_errors.hpp"
-#include "tools/lab/missions/report.hpp"
 
 using namespace tread;
 using namespace tread::missions;

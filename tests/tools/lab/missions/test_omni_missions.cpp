@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "tools/lab/missions/mission.hpp"
-#include "tools/lab/missions/report.hpp"
+#include "tools/lab/missions/mission_runner.hpp"
 #include "tools/lab/missions/robot_system.hpp"
 
 namespace tread::missions {

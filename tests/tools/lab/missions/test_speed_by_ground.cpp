@@ -2,7 +2,8 @@
 // Copyright (c) 2026 The Tread authors
 #include <catch2/catch.hpp>
 
-#include "tools/lab/missions/report.hpp"
+#include "tools/lab/missions/mission_runner.hpp"
+#include "tools/lab/missions/speed_comparison.hpp"
 
 using namespace tread;
 using namespace tread::missions;

@@ -14,8 +14,8 @@
 #include "modules/simulator/core/terrain.hpp"
 #include "tests/helpers.hpp"
 #include "tests/tools/lab/missions/shipped_robot.hpp"
+#include "tools/lab/missions/comparison_report.hpp"
 #include "tools/lab/missions/referee.hpp"
-#include "tools/lab/missions/report.hpp"
 #include "tools/lab/missions/robot_system.hpp"
 
 using namespace tread;

@@ -9,7 +9,7 @@
 
 #include "tests/helpers.hpp"
 #include "tests/tools/lab/missions/shipped_robot.hpp"
-#include "tools/lab/missions/report.hpp"
+#include "tools/lab/missions/mission_runner.hpp"
 
 using namespace tread;
 using namespace tread::missions;

@@ -15,7 +15,7 @@
 
 #include "common/log/event_log.hpp"
 #include "common/vehicle/kernel.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tests/tools/called_program.hpp"
 #include "tools/lab/overlay/drive_pieces.hpp"
 

@@ -9,7 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "tools/lab/plan/plan_files.hpp"
+#include "tools/lab/plan/map_file.hpp"
+#include "tools/lab/plan/primitives.hpp"
 
 namespace tread::plan::samples {
 

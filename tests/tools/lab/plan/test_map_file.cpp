@@ -6,6 +6,7 @@
 
 #include "common/config/config_reader.hpp"
 #include "tests/tools/lab/plan/plan_samples.hpp"
+#include "tools/lab/plan/map_file.hpp"
 #include "tools/lab/plan/plan_files.hpp"
 
 using namespace tread;

@@ -4,10 +4,11 @@
 
 #include <vector>
 
-#include "common/grid/grid.hpp"
+#include "common/grid/clearance.hpp"
 #include "common/store/store.hpp"
 #include "tests/tools/lab/plan/plan_samples.hpp"
 #include "tests/tools/lab/plan/planning_maps.hpp"
+#include "tools/lab/plan/map_file.hpp"
 #include "tools/lab/plan/plan_files.hpp"
 
 using namespace tread;

@@ -8,7 +8,7 @@
 #include "common/config/config_reader.hpp"
 #include "tests/tools/lab/plan/lattice_oracle.hpp"
 #include "tests/tools/lab/plan/plan_samples.hpp"
-#include "tools/lab/plan/plan_files.hpp"
+#include "tools/lab/plan/lattice_file.hpp"
 
 using namespace tread;
 using namespace tread::plan;

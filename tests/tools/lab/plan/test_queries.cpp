@@ -6,6 +6,7 @@
 #include "common/grid/footprint.hpp"
 #include "tests/tools/lab/plan/plan_samples.hpp"
 #include "tools/lab/plan/plan_files.hpp"
+#include "tools/lab/plan/query_file.hpp"
 
 using namespace tread;
 using namespace tread::plan;

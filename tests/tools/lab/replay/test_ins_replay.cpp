@@ -14,7 +14,8 @@
 #include "modules/simulator/emulators/xsens/xsens_emulator.hpp"
 #include "tests/common/capture/capture_file.hpp"
 #include "tests/ins_driver/nmea_lines.hpp"
-#include "tools/lab/replay/sensor_replay.hpp"
+#include "tools/lab/replay/ins_replay.hpp"
+#include "tools/lab/replay/mapping_replay.hpp"
 
 using namespace tread;
 using namespace tread::ins;

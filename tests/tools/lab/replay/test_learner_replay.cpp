@@ -10,7 +10,8 @@
 #include <limits>
 
 #include "common/recordings/csv_table.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/recordings/recorded_drive.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tests/tools/lab/replay/synthetic_drive.hpp"
 #include "tools/lab/replay/learner_replay.hpp"
 #include "tools/lab/replay/pose_comparison.hpp"

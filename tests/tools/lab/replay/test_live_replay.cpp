@@ -13,9 +13,12 @@
 #include "common/bus/lcm_bus.hpp"
 #include "common/pattern/pattern_file.hpp"
 #include "common/recordings/csv_table.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/recordings/recorded_drive.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tests/system/process.hpp"
 #include "tests/tools/lab/replay/synthetic_drive.hpp"
+#include "tools/lab/replay/robot_learner.hpp"
+#include "tools/lab/replay/robot_planner.hpp"
 #include "tools/lab/replay/robot_replay.hpp"
 #include "tools/robot/report/logged_learner.hpp"
 

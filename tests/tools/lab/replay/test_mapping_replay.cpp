@@ -9,8 +9,8 @@
 
 #include "common/geometry/se2.hpp"
 #include "common/log/event_log.hpp"
+#include "tools/lab/replay/mapping_recording.hpp"
 #include "tools/lab/replay/pass_overlap.hpp"
-#include "tools/lab/replay/sensor_replay.hpp"
 
 using namespace tread;
 

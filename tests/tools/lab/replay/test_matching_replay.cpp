@@ -7,6 +7,7 @@
 
 #include "tests/helpers.hpp"
 #include "tests/scan_matching/simulated_drive.hpp"
+#include "tools/lab/replay/mapping_recording.hpp"
 #include "tools/lab/replay/matching_replay.hpp"
 
 namespace tread::scan_matching {

@@ -14,6 +14,8 @@
 #include "modules/mapping/mapping_node.hpp"
 #include "modules/planner/planner_node.hpp"
 #include "tests/tools/lab/replay/driven_log.hpp"
+#include "tools/lab/replay/robot_learner.hpp"
+#include "tools/lab/replay/robot_planner.hpp"
 #include "tools/lab/replay/robot_replay.hpp"
 #include "tools/robot/report/logged_learner.hpp"
 

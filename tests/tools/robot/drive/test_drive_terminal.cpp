@@ -18,7 +18,7 @@
 
 #include "tests/system/own_bus.hpp"
 #include "tests/system/process.hpp"
-#include "tools/robot/drive/pad.hpp"
+#include "tools/robot/drive/evdev_pad.hpp"
 
 namespace tread::testing {
 namespace {

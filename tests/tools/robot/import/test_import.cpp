@@ -11,7 +11,7 @@
 #include <iterator>
 
 #include "common/recordings/csv_table.hpp"
-#include "common/recordings/imported_log.hpp"
+#include "common/recordings/recorded_drive.hpp"
 #include "common/soundness/drive_log.hpp"
 #include "tests/tools/robot/import/drive_samples.hpp"
 

@@ -5,6 +5,7 @@
 
 #include "tests/tools/robot/launch/launched.hpp"
 #include "tools/robot/launch/host.hpp"
+#include "tools/robot/launch/supervision.hpp"
 
 using namespace tread::testing;
 using Catch::Contains;

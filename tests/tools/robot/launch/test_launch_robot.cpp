@@ -3,7 +3,7 @@
 // The shipped launch files with the real processes.
 #include <catch2/catch.hpp>
 
-#include "common/link/link.hpp"
+#include "common/link/make_link.hpp"
 #include "tests/tools/robot/launch/launched.hpp"
 #include "tools/robot/launch/host.hpp"
 

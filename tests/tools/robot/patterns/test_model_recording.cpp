@@ -7,8 +7,9 @@
 #include <catch2/catch.hpp>
 
 #include "common/pattern/pattern_file.hpp"
+#include "common/recordings/average.hpp"
 #include "common/vehicle/kernel.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tests/tools/robot/patterns/patterns_program.hpp"
 #include "tools/robot/patterns/recipe.hpp"
 

@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "common/config/config_reader.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tools/robot/patterns/recipe.hpp"
 #include "tools/robot/patterns/set_text.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "common/config/config_reader.hpp"
 #include "common/vehicle/kernel.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
 #include "tests/tools/robot/patterns/patterns_program.hpp"
 #include "tools/robot/patterns/recipe.hpp"
 #include "tools/robot/patterns/recipe_text.hpp"

@@ -8,7 +8,7 @@
 
 #include <unistd.h>
 
-#include "tools/lab/missions/report.hpp"
+#include "tools/lab/missions/mission_runner.hpp"
 #include "tools/robot/report/drive_report.hpp"
 
 using namespace tread;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/config/config_reader.hpp"
+#include "common/link/make_link.hpp"
 #include "modules/ins_driver/ins_driver_node.hpp"
 #include "modules/learner/learner_node.hpp"
 #include "modules/lidar_driver/lidar_driver_node.hpp"

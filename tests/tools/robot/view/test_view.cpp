@@ -21,7 +21,7 @@
 #include "tests/system/worlds.hpp"
 #include "tests/tools/called_program.hpp"
 #include "tests/tools/lab/missions/shipped_robot.hpp"
-#include "tools/lab/missions/report.hpp"
+#include "tools/lab/missions/mission_runner.hpp"
 #include "tools/robot/launch/stall_watch.hpp"
 #include "tools/robot/view/certificate.hpp"
 

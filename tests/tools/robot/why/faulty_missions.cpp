@@ -7,7 +7,7 @@
 
 #include "tests/bench/faults/fault_run.hpp"
 #include "tests/tools/lab/missions/shipped_robot.hpp"
-#include "tools/lab/missions/report.hpp"
+#include "tools/lab/missions/mission_runner.hpp"
 
 namespace tread::testing {
 namespace {

@@ -10,6 +10,9 @@
 
 #include "common/config/scalars.hpp"
 #include "common/parallel/parallel_for.hpp"
+#include "modules/learner/core/rules/make_rule.hpp"
+#include "tools/lab/experiment/adaptation/summary.hpp"
+#include "tools/lab/experiment/adaptation/tuning.hpp"
 #include "tools/lab/experiment/adaptation/walkers.hpp"
 #include "tools/lab/experiment/end_region.hpp"
 #include "tools/lab/experiment/trials.hpp"

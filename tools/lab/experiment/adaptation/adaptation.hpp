@@ -90,12 +90,8 @@ using Progress = std::function<void(size_t done, size_t all)>;
 AdaptationErrors runAdaptation(const std::vector<SampledSession>& sessions,
                                const Settings& settings, const Progress& progress);
 
-/// Mean and interval of one number per session; no interval for a single session.
-ConfidenceInterval intervalOf(const std::vector<double>& values, uint64_t seed);
-
 /// Comparison of the judged rule with another, by the differences of their ratios per session.
 enum class Verdict { kUnknown, kBetter, kLevel, kWorse };
-const char* nameOf(Verdict verdict);
 
 /// One quantity of one rule after k executions at one horizon.
 struct Standing {
@@ -118,26 +114,5 @@ struct SummaryLine {
   size_t sessions = 0;
   Standing position, yaw;
 };
-
-/// All lines, ordered by kind of omission, vehicle, horizon, rule, executions.
-std::vector<SummaryLine> summaryOf(const AdaptationErrors& errors,
-                                   const std::vector<std::string>& rules, uint64_t seed);
-
-/// Description of a run, for texts.
-struct Report {
-  std::string source;
-  Settings settings;
-  std::vector<std::string> notes;
-  AdaptationErrors errors;
-  std::vector<SummaryLine> lines;
-};
-
-/// Tables for the terminal.
-std::string textOf(const Report& report);
-/// adaptation.csv: a row per Line. sessions.csv: a row per session, rule, k and horizon.
-std::string csvOfLines(const Report& report);
-std::string csvOfSessions(const Report& report);
-/// Writes adaptation.html, adaptation.png and the CSV files into a folder that exists.
-void writeReport(const std::string& folder, const Report& report);
 
 }  // namespace tread::adaptation

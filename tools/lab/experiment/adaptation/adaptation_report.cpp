@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/experiment/adaptation/adaptation_report.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -9,7 +11,8 @@
 #include "common/report/page.hpp"
 #include "common/report/text.hpp"
 #include "common/store/store.hpp"
-#include "tools/lab/experiment/adaptation/groups.hpp"
+#include "tools/lab/experiment/adaptation/ratio_picture.hpp"
+#include "tools/lab/experiment/adaptation/summary.hpp"
 
 namespace tread::adaptation {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/lab/experiment/adaptation/adaptation.hpp"
+#include "tools/lab/experiment/adaptation/adaptation_report.hpp"
 
 namespace tread::adaptation {
 
@@ -22,9 +22,5 @@ struct Group {
 
 /// Groups in the order of the lines, which must outlive them.
 std::vector<Group> groupsOf(const Report& report);
-
-/// Ratios to no learning over executions, a line per rule, a row of panels per group, 5 s ahead
-/// (PNG).
-void drawRatios(const std::string& path, const std::vector<Group>& groups);
 
 }  // namespace tread::adaptation

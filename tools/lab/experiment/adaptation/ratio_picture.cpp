@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/experiment/adaptation/ratio_picture.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "common/report/plot.hpp"
-#include "tools/lab/experiment/adaptation/groups.hpp"
 
 namespace tread::adaptation {
 namespace {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/experiment/adaptation/read_recordings.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -7,11 +9,10 @@
 #include <stdexcept>
 
 #include "common/drive/drive_log.hpp"
-#include "common/recordings/imported_log.hpp"
+#include "common/recordings/recorded_drive.hpp"
 #include "common/recordings/sessions.hpp"
 #include "common/soundness/drive_log.hpp"
 #include "common/statistics/statistics.hpp"
-#include "tools/lab/experiment/adaptation/driving.hpp"
 
 namespace tread::adaptation {
 namespace {

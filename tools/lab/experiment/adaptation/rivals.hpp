@@ -32,9 +32,6 @@
 // likelihood, over runs of 31 pieces that begin with a new rival.
 namespace tread::adaptation {
 
-/// Samples of each training session, ordered by time.
-using TrainingSamples = std::vector<std::vector<Sample>>;
-
 /// Learns the residual of one velocity.
 class AxisRival {
  public:
@@ -143,20 +140,7 @@ class AxisRivals : public Rival {
   std::array<std::unique_ptr<AxisRival>, kAxes> axes_;  ///< nullptr: this velocity is not learned
 };
 
-/// All rivals, in the order of reports.
-const std::vector<std::string>& rivalNames();
-
-/// Slip regression fitted to a whole session at once (Huber loss), without further learning.
-/** Not a rival, as it uses the data to be predicted: a bound for what its terms can represent. */
-std::unique_ptr<Rival> hindsight(const std::vector<Sample>& session);
-
 /// Fewer sessions do not show how grounds differ.
 inline constexpr size_t kLeastSessions = 3;
-
-/// A rival tuned on training sessions, without knowledge of the ground at hand.
-/** With fewer than kLeastSessions sessions it keeps the default prior, and there is no basis. The
- * priors of rls2, rls3 and imm are never tuned. `seed` is for the random features. */
-std::unique_ptr<Rival> tunedRival(const std::string& name, const TrainingSamples& training,
-                                  uint64_t seed);
 
 }  // namespace tread::adaptation

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/experiment/adaptation/summary.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "common/geometry/degrees.hpp"
 #include "common/statistics/statistics.hpp"
-#include "tools/lab/experiment/adaptation/adaptation.hpp"
 #include "tools/lab/experiment/trials.hpp"
 
 namespace tread::adaptation {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/experiment/adaptation/tuning.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,7 +13,6 @@
 
 #include "common/recordings/sessions.hpp"
 #include "tools/lab/experiment/adaptation/gain_rivals.hpp"
-#include "tools/lab/experiment/adaptation/rivals.hpp"
 
 namespace tread::adaptation {
 namespace {

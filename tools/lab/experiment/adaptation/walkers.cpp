@@ -8,6 +8,8 @@
 #include <stdexcept>
 
 #include "modules/learner/core/rules/ground_model.hpp"
+#include "modules/learner/core/rules/make_rule.hpp"
+#include "tools/lab/experiment/adaptation/tuning.hpp"
 #include "tools/lab/experiment/trials.hpp"
 
 namespace tread::adaptation {

@@ -11,7 +11,8 @@
 #include "common/recordings/csv_table.hpp"
 #include "common/report/text.hpp"
 #include "common/statistics/statistics.hpp"
-#include "tools/lab/experiment/adaptation/rivals.hpp"
+#include "modules/learner/core/rules/make_rule.hpp"
+#include "tools/lab/experiment/adaptation/tuning.hpp"
 #include "tools/lab/experiment/end_region.hpp"
 #include "tools/lab/experiment/rival_rule.hpp"
 

@@ -101,11 +101,4 @@ struct CrossingErrors {
 std::vector<CrossingErrors> driveCrossings(const std::vector<CrossingDrives>& drives,
                                            const CrossingSettings& settings);
 
-/// Numbers of runs and changes.
-std::string textOf(const std::vector<CrossingDrives>& drives);
-/// Errors, regions and notices as a table for people; errors and notices for programs.
-std::string textOf(const std::vector<CrossingErrors>& errors);
-std::string csvOf(const std::vector<CrossingErrors>& errors);
-std::string noticedCsvOf(const std::vector<CrossingErrors>& errors);
-
 }  // namespace tread::experiment

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/lab/gap/report/report.hpp"
+
+#include "tools/lab/gap/report/find_output.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "common/store/store.hpp"
-#include "common/vehicle/model_document.hpp"
+#include "common/vehicle/model_file.hpp"
+#include "tools/lab/gap/report/sections.hpp"
+#include "tools/lab/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {

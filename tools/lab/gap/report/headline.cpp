@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/lab/gap/report/report.hpp"
+#include "tools/lab/gap/report/headline.hpp"
+
+#include "tools/lab/gap/report/pictures.hpp"
 
 #include <algorithm>
+
+#include "tools/lab/gap/explain.hpp"
+#include "tools/lab/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {

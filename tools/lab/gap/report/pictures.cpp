@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/lab/gap/report/report.hpp"
+
+#include "tools/lab/gap/report/pictures.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "common/statistics/statistics.hpp"
+#include "tools/lab/gap/report/words.hpp"
 
 namespace tread::gap {
 

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/lab/gap/report/report.hpp"
+
+#include "tools/lab/gap/report/sections.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "common/config/version.hpp"
+#include "tools/lab/gap/explain.hpp"
+#include "tools/lab/gap/report/headline.hpp"
+#include "tools/lab/gap/report/pictures.hpp"
+#include "tools/lab/gap/report/words.hpp"
 
 namespace tread::gap {
 namespace {

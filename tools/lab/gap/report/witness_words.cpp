@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // What wheel speeds, motor currents and battery voltage show about an effect.
+#include "tools/lab/gap/report/witness_words.hpp"
+
 #include <algorithm>
 #include <string>
 #include <vector>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include "tools/lab/gap/report/words.hpp"
+
 #include "tools/lab/gap/report/report.hpp"
 
 #include <algorithm>
@@ -7,6 +9,8 @@
 #include <map>
 #include <string>
 #include <utility>
+
+#include "tools/lab/gap/report/witness_words.hpp"
 
 namespace tread::gap {
 namespace {

@@ -4,7 +4,9 @@
 
 #include "common/bus/channels.hpp"
 #include "common/scene/scene.hpp"
+#include "common/scene/scene_schemas.hpp"
 #include "common/types/message_json.hpp"
+#include "common/types/tread_types.hpp"
 
 namespace tread::view {
 

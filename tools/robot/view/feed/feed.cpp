@@ -7,8 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "common/bus/channels.hpp"
+#include "common/scene/scene_schemas.hpp"
 #include "common/statistics/statistics.hpp"
 #include "common/types/message_json.hpp"
+#include "common/types/tread_types.hpp"
 
 namespace tread::view {
 namespace {

@@ -2,15 +2,12 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <string>
-
 #include <CLI/CLI.hpp>
+
+#include <string>
 
 #include "common/vehicle/model_document.hpp"
 
-// Subcommands of tread-gap. Each adds itself to the program and runs in its callback, after the
-// command line is parsed. It sets the exit status; an exception ends the program with one line and
-// status 2.
 namespace tread::gap {
 
 /// The model for a command with manoeuvres of two tracks; throws for other vehicles.
@@ -20,6 +17,5 @@ ModelDocument readTwoTracks(const std::string& path, const std::string& command)
 void addEffectsOption(CLI::App& command);
 void addPlan(CLI::App& app, int& status);
 void addWhatIf(CLI::App& app);
-void addWatch(CLI::App& app, int& status);
 
 }  // namespace tread::gap

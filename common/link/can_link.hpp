@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <memory>
+
+#include "common/link/link.hpp"
+
+namespace tread {
+
+/// A CAN interface (SocketCAN): frames as struct can_frame, one behind the other, whole ones only.
+std::unique_ptr<Link> makeCanLink(const LinkAddress& address);
+
+}  // namespace tread

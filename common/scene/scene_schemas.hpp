@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tread {
+
+/// The schema (JSON Schema) of such a message, as far as we fill it.
+std::string sceneSchema(const std::string& name);
+/// Topics with their schemas' names.
+const std::vector<std::pair<std::string, std::string>>& sceneTopics();
+
+}  // namespace tread

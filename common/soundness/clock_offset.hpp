@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include "common/soundness/reading.hpp"
+
+namespace tread::gap {
+
+/// Commands and poses whose clocks differ, by how much.
+void checkOffset(const SortedLog& log, const std::vector<HeardSpan>& spans, Diagnostics& notes);
+
+}  // namespace tread::gap

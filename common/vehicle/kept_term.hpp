@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+#include "common/vehicle/effect_file.hpp"
+
+namespace tread {
+
+/// An unnamed term as an effect of the name, with `share` of the term's values as its size.
+EffectEntry effectOf(const UnnamedTerm& term, const std::string& name);
+
+/// Replaces an unnamed term of a model by the effect of the name, which effectOf() made of it and
+/// which is in the catalogue. What is known of its values is known of its share.
+void replaceTerm(ModelDocument& document, const std::string& term, const Effect& effect);
+
+}  // namespace tread

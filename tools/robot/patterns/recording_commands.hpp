@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Copyright (c) 2026 The Tread authors
+#pragma once
+
+namespace tread::patterns {
+
+CLI::App* addRecord(CLI::App& app);
+CLI::App* addAverage(CLI::App& app);
+
+}  // namespace tread::patterns
