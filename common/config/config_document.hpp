@@ -13,9 +13,9 @@ struct ConfigSource {
   ConfigSource(std::string file_name, std::string file_text);
   /// Offset of a mark in the text; columns count bytes.
   size_t offsetOf(const YAML::Mark& mark) const;
-  /// Takes in lines that stand for one override; the number (1-based) of the first of them.
+  /// Appends the lines of one override; returns the number (1-based) of the first.
   int append(const std::string& lines, const std::string& override_words);
-  /// Where a line is, for messages: file:line, or the override that brought it.
+  /// Where a line is, for messages: file:line, or the override that it came from.
   std::string place(int line) const;
   /// Whether a line (1-based) came from an override, not from the file.
   bool isOverride(int line) const { return file_lines > 0 && line > file_lines; }
@@ -31,7 +31,7 @@ struct ConfigSource {
 /** Throws ConfigError with name:line for bad syntax and for a second document. */
 YAML::Node loadOneDocument(const std::string& text, const std::string& name);
 
-/// Puts "key=value" or "section.key=value" into the tree of a file; throws ConfigError.
+/// Applies "key=value" or "section.key=value" to the tree of a file; throws ConfigError.
 void applyOverride(ConfigSource& source, const std::string& words, YAML::Node& root);
 
 }  // namespace tread

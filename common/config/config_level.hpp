@@ -16,7 +16,7 @@
 
 namespace tread {
 
-/// One map of the file with what was asked of it.
+/// One map of the file with the keys that were asked for.
 struct ConfigReader::Level {
   /// A key that is in the file.
   struct Entry {

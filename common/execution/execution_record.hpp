@@ -8,7 +8,7 @@
 
 namespace tread {
 
-/// How an execution went; the numbers are those of execution_record_t.
+/// Outcome of an execution; the numbers are those of execution_record_t.
 enum class ExecutionOutcome : int16_t { kRunning = 0, kCompleted = 1, kAborted = 2 };
 
 /// One execution as it really took place, as the motor bridge records it.
@@ -19,10 +19,10 @@ struct ExecutionRecord {
   int64_t set_version = 0;
   int64_t started = 0;          ///< [us] when the first command was due
   int64_t ended = -1;           ///< [us] end of the last period, or of the abort; -1 = running
-  int32_t commands_played = 0;  ///< that were really given to the controller
+  int32_t commands_played = 0;  ///< actually given to the controller
   int32_t commands_total = 0;
   ExecutionOutcome outcome = ExecutionOutcome::kRunning;
-  Reason reason;  ///< why aborted; none else
+  Reason reason;  ///< why aborted; otherwise none
 
   bool completed() const { return outcome == ExecutionOutcome::kCompleted; }
 };

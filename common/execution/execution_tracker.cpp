@@ -114,7 +114,7 @@ ExecutionTracker::Event ExecutionTracker::follow(const RobotReadings& readings) 
 ExecutionTracker::Event ExecutionTracker::followExecutions(const RobotReadings& readings) {
   Event event = Event::kNone;
   bool begun = false;
-  bool completed = false;  // the newest of ours that the bridge knows
+  bool completed = false;  // our newest execution that the bridge knows
   for (const ExecutionRecord& record : readings.executions) {
     if (record.run_id != run_id_) continue;
     if (record.execution_id > running_.execution_id && adopt(record.execution_id, record.started))

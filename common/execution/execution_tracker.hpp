@@ -18,10 +18,10 @@ namespace tread {
 /// (run id, execution id): a permanent name of one execution.
 using ExecutionKey = std::pair<int64_t, int64_t>;
 
-/// Where the vehicle was measured to be.
+/// A measured pose of the vehicle.
 struct PoseReading : TimedPose {
   std::optional<Twist2> twist;                                     ///< v_body, if it is measured
-  double position_std = std::numeric_limits<double>::quiet_NaN();  ///< [m] of an axis
+  double position_std = std::numeric_limits<double>::quiet_NaN();  ///< [m] per axis
   double slope =
       std::numeric_limits<double>::quiet_NaN();  ///< [rad] of the ground, from the attitude
 };
@@ -43,14 +43,14 @@ struct BridgeReading {
   }
 };
 
-/// What whoever drives the robot knows about it at one moment.
+/// What the driving process knows about the robot at one instant.
 struct RobotReadings {
   int64_t now = 0;  ///< [us]
   std::optional<PoseReading> pose;
   std::optional<BridgeReading> bridge;
   std::vector<ExecutionRecord> executions;  ///< the last ones, oldest first
-  bool armed_by_operator = false;            ///< ARM came since the start and since the last stop
-  int64_t armed_since = 0;                   ///< [us] when it came
+  bool armed_by_operator = false;  ///< an ARM was received since the start and since the last stop
+  int64_t armed_since = 0;         ///< [us] when it came
   bool estopped = false;
 };
 

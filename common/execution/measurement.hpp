@@ -55,14 +55,14 @@ struct MeasurementLimits {
   double max_slope = 0.20;       ///< [rad] mean inclination during the execution
 };
 
-/// An execution as its record tells of it.
+/// An execution as described by its record.
 struct ExecutionCut : ExecutionRecord {
-  /// Only its beginning, up to `ended`: it still runs, or was stopped before its end.
+  /// Only its beginning, up to `ended`: it is still running, or was stopped early.
   bool beginning = false;
   /// The entry class's command was held for long enough before it: the entry is the class's,
   /// whatever twist that gives on this ground.
   bool steady_before = false;
-  /// A command that differed from the pattern's, in words; empty = none seen.
+  /// A command that differed from the pattern's, in words; empty = none.
   std::string unexpected_command{};
 };
 

@@ -23,9 +23,9 @@ struct PoseSample {
   Pose2 T_map_body;   ///< yaw unwrapped along the track
 };
 
-/// The recent track of a body: timed poses in order, yaw made continuous, interpolated between,
-/// never extrapolated.
-/** Own code instead of CPose2DInterpolator, which turns the short way round and accepts any gap. */
+/// The recent track of a body: timed poses in order, yaw made continuous, interpolated between
+/// poses, never extrapolated.
+/** Replaces CPose2DInterpolator, which turns the short way round and accepts any gap. */
 class PoseTrack {
  public:
   /// Keeps poses that are at most `span_us` older than the newest.

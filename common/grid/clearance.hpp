@@ -19,17 +19,17 @@ class ClearanceField {
   };
 
   ClearanceField() = default;
-  /// `cap` [m]: clearances from there on are not told apart, which is quicker; no upper bound is
-  /// known there.
+  /// `cap` [m]: larger clearances are not distinguished, which is faster; they have no upper bound.
   ClearanceField(const Grid& grid, bool unknown_blocks,
                  double cap = std::numeric_limits<double>::infinity());
 
   /// Clearance at a point of map [m]: a lower bound of the distance to the nearest blocked cell's
-  /// area, at most 0.71 cells too low; 0 in a blocked cell; infinite if nothing blocks. Outside the
+  /// area, at most 0.71 cells too low; 0 in a blocked cell; infinite if no cell blocks. Outside the
   /// window 0 if unknown blocks, else the value of the window's nearest point; 0 for NaN.
   double at(const Eigen::Vector2d& p_map) const { return bounds(p_map).lower; }
 
-  /// Clearance at the centre of the cell that a point lies in, for where a cell is near enough [m].
+  /// Clearance at the centre of the cell that contains a point [m], where one cell is accurate
+  /// enough.
   double quick(double x, double y) const {
     const double column = x * per_cell_ - lower_.x;
     const double row = y * per_cell_ - lower_.y;
@@ -44,8 +44,9 @@ class ClearanceField {
   }
   /// What is certain about the clearance compared with a distance.
   enum class Verdict { kLess, kAtLeast, kUnsure };
-  /// Compares at() and the upper bound with a distance [m]; most of the time from one number.
-  /** As at(p) >= distance and bounds(p).upper < distance tell, but for rounding. */
+  /// Compares the lower bound at() and the upper bound with a distance [m]; usually needs one
+  /// lookup.
+  /** Equals at(p) >= distance and bounds(p).upper < distance, except for rounding. */
   Verdict compare(double x, double y, float distance) const {
     return compare(x, y, distance, distance);
   }
@@ -66,8 +67,8 @@ class ClearanceField {
     return compareOutside(x, y, near, far);
   }
 
-  /// Whether a disc meets no blocked cell: from one number, or from the cells of the square around
-  /// it, of which none may be blocked. False around a point outside the window.
+  /// Whether a disc overlaps no blocked cell: by one lookup, or by requiring every cell of the
+  /// square around it to be free. False around a point outside the window.
   bool discFree(double x, double y, float radius) const {
     const double column = x * per_cell_ - lower_.x;
     const double row = y * per_cell_ - lower_.y;
@@ -96,7 +97,7 @@ class ClearanceField {
   }
 
  private:
-  /// A float may be off by half its last digit: both bounds stay bounds.
+  /// Rounding error of a float: both bounds remain bounds.
   static constexpr double kRounding = 6e-8;
 
   void lookNearby(const std::vector<uint8_t>& blocked, int cap_steps);
@@ -105,7 +106,7 @@ class ClearanceField {
   bool squareFree(double column, double row, float reach) const;
   bool anyBlockedBeyond(int y, int x, int end) const;
   Verdict compareOutside(double x, double y, float near, float far) const;
-  /// As bounds() would, without its root: at (dx, dy) [cells] from the centre of a cell.
+  /// As bounds(), without the square root: at (dx, dy) [cells] from the centre of a cell.
   Verdict compareClosely(double dx, double dy, float clearance, float near, float far) const {
     const auto value = static_cast<double>(clearance);
     if (far <= 0.0F) return Verdict::kAtLeast;
@@ -120,12 +121,12 @@ class ClearanceField {
   double cell_size_ = 0.1;
   double per_cell_ = 10.0;                              // [1/m]
   float cap_ = std::numeric_limits<float>::infinity();  // [m]
-  float half_diagonal_ = 0.08F;                         // [m] of a cell, a little more
+  float half_diagonal_ = 0.08F;                         // [m] of a cell, rounded up
   CellIndex lower_;
   int width_ = 0;
   int height_ = 0;
   std::vector<float> clearance_;  // from each cell's centre [m], row by row
-  std::vector<uint16_t> runs_;    // cells to the right, from each on, that are not blocked
+  std::vector<uint16_t> runs_;    // number of free cells to the right of each cell, itself included
   bool unknown_blocks_ = true;
 };
 

@@ -8,7 +8,7 @@
 
 namespace tread {
 
-/// A CAN interface (SocketCAN): frames as struct can_frame, one behind the other, whole ones only.
+/// A CAN interface (SocketCAN): a sequence of whole struct can_frame.
 std::unique_ptr<Link> makeCanLink(const LinkAddress& address);
 
 }  // namespace tread

@@ -99,7 +99,7 @@ class DescriptorLink : public Link {
 /// The system's message for an errno value.
 std::string systemReason(int error);
 
-/// Reads a file once, from front to end; then it stays closed. It never writes.
+/// Reads a file once, from start to end, and then stays closed. It never writes.
 std::unique_ptr<Link> makeFileLink(const LinkAddress& address);
 
 /// The termios constant of a baud rate [1/s]; nullopt if serial lines do not support it.

@@ -22,11 +22,10 @@ struct LinkAddress {
   int baud = 115200;  ///< tty [1/s]
 };
 
-/// Byte stream to a device. A vanished line is closed at once and opened again by name with
-/// back-off.
-/** Nothing waits for the device, with two exceptions: the rest of a half taken write, 20 ms at
- * most, and the look-up of a TCP host that is given by name, which takes as long as the resolver
- * does: on a robot write its number. */
+/// Byte stream to a device. A vanished line is closed at once and reopened by name with back-off.
+/** Never waits for the device, with two exceptions: completing a partial write, 20 ms at most, and
+ * resolving a TCP host name, which takes as long as the resolver does: use a numeric address on a
+ * robot. */
 class Link {
  public:
   virtual ~Link() = default;

@@ -10,9 +10,9 @@ namespace tread {
 
 /// A serial line or pseudo-terminal, raw, 8 data bits, no parity, one stop bit, no flow control.
 std::unique_ptr<Link> makeTtyLink(const LinkAddress& address);
-/// A new pseudo-terminal whose other side is found behind a symlink: an emulated serial device.
-/** The symlink (and its folder) is made here and taken away with the link. Bytes that nobody reads
- * stay until the line is full, then are lost; who opens the other side drops them. */
+/// A new pseudo-terminal whose other side is reachable by a symlink: an emulated serial device.
+/** The symlink (and its folder) is created here and removed with the link. Unread bytes stay until
+ * the line is full, then are lost; opening the other side discards them. */
 std::unique_ptr<Link> makePtyLink(const LinkAddress& address);
 
 }  // namespace tread

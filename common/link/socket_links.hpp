@@ -10,11 +10,11 @@ namespace tread {
 
 /// A TCP server with one client at a time: an emulated device. Open while a client is connected.
 std::unique_ptr<Link> makeTcpServerLink(const LinkAddress& address);
-/// A client of a TCP server. Connecting goes on over several reopen() calls and is given up after
+/// A client of a TCP server. Connecting continues over several reopen() calls and is given up after
 /// one second.
-/** A host's name is looked up once, which may block: on a robot write its number. */
+/** A host name is resolved once, which may block: use a numeric address on a robot. */
 std::unique_ptr<Link> makeTcpLink(const LinkAddress& address);
-/// Listens on a UDP port (IPv4); datagrams follow each other in one stream. It never writes.
+/// Listens on a UDP port (IPv4); datagrams are concatenated into one stream. It never writes.
 std::unique_ptr<Link> makeUdpLink(const LinkAddress& address);
 
 }  // namespace tread

@@ -103,7 +103,7 @@ struct CommandSample {
   Command command{};
 };
 
-/// What moves a vehicle, and so what its commands are.
+/// The drive of a vehicle, which determines the meaning of its commands.
 enum class VehicleLayout {
   kTracks = 1,  ///< left and right
   kCar = 2,     ///< throttle or speed, and a steering angle

@@ -29,7 +29,7 @@
 // integrated. This code knows no particular robot, surface or session. Units: m, rad, s.
 namespace tread::recordings {
 
-/// What is made of a folder of drives.
+/// A request to build recordings from a folder of drives.
 struct DriveRequest {
   std::string folder;                 ///< sessions.csv, steps_quality.csv, steps/
   std::string robot;                  ///< part of the robot's name; empty = the only one

@@ -10,7 +10,7 @@
 
 namespace tread::recordings {
 
-/// One pattern to build: its command held for its whole length.
+/// One pattern to build: its command, held for its whole length.
 struct PatternWish {
   std::string name;
   BodyCommand command;
@@ -20,10 +20,10 @@ struct PatternWish {
 struct PatternRecipe {
   std::string name = "drive";
   double period = 0.05;  ///< [s] of the recordings' commands
-  double length = 2.0;   ///< [s] of a pattern; that of a steady window
-  int neighbours = 30;   ///< windows nearest to a command that its mean comes from
-  int deviations =
-      15;  ///< steps whose deviation is used, with both signs: twice as many recordings
+  double length = 2.0;   ///< [s] of a pattern; equal to that of a steady window
+  int neighbours = 30;   ///< number of windows nearest to a command whose mean is taken
+  int deviations = 15;   ///< number of steps whose deviation is used, with both signs: gives twice
+                         ///< as many recordings
   std::vector<PatternWish> patterns;
 
   size_t samples() const;
@@ -31,7 +31,7 @@ struct PatternRecipe {
   BodyCommand reach() const;
 };
 
-/// What is built without --recipe; config/patterns/recipes/drive.yaml says the same.
+/// The recipe used without --recipe; equal to config/patterns/recipes/drive.yaml.
 PatternRecipe defaultRecipe();
 
 /// Reads a recipe; throws ConfigError at file:line.
@@ -43,15 +43,15 @@ PatternRecipe scaledRecipe(PatternRecipe recipe, double v_factor, double w_facto
 /// Motion of one pattern on one surface.
 struct LocalMotion {
   TwistLine mean;
-  std::vector<TwistLine> deviations;  ///< one sign; add and subtract
-  size_t implausible = 0;             ///< steps passed over for deviations: their windows disagree
-  double reach = 0.0;                 ///< [1] distance of the farthest window used
-  size_t windows = 0;                 ///< that the mean comes from
+  std::vector<TwistLine> deviations;  ///< of one sign; use both + and -
+  size_t implausible = 0;  ///< steps not used for deviations because their windows disagree
+  double reach = 0.0;      ///< [1] distance of the farthest window used
+  size_t windows = 0;      ///< used for the mean
 };
 
 /// The motion for a command; `reach` holds the largest |v| and |w| of the patterns.
-/** Throws RecordingError if there are fewer windows than neighbours wanted, fewer than `deviations`
- * steps of which both windows are there and agree, or none with as large a command. */
+/** Throws RecordingError if there are fewer windows than neighbours required, fewer than
+ * `deviations` steps with two windows that agree, or no window with a command this large. */
 LocalMotion localMotion(const std::vector<SteadyWindow>& windows, const BodyCommand& command,
                         const PatternRecipe& recipe);
 

@@ -12,8 +12,8 @@ enum class Gyro {
   kAll       ///< all of them, beside the fixes
 };
 
-/// steps/*.csv: poses held and late; a fix where pose_new says so. Throws RecordingError.
-/** A session without pose lag leaves the poses at the time at which they were logged. */
+/// steps/*.csv: poses are held and late; a new fix where pose_new is set. Throws RecordingError.
+/** For a session without pose lag the poses keep the time at which they were logged. */
 RecordedDrive readSteps(const std::string& path, const Session& session,
                         Gyro gyro = Gyro::kAtFixes);
 /// aligned/*.csv: lag already removed, poses interpolated to 20 Hz; none inside ICP gaps above 0.3

@@ -76,12 +76,12 @@ void requireAddable(const std::string& folder, const PatternSet& executed,
 bool addSurface(const std::string& folder, const PatternSet& executed,
                 const SurfaceRecordings& surface);
 
-// Recordings as a robot would have sent them, so that the real learner process can hear them. First
-// all executions on one surface, then those on the other; MARK names the surface. Each execution is
-// a track of its own: INS and MOTOR tell of it from `lead` before its start to `tail` after its
-// end, and are silent between two. The windows that the recordings come from are steady, so before
-// its first and after its last pose the robot is taken to move by the mean twist of the recording
-// (that of its first sample alone would be mostly noise of the lidar's poses).
+// Recordings as a robot would have sent them, so that the real learner process can receive them.
+// First all executions on one surface, then those on the other; MARK names the surface. Each
+// execution is a track of its own: INS and MOTOR cover it from `lead` before its start to `tail`
+// after its end, and are silent in between. The windows behind the recordings are steady, so before
+// the first and after the last pose the robot is assumed to move with the recording's mean twist
+// (the twist of the first sample alone would be mostly noise of the lidar's poses).
 //   INS        100 Hz; between two recorded poses by the constant twist that leads from one to the
 //              other
 //   MOTOR      20 Hz, the steady command; execution and index while the pattern is played

@@ -113,7 +113,7 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
-/// What sessions have in a field, each once, in their order.
+/// The different values of a field over the sessions, in their order.
 std::vector<std::string> distinct(const std::vector<Session>& sessions,
                                   std::string Session::*field) {
   std::vector<std::string> values;

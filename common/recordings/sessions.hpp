@@ -27,7 +27,7 @@ namespace tread::recordings {
 /// for skid-steer robots of 70 to 500 kg. Earlier measurements are not used.
 inline constexpr double kSettle = 1.8;
 
-/// What the wheels are told, as body motion of an ideal differential drive.
+/// A wheel command as body motion of an ideal differential drive.
 struct BodyCommand {
   double v = 0.0;  ///< [m/s] + forward
   double w = 0.0;  ///< [rad/s] + counter-clockwise

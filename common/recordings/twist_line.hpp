@@ -12,16 +12,16 @@
 
 namespace tread::recordings {
 
-/// How a robust fit weighs its rows.
+/// How a robust fit groups and scales its rows.
 struct HuberLimits {
-  int group = 1;             ///< so many neighbouring rows belong to one observation
-  double least_scale = 0.0;  ///< [unit of b] smaller residuals are never called large
+  int group = 1;             ///< number of neighbouring rows of one observation
+  double least_scale = 0.0;  ///< [unit of b] lower limit of the residual scale
 };
 
 /// x that minimises the sum of rho(|A x - b| per observation), rho of Huber (k = 1.345 scales).
-/** Solved by iteratively reweighted least squares (QR); the scale is 1.4826 times the median of the
- * residuals' lengths per row, at least `least_scale`. `prior` holds a weight for each observation;
- * those of zero do not count. Deterministic. */
+/** Solved by iteratively reweighted least squares (QR); the scale is 1.4826 times the median
+ * residual length per row, at least `least_scale`. `prior` holds a weight for each observation;
+ * zero excludes it. Deterministic. */
 Eigen::VectorXd huberFit(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
                          const Eigen::VectorXd& prior, const HuberLimits& limits);
 
@@ -35,7 +35,7 @@ struct TwistLine {
   static TwistLine of(const Eigen::Matrix<double, 6, 1>& vector);
   /// The twist `time` seconds after the beginning of a window of `duration`.
   Twist2 at(double time, double duration) const;
-  /// What the mirrored robot would do.
+  /// The motion of the mirrored robot.
   TwistLine mirrored() const;
 };
 

@@ -7,7 +7,7 @@
 
 namespace tread::report {
 
-/// A point of a chart, in its quantities.
+/// A point of a chart, in the units of its axes.
 struct ChartPoint {
   double x = 0.0;
   double y = 0.0;
@@ -25,16 +25,16 @@ struct ChartRange {
 
   double height() const { return y_max - y_min; }
   void include(const ChartPoint& point);
-  /// A range that includes nothing yet.
+  /// An empty range.
   static ChartRange empty();
-  /// The same with some air, at least `least` wide; with equal scales for a plot of that shape.
+  /// The same with margins, at least `least` wide; with equal scales for a plot of that shape.
   ChartRange widened(double least) const;
   ChartRange withEqualScales() const;
 };
 
-/// A small picture with axes as SVG text: 320 x 230 units, as wide as its place in the page.
-/** Points that are not finite are left out; an axis without words has no numbers. Only shapes and
- * text with attributes of their own, so that it can stand alone as a file, too. */
+/// A small chart with axes as SVG text: 320 x 230 units, scaled to the width of its container.
+/** Points that are not finite are left out; an axis without label has no numbers. Uses only shapes
+ * and text with attributes of their own, so that it is also a valid file by itself. */
 class Chart {
  public:
   Chart(std::string title, std::string x_words, std::string y_words, const ChartRange& range);
@@ -44,7 +44,7 @@ class Chart {
   /// The area between low and high at each x.
   void band(const std::vector<ChartPoint>& low, const std::vector<ChartPoint>& high,
             const std::string& colour);
-  /// The surroundings of a path within a radius about each point; for charts with equal scales.
+  /// The region within a radius of each point of a path; for charts with equal scales.
   void tube(const std::vector<ChartPoint>& points, const std::vector<double>& radii,
             const std::string& colour);
   /// A spot of a map, in its own colour.
@@ -52,11 +52,11 @@ class Chart {
   void dot(const ChartPoint& at, const std::string& colour, bool filled = true);
   /// From low to high at x.
   void bar(double x, double low, double high, const std::string& colour);
-  /// A filled field between two corners.
+  /// A filled rectangle between two corners.
   void field(const ChartPoint& corner, const ChartPoint& opposite, const std::string& colour);
-  /// Words in the middle of a place just below the axis.
+  /// Text centred at a place just below the axis.
   void labelBelow(double x, const std::string& words);
-  /// A level line at y.
+  /// A horizontal line at y.
   void level(double y);
   /// One entry of the legend below the title.
   void legend(const std::string& words, const std::string& colour, bool dashed = false);
@@ -78,7 +78,7 @@ class Chart {
   double legend_end_ = 0.0;
 };
 
-/// Charts in rows of so many, as one SVG file.
+/// Charts in rows of `columns`, as one SVG file.
 std::string sheetOf(const std::vector<std::string>& charts, size_t columns);
 
 }  // namespace tread::report

@@ -15,7 +15,7 @@ std::string sha256(const std::string& bytes);
 
 namespace tread::report {
 
-/// Colours of the pictures; told apart by colour-blind people, too.
+/// Colours of the pictures, distinguishable also with colour blindness.
 inline constexpr const char* kInk = "#1c2126";
 inline constexpr const char* kGreyInk = "#8a949e";
 inline constexpr const char* kBeforeColour = "#d0661c";

@@ -20,7 +20,7 @@ struct SceneMessage {
   uint64_t part = 0;  ///< identifies the entity of its topic that it replaces
 };
 
-/// Draws the robot, the map, the scan, the plan with its tree, and tells events, from Tread's
+/// Draws the robot, the map, the scan and the plan with its tree, and reports events, from Tread's
 /// messages.
 /** Frames: map, body. All times are times of recording: a viewer uses the recorder's clock. */
 class SceneMaker {

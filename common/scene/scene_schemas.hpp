@@ -8,7 +8,7 @@
 
 namespace tread {
 
-/// The schema (JSON Schema) of such a message, as far as we fill it.
+/// The schema (JSON Schema) of such a message, restricted to the fields that we fill.
 std::string sceneSchema(const std::string& name);
 /// Topics with their schemas' names.
 const std::vector<std::pair<std::string, std::string>>& sceneTopics();

@@ -6,11 +6,10 @@
 
 namespace tread::gap {
 
-/// Missing channels, commands of two kinds, silences, jumps and frozen
-/// poses.
+/// Checks for missing channels, commands of two kinds, silences, jumps and frozen poses.
 void checkChannels(const SortedLog& log, const std::vector<HeardSpan>& spans, Diagnostics& notes);
 
-/// Two robots (or two publishers of a channel) in one log.
+/// Checks for two robots (or two publishers of a channel) in one log.
 void checkPublishers(const SortedLog& log, Diagnostics& notes);
 
 }  // namespace tread::gap

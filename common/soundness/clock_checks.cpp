@@ -90,7 +90,7 @@ struct Motion {
 constexpr Motion kAlone{};
 constexpr Motion kTogetherWithMotor{0.08, 0.1};
 
-/// The pose beside a pause, and how the robot moves there.
+/// The pose next to a pause, and the robot's motion there.
 struct Beside : TimedPose {
   Motion motion;
 

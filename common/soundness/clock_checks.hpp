@@ -6,13 +6,13 @@
 
 namespace tread::gap {
 
-/// Who gave the messages of a log their numbers.
+/// Source of the sequence numbers in a log.
 enum class Numbering {
-  kByRobot,   ///< a message that the recorder lost is missing in them
-  kByImport,  ///< they count what the recording has
+  kByRobot,   ///< gaps show messages lost by the recorder
+  kByImport,  ///< they number the recorded messages only
 };
 
-/// Clocks that jump or go back, pauses over which the robot did not move among them.
+/// Checks for clocks that jump or go back, also during pauses in which the robot did not move.
 void checkClocks(const SortedLog& log, Numbering numbering, Diagnostics& notes);
 
 }  // namespace tread::gap

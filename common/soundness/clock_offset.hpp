@@ -6,7 +6,7 @@
 
 namespace tread::gap {
 
-/// Commands and poses whose clocks differ, by how much.
+/// Checks for an offset between the clocks of commands and poses, and its size.
 void checkOffset(const SortedLog& log, const std::vector<HeardSpan>& spans, Diagnostics& notes);
 
 }  // namespace tread::gap

@@ -97,6 +97,6 @@ struct HeardSpan {
 /// Length of an execution [s].
 inline constexpr double kExecutionLength = 2.0;
 
-inline constexpr int64_t kOvertaking = 200'000;  ///< [us] by which messages may come out of order
+inline constexpr int64_t kOvertaking = 200'000;  ///< [us] by which messages may arrive out of order
 
 }  // namespace tread::gap

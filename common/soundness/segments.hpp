@@ -6,11 +6,11 @@
 
 namespace tread::gap {
 
-/// The segments of a log: spans, cut where the INS begins a new track.
+/// The segments of a log: spans, cut where the INS starts a new track.
 std::vector<Segment> segmentsOf(const std::vector<HeardSpan>& spans,
                                 const std::vector<EncoderSample>& encoders);
 
-/// The executions to be predicted; `records` in seconds, in order of time.
+/// The executions to predict; `records` in seconds, in order of time.
 std::vector<Execution> executionsOf(VehicleLayout layout, const std::vector<Segment>& segments,
                                     const std::vector<Execution>& records);
 

@@ -64,7 +64,7 @@ class MessageTypes {
   std::map<uint64_t, const MessageType*> by_fingerprint_;
 };
 
-/// Hears the values of a message one after the other.
+/// Receives the values of a message in order.
 class MessageVisitor {
  public:
   virtual ~MessageVisitor() = default;

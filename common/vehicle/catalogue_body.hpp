@@ -10,9 +10,9 @@ namespace tread {
 
 std::vector<Effect> inertiaEffects();               ///< inertia, centre of rotation, crab
 std::vector<Effect> sideEffects();                  ///< drift and slopes
-std::vector<Effect> timingEffects();                ///< of the INS: latencies and scale
-std::vector<Effect> mountingEffects();              ///< of the INS: lever arm, alignment, bias
-std::vector<ConfoundedGroup> groupsOfEveryDrive();  ///< that no drive tells apart
-std::vector<ConfoundedGroup> groupsOfPoorDrives();  ///< that a better drive tells apart
+std::vector<Effect> timingEffects();                ///< effects that no drive can distinguish
+std::vector<Effect> mountingEffects();              ///< effects that a better drive can distinguish
+std::vector<ConfoundedGroup> groupsOfEveryDrive();  ///< groups that no drive can distinguish
+std::vector<ConfoundedGroup> groupsOfPoorDrives();  ///< groups that a better drive can distinguish
 
 }  // namespace tread

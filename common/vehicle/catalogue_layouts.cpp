@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What only a car has, or only a holonomic base.
+// Effects that only a car or only a holonomic base can have.
 #include "common/vehicle/catalogue_layouts.hpp"
 
 #include "common/vehicle/catalogue_parts.hpp"

@@ -10,6 +10,6 @@ namespace tread {
 
 std::vector<Effect> steeringEffects();  ///< of a car's steering
 std::vector<Effect> wheelEffects();     ///< of the wheels of a holonomic base
-std::vector<Effect> sidewaysEffects();  ///< of how a holonomic base moves sideways
+std::vector<Effect> sidewaysEffects();  ///< of the lateral motion of a holonomic base
 
 }  // namespace tread

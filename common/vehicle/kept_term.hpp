@@ -9,8 +9,8 @@ namespace tread {
 /// An unnamed term as an effect of the name, with `share` of the term's values as its size.
 EffectEntry effectOf(const UnnamedTerm& term, const std::string& name);
 
-/// Replaces an unnamed term of a model by the effect of the name, which effectOf() made of it and
-/// which is in the catalogue. What is known of its values is known of its share.
+/// Replaces an unnamed term of a model by the effect of this name, which effectOf() made from it
+/// and which is in the catalogue. The uncertainty of its values becomes that of its share.
 void replaceTerm(ModelDocument& document, const std::string& term, const Effect& effect);
 
 }  // namespace tread

@@ -150,7 +150,7 @@ MotionClass classOf(const VehicleModel& model, const std::string& name, const Co
 void predict(const VehicleModel& model, double period, const MotionClass& entry,
              MotionPattern& pattern);
 
-/// Pose and yaw rate at one moment, of the vehicle or as the INS says.
+/// Pose and yaw rate at one instant, true or measured by the INS.
 struct MotionSample : PoseSample {
   double omega = 0.0;  ///< [rad/s]
 };

@@ -8,15 +8,15 @@ namespace tread {
 
 /// Reads a model file (YAML that people read and edit; see config/models).
 /** Throws ConfigError with one line "file:line: what is wrong; what is allowed" for bad YAML,
- * unknown keys or effects and values out of their ranges. What the file does not name has the value
- * of the nominal model (effects: off). Vehicle effects stand under effects:, those of the INS under
- * measurement:. A limit may be given as itself or as inverse_limit, its reciprocal. */
+ * unknown keys or effects and values out of range. Missing keys get the values of the nominal
+ * model (effects: off). Vehicle effects are under effects:, those of the INS under measurement:. A
+ * limit may be given directly or as inverse_limit, its reciprocal. */
 ModelDocument readModelDocument(const std::string& path);
 
 /// The same from text; `name` stands for the file in messages.
 ModelDocument parseModelDocument(const std::string& text, const std::string& name);
 
-/// The same for what computes with two tracks or a car; a holonomic base is refused.
+/// The same, for computations with two tracks or a car; a holonomic base is refused.
 ModelDocument readTrackModelDocument(const std::string& path);
 
 /// Only the vehicle of a model file.
@@ -26,7 +26,7 @@ VehicleModel readModelFile(const std::string& path);
 /// left out.
 std::string formatModelDocument(const ModelDocument& document);
 
-/// An effect by name; throws std::runtime_error with one line that guesses what was meant.
+/// An effect by name; throws std::runtime_error with one line that suggests a similar name.
 const Effect& effectOrGuess(const std::string& name);
 
 /// Reads the vehicle effects of a section whose keys are their names (not finished here).

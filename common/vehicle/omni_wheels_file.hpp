@@ -6,9 +6,9 @@
 
 namespace tread {
 
-/// The list `wheels` of a description: angle and distance of each from the body origin, or its
-/// position; throws ConfigError with file:line.
-/** `inverted`: whether each motor is mounted the other way round; null where nobody asks. */
+/// The list `wheels` of a description: angle and distance of each wheel from the body origin, or
+/// its position; throws ConfigError with file:line.
+/** `inverted`: whether each motor is mounted in reverse; may be null. */
 OmniWheels readOmniWheels(ConfigReader& reader, std::vector<bool>* inverted = nullptr);
 
 }  // namespace tread

@@ -16,34 +16,35 @@
 
 namespace tread::learner {
 
-/// What the learner finds when it starts.
+/// The learner's stored state at its start.
 struct StoredLearning {
   std::optional<LearnerState> state;  ///< newest valid one of this shipped set
-  int64_t first_version = 1;          ///< to publish now; above everything ever published
-  std::string problem;                ///< one clear line if something was damaged; else empty
+  int64_t first_version = 1;          ///< next to publish; above every published version
+  std::string problem;                ///< one clear line if something was damaged; otherwise empty
 };
 
-/// The learner's files. Entries: learner_state_1 and _2, written in turn so that the one before is
-/// kept, and learner_versions, a number that no published version exceeds.
-/** The rule of versions: learner_versions is written ahead, for a hundred executions, before they
- * are used. A start begins above it, because the last versions may have been published from memory
- * while the disk was full. Without it, above the newest state by those of a thousand; without that,
- * too, at fifty per second of robot time, which is faster than executions can be learned from. A
- * node that then still hears of a higher version of its own goes above that (LearnerNode). */
+/// The learner's files. Entries: learner_state_1 and _2, written alternately so that the previous
+/// state is kept, and learner_versions, an upper limit of the published versions.
+/** Rule of versions: learner_versions is written ahead for a hundred executions before they are
+ * used. A start begins above it, because the last versions may have been published from memory
+ * while the disk was full. Without it, a start begins above the newest state by the versions of a
+ * thousand executions; without a state, at fifty per second of robot time, which is faster than
+ * executions can be learned from. A node that then receives a higher version of its own continues
+ * above that (LearnerNode). */
 class LearnerMemory {
  public:
   explicit LearnerMemory(Store& store) : store_(store) {}
 
   StoredLearning recall(const PatternSet& shipped, int64_t utime);
 
-  /// Makes sure that `version` may be published. One clear line if that could not be written.
+  /// Ensures that `version` may be published. Returns one clear line if that could not be written.
   std::optional<std::string> reserve(int64_t version);
-  /// Writes the state of a version over the older of the two. One clear line if it could not be
-  /// written.
+  /// Writes the state of a version over the older of the two. Returns one clear line if it could
+  /// not be written.
   std::optional<std::string> save(const std::string& state_text);
 
  private:
-  /// Nothing where it is missing, or damaged, which is added to `problem`.
+  /// nullopt if it is missing, or damaged, which is added to `problem`.
   std::optional<int64_t> storedReserve(std::string& problem) const;
 
   Store& store_;
@@ -51,25 +52,25 @@ class LearnerMemory {
   int next_slot_ = 0;
 };
 
-/// Another set in the place of one.
+/// Replaces a set by another one.
 using SetReplacement = std::function<PatternSet(const PatternSet&)>;
 
-/// Sends sets and states in portions: LCM silently loses messages where one
-/// publisher sends more than 100 kB in 20 ms.
+/// Sends sets and states in portions: LCM silently loses messages if one publisher sends more than
+/// 100 kB in 20 ms.
 class SetPublisher {
  public:
   explicit SetPublisher(Bus& bus) : bus_(bus) {}
 
-  /// Sets go out as this makes them from now on; it keeps their versions. For experiments.
+  /// Sets are converted by this before sending and keep their versions. For experiments.
   void replaceSets(SetReplacement replacement) { replacement_ = std::move(replacement); }
-  /// The parts of a set; those of an older one that are still here are not sent any more.
+  /// Enqueues the parts of a set; unsent parts of an older one are dropped.
   void putSet(const PatternSet& set);
-  /// The parts of a state's text, sent after the sets. At most two states wait; more drop the
-  /// older.
+  /// Enqueues the parts of a state's text, sent after the sets. At most two states wait; further
+  /// ones drop the older.
   void putState(const PatternSet& set, const std::string& rule, const std::string& text);
 
   bool setsSent() const { return sets_.empty(); }
-  /// Sends one portion; without sets only states.
+  /// Sends one portion; without sets, states only.
   void step(int64_t utime, bool with_sets = true);
 
  private:

@@ -9,23 +9,23 @@ namespace tread::gap {
 /// Increments over 0.4 to 1.2 s, one after the other, in order of time.
 std::vector<PoseIncrement> poseIncrements(const Drive& drive);
 
-/// One rate of all: &PoseIncrement::v or &PoseIncrement::omega.
+/// One rate of all increments: &PoseIncrement::v or &PoseIncrement::omega.
 std::vector<double> ratesOf(const std::vector<PoseIncrement>& increments,
                             double (PoseIncrement::*rate)() const);
 
 /// A running sum over time, within one segment, linear between its points.
 class RunningSum {
  public:
-  /// Appends a rate that holds from `begin` to `end` [s]; a pause before it ends what is known.
+  /// Appends a rate that holds from `begin` to `end` [s]; a gap before it starts a new piece.
   void add(double begin, double end, double rate);
-  /// Mean rate over an interval; nothing if it is not known all along.
+  /// Mean rate over an interval; nullopt unless it is known throughout.
   std::optional<double> mean(double begin, double end) const;
 
  private:
   struct Point {
     double time;
     double sum;
-    size_t piece;  ///< between pieces nothing is known
+    size_t piece;  ///< unknown between pieces
   };
   std::optional<std::pair<double, size_t>> at(double time) const;
   std::vector<Point> points_;
@@ -45,15 +45,16 @@ RunningSums commandSums(const Drive& drive, const std::function<double(const Tra
 RunningSums turnCommandSums(const Drive& drive);
 RunningSums driveCommandSums(const Drive& drive);
 
-/// Rates of increments beside another rate at many lags; increments count that speak at all lags.
+/// Rates of increments against another rate at many lags; uses increments for which it is known at
+/// all lags.
 class LagTable {
  public:
-  /// `rates` of the increments; `sums` of the rate that they follow, which is read `lag` earlier.
+  /// `rates` of the increments; `sums` of the leading rate, which is evaluated `lag` earlier.
   LagTable(const std::vector<PoseIncrement>& increments, const std::vector<double>& rates,
            const RunningSums& sums, std::vector<double> lags);
 
-  /// The match at one of the lags over increments [first, last); nothing where less than a third
-  /// of the increments speak, or nothing moves.
+  /// The match at one of the lags over increments [first, last); nullopt if fewer than a third of
+  /// the increments are usable, or there is no motion.
   std::optional<LagMatch> match(size_t lag, size_t first, size_t last) const;
   /// The match with the largest correlation (sign 1) or the most negative one (sign -1) among lags
   /// from `from` to `to` [s], refined between the lags.

@@ -27,7 +27,7 @@ struct PoseIncrement {
   double omega() const { return T_begin_end.yaw / duration(); }  ///< [rad/s] of the heading
 };
 
-/// How well one rate follows another one, later by a lag.
+/// How well one rate follows another with a lag.
 struct LagMatch {
   double lag = 0.0;          ///< [s]
   double correlation = 0.0;  ///< at that lag
@@ -38,7 +38,7 @@ struct LagMatch {
   double leading_spread = 0.0;  ///< the same for the leading rate
 };
 
-/// Notes about one log, in the order in which they were made.
+/// Notes about one log, in the order of their making.
 class Diagnostics {
  public:
   explicit Diagnostics(std::string log) : log_(std::move(log)) {}

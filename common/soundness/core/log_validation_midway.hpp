@@ -6,7 +6,7 @@
 
 namespace tread::gap {
 
-/// What was sound and is not any more, or not yet: frozen, of another sign, turned.
+/// Signals that are valid in one part of the drive only: frozen, inverted or turned in the other.
 void checkMidway(const Drive& drive, const std::vector<PoseIncrement>& increments,
                  Diagnostics& notes);
 

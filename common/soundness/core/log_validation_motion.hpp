@@ -8,7 +8,7 @@ namespace tread::gap {
 
 /// The largest of the commands that move the vehicle.
 double largestCommand(const Drive& drive);
-/// Different commands, to a hundredth of the largest one.
+/// Number of different commands, to a hundredth of the largest one.
 size_t differentCommands(const Drive& drive);
 
 void checkPoses(const Drive& drive, const std::vector<PoseIncrement>& increments,

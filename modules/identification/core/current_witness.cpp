@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What motor currents say of the effects that were found.
+// Evidence of the motor currents about found effects.
 #include "modules/identification/core/current_witness.hpp"
 
 #include <algorithm>

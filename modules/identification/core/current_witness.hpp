@@ -11,14 +11,13 @@
 
 namespace tread::gap {
 
-/// By how much the motor currents rise with each effect, beyond their ordinary dependence on the
-/// tracks' speed, its change and dry friction; with 95 % intervals over blocks.
-/** What takes speed by a load draws current; what the drive does not give draws none, and neither
- * do tracks that slip. Only torques count, so `currents` must be those of the motors, not of the
- * battery. Nothing where no drive has currents, or ones that do not follow the motion (stuck, cut
- * off, of another machine), of lags and what else acts on changes alone, of the INS, of motion to
- * the side, and of an effect that looks like the ordinary dependence (a factor on all motion, a dry
- * friction). */
+/// Rise of the motor currents with each effect, beyond their usual dependence on the tracks' speed,
+/// its change and dry friction; with 95 % intervals over blocks.
+/** A load that reduces the speed draws current; a weak drive or slipping tracks do not. Only
+ * torques count, so `currents` must be those of the motors, not of the battery. No entry without
+ * currents, for currents that do not follow the motion (stuck, cut off, of another machine), for
+ * lags and other effects on changes only, for the INS, for lateral motion, and for an effect that
+ * resembles the usual dependence (a factor on all motion, a dry friction). */
 std::map<std::string, CurrentWitness> currentWitnesses(const Fitter& fitter, const FitState& state,
                                                        const std::vector<std::string>& effects);
 

@@ -13,8 +13,8 @@
 // What a drive reveals about a model, and what the residuals still depend on.
 namespace tread::gap {
 
-/// Where the residuals of two models are: curves of every channel over variables that a person
-/// looks at and over those of what is unexplained, and maps over speed and yaw rate.
+/// The residuals of two models: curves of every channel over the standard variables and over the
+/// unexplained ones, and maps over speed and yaw rate.
 /** The interval of a curve's cell is from the scatter of its blocks' means; cells that exclude 0
  * after correction for the number of cells (Bonferroni, 5 %) are marked. */
 ResidualAtlas residualAtlas(const Observations& observations, const ModelDocument& before,

@@ -157,7 +157,7 @@ class Observations {
   double block_length_ = 0.0;
 };
 
-/// Degrees of freedom of the residuals' Student distribution: a jump of the INS must not decide.
+/// Degrees of freedom of the residuals' Student distribution: limits the influence of an INS jump.
 inline constexpr double kFreedom = 4.0;
 
 }  // namespace tread::gap

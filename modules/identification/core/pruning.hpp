@@ -10,17 +10,16 @@ namespace tread::gap {
 FitState switchedOff(const Fitter& fitter, const FitState& state,
                      const std::vector<std::string>& effects);
 
-/// The state without an effect, its other parameters refitted, with current Jacobian.
+/// The state without an effect, with the other parameters refitted and a current Jacobian.
 FitState without(const Fitter& fitter, const FitState& state, const std::string& effect);
 
-/// The same in first order and without a simulation; nothing is refitted, the model stays as it
-/// was.
+/// The same in first order, without simulation or refit; the model is not changed.
 FitState withoutLinearly(const Fitter& fitter, const FitState& state, const std::string& effect);
 
-/// Removes effects, weakest first, that the others make superfluous.
-/** Each that stays passes the score test alone in the presence of the others (evidence() >= 1),
- * improves blocks left out, and the end error by at least `least_gain` of it (0 = however little);
- * accepted ones stay in any case. Fills evidence and record of the result. */
+/// Removes effects that the others make superfluous, weakest first.
+/** Each remaining one passes the score test in the presence of the others (evidence() >= 1),
+ * improves held-out blocks, and improves the end error by at least the share `least_gain` (0 = any
+ * amount); accepted ones always stay. Fills evidence and record of the result. */
 void pruneEffects(const SearchState& search, const Needed& needed);
 
 }  // namespace tread::gap

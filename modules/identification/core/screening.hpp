@@ -16,9 +16,9 @@
 // Statistics of rows and their blocks for a state: held-out losses, covariances, score tests.
 namespace tread::gap {
 
-/// One direction in which an effect that is off could act, and where a fit of it begins; or one in
-/// which a given term of the model may have changed (`release`): by little, or, where its slope
-/// says nothing because the drive does not reach the given value (limits, thresholds), to another
+/// A direction in which an effect that is off could act, with the start values of its fit; or one
+/// in which a given term of the model may have changed (`release`): slightly or, if the slope is
+/// uninformative because the drive does not reach the given value (limits, thresholds), to another
 /// value altogether (`elsewhere`).
 struct Candidate {
   std::string effect;

@@ -85,7 +85,7 @@ FitState refitted(const Fitter& fitter, const FoundTerms& result);
 
 // Steps of a search.
 
-/// Whether an effect is a lag between a command and what the INS says of it.
+/// Whether an effect is a lag between a command and its measurement by the INS.
 inline bool isLag(const Effect& effect) {
   return effect.search.late_by != LateBy::kNothing;
 }

@@ -19,11 +19,11 @@ struct Variable {
   Eigen::VectorXd values;  ///< rows x 1
 };
 
-/// All such quantities, from the simulated motion, the roll and pitch of the INS and the time.
+/// All such quantities, from the simulated motion, the INS's roll and pitch, and the time.
 std::vector<Variable> variablesOf(const Observations& data, const ModelDocument& model);
 
-/// Plain conditions of the motion, the commands and what was before, of which the residuals may be
-/// some function; speed and yaw rate first.
+/// Simple conditions of the motion, the commands and the recent past on which the residuals may
+/// depend; speed and yaw rate first.
 std::vector<Variable> inputsOf(const Observations& data, const ModelDocument& model);
 
 }  // namespace tread::gap

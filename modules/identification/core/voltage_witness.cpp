@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// What the battery voltage says of the effects that were found.
+// Evidence of the battery voltage about found effects.
 #include "modules/identification/core/voltage_witness.hpp"
 
 #include <algorithm>

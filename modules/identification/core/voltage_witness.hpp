@@ -11,10 +11,10 @@
 
 namespace tread::gap {
 
-/// How much of each effect that comes and goes with time the battery voltage falls by, too; with
-/// 95 % intervals over blocks.
-/** A motor is slower in proportion to its voltage. Nothing where no voltage is measured, and of
- * effects that are not one factor on the motion that changes from block to block. */
+/// Share of each intermittent effect that the battery voltage also shows; with 95 % intervals over
+/// blocks.
+/** A motor's speed is proportional to its voltage. No entry without a measured voltage, and for
+ * effects that are not one factor on the motion that changes between blocks. */
 std::map<std::string, VoltageWitness> voltageWitnesses(const Fitter& fitter, const FitState& state,
                                                        const std::vector<std::string>& effects);
 

@@ -46,7 +46,7 @@ void FenceWatch::receive(const InsMotion& ins) {
 
 void FenceWatch::command(const Command& motion, int64_t now) {
   if (given_.empty() || given_.back().command != motion) given_.push_back({now, motion});
-  // The last one before the window holds in it, too.
+  // The last one before the window acts in it, too.
   const int64_t begin = now - toMicroseconds(motion_.delay);
   while (given_.size() > 1 && given_[1].utime <= begin) given_.pop_front();
   if (motion[0] > 0.0 || motion[1] > 0.0) ahead_ = now;

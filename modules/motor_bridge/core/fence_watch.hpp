@@ -51,7 +51,7 @@ class FenceWatch {
   Reason fault(int64_t now);
 
  private:
-  /// Poses that the motions under way may lead to.
+  /// Poses that the possible motions lead to.
   struct Ways {
     std::vector<Pose2> poses;
     double farthest = 0.0;  ///< [m] from here
@@ -70,12 +70,12 @@ class FenceWatch {
   MotionLimits motion_;
   FenceBook book_;
   InsMotion ins_;
-  std::deque<TimedCommand> given_;  ///< of the last moments, oldest first
+  std::deque<TimedCommand> given_;  ///< the most recent ones, oldest first
   std::optional<int64_t> ahead_;    ///< [us] when a track was last commanded forward
   std::optional<int64_t> back_;     ///< [us] ... backward
   std::optional<int64_t> left_;     ///< [us] when the robot was last commanded to the left
   std::optional<int64_t> right_;    ///< [us] ... to the right
-  std::vector<double> best_;        ///< [m] by fence: most room since it was crossed
+  std::vector<double> best_;        ///< [m] by fence: largest clearance since it was crossed
   int64_t best_revision_ = -1;
   std::optional<int64_t> blind_since_;  ///< [us]
 };

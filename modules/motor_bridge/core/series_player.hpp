@@ -13,7 +13,7 @@
 
 namespace tread::motor {
 
-/// The last executions, oldest first.
+/// The most recent executions, oldest first.
 class ExecutionLog {
  public:
   static constexpr size_t kCapacity = 8;

@@ -6,8 +6,8 @@
 
 namespace tread::scan_matching {
 
-/// The pose at which most returns lie on something of the map, within a window around the prior of
-/// 2.5 standard deviations, at most 1.5 m and 0.6 rad.
+/// The pose with most returns on points of the map, within a window around the prior of 2.5
+/// standard deviations, at most 1.5 m and 0.6 rad.
 /** Source: Olson 2009, correlative scan matching, in two resolutions. */
 Pose2 searchPose(const std::vector<ScanPoint>& points, const LocalMap& map, const PosePrior& prior);
 

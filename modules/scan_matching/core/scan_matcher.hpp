@@ -57,7 +57,7 @@ enum class MatchOutcome {
   kNotNewer       ///< its time is not after the previous scan's
 };
 
-/// Where the body was at the last beam of a scan.
+/// Pose of the body at the last beam of a scan.
 struct MatchedPose : TimedPose {
   MatchOutcome outcome = MatchOutcome::kFirst;
   Twist2 v_body;

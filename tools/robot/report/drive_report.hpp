@@ -33,7 +33,7 @@ struct TreeEdge {
   bool chosen = false;
 };
 
-/// How far a pattern ended from its prediction.
+/// Distance of a pattern's end from its prediction.
 struct PatternError {
   double time = 0.0;      ///< [s] of its end
   double position = 0.0;  ///< [m]
@@ -163,7 +163,7 @@ struct DriveRecord {
   int refused = 0;                   ///< executions that gave no fair measurement
   int disarmed = 0;                  ///< times that a permission to drive was lost
   std::vector<PatternError> errors;  ///< time since begun
-  std::vector<PoseSample> track;     ///< as the INS measured, time since begun
+  std::vector<PoseSample> track;     ///< measured by the INS, time since begun
   Odometer odometer;
   std::vector<TreeEdge> tree;            ///< the richest one on the path
   std::optional<FootprintSize> outline;  ///< of the robot; none = not in the log

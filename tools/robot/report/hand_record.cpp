@@ -135,11 +135,11 @@ std::string HandRecord::words() const {
   words += formatted("  the planner would have made the same motion in %.0f %% of %d plans",
                      percent(shadow.same, shadow.plans), shadow.plans);
   if (!shadow.turned_away.empty())
-    words += formatted("; where both travelled: directions %.0f deg apart, ",
+    words += formatted("; when both moved: directions %.0f deg apart, ",
                        upperMedian(shadow.turned_away) * 180.0 / kPi) +
-             formatted("%.2f m/s by hand, %.2f m/s by the planner (medians)",
+             formatted("%.2f m/s by the person, %.2f m/s by the planner (medians)",
                        upperMedian(shadow.person_speed), upperMedian(shadow.planner_speed));
-  words += formatted("\n  it would have stood in %.0f %% while the person moved\n",
+  words += formatted("\n  it would have stopped in %.0f %% while the person moved\n",
                      percent(shadow.would_stand, shadow.plans));
   size_t lines = 0;
   for (const auto& [why, count] : shadow.why)

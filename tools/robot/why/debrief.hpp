@@ -68,7 +68,7 @@ std::vector<Finding> stopsOf(const DriveTimeline& drive);
 /// without a measurement of the learner.
 std::vector<Finding> patternFindingsOf(const DriveTimeline& drive);
 
-/// How a drive or its configuration differs from another one.
+/// A difference between two drives or their configurations.
 struct Difference {
   std::string what;  ///< "planner.margins.growth", "patterns measured"
   std::string before;

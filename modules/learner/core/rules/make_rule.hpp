@@ -6,10 +6,10 @@
 
 namespace tread::learner {
 
-/// Names of all rules, in the order in which reports list them.
+/// Names of all rules, in the order of reports.
 std::vector<std::string> ruleNames();
 
-/// The rule that a configuration names, knowing nothing but the shipped set.
+/// The rule that a configuration names, in its initial state for the shipped set.
 std::unique_ptr<LearningRule> makeRule(const RuleConfig& config, const PatternSet& shipped);
 
 }  // namespace tread::learner

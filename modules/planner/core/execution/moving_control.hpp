@@ -11,14 +11,14 @@
 
 namespace tread::planner {
 
-/// While a pattern runs: checks it against the newest map, and hands over the next one.
+/// Control while a pattern runs: checks it against the newest map, and hands over the next one.
 class MovingControl {
  public:
   explicit MovingControl(DrivingState& state) : state_(state) {}
 
   void drive(const PlannerInputs& s, const Preconditions& ready);
   Prediction predictRunning(const PlannerInputs& s) const;
-  /// Hands over the quickest free pattern that stops; false if the vehicle will not come to rest.
+  /// Hands over the fastest free pattern that stops; false if the vehicle will not come to rest.
   bool stopNext(const Prediction& running);
 
  private:

@@ -14,8 +14,7 @@
 
 namespace tread::planner {
 
-/// Knows when the vehicle has come to a stand: by its twist, or by its poses where no twist is
-/// measured.
+/// Detects standstill by the vehicle's twist or, if it is not measured, by its poses.
 class StandstillDetector {
  public:
   /// Takes the newest pose; repetitions are ignored.

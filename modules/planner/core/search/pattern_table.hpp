@@ -36,8 +36,8 @@ struct SweepResolution {
   FootprintSize outline;
 };
 
-/// A disc around ground that a corner of the outline passes over between two poses that are checked
-/// and that lies under neither of these; in the axes of the sweep's start.
+/// A disc around ground that a corner of the outline passes over between two checked poses and that
+/// neither of these covers; in the axes of the sweep's start.
 struct CornerDisc {
   float x = 0.0F;       ///< [m] its centre
   float y = 0.0F;       ///< [m]

@@ -6,15 +6,15 @@
 
 namespace tread::planner {
 
-/// A step for a footprint that is asked about with at most such a margin [m].
-/** No coarser than `step`, and so fine that a short vehicle jumps over nothing. */
+/// A step for a footprint with at most this margin [m].
+/** No coarser than `step`, and fine enough that a short vehicle skips nothing. */
 SweepResolution resolutionFor(const FootprintSize& size, double margin, SweepResolution step);
 
-/// Poses along a trajectory of equal periods, the origin left out, neighbours at most a step apart.
+/// Poses along a trajectory of equal periods, without the origin, at most a step apart.
 std::vector<SweptPose> sampleSweep(const std::vector<Pose2>& trajectory, double period,
                                    const SweepResolution& step);
 
-/// Those poses of the sweep of a trajectory that are enough for a footprint.
+/// The poses of a trajectory's sweep that suffice for a footprint.
 SweptFootprint sweptFootprintOf(const std::vector<SweptPose>& sweep,
                                 const std::vector<Pose2>& trajectory, double period,
                                 const SweepResolution& step);
