@@ -47,7 +47,6 @@ class TimelineReader {
                        ins.ins_status,
                        pose.value_or(Pose2{}),
                        pose.has_value(),
-                       tilt(ins).inclination,
                        event_->wrong_time,
                        event_->restarts};
     odometer_.add(note);

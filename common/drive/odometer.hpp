@@ -22,10 +22,9 @@ struct InsNote : Note {
   int64_t utime = 0;   ///< [us]
   int32_t status = 0;  ///< ins_t::STATUS_*
   Pose2 T_map_body;
-  bool placed = false;       ///< it has a pose that can be one
-  double inclination = 0.0;  ///< [rad] against level ground; NaN unknown
-  bool wrong_time = false;   ///< of its event, see DriveEvent
-  size_t restarts = 0;       ///< the same
+  bool placed = false;      ///< it has a pose that can be one
+  bool wrong_time = false;  ///< of its event, see DriveEvent
+  size_t restarts = 0;      ///< the same
 };
 
 /// A position farther from the origin of map is a corrupt number [m].

@@ -17,19 +17,12 @@ namespace {
 /// The applied commands of an execution, by index.
 using AppliedCommands = std::map<int32_t, Command>;
 
-Command commandIn(const motor_t& motor) {
-  Command command;
-  for (size_t i = 0; i < Command::kMaxChannels; ++i)
-    if (motor.channel_kind[i] != 0) command[i] = static_cast<double>(motor.command[i]);
-  return command;
-}
-
 std::map<ExecutionKey, AppliedCommands> appliedCommands(const DriveLog& log) {
   std::map<ExecutionKey, AppliedCommands> commands;
   for (const motor_t& motor : log.motor)
     if (motor.execution_id != 0 && motor.command_index >= 0)
       commands[{motor.motor_run_id, motor.execution_id}].emplace(motor.command_index,
-                                                                 commandIn(motor));
+                                                                 commandFrom(motor));
   return commands;
 }
 

@@ -67,37 +67,30 @@ void addProcesses(const DriveTimeline& drive, std::vector<Finding>& findings) {
       if (notes[i].message.boot_id == notes[i - 1].message.boot_id ||
           isNear(findings, notes[i].time, process))
         continue;
-      Finding finding;
-      finding.kind = FindingKind::kProcess;
-      finding.time = notes[i - 1].time;
-      finding.until = notes[i].time;
-      finding.cause = process + "_died";
-      finding.sentence = process + " died and was restarted; the robot did not stop";
-      finding.evidence.push_back({notes[i].time, "HEALTH", process + ": another boot_id"});
-      findings.push_back(std::move(finding));
+      findings.push_back({FindingKind::kProcess,
+                          notes[i - 1].time,
+                          notes[i].time,
+                          process + "_died",
+                          process + " died and was started again; the robot was not stopped by it",
+                          {{notes[i].time, "HEALTH", process + ": another boot_id"}}});
     }
     const auto death = drive.deathOf(process);
     if (!death || isNear(findings, *death, process)) continue;
-    Finding finding;
-    finding.kind = FindingKind::kProcess;
-    finding.time = *death;
-    finding.until = drive.duration;
-    finding.cause = process + "_died";
-    finding.sentence = process + " died and was not restarted";
-    finding.evidence.push_back({*death, "HEALTH", process + ": its last message"});
-    findings.push_back(std::move(finding));
+    findings.push_back({FindingKind::kProcess,
+                        *death,
+                        drive.duration,
+                        process + "_died",
+                        process + " died, and nobody started it again",
+                        {{*death, "HEALTH", process + ": its last message"}}});
   }
 }
 
 /// Complaints of processes, each once, unless a stop already reports it.
 void addComplaints(const DriveTimeline& drive, std::vector<Finding>& findings) {
-  bool drove = false;
-  double first_drive = drive.duration;
-  for (const PlanNote& plan : drive.plans)
-    if (!drove && plan.state == plan_t::PLAN_DRIVING) {
-      drove = true;
-      first_drive = plan.time;
-    }
+  const auto first = std::find_if(drive.plans.begin(), drive.plans.end(), [](const PlanNote& plan) {
+    return plan.state == plan_t::PLAN_DRIVING;
+  });
+  const double first_drive = first == drive.plans.end() ? drive.duration : first->time;
   for (const auto& [process, notes] : drive.health)
     for (size_t i = 1; i < notes.size(); ++i) {
       const Said<health_t>& note = notes[i];
@@ -107,17 +100,15 @@ void addComplaints(const DriveTimeline& drive, std::vector<Finding>& findings) {
                note.time < finding.until + 4.0;
       });
       if (told) continue;
-      Finding finding;
-      finding.kind = FindingKind::kProcess;
-      finding.time = note.time;
-      finding.until = note.time;
-      for (size_t k = i; k < notes.size() && !isOk(notes[k].message); ++k)
-        finding.until = notes[k].time;
-      finding.cause = process + "_complains";
-      finding.sentence = process + " complained: " + note.message.health_reason;
-      finding.evidence.push_back(
-          {note.time, "HEALTH", process + ": " + note.message.health_reason});
-      findings.push_back(std::move(finding));
+      double until = note.time;
+      for (size_t k = i; k < notes.size() && !isOk(notes[k].message); ++k) until = notes[k].time;
+      const std::string& reason = note.message.health_reason;
+      findings.push_back({FindingKind::kProcess,
+                          note.time,
+                          until,
+                          process + "_complains",
+                          process + " complained: " + reason,
+                          {{note.time, "HEALTH", process + ": " + reason}}});
     }
 }
 
@@ -173,19 +164,17 @@ void addGhosts(const DriveTimeline& drive, std::vector<Finding>& findings) {
       return finding.cause == "ghost" && std::abs(finding.time - first.time) < kGhostPause;
     });
     if (stopped) continue;
-    Finding finding;
-    finding.kind = FindingKind::kDetour;
-    finding.time = first.time;
-    finding.until = ghost.gone;
-    finding.cause = "ghost";
-    finding.sentence =
-        formatted("an obstacle appeared at x %.1f m, y %.1f m on free ground, and disappeared",
-                  first.p_map.x(), first.p_map.y());
-    finding.evidence.push_back(
-        {first.time, "MAP",
-         formatted("%d cells became obstacles, %d were free again by %.1f s, none remained",
-                   ghost.came, ghost.went, ghost.gone)});
-    findings.push_back(std::move(finding));
+    findings.push_back(
+        {FindingKind::kDetour,
+         first.time,
+         ghost.gone,
+         "ghost",
+         formatted("an obstacle appeared at x %.1f m, y %.1f m on ground that had been free, and "
+                   "went again",
+                   first.p_map.x(), first.p_map.y()),
+         {{first.time, "MAP",
+           formatted("%d cells became obstacles, %d went again by %.1f s, none is left", ghost.came,
+                     ghost.went, ghost.gone)}}});
   }
 }
 
@@ -197,13 +186,12 @@ void addInsEvents(const DriveTimeline& drive, std::vector<Finding>& findings) {
       return std::abs(note.time - finding.time) < 3.0 && finding.cause.rfind("ins", 0) == 0;
     });
     if (told) continue;
-    Finding finding;
-    finding.kind = FindingKind::kProcess;
-    finding.time = finding.until = note.time;
-    finding.cause = "ins_jump";
-    finding.sentence = "the INS jumped further than the vehicle can move";
-    finding.evidence.push_back({note.time, "INS", "STATUS_JUMP"});
-    findings.push_back(std::move(finding));
+    findings.push_back({FindingKind::kProcess,
+                        note.time,
+                        note.time,
+                        "ins_jump",
+                        "the INS jumped further than the vehicle can",
+                        {{note.time, "INS", "STATUS_JUMP"}}});
   }
 }
 

@@ -26,15 +26,15 @@ void addBeginning(const std::vector<const Pattern*>& measured, std::vector<Findi
   const double begun = upperMedian(first, kNoFigure);
   const double usual = std::max(0.03, upperMedian(later, kNoFigure));
   if (begun < kMuchWorse * usual) return;
-  Finding finding;
-  finding.kind = FindingKind::kPrediction;
-  finding.cause = "prediction";
-  finding.time = measured.front()->time;
-  finding.until = measured[kRun - 1]->time;
-  finding.sentence = formatted(
-      "the first patterns ended %.2f m from their predictions, later ones %.2f m: the initial set "
-      "belongs to another vehicle or ground",
-      begun, usual);
+  Finding finding{
+      FindingKind::kPrediction,
+      measured.front()->time,
+      measured[kRun - 1]->time,
+      "prediction",
+      formatted("the first patterns ended %.2f m from their predictions, later ones %.2f m: the "
+                "set that it began with was another vehicle's or ground's",
+                begun, usual),
+      {}};
   for (size_t i = 0; i < kRun; ++i)
     finding.evidence.push_back({measured[i]->time, "LEARNING",
                                 measured[i]->message.learned_pattern_name +
@@ -64,14 +64,15 @@ void addPredictions(const DriveTimeline& drive, std::vector<Finding>& findings) 
       ++i;
       continue;
     }
-    Finding finding;
-    finding.kind = FindingKind::kPrediction;
-    finding.cause = "prediction";
-    finding.time = measured[i]->time;
-    finding.until = measured[i + kRun - 1]->time;
-    finding.sentence = formatted(
-        "patterns ended %.2f m and %.1f deg from their predictions, %.2f m and %.1f deg before",
-        now, now_yaw * 180.0 / kPi, usual, usual_yaw * 180.0 / kPi);
+    Finding finding{
+        FindingKind::kPrediction,
+        measured[i]->time,
+        measured[i + kRun - 1]->time,
+        "prediction",
+        formatted("patterns ended %.2f m and %.1f deg from their predictions, %.2f m and %.1f deg "
+                  "before",
+                  now, now_yaw * 180.0 / kPi, usual, usual_yaw * 180.0 / kPi),
+        {}};
     for (size_t k = i; k < i + kRun; ++k) {
       const learning_t& pattern = measured[k]->message;
       std::string words =

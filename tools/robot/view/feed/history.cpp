@@ -51,8 +51,7 @@ void History::take(const LogEvent& event) {
   ins_t ins;
   motor_t motor;
   learning_t learning;
-  if (event.channel == kIns.name) {
-    if (!decode(event, kIns, ins)) return;
+  if (decode(event, kIns, ins)) {
     const auto pose = planarPose(ins);
     const double step = kWayStep * std::max(1.0, static_cast<double>(way_.size()) / kWayPoints);
     if (pose &&
@@ -63,10 +62,7 @@ void History::take(const LogEvent& event) {
         (battery_.empty() || event.utime - battery_.back().utime >= kBatteryStep))
       battery_.push_back({event.utime, static_cast<double>(motor.battery_voltage), 0.0});
   } else if (decode(event, kLearning, learning)) {
-    patterns_.push_back({event.utime, learning.learned_pattern_name,
-                         learning.accepted ? learning.change_reason : learning.gate_reason,
-                         learning.accepted != 0, learning.changed != 0, learning.error_position,
-                         learning.error_yaw, learning.ground_changed, learning.surface});
+    patterns_.push_back({event.utime, std::move(learning)});
   }
 }
 
@@ -78,10 +74,10 @@ std::string History::since(const Mark& mark, bool from_start) const {
     events.push_back({event.utime, static_cast<int>(event.severity), event.source, event.words});
   }
   for (size_t i = mark.patterns; i < patterns_.size(); ++i) {
-    const Pattern& pattern = patterns_[i];
-    patterns.push_back({pattern.utime, pattern.name, pattern.accepted, numberOr(pattern.position),
-                        numberOr(pattern.yaw), pattern.surface, numberOr(pattern.ground_changed),
-                        pattern.changed, pattern.words});
+    const learning_t& ended = patterns_[i].ended;
+    patterns.push_back({patterns_[i].utime, ended.learned_pattern_name, ended.accepted != 0,
+                        numberOr(ended.error_position), numberOr(ended.error_yaw), ended.surface,
+                        numberOr(ended.ground_changed), ended.changed != 0, wordsOf(ended)});
   }
   for (size_t i = mark.way; i < way_.size(); ++i)
     way.push_back(

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/drive/event_teller.hpp"
+#include "common/drive/drive_timeline.hpp"
 
 namespace tread::view {
 
@@ -24,10 +24,7 @@ class History {
  private:
   struct Pattern {
     int64_t utime;
-    std::string name, words;
-    bool accepted, changed;
-    double position, yaw, ground_changed;
-    int32_t surface;
+    learning_t ended;
   };
   struct Sample {
     int64_t utime;
