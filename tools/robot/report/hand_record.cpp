@@ -106,7 +106,8 @@ HandRecord::HandRecord(const DriveTimeline& drive) {
     seconds += secondsOf(end - first->utime);
     for (auto at = first; at != note; ++at)
       if (at->command != Command{})
-        moving += secondsOf((std::next(at) == note ? end : std::next(at)->utime) - at->utime);
+        moving += secondsOf(
+            std::max<int64_t>(0, (std::next(at) == note ? end : std::next(at)->utime) - at->utime));
     const size_t last = ends ? note->event : drive.messages;
     const Places places = notesBetween(drive.ins, first->event, last);
     odometer.interrupt();
