@@ -142,7 +142,9 @@ std::vector<Effect> timingEffects() {
        "A surveyed distance. From poses alone it is slip and track width together.",
        "Drive between two surveyed marks and compare.",
        {withSigns(strength("scale", "1", -0.2, 0.2, 0.02, &M::position_scale), "too long",
-                  "too short")}},
+                  "too short")},
+       "",
+       secondNameOf(kOfOmni)},
   };
 }
 

@@ -30,6 +30,13 @@ inline EffectSearch secondName() {
   return search;
 }
 
+/// Search settings of an effect that another one is under a second name for some vehicles.
+inline EffectSearch secondNameOf(VehicleLayouts layouts) {
+  EffectSearch search;
+  search.second_name_of = layouts;
+  return search;
+}
+
 /// Search settings of an effect that may replace others.
 inline EffectSearch inPlace() {
   EffectSearch search;

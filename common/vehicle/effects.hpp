@@ -85,6 +85,10 @@ struct ChangePoint {
 /// What an effect delays, of the chain from a command to the INS's measurement of it.
 enum class LateBy { kNothing, kCommand, kDrive, kYawRate, kSpeed, kPoses };
 
+/// Layouts of vehicles that can have an effect: bits of VehicleLayout.
+using VehicleLayouts = unsigned;
+inline constexpr VehicleLayouts kEveryLayout = ~0U;
+
 /// How a search for missing effects treats an effect.
 struct EffectSearch {
   /// Numbers of the nominal model with the same influence; the first one is fitted instead.
@@ -95,6 +99,7 @@ struct EffectSearch {
   std::vector<ChangePoint> change_points{};  ///< in order of time
   /// The same motion under a second name: never searched for, only reported as an alternative.
   bool second_name = false;
+  VehicleLayouts second_name_of = 0;  ///< the same, for vehicles of these layouts alone
   /// Other effects imitate it less simply: never searched for, but replaces one or two of them if
   /// it explains more, or as much.
   bool in_place = false;
@@ -102,10 +107,6 @@ struct EffectSearch {
   /// Effects that explain this one if the wheels show it.
   std::vector<std::string> in_wheels{};
 };
-
-/// Layouts of vehicles that can have an effect: bits of VehicleLayout.
-using VehicleLayouts = unsigned;
-inline constexpr VehicleLayouts kEveryLayout = ~0U;
 
 /// A named departure from the nominal model.
 /** A new effect needs an entry in the catalogue and its value and line in model.hpp (or
@@ -133,6 +134,11 @@ struct Effect {
   /// Whether vehicles of a layout can have it.
   bool isOf(VehicleLayout layout) const {
     return (layouts & static_cast<VehicleLayouts>(layout)) != 0;
+  }
+
+  /// Whether a search of such a vehicle finds it under another name.
+  bool isSecondName(VehicleLayout layout) const {
+    return search.second_name || (search.second_name_of & static_cast<VehicleLayouts>(layout)) != 0;
   }
 
   /// Whose parameters it has: the vehicle's or the measurement's.

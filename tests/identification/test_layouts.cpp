@@ -60,6 +60,12 @@ TEST_CASE("of a holonomic base a wheel, a direction and the INS are told apart")
              GapVerdict::kMeasurement, "ins_latency", 0.15);
 }
 
+TEST_CASE("a holonomic base that drives unlike it turns is named before a scale of its INS") {
+  const GapFinding finding = findWith(syntheticOmni(), {{"position_scale.scale", 0.08}}, 3);
+  checkFound(finding, GapVerdict::kAmbiguous, "translation_loss", -0.08);
+  CHECK(contains(finding.identified.effects.front().group, "position_scale"));
+}
+
 TEST_CASE("a full-size car at its usual speed ends without a name") {
   GapTask task;
   task.model = syntheticCar();

@@ -236,7 +236,7 @@ Excitation excitationOf(const Observations& data, const ModelDocument& model) {
 std::vector<Candidate> candidatesFor(const ModelDocument& model, const Excitation& most) {
   std::vector<Candidate> all;
   for (const Effect& effect : effectCatalogue())
-    if (!effect.search.second_name && !effect.search.in_place)
+    if (!effect.isSecondName(model.vehicle.layout()) && !effect.search.in_place)
       addCandidates(effect, model, most, all);
   return all;
 }
