@@ -50,7 +50,7 @@ TEST_CASE("A model file comes back bit for bit") {
   model.spread = {0.1 / 3.0, 0.2, 0.3};
   for (const Effect& effect : effectCatalogue())
     for (const EffectParameter& parameter : effect.parameters)
-      if (parameter.vehicle != nullptr)
+      if (parameter.vehicle != nullptr && effect.isOf(VehicleLayout::kTracks))
         model.effects.*parameter.vehicle =
             parameter.typical * (1.0 + 1e-15) / 3.0 +
             10.0 / 3.0 * (parameter.name == "time_constant" ? 1.0 : 0.0);
