@@ -17,7 +17,7 @@ struct TimedPose {
   Pose2 T_map_body;   ///< yaw unwrapped along the track
 };
 
-/// The same where drives are analysed: in seconds, since when is said where it is kept.
+/// The same for the analysis of drives: in seconds; the user of it documents time 0.
 struct PoseSample {
   double time = 0.0;  ///< [s]
   Pose2 T_map_body;   ///< yaw unwrapped along the track

@@ -91,7 +91,7 @@ class Command {
   std::array<double, kMaxChannels> values_{};
 };
 
-/// A command with the time from which on it was given.
+/// A command with its start time.
 struct TimedCommand {
   int64_t utime = 0;  ///< [us]
   Command command;

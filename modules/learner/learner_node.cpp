@@ -447,7 +447,7 @@ ExecutionCut LearnerNode::cutOf(const execution_record_t& record,
   const PatternSet& set = learner_.set();
   cut.unexpected_command =
       commands_.unexpectedCommand(keyOf(record), pattern, set.content().channels);
-  // Where a failsafe stops the robot it may have been held: that is no ground.
+  // When a failsafe stops the robot it may have been held: that is not the ground's influence.
   cut.beginning = learner_.learnsParts() && !cut.completed() &&
                   (cut.reason.code == StopReason::kStoppedByPlanner ||
                    cut.reason.code == StopReason::kLeftByHand);

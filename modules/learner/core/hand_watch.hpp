@@ -11,7 +11,7 @@
 
 namespace tread::learner {
 
-/// What the motors were given from a time on, and by whom.
+/// A command to the motors, with its start time and its source.
 struct GivenCommand : TimedCommand {
   bool by_hand = false;
 };
