@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "common/soundness/core/lag_table.hpp"
+#include "common/statistics/statistics.hpp"
 #include "modules/identification/core/adequacy.hpp"
 #include "modules/identification/core/current_witness.hpp"
 #include "modules/identification/core/end_errors.hpp"
@@ -377,7 +378,7 @@ std::string beyondTheModel(const GapTask& task) {
   for (const Drive& drive : task.train)
     for (const PoseIncrement& increment : poseIncrements(drive))
       speeds.push_back(std::abs(increment.v()));
-  const double fastest = speeds.empty() ? 0.0 : quantile(std::move(speeds), kNearlyAlways);
+  const double fastest = quantileOf(std::move(speeds), kNearlyAlways, 0.0);
   if (fastest <= kFastestCar) return "";
   return "it drives at up to " + digits(fastest, 1) + " m/s: beyond " + digits(kFastestCar, 0) +
          " m/s a car is gears, tyres and load transfer, which the model does not have";
