@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-// A vehicle has a dead band that its model lacks. Which effect explains its drive, and how large
-// is it?
+// A vehicle has a dead band that its model lacks: which effect explains its drive, how large?
 #include <cstdio>
 #include <random>
 

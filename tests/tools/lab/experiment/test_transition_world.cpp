@@ -106,7 +106,7 @@ TEST_CASE("what is wrong in a world file is one line with its place") {
   says(replaced("gauge: 0.6", "gauge: -1"), "gauge");
   says(replaced("gauge: 0.6, ", ""), "gauge");
   says(replaced("yaw: 0.06", "yow: 0.06"), "yow");
-  says(replaced("[[0.7, 1, 10]]", "[[1.7, 1, 10]]"), "full power");
+  says(replaced("[[0.7, 1, 10]]", "[[1.7, 1, 10]]"), "power out of range -1..1");
   says(replaced("[[0.7, 1, 10]]", "[[0.7, 1, 2.5]]"), "samples");
   says(replaced("name: right", "name: left"), "twice");
   says(replaced("name: ice", "name: 'ice, wet'"), "letters");

@@ -42,7 +42,7 @@ TEST_CASE("a corpus that is none, or a key that does not exist, is told in a lin
   const CalledProgram unknown =
       called("tread-replay corpus " + kCorpus + " --set planner.no_such_key=1");
   CHECK(unknown.status == 1);
-  CHECK(unknown.says("knows no key no_such_key"));
+  CHECK(unknown.says("has no key no_such_key"));
   folder.write("broken.lcmlog", "no log");
   const CalledProgram broken = called("tread-replay corpus " + folder.path(""));
   CHECK(broken.status == 1);
