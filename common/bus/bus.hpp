@@ -34,8 +34,8 @@ struct BusStatistics {
   int64_t jumps = 0;        ///< with a utime too far ahead for the followed time
   int64_t failed = 0;       ///< handler threw
   int64_t oversized = 0;    ///< own messages above the channel's max_bytes: not sent
-  bool sealed_unread =
-      false;  ///< this process has no key, but others have: they refuse its messages
+  /// This process has no key, but others have: they refuse its messages
+  bool sealed_unread = false;
   /// messages refused, by reason: "too large", and with a key "unsealed", "replayed"
   std::map<std::string, int64_t> refused;
   std::string last_refusal;  ///< the newest refusal in one line: channel, what, size

@@ -20,8 +20,8 @@ struct MessageFault {
   double drop = 0.0;           ///< probability 0..1
   double duplicate = 0.0;      ///< probability 0..1: delivered twice
   double corrupt = 0.0;        ///< probability 0..1: one byte changed
-  double reorder =
-      0.0;  ///< probability 0..1: held back by up to reorder_us, so that later ones overtake it
+  /// Probability 0..1: held back by up to reorder_us, so that later ones overtake it
+  double reorder = 0.0;
   int64_t reorder_us = 100'000;
   int64_t delay_us = 0;       ///< constant delay of each message
   int64_t from = 0;           ///< [us] since the start of the run

@@ -37,8 +37,8 @@ struct ConfigReader::Level {
   struct Found {
     YAML::Node value;
     std::string name;  ///< including its sections, for messages
-    int line =
-        0;  ///< 1-based: its own for scalars, that of its key for lists, maps and empty values
+    /// 1-based: its own for scalars, that of its key for lists, maps and empty values
+    int line = 0;
   };
 
   /// Parses a whole text: one document, a map (or empty).

@@ -14,9 +14,9 @@ namespace {
 /// fingerprint and its utime.
 struct Heading {
   int64_t fingerprint = 0;
-  bool is_stamp =
-      false;  ///< published by one process, with the time of sending or of a fresh measurement; not
-              ///< PROGRAM: a planner that has just started does not know the time
+  /// Published by one process, with the time of sending or of a fresh measurement; not PROGRAM: a
+  /// planner that has just started does not know the time
+  bool is_stamp = false;
   bool (*decodes)(const LogEvent&) = nullptr;  ///< null: too large to try
 };
 

@@ -22,8 +22,8 @@ using ExecutionKey = std::pair<int64_t, int64_t>;
 struct PoseReading : TimedPose {
   std::optional<Twist2> twist;                                     ///< v_body, if it is measured
   double position_std = std::numeric_limits<double>::quiet_NaN();  ///< [m] per axis
-  double slope =
-      std::numeric_limits<double>::quiet_NaN();  ///< [rad] of the ground, from the attitude
+  /// [rad] of the ground, from the attitude
+  double slope = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// State reported by the motor bridge.
@@ -114,8 +114,8 @@ class ExecutionTracker {
   int64_t last_id_ = 0;
   PlannedExecution running_;
   PlannedExecution next_;
-  std::deque<PlannedExecution>
-      replaced_;  ///< former next ones; the bridge may have started one of them
+  /// Former next ones; the bridge may have started one of them
+  std::deque<PlannedExecution> replaced_;
   int64_t previous_id_ = 0;
   int64_t handed_over_ = 0;
   int64_t started_ = 0;

@@ -47,10 +47,10 @@ struct MeasurementLimits {
   double speed_margin = 1.5;      ///< [1] poses faster than this times max_speed are jumps
   double min_motion = 0.03;       ///< [m] size of the box below which the robot did not move
   double min_turn = 0.03;         ///< [rad] the same for yaw
-  int64_t entry_window_us =
-      200'000;  ///< [us] before the start over which the entry twist is measured
-  double entry_speed =
-      0.40;  ///< [m/s] allowed deviation of v_x and v_y from the class; infinite = any
+  /// [us] before the start over which the entry twist is measured
+  int64_t entry_window_us = 200'000;
+  /// [m/s] allowed deviation of v_x and v_y from the class; infinite = any
+  double entry_speed = 0.40;
   double entry_yaw_rate = 0.50;  ///< [rad/s] allowed deviation of omega; infinite = any
   double max_slope = 0.20;       ///< [rad] mean inclination during the execution
 };

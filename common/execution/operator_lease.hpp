@@ -66,8 +66,8 @@ class OperatorLease {
     int64_t seen_utime = 0;
     int64_t goal_id = 0;
   };
-  static constexpr int64_t kMaxFuture =
-      100'000;  ///< [us] of clock difference between processes of this robot
+  /// [us] of clock difference between processes of this robot
+  static constexpr int64_t kMaxFuture = 100'000;
   static constexpr size_t kMaxPrograms = 16;
 
   bool fresh(const Program& program, int64_t now) const {

@@ -14,13 +14,13 @@ namespace tread {
 /// A polygon that the robot must stay in or keep out of.
 struct Fence {
   static constexpr size_t kMostCorners = 64;
-  static constexpr double kFarthest =
-      1e5;  ///< [m] largest distance of a corner from the origin of map
+  /// [m] largest distance of a corner from the origin of map
+  static constexpr double kFarthest = 1e5;
 
   std::string name;
   bool keep_out = false;  ///< false: stay in
-  std::vector<Eigen::Vector2d>
-      corners;  ///< p_map [m], in order; the last one is joined to the first
+  /// p_map [m], in order; the last one is joined to the first
+  std::vector<Eigen::Vector2d> corners;
 };
 
 inline bool operator==(const Fence& a, const Fence& b) {

@@ -99,8 +99,8 @@ class ExecutionQueue {
  private:
   void noteHandled(const ExecutionKey& key);
 
-  std::map<std::tuple<int64_t, int64_t, int64_t>, execution_record_t>
-      waiting_;                     ///< by (ended, run, execution)
+  /// By (ended, run, execution)
+  std::map<std::tuple<int64_t, int64_t, int64_t>, execution_record_t> waiting_;
   std::set<ExecutionKey> known_;    ///< waiting or handled
   std::deque<ExecutionKey> order_;  ///< handled, oldest first
   int64_t invalid_ = 0;

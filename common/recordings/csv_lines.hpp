@@ -12,8 +12,8 @@ namespace tread::recordings {
 struct CsvLayout {
   char delimiter = '\0';  ///< between fields; a run of spaces counts as one; 0: detect
   bool header = true;     ///< a line names the columns
-  bool decimal_comma =
-      false;  ///< numbers are 0,5; if false, only where they cannot be read otherwise
+  /// Numbers are 0,5; if false, only where they cannot be read otherwise
+  bool decimal_comma = false;
   /// Names in the header. If given, the header may be anywhere and behind a #, and a row of units
   /// may follow it; otherwise the header is the first line that is no comment.
   std::vector<std::string> columns;

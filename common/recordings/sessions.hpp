@@ -52,8 +52,8 @@ struct Session {
   bool lag_kept = false;   ///< poses stay where they were logged; pose_lag is 0 then
   double pose_rate = 0.0;  ///< [Hz]
   double imu_sign = 1.0;   ///< sign of the gyro in raw files that makes counter-clockwise positive
-  bool absolute_attitude =
-      false;        ///< roll and pitch are in the map frame, not relative within a step
+  /// Roll and pitch are in the map frame, not relative within a step
+  bool absolute_attitude = false;
   size_t rows = 0;  ///< of the steps file
   // Of readSessions() alone.
   std::string problem;             ///< why its row cannot be used, in words; empty if usable
@@ -107,8 +107,8 @@ std::string chooseRobot(const std::vector<Session>& sessions, const std::string&
 /// Sessions that are comparable.
 struct SessionChoice {
   std::vector<Session> taken;  ///< in the order of sessions.csv
-  std::vector<std::string>
-      left_out;           ///< a line with the reason for each other session of the robot
+  /// A line with the reason for each other session of the robot
+  std::vector<std::string> left_out;
   double baseline = 0.0;  ///< [m] converts (v, w) to wheel speeds
 };
 

@@ -33,8 +33,8 @@ inline bool isNext(int64_t seq, int64_t before) {
 
 /// A time in which all commands are known.
 struct CommandSpan {
-  std::vector<CommandSample>
-      commands;      ///< changes only, starting with the one at the begin; not empty
+  /// Changes only, starting with the one at the begin; not empty
+  std::vector<CommandSample> commands;
   double end = 0.0;  ///< [s]
   VehicleLayout layout = VehicleLayout::kTracks;
   bool after_silence = false;  ///< MOTOR messages are missing before it

@@ -15,8 +15,8 @@ namespace tread {
 struct MessageField {
   std::string type;  ///< boolean, byte, int8_t to int64_t, float, double, string, or another type
   std::string name;
-  std::vector<std::string>
-      lengths;          ///< of each dimension: a number, or the name of an earlier field
+  /// Of each dimension: a number, or the name of an earlier field
+  std::vector<std::string> lengths;
   std::string comment;  ///< at the end of its line: unit, frame, value for "unknown"
 };
 

@@ -128,8 +128,8 @@ struct Effect {
   /// What to check first if its first parameter is negative; the size follows. May be empty.
   std::string negative_check{};
   VehicleLayouts layouts = kEveryLayout;
-  std::shared_ptr<const AddedLaw>
-      law{};  ///< of an added effect; otherwise the kernel implements it
+  /// Of an added effect; otherwise the kernel implements it
+  std::shared_ptr<const AddedLaw> law{};
 
   /// Whether vehicles of a layout can have it.
   bool isOf(VehicleLayout layout) const {

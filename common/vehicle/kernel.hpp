@@ -17,8 +17,8 @@ namespace tread {
 /// The state in which a vehicle begins; default: at rest, cold, level, at the start of a session.
 struct EntryState {
   TrackCommand track_speeds{};  ///< [m/s] of the drive
-  TrackCommand
-      command{};  ///< the previous command; it acts until the delay of the first new one is over
+  /// The previous command; it acts until the delay of the first new one is over
+  TrackCommand command{};
   DriveContext context{};  ///< at the start
   /// Forward speed and yaw rate of the body, for its inertia; default: those that the tracks give.
   std::optional<PlaneMotion> body = std::nullopt;

@@ -43,8 +43,8 @@ struct LearnerNodeConfig {
   int64_t listen_us = 0;  ///< [us] without publishing sets at the start, to detect another learner
   bool shock = false;     ///< learn how strongly ground shakes the robot, and publish it
   double front = 0.0;     ///< [m] from the body origin to the front end, where shock is measured
-  int64_t remembered_versions =
-      50;  ///< sets kept to score executions with the version that they name
+  /// Sets kept to score executions with the version that they name
+  int64_t remembered_versions = 50;
 
   std::string store = "state/learner";  ///< folder of the state; used by the process
   std::vector<std::string> warnings;    ///< about given keys that the rule does not use
@@ -153,8 +153,8 @@ class LearnerNode : public Node {
   int64_t next_grip_ = 0;  ///< [us]
   int64_t seq_grip_ = 0;
   std::map<int64_t, PatternSet> versions_;  ///< the last sets by version
-  std::map<int64_t, int>
-      unknown_versions_;  ///< versions above ours that records named, with counts
+  /// Versions above ours that records named, with counts
+  std::map<int64_t, int> unknown_versions_;
   std::string start_problem_;
   std::string write_problem_;
   int64_t highest_heard_ = 0;  ///< highest version that was named by others and accepted

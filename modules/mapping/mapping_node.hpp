@@ -23,8 +23,8 @@ namespace tread::mapping {
 /// Configuration of mapping, with its defaults.
 struct MappingConfig {
   OccupancyMapConfig map;
-  double publish_period =
-      0.2;  ///< [s] between cycles of MAP; changed tiles wait no longer than this
+  /// [s] between cycles of MAP; changed tiles wait no longer than this
+  double publish_period = 0.2;
   double refresh_period = 2.0;  ///< [s] in which every tile is sent at least once
   double max_ins_gap = 0.1;  ///< [s] largest gap between INS poses for interpolating a beam's pose
   double max_wait = 0.5;     ///< [s] for which a scan waits for INS

@@ -23,10 +23,10 @@ struct ScanMatchingConfig {
   ScanMatcherConfig matcher;
   bool fills_in = false;  ///< publishes SCAN_MATCHING for ins_driver, not INS
   double lowest = 0.1;    ///< [m] z_body: lower returns are ground
-  double ground_tilt =
-      0.0;  ///< [rad] of the visible ground relative to the robot; 0 = a flat floor
-  double max_tilt =
-      0.2;  ///< [rad] of a range finder's plane in body: steeper ones look at the ground
+  /// [rad] of the visible ground relative to the robot; 0 = a flat floor
+  double ground_tilt = 0.0;
+  /// [rad] of a range finder's plane in body: steeper ones look at the ground
+  double max_tilt = 0.2;
   double standing_after = 1.0;  ///< [s] of zero commands after which the robot stands
   double silence = 1.0;         ///< [s] without expected data after which HEALTH reports it
   std::string effective;        ///< the whole as YAML, for CONFIG

@@ -96,8 +96,8 @@ struct Hypothesis {
   size_t weight, velocity, yaw, factors;
   size_t last_met = weight + 1, since = weight + 2, centre = weight + 3;
   size_t noise = factors + 3 * 7, executions = noise + 3, parts = executions + 1;
-  size_t part =
-      parts + 1;  ///< pattern, first, samples, count, sums and squares; the same of entries
+  /// Pattern, first, samples, count, sums and squares; the same of entries
+  size_t part = parts + 1;
 
   /// Offset of the next hypothesis, or of the number of new ones.
   size_t end(const std::vector<double>& memory) const {

@@ -223,8 +223,8 @@ struct Unexplained {
   std::string variable;
   double score = 0.0;
   double p_value = 1.0;
-  std::string
-      like{};  ///< the effect that it resembles most, without being attributed to it; may be empty
+  /// The effect that it resembles most, without being attributed to it; may be empty
+  std::string like{};
 };
 
 /// One candidate of the first test.
@@ -254,8 +254,8 @@ struct SearchStep {
 /// The course of a search, beside the effects that are in the model now.
 struct SearchRecord {
   std::vector<SearchStep> steps;
-  std::vector<CandidateTest>
-      candidates;                       ///< for the calibrated model, each effect's best direction
+  /// For the calibrated model, each effect's best direction
+  std::vector<CandidateTest> candidates;
   std::vector<std::string> negligible;  ///< real but below 1 % of the end error: not added
   std::vector<std::string> at_bound;  ///< detected, but their sizes ran to the ends of their ranges
   bool cut_short = false;             ///< it ran out of time: these are the best terms so far

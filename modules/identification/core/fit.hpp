@@ -46,8 +46,8 @@ struct FitState {
   std::vector<FreeParameter> free;
   Eigen::VectorXd predicted;  ///< rows x 1, see Fitter::predict()
   Eigen::VectorXd scales;     ///< rows x 1, held during a fit
-  Eigen::MatrixXd
-      jacobian;       ///< rows x free: derivative of the prediction; may belong to earlier values
+  /// Rows x free: derivative of the prediction; may belong to earlier values
+  Eigen::MatrixXd jacobian;
   double loss = 0.0;  ///< of the rows that count, including the prior [nats]
 };
 

@@ -148,8 +148,8 @@ class Observations {
   std::vector<size_t> first_segment_;  ///< of each drive among all
   /// For each segment: driving before it in its drive, and its own [s].
   std::vector<std::pair<double, double>> driven_;
-  std::vector<std::pair<int, int>>
-      drive_blocks_;                   ///< for each drive: first block and number of blocks
+  /// For each drive: first block and number of blocks
+  std::vector<std::pair<int, int>> drive_blocks_;
   std::vector<double> drive_lengths_;  ///< for each drive: length of its blocks [s]
   std::vector<Observation> all_;
   Eigen::VectorXd measured_;

@@ -25,8 +25,8 @@ struct WatchReading {
   double begin = 0.0;       ///< [s]
   double end = 0.0;         ///< [s]
   WatchedNumbers change{};  ///< minus the model's; gains relative to the model's
-  WatchedNumbers
-      uncertainty{};  ///< standard deviations; the prior's if the driving is uninformative
+  /// Standard deviations; the prior's if the driving is uninformative
+  WatchedNumbers uncertainty{};
 };
 
 /// Least squares over the rows that begin between two times [s] of a drive with track commands.

@@ -63,8 +63,8 @@ struct SearchSettings {
   size_t most = 8;           ///< largest number of effects added
   bool calibrate = false;    ///< the numbers of the nominal model are free
   bool release = true;       ///< given terms may differ from the model
-  double least_gain =
-      0.01;  ///< of the end error; smaller effects are real but negligible; 0 = none is
+  /// Of the end error; smaller effects are real but negligible; 0 = none is
+  double least_gain = 0.01;
   /// Final decision of a person: included from the calibration on, whatever the tests give.
   std::vector<std::string> accepted;
   std::vector<std::string> rejected;  ///< never considered

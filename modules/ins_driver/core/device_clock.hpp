@@ -48,8 +48,8 @@ class DeviceClock {
   int64_t cycle_us_;
   std::optional<int64_t> newest_;
   std::optional<int64_t> utc_minus_device_;
-  std::optional<std::pair<int64_t, int64_t>>
-      pending_;  ///< UTC and reported time before the first time
+  /// UTC and reported time before the first time
+  std::optional<std::pair<int64_t, int64_t>> pending_;
 };
 
 /// Microseconds from 1970-01-01 UTC to the start of GPS time, 1980-01-06.

@@ -26,8 +26,8 @@ struct PositionReport {
 /// Motion over ground of the device's reference point.
 struct GroundVelocity {
   double speed = 0.0;  ///< horizontal, never negative [m/s]
-  std::optional<double>
-      course;                ///< direction of motion as a yaw, counter-clockwise from east [rad]
+  /// Direction of motion as a yaw, counter-clockwise from east [rad]
+  std::optional<double> course;
   double up = kUnmeasured;   ///< [m/s]
   double std = kUnmeasured;  ///< along each horizontal axis [m/s]
   int rank = 0;              ///< as in PositionReport
@@ -46,9 +46,9 @@ struct Heading {
 /** Axes of the device are forward, left, up; pitch is positive nose down, roll right side down. */
 struct DeviceEpoch {
   int64_t arrival = 0;  ///< host time of the first byte of the first message [us]
-  std::optional<int64_t>
-      device_time;          ///< counted as in DeviceClock [us]; absent if no message contained it
-  int64_t device_utc = -1;  ///< [us] since 1970-01-01; -1 before the device sent a date
+  /// Counted as in DeviceClock [us]; absent if no message contained it
+  std::optional<int64_t> device_time;
+  int64_t device_utc = -1;     ///< [us] since 1970-01-01; -1 before the device sent a date
   bool clock_was_set = false;  ///< the device's clock was set, forwards or back, before this epoch
   uint32_t kinds = 0;          ///< bit n: contains a message of kind n
 

@@ -28,8 +28,8 @@ struct FillInConfig {
   int64_t after_us = 150'000;  ///< [us] of silence after which scan poses are used
   double max_drift = 0.5;  ///< [m] estimated standard deviation since the last pose of the device
   double max_yaw_drift = 0.1;  ///< [rad] the same: beyond it nothing is filled in
-  double jump =
-      0.2;  ///< [m] difference from which a new pose of the device is a jump, not a correction
+  /// [m] difference from which a new pose of the device is a jump, not a correction
+  double jump = 0.2;
   double yaw_jump = 0.1;  ///< [rad] the same
 };
 

@@ -88,8 +88,8 @@ struct InsEstimate {
   Eigen::Vector3d v_body = Eigen::Vector3d::Constant(kUnmeasured);
   Eigen::Vector3d rate_body = Eigen::Vector3d::Constant(kUnmeasured);     ///< [rad/s]
   Eigen::Vector3d position_std = Eigen::Vector3d::Constant(kUnmeasured);  ///< along map axes [m]
-  Eigen::Vector3d attitude_std =
-      Eigen::Vector3d::Constant(kUnmeasured);  ///< roll, pitch, yaw [rad]
+  /// Roll, pitch, yaw [rad]
+  Eigen::Vector3d attitude_std = Eigen::Vector3d::Constant(kUnmeasured);
   /// While the heading is unknown p_map_body is the position of this point of the body [m].
   Eigen::Vector3d p_body_point = Eigen::Vector3d::Zero();
   int32_t status = kGood;  ///< bits of InsStatus

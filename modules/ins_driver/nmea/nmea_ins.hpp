@@ -20,8 +20,8 @@ struct NmeaCounts {
   int64_t sentences = 0;    ///< starts seen
   int64_t decoded = 0;
   std::array<int64_t, kSentenceTypes> of_type{};  ///< decoded, in the order of kSentenceNames
-  std::array<int64_t, kSentenceTypes>
-      empty{};  ///< of those: well-formed, but without a measurement
+  /// Of those: well-formed, but without a measurement
+  std::array<int64_t, kSentenceTypes> empty{};
   SentenceRefusals refused;
   /// The same by sentence if its checksum was good ("GGA: field count"), otherwise by the bare
   /// reason.

@@ -67,8 +67,8 @@ struct Pashr {
   std::optional<int64_t> time_of_day;
   std::optional<double> yaw;   ///< [rad]
   std::optional<double> roll;  ///< right side down positive, about x forward [rad]
-  std::optional<double>
-      pitch;  ///< nose down positive, about y left [rad]; the sentence has nose up
+  /// Nose down positive, about y left [rad]; the sentence has nose up
+  std::optional<double> pitch;
   std::optional<double> roll_std;   ///< [rad]
   std::optional<double> pitch_std;  ///< [rad]
   std::optional<double> yaw_std;    ///< [rad]
@@ -76,8 +76,8 @@ struct Pashr {
 
 /// Rate of turn.
 struct Rot {
-  std::optional<double>
-      yaw_rate;  ///< [rad/s], counter-clockwise positive; the sentence has clockwise
+  /// [rad/s], counter-clockwise positive; the sentence has clockwise
+  std::optional<double> yaw_rate;
 };
 
 /// Time and date.

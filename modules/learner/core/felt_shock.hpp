@@ -42,8 +42,8 @@ class FeltShock {
  public:
   static constexpr int64_t kBin = 100'000;  ///< [us]
   static constexpr double kSegment = 1.0;   ///< [m] of way
-  static constexpr double kSlowest =
-      0.1;  ///< [m/s] below this, motion is uninformative about the ground
+  /// [m/s] below this, motion is uninformative about the ground
+  static constexpr double kSlowest = 0.1;
 
   /// `arm` [m] from the body origin to the front end.
   explicit FeltShock(double arm) : arm_(arm) {}

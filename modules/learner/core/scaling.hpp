@@ -64,8 +64,8 @@ using Axes = Eigen::Array3d;
 struct ScalingLimits {
   Axes min_box{0.05, 0.02,
                0.03};  ///< [m], [m], [rad]: smaller boxes are noise; their factor stays 1
-  double min_box_sigmas =
-      3.0;  ///< a box must also exceed this multiple of the recorded standard deviation
+  /// A box must also exceed this multiple of the recorded standard deviation
+  double min_box_sigmas = 3.0;
   double min_factor = 0.5;  ///< [1] limits of each factor of V
   double max_factor = 2.0;
 };

@@ -34,8 +34,8 @@ CarmenScan parseCarmenLine(const std::string& line, std::string& problem);
 /// Configuration of a CARMEN log as a range finder.
 struct CarmenConfig {
   double rate = 10.0;  ///< [Hz] of scans in a log without times
-  double range_max =
-      80.0;  ///< [m] range from which there was no return (FLASER does not contain it)
+  /// [m] range from which there was no return (FLASER does not contain it)
+  double range_max = 80.0;
 };
 
 /// Reads the section `carmen`; throws ConfigError with file:line.

@@ -69,8 +69,8 @@ struct StartUpStep {
   std::string bytes;        ///< bytes to the device
   bool optional = false;    ///< a device that refuses or does not know it may still scan
   bool unanswered = false;  ///< it has no answer: the next one follows after the timeout
-  std::string otherwise =
-      {};  ///< sent with the last attempt: the equivalent request of a similar device
+  /// Sent with the last attempt: the equivalent request of a similar device
+  std::string otherwise = {};
 };
 
 /// A device that needs a step-by-step start-up, which is repeated when it falls silent.

@@ -16,8 +16,8 @@ namespace tread::motor {
 struct ConnectionTimes {
   int64_t watchdog_us = 250'000;       ///< of the controller [us]
   int64_t reply_timeout_us = 100'000;  ///< a reply that takes longer counts as missing [us]
-  int64_t silence_limit_us =
-      250'000;  ///< longest time without a sign that it receives commands [us]
+  /// Longest time without a sign that it receives commands [us]
+  int64_t silence_limit_us = 250'000;
   int64_t stop_interval_us = 50'000;  ///< interval of zeros on a faulty link [us]
   int64_t backoff_min_us = 100'000;   ///< before the next start-up [us], doubling
   int64_t backoff_max_us = 1'000'000;

@@ -47,8 +47,8 @@ struct MotionLimits {
   double least_travel = 0.4;       ///< [1] of the commanded travel, at least
   double least_turn = 0.2;         ///< [1] of the commanded turn, at least
   double pull = 0.25;  ///< [1] turn caused by uneven ground, as a share of speed / gauge
-  double time_error =
-      0.05;  ///< [s] of the INS's measurement times, also between position and rates
+  /// [s] of the INS's measurement times, also between position and rates
+  double time_error = 0.05;
 
   bool isOmni() const { return !wheels.empty(); }
   /// A command in its unit as track commands: of the left and the right track, or a car's rear
@@ -88,12 +88,12 @@ struct MotionSums {
   Eigen::Array2d high = Eigen::Array2d::Zero();  ///< [m] at most
   double travel = 0.0, turn = 0.0;               ///< [m, rad] of ideal tracks without delay
   double side_min = 0.0, side_max = 0.0;         ///< [m] explained to the left, of a holonomic base
-  double tracks_min =
-      0.0;             ///< [m] mean distance of both tracks, or sideways, lower bound without slip
-  double reach = 0.0;  ///< [m] of the faster track, at most
+  /// [m] mean distance of both tracks, or sideways, lower bound without slip
+  double tracks_min = 0.0;
+  double reach = 0.0;       ///< [m] of the faster track, at most
   double turn_reach = 0.0;  ///< [rad] at most, without slip
-  Eigen::Vector2d ins_way =
-      Eigen::Vector2d::Zero();              ///< [m] in map, integrated from the INS's velocity
+  /// [m] in map, integrated from the INS's velocity
+  Eigen::Vector2d ins_way = Eigen::Vector2d::Zero();
   double ins_path = 0.0;                    ///< [m] length of that
   double gyro = 0.0, gyro_path = 0.0;       ///< [rad] integrated from the INS's yaw rate
   double turned_with_gyro = 0.0;            ///< [rad] by the heading, while the rate was measured

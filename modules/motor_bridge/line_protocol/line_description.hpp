@@ -38,8 +38,8 @@ struct LineDescription {
   LineChecksum checksum = LineChecksum::kNone;
   std::string checksum_mark;  ///< text between a line and its checksum, which is in hexadecimal
   size_t checksum_skip = 0;   ///< number of leading characters that are not covered
-  std::vector<LineTemplate>
-      command;  ///< lines with {left} and {right}, {throttle} and {steering}, or {wheel1}, ...
+  /// Lines with {left} and {right}, {throttle} and {steering}, or {wheel1}, ...
+  std::vector<LineTemplate> command;
   std::vector<LineTemplate> stop;    ///< lines for zero; empty: the command with zeros
   std::string acknowledge;           ///< reply to each of these lines; empty = none
   std::vector<LineTemplate> errors;  ///< replies that refuse

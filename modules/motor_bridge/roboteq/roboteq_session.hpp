@@ -103,8 +103,8 @@ struct RoboteqConfig {
   int64_t watchdog_ms = 250;           ///< of the controller, set and read back [ms]
   ConnectionTimes times;               ///< except for the watchdog
   int64_t query_interval_us = 20'000;  ///< between two queries [us]
-  int64_t query_patience_us =
-      50'000;  ///< after which the next query does not wait for a reply [us]
+  /// After which the next query does not wait for a reply [us]
+  int64_t query_patience_us = 50'000;
   int64_t check_interval_us = 1'000'000;  ///< between two checks of the watchdog's setting [us]
 };
 

@@ -29,11 +29,11 @@ struct ScanMatcherConfig {
   double key_distance = 0.5;  ///< [m] after which a scan is added to the local map
   double key_turn = 0.35;     ///< [rad] the same
   int key_scans = 15;         ///< in the local map
-  double max_position_std =
-      0.3;                   ///< [m] since the last full match: beyond it the position is unknown
+  /// [m] since the last full match: beyond it the position is unknown
+  double max_position_std = 0.3;
   double max_yaw_std = 0.1;  ///< [rad] the same for the heading
-  double new_map_after =
-      1.0;  ///< [s] lost, after which the map restarts at the body's present pose
+  /// [s] lost, after which the map restarts at the body's present pose
+  double new_map_after = 1.0;
 };
 
 /// One sweep, seen from above.
@@ -42,8 +42,8 @@ struct Sweep {
   int64_t last = 0;   ///< [us] of the last
   Eigen::Vector2d p_body_sensor = Eigen::Vector2d::Zero();
   std::vector<PlanarReturn> returns;
-  double trusted_range =
-      std::numeric_limits<double>::infinity();  ///< [m] more distant returns may be ground
+  /// [m] more distant returns may be ground
+  double trusted_range = std::numeric_limits<double>::infinity();
   bool standing = false;  ///< the motors have long been off: the body is at rest
 };
 

@@ -22,9 +22,9 @@ struct MotorWiring {
   int left_channel = 1;  ///< 1 or 2; the right track uses the other
   bool invert_left = false;
   bool invert_right = false;
-  std::optional<double>
-      top_speed;             ///< [m/s] at full command; nullopt: the controller sets the power
-  bool four_motors = false;  ///< two on each side, each with its own controller
+  /// [m/s] at full command; nullopt: the controller sets the power
+  std::optional<double> top_speed;
+  bool four_motors = false;           ///< two on each side, each with its own controller
   std::vector<bool> invert_wheels{};  ///< of a holonomic base, one per wheel; otherwise empty
 };
 

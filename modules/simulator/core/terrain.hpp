@@ -82,8 +82,8 @@ struct MotionSpread {
 struct SurfaceParameters {
   std::string name;
   double friction = 0.8;  ///< ratio of maximum shear to normal force [1]
-  double shear_displacement =
-      0.03;  ///< displacement of the ground at which shear along the track saturates [m]
+  /// Displacement of the ground at which shear along the track saturates [m]
+  double shear_displacement = 0.03;
   double lateral_displacement = 0.1;  ///< the same across the track [m]
   double resistance_constant = 0.01;  ///< rolling resistance over normal force at any speed [1]
   double resistance_viscous = 0.05;   ///< rolling resistance over normal force per speed [s/m]

@@ -26,16 +26,16 @@ struct TrackGeometry {
 /// The weight on one track.
 struct ContactLoad {
   double force = 0.0;  ///< normal force [N]
-  double offset =
-      0.0;  ///< of its centre ahead of the middle, in addition to that of the surface [m]
+  /// Of its centre ahead of the middle, in addition to that of the surface [m]
+  double offset = 0.0;
 };
 
 /// Force and yaw moment of the ground on one track.
 struct TrackForce {
   double along = 0.0;   ///< shear along the track, forward positive [N]
   double across = 0.0;  ///< shear across it, to the left positive [N]
-  double resistance =
-      0.0;  ///< rolling resistance that grows with speed, on the body, forward positive [N]
+  /// Rolling resistance that grows with speed, on the body, forward positive [N]
+  double resistance = 0.0;
   double moment = 0.0;        ///< of the three about the middle of the patches [N m]
   double dry_friction = 0.0;  ///< rolling resistance that does not depend on speed, >= 0 [N]
 };

@@ -28,8 +28,8 @@ struct WorldDescription {
   std::string name;
   Extent bounds{{-20.0, -20.0}, {20.0, 20.0}};  ///< where missions take place [m]
   std::string base_surface = "grass";           ///< outside of all regions
-  std::vector<SurfaceParameters>
-      surfaces;                        ///< in addition to the built-in ones; the same name replaces
+  /// In addition to the built-in ones; the same name replaces
+  std::vector<SurfaceParameters> surfaces;
   std::vector<SurfaceRegion> regions;  ///< later ones cover earlier ones
   Terrain terrain;
   std::vector<RoughRegion> rough;  ///< bumps on the terrain; overlapping ones add up

@@ -53,8 +53,8 @@ struct ComparisonRow {
 
 struct ModelComparison {
   uint64_t seed = 0;
-  std::vector<ComparisonRow>
-      nested;  ///< each log: one half of its blocks tests the fits of the other half
+  /// Each log: one half of its blocks tests the fits of the other half
+  std::vector<ComparisonRow> nested;
   /// each log tests the fits of all others; empty = not requested
   std::vector<ComparisonRow> pooled;
 };

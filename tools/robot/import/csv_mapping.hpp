@@ -34,8 +34,8 @@ struct CsvSource {
   double rate = 0.0;                ///< [Hz]
   std::vector<std::string> ground;  ///< columns with the surface, one in all or one per wheel
   std::string run;                  ///< column whose change starts a new drive, with its own time
-  std::map<std::string, std::vector<double>>
-      only;  ///< columns with allowed values; other rows are skipped
+  /// Columns with allowed values; other rows are skipped
+  std::map<std::string, std::vector<double>> only;
   std::map<std::string, CsvColumn> columns;  ///< by quantity, see csv_mapping.cpp
 };
 

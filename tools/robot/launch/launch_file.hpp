@@ -32,8 +32,8 @@ struct LaunchFile {
   std::string key;         ///< absolute path of the robot's key; empty = messages are not sealed
   bool makes_key = false;  ///< created at the first start
   bool simulated = false;  ///< no real robot: requirements on a robot's network are only advice
-  std::string
-      pre_drive;  ///< folder of the robot whose wiring is tried before the start; empty: none
+  /// Folder of the robot whose wiring is tried before the start; empty: none
+  std::string pre_drive;
   std::vector<LaunchProcess> processes;
 };
 

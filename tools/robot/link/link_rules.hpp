@@ -48,8 +48,8 @@ class LinkFilter {
 
  private:
   std::map<std::string, int64_t> intervals_;  ///< [us] by channel; 0 = all
-  std::map<std::pair<std::string, uint64_t>, int64_t>
-      last_;            ///< [us] of the last one that passed, by part
+  /// [us] of the last one that passed, by part
+  std::map<std::pair<std::string, uint64_t>, int64_t> last_;
   double most_;         ///< [bytes/s]
   double room_;         ///< [bytes]
   int64_t filled_ = 0;  ///< [us]

@@ -18,8 +18,8 @@ struct ServerSettings {
   /// them; see addOrigin().
   std::vector<std::string> origins;
   std::set<std::string> paths;
-  std::string
-      certificate;  ///< PEM file with its key; empty = not encrypted, then only for this machine
+  /// PEM file with its key; empty = not encrypted, then only for this machine
+  std::string certificate;
 };
 
 /// Adds the address of the page behind a proxy, "https://host:8443/robot/"; returns the error,

@@ -89,8 +89,8 @@ struct PatternPart {
   double speed = 0.0, turning = 0.0;  ///< mean |V| [m/s], mean |w| [rad/s]
   double shape = 0.0;                 ///< [m2] variance of x and y of its end in addition to that
   size_t entry_class = 0;
-  double settling =
-      0.0;  ///< [1/s] share with which a deviation of the entry twist persists: see Surface
+  /// [1/s] share with which a deviation of the entry twist persists: see Surface
+  double settling = 0.0;
   /// That share of the entry twist's deviation from the usual one, in the same frame.
   Eigen::Vector3d entry = Eigen::Vector3d::Zero();
   /// Derivative of the mean velocity with respect to its corrections and the pattern's own.

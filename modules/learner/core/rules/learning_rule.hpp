@@ -22,12 +22,12 @@ struct TwistNoise {
   double forward = 0.03;  ///< [1] of |v_x|
   double lateral = 0.03;  ///< [1] of v_y over |v_x|
   double yaw = 0.08;      ///< [1] of |omega|
-  double turning =
-      0.05;  ///< [m] of |omega|, added to the first two: scatter of the centre of rotation
+  /// [m] of |omega|, added to the first two: scatter of the centre of rotation
+  double turning = 0.05;
   double wander = 0.005;  ///< [rad/m] of |v_x|, added to the third: scatter of the course
   double lag = 0.15;      ///< [s] by which a vehicle may respond later than in its set
-  double shape =
-      0.02;  ///< [1] of the path length: deviation of its end from that of its mean twist
+  /// [1] of the path length: deviation of its end from that of its mean twist
+  double shape = 0.02;
   double position = 0.01;  ///< [m] of a measured end, added to the first two over its duration
   double heading = 0.01;   ///< [rad] the same, added to the third
 };
@@ -46,10 +46,10 @@ struct GroundConfig {
   double fresh = 0.5;           ///< [1] probability that a change leads to new ground
   double slope_effect = 1.0;    ///< [1] deviation of a velocity over |v|, per slope
   double voltage_effect = 1.0;  ///< [1] the same, relative, per relative change of voltage
-  double context_evidence =
-      5.0;                     ///< [nat] evidence from which slope or voltage is used; 1000: never
-  double sure = 0.9;           ///< [1] probability from which a surface is recognized
-  int64_t settled_after = 10;  ///< executions on new ground until it is remembered
+  /// [nat] evidence from which slope or voltage is used; 1000: never
+  double context_evidence = 5.0;
+  double sure = 0.9;              ///< [1] probability from which a surface is recognized
+  int64_t settled_after = 10;     ///< executions on new ground until it is remembered
   double longest_memory = 100.0;  ///< executions after which the oldest ones on a surface fade
   int64_t moments = 8;            ///< number of hypotheses that the ground has changed recently
   int64_t capacity = 16;          ///< remembered surfaces; the least recently met one is dropped

@@ -80,8 +80,8 @@ class MultiModel : public LearningRule {
 
  private:
   static constexpr double kLongestWay = 2000.0;  ///< [m] after which older changes fade
-  static constexpr double kMostError =
-      1e3;  ///< [1] upper limit of an execution's contribution to the scatter
+  /// [1] upper limit of an execution's contribution to the scatter
+  static constexpr double kMostError = 1e3;
 
   struct Hypothesis {
     Surface surface;

@@ -28,8 +28,8 @@ struct Scatter {
    */
   Factors expected(double prior) const;
 
-  Eigen::MatrixXd
-      sums;  ///< a column for each pattern: number of executions, then their squared errors
+  /// A column for each pattern: number of executions, then their squared errors
+  Eigen::MatrixXd sums;
 };
 
 }  // namespace tread::learner

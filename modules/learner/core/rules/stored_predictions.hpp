@@ -28,8 +28,9 @@ class StoredPredictions : public LearningRule {
     return true;
   }
 
+  /// w of equation (2)
  protected:
-  double memory_;  ///< w of equation (2)
+  double memory_;
   TrajectoryTable table_;
 };
 

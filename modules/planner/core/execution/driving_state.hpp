@@ -60,8 +60,8 @@ struct AgeLimits {
   int64_t bridge = 500'000;    ///< older: the same
   int64_t map_slow = 450'000;  ///< older: no new patterns except one that stops
   int64_t map_stop = 500'000;  ///< older: the program is emptied
-  int64_t pattern_set =
-      5'000'000;  ///< older: the learner is lost, no new patterns except one that stops
+  /// Older: the learner is lost, no new patterns except one that stops
+  int64_t pattern_set = 5'000'000;
 };
 
 /// Whether the inputs permit driving.
@@ -305,8 +305,8 @@ struct DrivingState {
   DrivingMode mode = DrivingMode::kSettling;
   int64_t settling_since = 0;  ///< [us]
   ShockKnowledge shock;        ///< newest
-  std::optional<GroundCost>
-      ground;  ///< of `shock` and ground_table; recomputed when either changes
+  /// Of `shock` and ground_table; recomputed when either changes
+  std::optional<GroundCost> ground;
   std::shared_ptr<const PatternTable> ground_table;
   GripKnowledge grip;
   bool steep = false;  ///< it may slide where it stands: no time to lose

@@ -39,8 +39,8 @@ class GoalWatch {
 
  private:
   static constexpr size_t kRemembered = 16;
-  static constexpr int64_t kWait =
-      1'000'000;  ///< [us] for which a goal waits for its sender's OPERATOR
+  /// [us] for which a goal waits for its sender's OPERATOR
+  static constexpr int64_t kWait = 1'000'000;
 
   bool hasEnded(int64_t id) const;
   void adopt(int64_t now, const StoodFor& stood_for);

@@ -64,8 +64,8 @@ void PlanningMap::setPositionStd(double std) {
 }
 
 void PlanningMap::setSlowness(const std::array<float, kCostMax + 1>& slowness) {
-  constexpr float kSame =
-      0.1F;  // of itself: smaller changes do not justify a new distance to the goal
+  // Of itself: smaller changes do not justify a new distance to the goal
+  constexpr float kSame = 0.1F;
   std::vector<float>& used = config_.field.slowness;
   const auto same = [](float a, float b) { return std::abs(a - b) <= kSame * b; };
   if (std::equal(slowness.begin(), slowness.end(), used.begin(), used.end(), same)) return;

@@ -136,8 +136,8 @@ class PlanningMap {
 
 /// When the planner may change the side to which it turns.
 struct SideHysteresisConfig {
-  double gain =
-      4.0;  ///< [s] by which a plan to the other side must be cheaper; 0 = any cheaper one
+  /// [s] by which a plan to the other side must be cheaper; 0 = any cheaper one
+  double gain = 4.0;
   double turn = 0.12;  ///< [rad] a pattern that turns more decides the side of a plan
   double ahead = 3.0;  ///< [s] if it begins within this time from the start of the plan
 };

@@ -242,8 +242,8 @@ void DistanceToGoal::March::settle(size_t cell) {
   Slope& slope = of_.slopes_[cell];
   slope = Slope{};
   slope.step = of_.slowness_[cell] * static_cast<float>(cells_.size);
-  const float slowness =
-      std::exchange(of_.slowness_[cell], kNoWay);  // relax() skips it from now on
+  // relax() skips it from now on
+  const float slowness = std::exchange(of_.slowness_[cell], kNoWay);
   const float x = std::min(left, right);
   const float y = std::min(below, above);
   const float along_x = x < own ? (left < right ? x - own : own - x) : 0.0F;

@@ -15,8 +15,8 @@ namespace tread::planner {
 struct PathConfig {
   FootprintSize footprint;
   SearchConfig search = pathSearch();
-  double heuristic_beyond =
-      0.15;  ///< [1] of the cost at the start by which the heuristic is expanded further
+  /// [1] of the cost at the start by which the heuristic is expanded further
+  double heuristic_beyond = 0.15;
   DistanceFieldConfig field = pathDistanceField();
   bool unknown_blocks = true;
   double grown = 0.0;  ///< [m] earlier inflation of obstacles: for a round robot treated as a point

@@ -118,8 +118,8 @@ struct SearchResult {
   double time_to_go = 0.0;      ///< [s] of the steps, plus the remaining distance at the best speed
   double distance_to_go = 0.0;  ///< [m] from the end of the plan
   int expansions = 0;
-  bool exhausted =
-      false;      ///< the whole space was searched: there is no better plan at this resolution
+  /// The whole space was searched: there is no better plan at this resolution
+  bool exhausted = false;
   Reason reason;  ///< why there is no plan
 };
 

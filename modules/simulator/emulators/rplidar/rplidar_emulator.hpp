@@ -18,8 +18,8 @@ struct RplidarFaults {
   bool dropped_byte = false;  ///< one byte of each revolution is missing
   bool half_turn = false;     ///< the second half of each revolution is missing
   bool ill = false;           ///< its health status is error
-  double correction =
-      0.0;  ///< [deg] by which angles of samples with an echo lag behind those without
+  /// [deg] by which angles of samples with an echo lag behind those without
+  double correction = 0.0;
 };
 
 /// An RPLIDAR in SCAN mode: STOP, RESET, SCAN, GET_INFO, GET_HEALTH, motor (LR001, protocol v2.8).
