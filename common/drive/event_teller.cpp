@@ -146,6 +146,13 @@ void EventTeller::hear(const arm_t& arm) {
 void EventTeller::hear(const estop_t& estop) {
   const std::string words = withReason(
       estop.engaged ? "emergency stop" : "clears the emergency stop", estop.estop_reason);
+  // A stop after a clearance is a new one, whoever sent the same words before.
+  if (changes("estop", estop.engaged ? "engaged" : "cleared")) {
+    const std::string of_all = "estop of ";
+    for (auto at = states_.lower_bound(of_all);
+         at != states_.end() && at->first.compare(0, of_all.size(), of_all) == 0;)
+      at = states_.erase(at);
+  }
   if (changes("estop of " + estop.estop_by, words))
     tell(estop.engaged ? Severity::kError : Severity::kInfo, estop.estop_by, words);
 }

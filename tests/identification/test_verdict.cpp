@@ -61,7 +61,14 @@ TEST_CASE("of a vehicle that the best model is far from nothing is named") {
   finding.gap->way = 10.0;
   CHECK(judged(finding) == GapVerdict::kFound);
   finding.gap->way = 3.0;
+  CHECK(judged(finding) == GapVerdict::kFound);  // on tracks it may be noise
+  finding.identified.model.vehicle.wheelbase = 0.9;
   CHECK(judged(finding) == GapVerdict::kCannotTell);
+  GapFinding rejected = finding;
+  rejected.source.decisions = {{"grip_limit", false, ""}};
+  CHECK(judged(rejected) == GapVerdict::kFound);
+  finding.search.cut_short = true;
+  CHECK(judged(finding) == GapVerdict::kPartial);
 }
 
 TEST_CASE("a term that moved is a finding if the end error would fall were the new model right") {

@@ -248,6 +248,19 @@ TEST_CASE("a line that is too slow for a Hokuyo's scans is named, with what to d
                            "short_ranges") != std::string::npos);
 }
 
+TEST_CASE("a Hokuyo that falls silent within a scan is not said to be on a slow line") {
+  ScipLine line;
+  line.run(1030);
+  bool part = false;
+  for (int i = 0; i < 3000; ++i) {
+    line.now += 1000;
+    const std::string asked = line.session.poll(line.now);
+    if (!part) line.session.receive("MD0000108001000\n99b\n" + std::string(300, '0'), line.now);
+    part = true;
+    CHECK(line.reason().find("too slow") == std::string::npos);
+  }
+}
+
 TEST_CASE("none of a Hokuyo's scans outlives a disconnect") {
   ScipLine line;
   REQUIRE(line.run(500).size() >= 4);

@@ -233,9 +233,22 @@ constexpr double kUndescribed = 0.15;  // of the distance: a larger error means 
 constexpr double kLeastWay =
     1.0;  // [m]: below it, noise and patches of ground can cause such errors
 
+/// Whether all that may be added was: a search that ended early or without an effect that a person
+/// rejected says nothing about the kernel.
+bool searchedWhole(const GapFinding& finding) {
+  const std::vector<EffectDecision>& decisions = finding.source.decisions;
+  return !finding.search.cut_short &&
+         std::all_of(decisions.begin(), decisions.end(),
+                     [](const EffectDecision& decision) { return decision.accepted; });
+}
+
 /// Effects on a model that is far from the vehicle are not valid names for the deviations.
+/** Of cars and holonomic bases, whose kernels are the simpler ones. On tracks noisy positions cause
+ * such errors, too, and adequacy judges the rest. */
 void refuseUndescribed(GapFinding& finding) {
+  if (finding.identified.model.vehicle.layout() == VehicleLayout::kTracks) return;
   if (!finding.gap || exitStatus(finding.verdict) == 0) return;
+  if (finding.verdict == GapVerdict::kCannotTell || !searchedWhole(finding)) return;
   const double off = finding.gap->after.position.median;
   const double way = finding.gap->way;
   if (!(way > kLeastWay && off > kUndescribed * way)) return;

@@ -217,7 +217,7 @@ EndErrors summaryOf(const std::vector<ExecutionError>& errors) {
 double medianWay(const std::vector<ExecutionError>& errors) {
   std::vector<double> ways;
   for (const ExecutionError& error : errors) ways.push_back(error.way);
-  return quantileOf(std::move(ways), 0.5, 0.0);
+  return medianOf(std::move(ways), 0.0);
 }
 
 MedianChance chanceOfMedians(const std::vector<ExecutionError>& one,

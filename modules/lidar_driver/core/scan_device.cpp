@@ -76,7 +76,7 @@ void StartedDevice::refused(const std::string& words, int64_t now, const std::st
 std::string StartedDevice::poll(int64_t now) {
   if (!open_ || lost_) return {};
   if (streaming()) {
-    if (now - last_scan_ > kSilence) restart("no good scan for 1 s", now, remedyForSilence());
+    if (now - last_scan_ > kSilence) restart("no good scan for 1 s", now, remedyForSilence(now));
     return {};
   }
   if (tries_ > 0 && now - asked_at_ < patience_us_) return {};

@@ -103,7 +103,7 @@ class StartedDevice : public ScanDevice {
   /// Repeats its start-up for this reason.
   void restart(const std::string& reason, int64_t now, const std::string& remedy = {});
   /// What to do if no scan comes though the device streams; empty if nothing hints at a cause.
-  virtual std::string remedyForSilence() const { return {}; }
+  virtual std::string remedyForSilence(int64_t /*now*/) const { return {}; }
 
  private:
   void begin(int64_t now);

@@ -10,13 +10,14 @@
 namespace tread::lidar {
 namespace {
 
-constexpr int64_t kPatience = 500'000;    // [us]: on slow lines the rest of a scan comes first
-constexpr size_t kLongest = 65'536;       // of an answer
-constexpr size_t kPartOfScan = 200;       // a buffer of more holds a part of a scan
-constexpr size_t kNoise = 3;              // this many bytes may be old noise
-constexpr int kMostSteps = 10'000;        // a request has four digits
-constexpr double kShortMax = 4.094;       // [m] with two characters: 4095 means everything beyond
-constexpr int32_t kMostJump = 2'000'000;  // [ms] of the device's clock, kept within 32 bits of us
+constexpr int64_t kPatience = 500'000;      // [us]: on slow lines the rest of a scan comes first
+constexpr size_t kLongest = 65'536;         // of an answer
+constexpr size_t kPartOfScan = 200;         // a buffer of more holds a part of a scan
+constexpr int64_t kStillArrives = 100'000;  // [us] since the last bytes
+constexpr size_t kNoise = 3;                // this many bytes may be old noise
+constexpr int kMostSteps = 10'000;          // a request has four digits
+constexpr double kShortMax = 4.094;         // [m] with two characters: 4095 means everything beyond
+constexpr int32_t kMostJump = 2'000'000;    // [ms] of the device's clock, kept within 32 bits of us
 constexpr const char* kWhichPort = "is this the port of a Hokuyo, at its rate?";
 constexpr const char* kLine = "check the line and its ground";
 constexpr const char* kManual = "its manual lists the status";
@@ -128,13 +129,14 @@ ScipSession::ScipSession(const ScipConfig& config)
 
 void ScipSession::forget() {
   buffer_.clear();
+  whole_ = false;
   clock_.forget();
   state_.clear();
   last_milliseconds_.reset();
 }
 
-std::string ScipSession::remedyForSilence() const {
-  if (buffer_.size() < kPartOfScan) return {};
+std::string ScipSession::remedyForSilence(int64_t now) const {
+  if (buffer_.size() < kPartOfScan || whole_ || now - heard_ > kStillArrives) return {};
   const size_t width = config_.short_ranges ? 2 : 3;
   return "the line is too slow: a scan has " + std::to_string(width * geometry_.beams()) +
          " bytes; raise its rate" + (config_.short_ranges ? "" : ", or set short_ranges");
@@ -147,6 +149,7 @@ std::string ScipSession::echo() const {
 }
 
 void ScipSession::receive(std::string_view bytes, int64_t now) {
+  if (!bytes.empty()) heard_ = now;
   while (!bytes.empty()) {
     if (buffer_.size() <= kNoise) began_ = now;
     const size_t piece = std::min<size_t>(bytes.size(), 4096);
@@ -170,9 +173,11 @@ void ScipSession::receive(std::string_view bytes, int64_t now) {
 void ScipSession::takeBlock(std::string_view block, int64_t now) {
   const std::vector<std::string_view> lines = linesOf(block);
   const auto status = std::find_if(lines.begin() + 1, lines.end(), isStatus);
-  if (status == lines.end())
+  if (status == lines.end()) {
+    whole_ = whole_ || streaming();
     return skipUnreadable("bytes outside of answers", now, kWhichPort,
                           static_cast<int64_t>(block.size() + 2));
+  }
   const Answer answer{status->substr(0, 2), {status + 1, lines.end()}};
   // A scan from a stream that is being switched off may be old.
   if (!streaming() && answer.status == "99") return count("scans before the start");
@@ -247,6 +252,7 @@ bool ScipSession::takeParameters(const std::vector<std::string>& texts, int64_t 
 
 void ScipSession::takeScan(const Answer& answer, int64_t now) {
   if (answer.status == "00") return count("unexpected answers");
+  whole_ = true;
   if (answer.status != "99")
     return refuse("refused: a status in the place of a scan, '" + printable(answer.status) + "'",
                   now, kManual);

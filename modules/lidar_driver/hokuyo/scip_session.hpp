@@ -73,7 +73,7 @@ class ScipSession final : public StartedDevice {
 
   void forget() override;
   /// A scan that is still arriving needs a faster line.
-  std::string remedyForSilence() const override;
+  std::string remedyForSilence(int64_t now) const override;
   /// The expected text before an answer's status.
   std::string echo() const;
   void takeBlock(std::string_view block, int64_t now);
@@ -90,7 +90,9 @@ class ScipSession final : public StartedDevice {
   ScipGeometry geometry_;
   std::string request_;  ///< of the stream
   std::string buffer_;
-  int64_t began_ = 0;  ///< [us] when the first byte in the buffer arrived
+  int64_t heard_ = 0;   ///< [us] when the last bytes came
+  bool whole_ = false;  ///< a block came to its end since the stream began
+  int64_t began_ = 0;   ///< [us] when the first byte in the buffer arrived
   std::string identity_;
   std::string state_;  ///< STAT of the answer to II
   TickClock clock_;

@@ -61,6 +61,20 @@ TEST_CASE("a state that is repeated is told once, and a new reason is told") {
           Lines{"motor_bridge: disarmed: not armed yet", "motor_bridge: disarmed: INS is stale"});
 }
 
+TEST_CASE(
+    "a second emergency stop by the same person is told after another one cleared the first") {
+  Story story;
+  auto stop = blank<estop_t>();
+  stop.engaged = true;
+  stop.estop_by = "page (anna)";
+  auto clear = blank<estop_t>();
+  clear.estop_by = "tread-stop (ben)";
+  for (const estop_t& message : {stop, stop, clear, clear, stop, stop}) story.add(kEstop, message);
+  CHECK(story.lines == Lines{"page (anna): emergency stop",
+                             "tread-stop (ben): clears the emergency stop",
+                             "page (anna): emergency stop"});
+}
+
 TEST_CASE("standing between patterns is no event, losing the permission is one") {
   Story story;
   for (const int16_t state :

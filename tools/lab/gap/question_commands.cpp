@@ -261,7 +261,8 @@ void whatIf(const WhatIfOptions& options) {
   }
   const std::string question = questionOf(options.change);
   const std::string setting = settingOf(model, other, options.model, options.log);
-  std::cout << question << "\n" << setting << "\n\n" << textOf(comparisons);
+  std::cout << question << "\n" << setting << "\n\n";
+  if (tracks) std::cout << textOf(comparisons);
   for (const LogComparison& comparison : on_log) std::cout << '\n' << textOf(comparison);
   if (!lost.empty()) std::cout << lost << '\n';
   if (!options.out.empty())

@@ -141,7 +141,7 @@ std::optional<WatchLine> WatchedDrive::evaluate() {
   if (driven_ < next_) return std::nullopt;
   const Drive drive = toDrive(toDriveLog("watch", {recent_.begin(), recent_.end()}));
   if (drive.segments.empty()) return std::nullopt;
-  if (drive.kind != model_.vehicle.kind)
+  if (drive.kind != model_.vehicle.kind || drive.layout != model_.vehicle.layout())
     throw std::runtime_error(
         "the robot's commands are of another kind than the model's; give the model of this robot");
   int64_t origin = recent_.front().utime;

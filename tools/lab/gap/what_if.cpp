@@ -321,17 +321,20 @@ Page pageOf(const std::string& question, const std::string& setting,
   page.title = question + " - tread-gap what-if";
   page.verdict = question;
   page.mood = "change";
-  Table table{{"manoeuvre", "ends apart", "heading"}, {}, 1};
-  for (const ManoeuvreComparison& comparison : comparisons)
-    table.rows.push_back(
-        {comparison.name, shownDistance(comparison.position), shownAngle(comparison.yaw)});
-  page.first = {Paragraph{"The same commands, simulated with the present and the changed model; "
-                          "differences after two seconds."},
-                Paragraph{setting}, table};
-  page.sections.push_back(
-      {"Manoeuvres",
-       {Pictures{picturesOf(comparisons),
-                 "Orange, dashed: present model. Blue: changed model. Ahead is up."}}});
+  page.first = {Paragraph{setting}};
+  if (!comparisons.empty()) {
+    Table table{{"manoeuvre", "ends apart", "heading"}, {}, 1};
+    for (const ManoeuvreComparison& comparison : comparisons)
+      table.rows.push_back(
+          {comparison.name, shownDistance(comparison.position), shownAngle(comparison.yaw)});
+    page.first = {Paragraph{"The same commands, simulated with the present and the changed model; "
+                            "differences after two seconds."},
+                  Paragraph{setting}, table};
+    page.sections.push_back(
+        {"Manoeuvres",
+         {Pictures{picturesOf(comparisons),
+                   "Orange, dashed: present model. Blue: changed model. Ahead is up."}}});
+  }
   for (const LogComparison& comparison : on_log)
     page.sections.push_back(
         {"On the log",

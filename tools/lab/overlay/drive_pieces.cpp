@@ -193,11 +193,11 @@ double ComparedPiece::yawError(size_t model, size_t sample) const {
 std::vector<ComparedPiece> replay(const gap::Drive& drive, const std::vector<ModelDocument>& models,
                                   double length) {
   for (const ModelDocument& model : models)
-    if (model.vehicle.kind != drive.kind)
-      throw std::runtime_error(
-          "model " + model.vehicle.name +
-          " needs another kind of command than the log has (power or track speed); give a model of "
-          "the same vehicle");
+    if (model.vehicle.kind != drive.kind || model.vehicle.layout() != drive.layout)
+      throw std::runtime_error("model " + model.vehicle.name +
+                               " needs another kind of command than the log has (power, track "
+                               "speed, a car's or a holonomic base's); give a model of "
+                               "the same vehicle");
   std::vector<ComparedPiece> pieces;
   for (const gap::Segment& segment : drive.segments)
     addPieces(drive, segment, models, length, pieces);

@@ -202,6 +202,11 @@ void readDrives(const fs::path& folder, Recordings& found) {
 void readLogs(const std::vector<fs::path>& logs, Recordings& found) {
   for (const fs::path& path : logs) {
     const gap::Drive drive = gap::readDrive(path.string());
+    if (drive.layout != VehicleLayout::kTracks) {
+      found.notes.push_back(path.stem().string() + ": left out: recorded with " +
+                            nameOf(drive.layout) + "; the rivals are for two tracks");
+      continue;
+    }
     const DriveLog log = readDriveLog({path.string()});
     if (!log.problem.empty()) found.notes.push_back(path.stem().string() + ": " + log.problem);
     SampledSession session;
