@@ -33,8 +33,9 @@ constexpr double kLeastTurn = 0.2;
 
 /// Larger corrections are not caused by ground; predictions stay drivable.
 constexpr double kLargestFactor = 3.0;
-constexpr double kLargestBias = 0.5;  // [rad/m]
-constexpr double kLargestLag = 0.5;   // [s]
+constexpr double kLargestBias = 0.5;     // [rad/m]
+constexpr double kLargestLag = 1.0;      // [s] ice: a second to full speed
+constexpr double kLargestTurnLag = 0.5;  // [s]
 /// Of the velocity's lag: variation between executions, relative to the possible error of a set.
 constexpr double kLagNoise = 0.3;
 /// The turn rate at an end of a pattern is its mean over this [s].
@@ -236,7 +237,7 @@ Pose2 TwistProfile::walk(const BodyScale& scale, const TwistCorrection& x, Put&&
   const double turn = scale.speed / scale.turn;
   const double late = within(c[TwistCorrection::kLag], kLargestLag) / period_;
   const double lost =
-      within(c[TwistCorrection::kYawLag], kLargestLag) * lossByLag(scale, 0, samples());
+      within(c[TwistCorrection::kYawLag], kLargestTurnLag) * lossByLag(scale, 0, samples());
   Pose2 at;
   double c_at = 1.0, s_at = 0.0;  // of at.yaw, updated by rotation instead of recomputed
   for (size_t t = 0; t < twists_.size(); ++t) {

@@ -24,6 +24,9 @@ const Widths kResidual{{0.01, 0.5}, {0.04, 0.3}, {0.1, 0.15}, {0.25, 0.05}};
 const Widths kVelocityNoise{{1.0, 0.88}, {3.2, 0.12}};
 /// Residual change of patterns as a share of the change of the gain [1].
 constexpr double kResidualOfGain = 0.12;
+/// Ground that changes the gains a lot also delays the response: on ice a start takes a second
+/// longer, and the twist of the entry persists. Growth of the lags' deviation per unit of gain [1].
+constexpr double kLateByGain = 5.0;
 
 /// Variances of the lag and of the persistence of an entry, relative to those of new ground: a set
 /// is normally of the same vehicle.
@@ -38,6 +41,11 @@ double residual(const Width& gain, const Width& own) {
   return squared(kResidualOfGain * gain.deviation) + squared(own.deviation);
 }
 
+/// Variance of the lag and of an entry's persistence, relative to that on ground as shipped.
+double late(const Width& gain) {
+  return 1.0 + squared(kLateByGain * gain.deviation);
+}
+
 VelocityBank::Scales velocityScales(const Widths& gains, const Widths& turns,
                                     const Widths& residuals, double lag, double share) {
   VelocityBank::Scales scales;
@@ -47,7 +55,7 @@ VelocityBank::Scales velocityScales(const Widths& gains, const Widths& turns,
         for (const Width& noise : kVelocityNoise)
           scales.push_back({{share * squared(gain.deviation),
                              share * (squared(gain.deviation) + squared(turn.deviation)),
-                             share * residual(gain, own), lag, lag},
+                             share * residual(gain, own), lag * late(gain), lag * late(gain)},
                             squared(noise.deviation),
                             gain.weight * turn.weight * own.weight * noise.weight});
   return scales;
@@ -60,7 +68,7 @@ YawBank::Scales yawScales(const Widths& gains, const Widths& biases, const Width
     for (const Width& bias : biases)
       for (const Width& own : residuals)
         scales.push_back({{share * squared(gain.deviation), share * squared(bias.deviation / lever),
-                           share * residual(gain, own), lag, lag},
+                           share * residual(gain, own), lag * late(gain), lag * late(gain)},
                           1.0,
                           gain.weight * bias.weight * own.weight});
   return scales;
