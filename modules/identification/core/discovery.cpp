@@ -12,14 +12,12 @@
 #include "common/soundness/core/lag_table.hpp"
 #include "common/statistics/statistics.hpp"
 #include "modules/identification/core/adequacy.hpp"
-#include "modules/identification/core/current_witness.hpp"
 #include "modules/identification/core/end_errors.hpp"
+#include "modules/identification/core/evidence.hpp"
 #include "modules/identification/core/moved_terms.hpp"
 #include "modules/identification/core/rest.hpp"
 #include "modules/identification/core/search_steps.hpp"
 #include "modules/identification/core/unnamed.hpp"
-#include "modules/identification/core/voltage_witness.hpp"
-#include "modules/identification/core/witness.hpp"
 
 namespace tread::gap {
 
@@ -94,12 +92,13 @@ FoundEffect foundEffect(const std::string& name, const FoundTerms& result,
 
 constexpr double kLateWheels = 0.3;  // [s] by which encoders themselves may lag
 
-/// Attaches the wheel-speed evidence. If the wheels show the effect, drops INS explanations.
-/** For a delay only above kLateWheels, because encoders lag too. */
-void hearWheels(const WheelWitness& wheels, FoundEffect& effect) {
-  effect.wheels = wheels;
+/// Drops INS explanations of an effect that the wheels show.
+/** Of a delay only above kLateWheels, because encoders lag too. */
+void dropRefutedNames(FoundEffect& effect) {
+  const Evidence* wheels = effect.evidenceBy(EvidenceSource::kWheels);
+  if (wheels == nullptr || !wheels->confirms()) return;
   const bool is_delay = effectNamed(effect.name).search.late_by == LateBy::kCommand;
-  if (!wheels.saysDrive() || (is_delay && effect.parameters.front().low < kLateWheels)) return;
+  if (is_delay && effect.parameters.front().low < kLateWheels) return;
   const auto isOfIns = [](const std::string& other) {
     return effectNamed(other).kind() == EffectKind::kMeasurement;
   };
@@ -109,14 +108,6 @@ void hearWheels(const WheelWitness& wheels, FoundEffect& effect) {
       std::remove_if(effect.runner_ups.begin(), effect.runner_ups.end(),
                      [&](const RunnerUp& other) { return isOfIns(other.effect); }),
       effect.runner_ups.end());
-}
-
-/// The evidence about an effect, if there is any.
-template <class Witness>
-std::optional<Witness> witnessOf(const std::map<std::string, Witness>& witnesses,
-                                 const std::string& effect) {
-  const auto said = witnesses.find(effect);
-  return said == witnesses.end() ? std::nullopt : std::optional(said->second);
 }
 
 bool isExcited(const CandidateTest& test) {
@@ -313,14 +304,15 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
     std::tie(estimate.low, estimate.high) = changePointInterval(fitter, state, path, kChangeNats);
     of_effect[effect].push_back(estimate);
   }
-  const std::map<std::string, WheelWitness> wheels = wheelWitnesses(fitter, state, result.effects);
-  const auto currents = currentWitnesses(fitter, state, result.effects);
-  const auto voltages = voltageWitnesses(fitter, state, result.effects);
+  std::map<std::string, std::vector<Evidence>> evidence;
+  for (const EvidenceSource source :
+       {EvidenceSource::kWheels, EvidenceSource::kCurrents, EvidenceSource::kVoltage})
+    for (const auto& [name, shown] : evidenceBy(source, fitter, state, result.effects))
+      evidence[name].push_back(shown);
   for (const std::string& name : result.effects) {
     FoundEffect effect = foundEffect(name, result, settings, of_effect[name]);
-    if (const auto heard = witnessOf(wheels, name)) hearWheels(*heard, effect);
-    effect.currents = witnessOf(currents, name);
-    effect.voltage = witnessOf(voltages, name);
+    effect.evidence = evidence[name];
+    dropRefutedNames(effect);
     identified.effects.push_back(std::move(effect));
   }
   for (const CandidateTest& test : result.record.candidates)

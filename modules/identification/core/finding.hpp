@@ -59,39 +59,27 @@ struct RunnerUp {
   double error = 0.0;   ///< [nats] standard error of that difference
 };
 
-/// Share of an effect that the wheel speeds show, with its 95 % interval: 1 = all, 0 = none.
-struct WheelWitness {
-  double share = 0.0;
+/// A quantity that is measured beside the INS and predicted by the model of the drive.
+enum class EvidenceSource { kWheels, kCurrents, kVoltage };
+
+/// How strongly such a quantity shows an effect, with its 95 % interval.
+/** Wheels: share of the effect in their speeds, 1 = all. Voltage: the same for an intermittent
+ * effect in the battery's voltage. Currents: percentage by which they rise per percent of speed
+ * that the effect takes, relative to the currents at the reduced speed, 0 = not at all: a load
+ * reduces the speed by drawing current, more than in proportion, as otherwise it would stop the
+ * motor; a weak drive draws the current of the lower speed, and so do slipping tracks. Values in
+ * between suggest currents that were computed from the command. */
+struct Evidence {
+  EvidenceSource source = EvidenceSource::kWheels;
+  double value = 0.0;
   double low = 0.0;
   double high = 0.0;
   bool of_lags = false;  ///< for all lags of the vehicle together
 
-  bool saysDrive() const { return low > 0.5; }
-  bool saysGround() const { return high < 0.5; }
-};
-
-/// Percentage by which the motor currents rise per percent of speed that an effect takes, relative
-/// to the currents at the reduced speed; with its 95 % interval. 0 = not at all.
-/** A load reduces the speed by drawing current, more than in proportion: otherwise it would stop
- * the motor. A weak drive draws the current of the lower speed; so do slipping tracks. Values in
- * between suggest currents that were computed from the command. */
-struct CurrentWitness {
-  double rise = 0.0;
-  double low = 0.0;
-  double high = 0.0;
-
-  bool saysLoad() const { return low > 1.5; }
-  bool saysNoLoad() const { return high < 0.5; }
-};
-
-/// Share of an intermittent effect that the battery voltage also shows; with its 95 % interval.
-struct VoltageWitness {
-  double share = 0.0;
-  double low = 0.0;
-  double high = 0.0;
-
-  bool saysBattery() const { return low > 0.5; }
-  bool saysOther() const { return high < 0.5; }
+  /// The effect is in the drive (wheels), a load (currents), of the battery (voltage).
+  bool confirms() const { return low > (source == EvidenceSource::kCurrents ? 1.5 : 0.5); }
+  /// It certainly is not.
+  bool refutes() const { return high < 0.5; }
 };
 
 /// An effect that was found.
@@ -105,10 +93,14 @@ struct FoundEffect {
   double gain = 0.0;     ///< [nats] on blocks that were not fitted
   double gain_error = 0.0;
   bool accepted = false;  ///< accepted by a person: it stays whatever the numbers above are
-  // Other evidence in the log; nullopt if the log has none.
-  std::optional<WheelWitness> wheels{};
-  std::optional<CurrentWitness> currents{};
-  std::optional<VoltageWitness> voltage{};
+  std::vector<Evidence> evidence{};  ///< other evidence in the log, at most one of each source
+
+  /// nullptr if the log has none of this source.
+  const Evidence* evidenceBy(EvidenceSource source) const {
+    for (const Evidence& one : evidence)
+      if (one.source == source) return &one;
+    return nullptr;
+  }
 };
 
 /// p-value from which the drive itself does not confirm an accepted effect.

@@ -66,13 +66,4 @@ std::vector<MotionBin> binsOf(const Fitter& fitter, const FitState& state,
   return bins;
 }
 
-std::vector<std::string> askedOf(const std::vector<std::string>& effects) {
-  std::vector<std::string> asked;
-  for (const std::string& effect : effects) {
-    const Effect& known = effectNamed(effect);
-    if (known.kind() == EffectKind::kVehicle && !isLag(known)) asked.push_back(effect);
-  }
-  return asked;
-}
-
 }  // namespace tread::gap

@@ -32,7 +32,4 @@ struct MotionBin {
 std::vector<MotionBin> binsOf(const Fitter& fitter, const FitState& state,
                               const std::vector<std::string>& effects);
 
-/// Vehicle effects about which motor signals may be informative.
-std::vector<std::string> askedOf(const std::vector<std::string>& effects);
-
 }  // namespace tread::gap

@@ -12,8 +12,8 @@
 
 #include "modules/identification/core/candidates.hpp"
 #include "modules/identification/core/end_errors.hpp"
+#include "modules/identification/core/evidence.hpp"
 #include "modules/identification/core/pruning.hpp"
-#include "modules/identification/core/witness.hpp"
 
 namespace tread::gap {
 namespace {
@@ -224,9 +224,10 @@ std::optional<FitState> withVehicleInstead(const SearchState& search,
 /// Whether the wheels show most of an effect that should not be visible in them.
 bool isInWheels(const SearchState& search, const std::string& effect) {
   if (effectNamed(effect).search.in_wheels.empty()) return false;
-  const auto witnesses = wheelWitnesses(search.fitter, search.result.state, search.result.effects);
-  const auto found = witnesses.find(effect);
-  return found != witnesses.end() && found->second.share > kInWheels && found->second.low > 0.0;
+  const auto shown = evidenceBy(EvidenceSource::kWheels, search.fitter, search.result.state,
+                                search.result.effects);
+  const auto found = shown.find(effect);
+  return found != shown.end() && found->second.value > kInWheels && found->second.low > 0.0;
 }
 
 /// An effect that may replace another one.

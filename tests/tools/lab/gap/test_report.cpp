@@ -9,11 +9,11 @@
 
 #include "common/vehicle/model_file.hpp"
 #include "tests/tools/lab/gap/sample_findings.hpp"
+#include "tools/lab/gap/report/evidence_words.hpp"
 #include "tools/lab/gap/report/find_output.hpp"
 #include "tools/lab/gap/report/headline.hpp"
 #include "tools/lab/gap/report/pictures.hpp"
 #include "tools/lab/gap/report/sections.hpp"
-#include "tools/lab/gap/report/witness_words.hpp"
 #include "tools/lab/gap/report/words.hpp"
 
 namespace tread::gap {
@@ -137,60 +137,59 @@ TEST_CASE("what is left without a name is drawn beside the headline") {
 
 TEST_CASE("after an effect stands where the wheel speeds say that it is") {
   GapFinding finding = samples::finding(GapVerdict::kFound);
-  const auto sentenceWith = [&](const WheelWitness& wheels) {
-    finding.identified.effects[0].wheels = wheels;
+  const auto sentenceWith = [&](double value, double low, double high) {
+    finding.identified.effects[0].evidence = {{EvidenceSource::kWheels, value, low, high}};
     return sentencesOf(finding).front();
   };
   CHECK_THAT(
-      sentenceWith({0.97, 0.9, 1.04}),
+      sentenceWith(0.97, 0.9, 1.04),
       Catch::EndsWith("The wheel speeds show 97 % of it (90 to 104 %): it is in the drive."));
-  CHECK_THAT(sentenceWith({1.5, 1.4, 1.6}),
+  CHECK_THAT(sentenceWith(1.5, 1.4, 1.6),
              Catch::Contains("show all of it and more (140 to 160 %): it is in the drive."));
-  CHECK_THAT(sentenceWith({0.1, -0.1, 0.3}),
+  CHECK_THAT(sentenceWith(0.1, -0.1, 0.3),
              Catch::EndsWith("it is under the wheels, not in the drive."));
-  CHECK_THAT(sentenceWith({0.5, 0.3, 0.7}), Catch::EndsWith("whether it is in the drive."));
+  CHECK_THAT(sentenceWith(0.5, 0.3, 0.7), Catch::EndsWith("whether it is in the drive."));
 }
 
 TEST_CASE("after it stands whether it is load, as the motor currents say") {
   FoundEffect effect = samples::turnLimit();
-  CHECK(witnessSentences(effect).empty());
-  effect.currents = CurrentWitness{12.0, 10.0, 14.0};
-  CHECK_THAT(witnessSentences(effect),
+  CHECK(evidenceSentences(effect).empty());
+  effect.evidence = {{EvidenceSource::kCurrents, 12.0, 10.0, 14.0}};
+  CHECK_THAT(evidenceSentences(effect),
              Catch::Contains("rise by 12.0 % per percent (10.0 to 14.0): it is load"));
-  effect.currents = CurrentWitness{0.9, 0.2, 1.6};
-  CHECK_THAT(witnessSentences(effect), Catch::Contains("do not show whether it is load"));
-  effect.currents = CurrentWitness{0.1, -0.1, 0.3};
-  CHECK_THAT(witnessSentences(effect),
+  effect.evidence = {{EvidenceSource::kCurrents, 0.9, 0.2, 1.6}};
+  CHECK_THAT(evidenceSentences(effect), Catch::Contains("do not show whether it is load"));
+  effect.evidence = {{EvidenceSource::kCurrents, 0.1, -0.1, 0.3}};
+  CHECK_THAT(evidenceSentences(effect),
              Catch::EndsWith("by 0.1 % per percent (-0.1 to 0.3): the drive gives less, or the "
                              "tracks slip."));
 }
 
 TEST_CASE("wheel speeds and motor currents together tell the drive, the load and slipping tracks") {
   FoundEffect effect = samples::turnLimit();
-  const WheelWitness in_wheels{0.97, 0.9, 1.04};
-  const WheelWitness under_wheels{0.1, -0.1, 0.3};
-  effect.currents = CurrentWitness{0.1, -0.1, 0.3};
-  effect.wheels = in_wheels;
-  CHECK_THAT(witnessSentences(effect), Catch::EndsWith("(-0.1 to 0.3): the drive gives less."));
-  effect.wheels = under_wheels;
-  CHECK_THAT(witnessSentences(effect), Catch::EndsWith("(-0.1 to 0.3): the tracks slip."));
-  effect.wheels = in_wheels;
-  effect.currents = CurrentWitness{12.0, 10.0, 14.0};
-  CHECK_THAT(witnessSentences(effect), !Catch::Contains("in the drive"));
-  CHECK_THAT(witnessSentences(effect), Catch::Contains("the wheels turn slower"));
+  const Evidence in_wheels{EvidenceSource::kWheels, 0.97, 0.9, 1.04};
+  const Evidence under_wheels{EvidenceSource::kWheels, 0.1, -0.1, 0.3};
+  const Evidence no_load{EvidenceSource::kCurrents, 0.1, -0.1, 0.3};
+  effect.evidence = {in_wheels, no_load};
+  CHECK_THAT(evidenceSentences(effect), Catch::EndsWith("(-0.1 to 0.3): the drive gives less."));
+  effect.evidence = {under_wheels, no_load};
+  CHECK_THAT(evidenceSentences(effect), Catch::EndsWith("(-0.1 to 0.3): the tracks slip."));
+  effect.evidence = {in_wheels, {EvidenceSource::kCurrents, 12.0, 10.0, 14.0}};
+  CHECK_THAT(evidenceSentences(effect), !Catch::Contains("in the drive"));
+  CHECK_THAT(evidenceSentences(effect), Catch::Contains("the wheels turn slower"));
 }
 
 TEST_CASE("after it stands whether it is the battery, as the voltage says") {
   FoundEffect effect = samples::turnLimit();
-  effect.voltage = VoltageWitness{0.98, 0.9, 1.06};
-  CHECK_THAT(witnessSentences(effect),
+  effect.evidence = {{EvidenceSource::kVoltage, 0.98, 0.9, 1.06}};
+  CHECK_THAT(evidenceSentences(effect),
              Catch::EndsWith("falls with it, 98 % as much (90 to 106 %): it may be the battery."));
   effect.name = "battery_sag";
-  CHECK_THAT(witnessSentences(effect), Catch::EndsWith(": it is the battery."));
-  effect.voltage = VoltageWitness{0.02, 0.0, 0.04};
-  CHECK_THAT(witnessSentences(effect), Catch::EndsWith("(0 to 4 %): it is not the battery."));
-  effect.voltage = VoltageWitness{0.5, 0.2, 0.8};
-  CHECK_THAT(witnessSentences(effect), Catch::EndsWith("show whether it is the battery."));
+  CHECK_THAT(evidenceSentences(effect), Catch::EndsWith(": it is the battery."));
+  effect.evidence = {{EvidenceSource::kVoltage, 0.02, 0.0, 0.04}};
+  CHECK_THAT(evidenceSentences(effect), Catch::EndsWith("(0 to 4 %): it is not the battery."));
+  effect.evidence = {{EvidenceSource::kVoltage, 0.5, 0.2, 0.8}};
+  CHECK_THAT(evidenceSentences(effect), Catch::EndsWith("show whether it is the battery."));
 }
 
 TEST_CASE("a report shows where, how, step by step, the parameters and what else it could be") {

@@ -42,7 +42,7 @@ TEST_CASE("an effect in verdict.json has kind, parameters, group and runner-ups"
 
 TEST_CASE("what the wheel speeds show of an effect is in verdict.json where they say something") {
   GapFinding finding = samples::finding(GapVerdict::kFound);
-  finding.identified.effects[0].wheels = WheelWitness{0.97, 0.9, 1.04};
+  finding.identified.effects[0].evidence.push_back({EvidenceSource::kWheels, 0.97, 0.9, 1.04});
   const Json json = verdictJson(finding, samples::inputs());
   CHECK(json["effects"][0]["wheel_speeds_show"] ==
         Json({{"share", 0.97}, {"low", 0.9}, {"high", 1.04}}));
@@ -51,16 +51,17 @@ TEST_CASE("what the wheel speeds show of an effect is in verdict.json where they
 
 TEST_CASE("so is what the motor currents and the battery voltage do with it") {
   GapFinding finding = samples::finding(GapVerdict::kFound);
-  finding.identified.effects[0].currents = CurrentWitness{12.0, 10.0, 14.0};
-  finding.identified.effects[0].voltage = VoltageWitness{0.02, 0.0, 0.04};
+  finding.identified.effects[0].evidence.push_back({EvidenceSource::kCurrents, 12.0, 10.0, 14.0});
+  finding.identified.effects[0].evidence.push_back({EvidenceSource::kVoltage, 0.02, 0.0, 0.04});
   const Json json = verdictJson(finding, samples::inputs());
   const Json& effect = json["effects"][0];
   CHECK(effect["motor_currents_rise"] ==
         Json({{"rise", 12.0}, {"low", 10.0}, {"high", 14.0}, {"load", true}}));
   CHECK(effect["battery_voltage_falls"] ==
         Json({{"share", 0.02}, {"low", 0.0}, {"high", 0.04}, {"battery", false}}));
-  finding.identified.effects[0].currents = CurrentWitness{1.0, 0.2, 1.8};
-  finding.identified.effects[0].voltage = VoltageWitness{0.5, 0.2, 0.8};
+  finding.identified.effects[0].evidence.clear();
+  finding.identified.effects[0].evidence.push_back({EvidenceSource::kCurrents, 1.0, 0.2, 1.8});
+  finding.identified.effects[0].evidence.push_back({EvidenceSource::kVoltage, 0.5, 0.2, 0.8});
   const Json vague = verdictJson(finding, samples::inputs());
   CHECK(vague["effects"][0]["motor_currents_rise"]["load"].is_null());
   CHECK(vague["effects"][0]["battery_voltage_falls"]["battery"].is_null());

@@ -52,6 +52,19 @@ Json answerJson(bool yes, bool no) {
   return yes == no ? Json(nullptr) : Json(yes);
 }
 
+constexpr const char* kEvidenceNames[] = {"wheel_speeds_show", "motor_currents_rise",
+                                          "battery_voltage_falls"};
+
+Json evidenceJson(const Evidence& evidence) {
+  const bool currents = evidence.source == EvidenceSource::kCurrents;
+  Json json = {{currents ? "rise" : "share", number(evidence.value)},
+               {"low", number(evidence.low)},
+               {"high", number(evidence.high)}};
+  if (evidence.source != EvidenceSource::kWheels)
+    json[currents ? "load" : "battery"] = answerJson(evidence.confirms(), evidence.refutes());
+  return json;
+}
+
 Json effectJson(const FoundEffect& effect) {
   Json parameters = Json::object();
   for (const ParameterEstimate& estimate : effect.parameters) add(parameters, "", estimate);
@@ -64,22 +77,8 @@ Json effectJson(const FoundEffect& effect) {
       {"group", effect.group},
       {"runner_up", runner_ups},
       {"accepted", effect.accepted}};
-  if (effect.wheels)
-    json["wheel_speeds_show"] = {{"share", number(effect.wheels->share)},
-                                 {"low", number(effect.wheels->low)},
-                                 {"high", number(effect.wheels->high)}};
-  if (effect.currents)
-    json["motor_currents_rise"] = {
-        {"rise", number(effect.currents->rise)},
-        {"low", number(effect.currents->low)},
-        {"high", number(effect.currents->high)},
-        {"load", answerJson(effect.currents->saysLoad(), effect.currents->saysNoLoad())}};
-  if (effect.voltage)
-    json["battery_voltage_falls"] = {
-        {"share", number(effect.voltage->share)},
-        {"low", number(effect.voltage->low)},
-        {"high", number(effect.voltage->high)},
-        {"battery", answerJson(effect.voltage->saysBattery(), effect.voltage->saysOther())}};
+  for (const Evidence& evidence : effect.evidence)
+    json[kEvidenceNames[static_cast<size_t>(evidence.source)]] = evidenceJson(evidence);
   return json;
 }
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "tools/lab/gap/report/witness_words.hpp"
+#include "tools/lab/gap/report/evidence_words.hpp"
 
 namespace tread::gap {
 namespace {
@@ -228,7 +228,7 @@ std::vector<std::string> sentencesOf(const GapFinding& finding) {
   for (const FoundEffect& effect : finding.identified.effects)
     sentences.push_back(shortTitleOf(effect.name) + ": " +
                         inSentence(sentenceOf(effect, finding.identified.model)) +
-                        witnessSentences(effect));
+                        evidenceSentences(effect));
   for (const ParameterEstimate& estimate : finding.identified.calibrated)
     if (estimate.moved) sentences.push_back(movedSentence(estimate));
   for (const std::string& term : finding.identified.moved_terms)

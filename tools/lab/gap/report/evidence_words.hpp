@@ -10,6 +10,6 @@ namespace tread::gap {
 
 /// Sentences on what wheel speeds, motor currents and battery voltage show about an effect, each
 /// with a leading space; empty if none decides.
-std::string witnessSentences(const FoundEffect& effect);
+std::string evidenceSentences(const FoundEffect& effect);
 
 }  // namespace tread::gap

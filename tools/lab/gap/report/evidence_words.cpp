@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
 // What wheel speeds, motor currents and battery voltage show about an effect.
-#include "tools/lab/gap/report/witness_words.hpp"
+#include "tools/lab/gap/report/evidence_words.hpp"
 
 #include <algorithm>
 #include <string>
@@ -22,35 +22,39 @@ std::string percents(double low, double high) {
 }
 
 std::string wheelSentence(const FoundEffect& effect) {
-  if (!effect.wheels) return "";
-  const WheelWitness& wheels = *effect.wheels;
+  const Evidence* evidence = effect.evidenceBy(EvidenceSource::kWheels);
+  if (evidence == nullptr) return "";
+  const Evidence& wheels = *evidence;
   const std::string whole = wheels.of_lags ? "the lags together" : "it";
   const std::string text = " The wheel speeds show " +
                            (wheels.low > 1.0 ? "all of " + whole + " and more"
-                                             : percent(wheels.share) + " % of " + whole) +
+                                             : percent(wheels.value) + " % of " + whole) +
                            percents(wheels.low, wheels.high);
   // A load also slows the wheels.
-  const bool by_load = effect.currents && effect.currents->saysLoad();
-  if (wheels.saysDrive())
+  const Evidence* currents = effect.evidenceBy(EvidenceSource::kCurrents);
+  const bool by_load = currents != nullptr && currents->confirms();
+  if (wheels.confirms())
     return text + (by_load ? ": the wheels turn slower." : ": it is in the drive.");
-  if (wheels.saysGround()) return text + ": it is under the wheels, not in the drive.";
+  if (wheels.refutes()) return text + ": it is under the wheels, not in the drive.";
   return text + ": that does not show whether it is in the drive.";
 }
 
 std::string currentSentence(const FoundEffect& effect) {
-  if (!effect.currents) return "";
-  const CurrentWitness& currents = *effect.currents;
-  const std::string size = " by " + fixed(currents.rise, 1) + " % per percent (" +
+  const Evidence* evidence = effect.evidenceBy(EvidenceSource::kCurrents);
+  if (evidence == nullptr) return "";
+  const Evidence& currents = *evidence;
+  const std::string size = " by " + fixed(currents.value, 1) + " % per percent (" +
                            fixed(currents.low, 1) + " to " + fixed(currents.high, 1) + ")";
-  if (currents.saysLoad())
+  if (currents.confirms())
     return " Where it reduces speed, the motor currents rise" + size +
            ": it is load, on the ground or in the running gear.";
-  if (!currents.saysNoLoad())
+  if (!currents.refutes())
     return " The motor currents do not show whether it is load or in the drive.";
   const std::string text =
       " Where it reduces speed, the motor currents do not rise as with a load, but" + size;
-  if (effect.wheels && effect.wheels->saysDrive()) return text + ": the drive gives less.";
-  if (effect.wheels && effect.wheels->saysGround()) return text + ": the tracks slip.";
+  const Evidence* wheels = effect.evidenceBy(EvidenceSource::kWheels);
+  if (wheels != nullptr && wheels->confirms()) return text + ": the drive gives less.";
+  if (wheels != nullptr && wheels->refutes()) return text + ": the tracks slip.";
   return text + ": the drive gives less, or the tracks slip.";
 }
 
@@ -62,14 +66,15 @@ bool isOfBattery(const FoundEffect& effect) {
 }
 
 std::string voltageSentence(const FoundEffect& effect) {
-  if (!effect.voltage) return "";
-  const VoltageWitness& voltage = *effect.voltage;
+  const Evidence* evidence = effect.evidenceBy(EvidenceSource::kVoltage);
+  if (evidence == nullptr) return "";
+  const Evidence& voltage = *evidence;
   const std::string size =
-      percent(voltage.share) + " % as much" + percents(voltage.low, voltage.high);
-  if (voltage.saysBattery())
+      percent(voltage.value) + " % as much" + percents(voltage.low, voltage.high);
+  if (voltage.confirms())
     return " The battery voltage falls with it, " + size +
            (isOfBattery(effect) ? ": it is the battery." : ": it may be the battery.");
-  if (voltage.saysOther())
+  if (voltage.refutes())
     return " The battery voltage does not fall with it, " + size + ": it is not the battery.";
   return " The battery voltage falls with it, " + size +
          ": that does not show whether it is the battery.";
@@ -77,7 +82,7 @@ std::string voltageSentence(const FoundEffect& effect) {
 
 }  // namespace
 
-std::string witnessSentences(const FoundEffect& effect) {
+std::string evidenceSentences(const FoundEffect& effect) {
   return wheelSentence(effect) + currentSentence(effect) + voltageSentence(effect);
 }
 
