@@ -14,7 +14,7 @@ set_target_properties(tread_gap_core PROPERTIES EXPORT_NAME identification)
 install(TARGETS ${exported} EXPORT tread ARCHIVE DESTINATION lib/tread COMPONENT lab)
 
 foreach(folder common/execution common/geometry common/grid common/ground common/parallel common/pattern
-               common/soundness/core common/vehicle modules/identification/core modules/learner/core)
+               common/soundness/core common/vehicle common/words modules/identification/core modules/learner/core)
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/${folder}/ DESTINATION include/tread/${folder} COMPONENT lab
           FILES_MATCHING PATTERN *.hpp)
 endforeach()

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
+
+#include "common/words/words.hpp"
 
 namespace tread {
 namespace {
@@ -16,13 +16,6 @@ constexpr int64_t kSpeedSpanUs = 100'000;
 constexpr double kExpectedMotion = 0.10;
 /// A PoseTrack checks gaps itself; here they are checked for the whole execution.
 constexpr int64_t kAnyGap = std::numeric_limits<int64_t>::max();
-
-/// A number with this many decimals.
-std::string fixed(double value, int decimals) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(decimals) << value;
-  return out.str();
-}
 
 double seconds(int64_t us) {
   return static_cast<double>(us) * 1e-6;

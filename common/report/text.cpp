@@ -54,10 +54,6 @@ std::string formatted(const char* format, ...) {
   return text;
 }
 
-std::string fixed(double value, int decimals) {
-  return formatted("%.*f", decimals, value);
-}
-
 std::string threeDigits(double value) {
   if (std::isnan(value)) return "-";
   if (std::isinf(value)) return "no limit";

@@ -5,15 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "common/words/words.hpp"
+
 namespace tread {
 
 // Numbers.
 
 /// printf into a string.
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
-
-/// A number with this many decimals.
-std::string fixed(double value, int decimals);
 
 /// Three significant digits (0.0123, 1.20, 123), whole numbers as such (2); "no limit" for
 /// infinity, "-" for unknown values.

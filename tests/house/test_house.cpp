@@ -116,7 +116,7 @@ TEST_CASE(
     std::set<std::string> concepts{"common/capture",  "common/execution", "common/fence",
                                    "common/geometry", "common/grid",      "common/ground",
                                    "common/parallel", "common/pattern",   "common/statistics",
-                                   "common/vehicle"};
+                                   "common/vehicle",  "common/words"};
     // A device's folder reads its own section of the configuration.
     if (!is_core) concepts.insert("common/config");
     for (const Include& include : includesUnder(core)) {

@@ -3,14 +3,13 @@
 #pragma once
 
 #include <functional>
-#include <iomanip>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/soundness/core/drive.hpp"
+#include "common/words/words.hpp"
 
 namespace tread::gap {
 
@@ -55,20 +54,6 @@ class Diagnostics {
   std::string log_;
   std::vector<LogNote> notes_;
 };
-
-/// A number with this many decimals.
-inline std::string fixed(double value, int decimals) {
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(decimals) << value;
-  return text.str();
-}
-
-/// The same without "-0.0".
-inline std::string digits(double value, int decimals = 1) {
-  const std::string text = fixed(value, decimals);
-  const bool zero = text.find_first_not_of("-0.") == std::string::npos;
-  return zero && text[0] == '-' ? text.substr(1) : text;
-}
 
 /// [m/s] beyond which a pose has jumped.
 inline double fastestOf(VehicleLayout layout) {

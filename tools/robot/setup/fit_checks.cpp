@@ -20,7 +20,7 @@ constexpr double kWatchdogSlack = 0.35;  // [s] for the INS to detect the stop
 
 std::vector<FitCheck> checkFit(const SetupResult& result) {
   const RobotFindings& found = result.findings;
-  const WiringReport& wiring = found.wiring;
+  const commissioning::WiringReport& wiring = found.wiring;
   const RobotDescription& robot = found.robot;
   std::vector<FitCheck> checks;
   const auto check = [&](bool good, const std::string& words, const std::string& remedy) {

@@ -53,7 +53,8 @@ int setUpHere(const SetupOptions& options, Site& site) {
 int preDriveHere(const std::string& folder, Site& site) {
   std::cout << "The robot moves back and forth for about 10 s, less than a metre." << std::endl;
   const PreDrive drive = preDriveOf(site, folder);
-  for (const WiringFault& fault : drive.faults) std::cout << "WRONG: " << fault.words << '\n';
+  for (const commissioning::WiringFault& fault : drive.faults)
+    std::cout << "WRONG: " << fault.words << '\n';
   if (!drive.problem.empty()) std::cerr << "tread-setup-robot: " << drive.problem << '\n';
   if (!drive.problem.empty() || !drive.faults.empty()) return 1;
   std::cout << "sides, directions and INS are right\n";

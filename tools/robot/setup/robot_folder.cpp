@@ -44,7 +44,7 @@ std::string insText(const RobotFindings& findings) {
 
 std::string motorText(const RobotFindings& findings) {
   const Device& controller = findings.controller;
-  const WiringReport& wiring = findings.wiring;
+  const commissioning::WiringReport& wiring = findings.wiring;
   const bool described = !findings.line_description.empty();
   // The weaker side gets larger commands, which the monitor sees as a pull to one side.
   const double stronger = std::max(wiring.full_left.value, wiring.full_right.value);
@@ -168,7 +168,7 @@ Drivers driversOf(const std::string& folder) {
 }
 
 void proposeLimits(RobotFindings& findings) {
-  const WiringReport& wiring = findings.wiring;
+  const commissioning::WiringReport& wiring = findings.wiring;
   RobotDescription& robot = findings.robot;
   robot.drive.full_speed = wiring.fullSpeed();
   if (robot.drive.isCar()) {
@@ -185,7 +185,7 @@ void proposeLimits(RobotFindings& findings) {
 }
 
 ModelDocument modelOf(const RobotFindings& findings) {
-  const WiringReport& wiring = findings.wiring;
+  const commissioning::WiringReport& wiring = findings.wiring;
   const double left = wiring.full_left.value, right = wiring.full_right.value;
   ModelDocument document;
   VehicleModel& model = document.vehicle;

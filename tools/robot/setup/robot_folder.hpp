@@ -10,9 +10,9 @@
 
 #include "common/vehicle/model_document.hpp"
 #include "common/vehicle/robot_description.hpp"
+#include "modules/commissioning/core/wiring_check.hpp"
 #include "modules/ins_driver/core/ins_source.hpp"
 #include "modules/motor_bridge/core/motor_controller.hpp"
-#include "tools/robot/setup/core/wiring_check.hpp"
 
 namespace tread::setup {
 
@@ -35,7 +35,7 @@ struct RobotFindings {
   double watchdog = 0.2;                         ///< [s] of the controller
   double servo_left = 0.85, servo_right = 0.15;  ///< servo ends, for a car with VESCs
   std::string line_description;                  ///< its line protocol; empty = none
-  WiringReport wiring;
+  commissioning::WiringReport wiring;
   double range = 0.0;            ///< [m] of the range finder
   double beams_that_tell = 1.0;  ///< [1] share of its beams with a hit or a reliable "no hit"
   double marking_range = 10.0;   ///< [m]

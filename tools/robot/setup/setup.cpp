@@ -127,25 +127,27 @@ class Setup {
 
   void driveOut() {
     person_.say("wheels down: a minute in the free circle");
-    WiringExpectation expected;
+    commissioning::WiringExpectation expected;
     expected.seen = result_.lift.seen;
     result_.ground = tryWheelsDown(site_, driversOf(found()), {}, expected, true);
-    const WiringReport& wiring = found().wiring = result_.ground.wiring;
-    for (const WiringFault& fault : wiring.faults) person_.say("found: " + fault.words);
+    const commissioning::WiringReport& wiring = found().wiring = result_.ground.wiring;
+    for (const commissioning::WiringFault& fault : wiring.faults)
+      person_.say("found: " + fault.words);
     if (!result_.ground.problem.empty()) throw std::runtime_error(result_.ground.problem);
     if (!wiring.unsure.empty()) throw std::runtime_error(wiring.unsure);
-    for (const FaultKind kind : {FaultKind::kNoMotion, FaultKind::kDead, FaultKind::kInsMirrored,
-                                 FaultKind::kSteeringDead})
-      for (const WiringFault& fault : wiring.faults)
+    for (const commissioning::FaultKind kind :
+         {commissioning::FaultKind::kNoMotion, commissioning::FaultKind::kDead,
+          commissioning::FaultKind::kInsMirrored, commissioning::FaultKind::kSteeringDead})
+      for (const commissioning::WiringFault& fault : wiring.faults)
         if (fault.kind == kind) throw std::runtime_error(fault.words);
     applyWiring(wiring, found());
     proposeLimits(found());
-    if (wiring.has(FaultKind::kInsElsewhere)) moveIns(wiring);
+    if (wiring.has(commissioning::FaultKind::kInsElsewhere)) moveIns(wiring);
     verify();
     sayMeasured(wiring);
   }
 
-  void sayMeasured(const WiringReport& wiring) {
+  void sayMeasured(const commissioning::WiringReport& wiring) {
     const std::string late =
         "; delay " + fixed(wiring.delay.value, 2) + " s, lag " + fixed(wiring.lag.value, 2) + " s";
     if (found().robot.drive.isCar())
@@ -162,8 +164,9 @@ class Setup {
   }
 
   /// The configured position was applied with the heading from before the mounting was known.
-  void moveIns(const WiringReport& wiring) {
-    const double turned = wiring.has(FaultKind::kInsTurned) ? wiring.mounting_yaw.value : 0.0;
+  void moveIns(const commissioning::WiringReport& wiring) {
+    const double turned =
+        wiring.has(commissioning::FaultKind::kInsTurned) ? wiring.mounting_yaw.value : 0.0;
     Eigen::Vector3d& place = found().robot.ins.p_body;
     place.head<2>() = Pose2{wiring.antenna_x.value, wiring.antenna_y.value, turned} *
                       Eigen::Vector2d(place.head<2>());
@@ -171,14 +174,16 @@ class Setup {
 
   /// After the corrections only faults that they cannot fix may remain.
   void verify() {
-    WiringExpectation brief;
+    commissioning::WiringExpectation brief;
     brief.brief = true;
-    const GroundReport again = tryWheelsDown(site_, driversOf(found()),
-                                             preDrive(found().robot.drive.isCar()), brief, false);
+    const GroundReport again =
+        tryWheelsDown(site_, driversOf(found()),
+                      commissioning::preDrive(found().robot.drive.isCar()), brief, false);
     if (!again.problem.empty()) throw std::runtime_error(again.problem);
-    for (const WiringFault& fault : again.wiring.faults)
-      if (fault.kind != FaultKind::kWeak && fault.kind != FaultKind::kInsElsewhere &&
-          fault.kind != FaultKind::kGauge)
+    for (const commissioning::WiringFault& fault : again.wiring.faults)
+      if (fault.kind != commissioning::FaultKind::kWeak &&
+          fault.kind != commissioning::FaultKind::kInsElsewhere &&
+          fault.kind != commissioning::FaultKind::kGauge)
         throw std::runtime_error("after the corrections: " + fault.words);
     person_.say("corrected, and driven again: sides, directions and INS are right");
   }
@@ -214,12 +219,12 @@ SetupResult setUp(Site& site, Interview& person, const std::string& robots) {
 
 PreDrive preDriveOf(Site& site, const std::string& folder) {
   ConfigReader beside = ConfigReader::fromText("{}", folder + "/setup");
-  WiringExpectation expected;
+  commissioning::WiringExpectation expected;
   expected.gauge = readRobot(beside).gauge;
   expected.brief = true;
   const Drivers drivers = driversOf(folder);
   const GroundReport ground =
-      tryWheelsDown(site, drivers, preDrive(drivers.isCar()), expected, false);
+      tryWheelsDown(site, drivers, commissioning::preDrive(drivers.isCar()), expected, false);
   PreDrive drive;
   drive.problem = !ground.problem.empty() ? ground.problem : ground.wiring.unsure;
   drive.faults = ground.wiring.faults;

@@ -39,7 +39,7 @@ SetupResult setUp(Site& site, Interview& person, const std::string& robots);
 
 /// Result of the 10 s test before a drive.
 struct PreDrive {
-  std::vector<WiringFault> faults;
+  std::vector<commissioning::WiringFault> faults;
   std::string problem;  ///< why there is no result; empty = valid
 };
 

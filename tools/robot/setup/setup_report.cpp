@@ -85,7 +85,7 @@ std::vector<std::string> row(const std::string& what, const ConfidenceInterval& 
           fixed(scale * value.low, decimals) + " to " + fixed(scale * value.high, decimals)};
 }
 
-report::Table measuredTable(const WiringReport& wiring, bool is_car) {
+report::Table measuredTable(const commissioning::WiringReport& wiring, bool is_car) {
   const double degrees = toDegrees(1.0);
   using Rows = std::vector<std::vector<std::string>>;
   Rows rows =
@@ -143,7 +143,7 @@ std::string reportOf(const SetupResult& result) {
     report::Section section{"What was measured", {}};
     section.blocks.emplace_back(measuredTable(result.ground.wiring, found.robot.drive.isCar()));
     report::Points faults;
-    for (const WiringFault& fault : result.ground.wiring.faults)
+    for (const commissioning::WiringFault& fault : result.ground.wiring.faults)
       faults.items.push_back(fault.words);
     if (!faults.items.empty()) section.blocks.emplace_back(faults);
     page.sections.push_back(section);

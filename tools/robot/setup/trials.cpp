@@ -93,13 +93,15 @@ class Lift {
     trySide(0);
     report_.seen.forward = person_.choice("first_direction", {"forward", "backward"}) == "forward";
     for (const double share : {1.0, -1.0, 0.0}) hold(1.0, TrackCommand{0.0, share});
-    report_.seen.side =
-        person_.choice("first_steering", {"left", "right"}) == "left" ? Side::kLeft : Side::kRight;
+    report_.seen.side = person_.choice("first_steering", {"left", "right"}) == "left"
+                            ? commissioning::Side::kLeft
+                            : commissioning::Side::kRight;
   }
 
   void ask() {
-    report_.seen.side =
-        person_.choice("first_track", {"left", "right"}) == "left" ? Side::kLeft : Side::kRight;
+    report_.seen.side = person_.choice("first_track", {"left", "right"}) == "left"
+                            ? commissioning::Side::kLeft
+                            : commissioning::Side::kRight;
     report_.seen.forward = person_.choice("first_direction", {"forward", "backward"}) == "forward";
   }
 
@@ -151,16 +153,17 @@ LiftReport tryWheelsUp(Site& site, Interview& person, const Drivers& drivers) {
   return Lift(site, person, drivers).run();
 }
 
-GroundReport tryWheelsDown(Site& site, const Drivers& drivers, const WiringDriveConfig& how,
-                           const WiringExpectation& expected, bool watchdog) {
+GroundReport tryWheelsDown(Site& site, const Drivers& drivers,
+                           const commissioning::WiringDriveConfig& how,
+                           const commissioning::WiringExpectation& expected, bool watchdog) {
   GroundReport report;
   DirectRobot robot(site, drivers);
   report.problem = robot.begin();
   if (!report.problem.empty()) return report;
   robot.run(0.5, [](int64_t) { return TrackCommand{}; });
-  WiringDriveConfig config = how;
+  commissioning::WiringDriveConfig config = how;
   config.car = drivers.isCar();
-  WiringDrive drive(config);
+  commissioning::WiringDrive drive(config);
   std::string fault;
   // A short fault of the line does not end the drive.
   for (int i = 0; i < kDisturbances && (i == 0 || robot.begin().empty()); ++i) {
@@ -173,10 +176,10 @@ GroundReport tryWheelsDown(Site& site, const Drivers& drivers, const WiringDrive
   report.problem = fault.empty() ? drive.problem() : fault;
   report.commands = robot.commands();
   report.fixes = robot.fixes();
-  WiringExpectation told = expected;
+  commissioning::WiringExpectation told = expected;
   told.wheelbase = drivers.wheelbase;
-  report.wiring = checkWiring(report.commands, report.fixes, told);
-  if (watchdog && report.problem.empty() && !report.wiring.has(FaultKind::kNoMotion))
+  report.wiring = commissioning::checkWiring(report.commands, report.fixes, told);
+  if (watchdog && report.problem.empty() && !report.wiring.has(commissioning::FaultKind::kNoMotion))
     report.watchdog = coastAfterSilence(robot, straight(drivers, 0.5));
   return report;
 }
@@ -184,7 +187,7 @@ GroundReport tryWheelsDown(Site& site, const Drivers& drivers, const WiringDrive
 namespace {
 
 /// Shifts the servo's ends so that zero steering is straight ahead and both sides are equal.
-void centreServo(const WiringReport& wiring, RobotFindings& findings) {
+void centreServo(const commissioning::WiringReport& wiring, RobotFindings& findings) {
   if (findings.controller.kind != "vesc") return;
   const double reach = 0.5 * (wiring.steering_left.value - wiring.steering_right.value);
   const double askew = wiring.steering_straight.value;
@@ -200,33 +203,35 @@ void centreServo(const WiringReport& wiring, RobotFindings& findings) {
   findings.controller.section = carSection(findings);
 }
 
-void applyToCar(const WiringReport& wiring, RobotFindings& findings) {
+void applyToCar(const commissioning::WiringReport& wiring, RobotFindings& findings) {
   DriveDescription& drive = findings.robot.drive;
   if (!wiring.moves[0].forward) drive.invert_left = !drive.invert_left;
   if (!wiring.moves[1].forward) drive.invert_right = !drive.invert_right;
-  if (wiring.has(FaultKind::kSteeringAskew)) centreServo(wiring, findings);
+  if (wiring.has(commissioning::FaultKind::kSteeringAskew)) centreServo(wiring, findings);
 }
 
-void applyToSides(const WiringReport& wiring, DriveDescription& drive) {
+void applyToSides(const commissioning::WiringReport& wiring, DriveDescription& drive) {
   const DriveDescription before = drive;
   for (const int i : {0, 1}) {
-    const SideMotion& moves = wiring.moves[static_cast<size_t>(i)];
+    const commissioning::SideMotion& moves = wiring.moves[static_cast<size_t>(i)];
     const bool inverted = (i == 0 ? before.invert_left : before.invert_right) != !moves.forward;
-    (moves.side == Side::kLeft ? drive.invert_left : drive.invert_right) = inverted;
+    (moves.side == commissioning::Side::kLeft ? drive.invert_left : drive.invert_right) = inverted;
   }
-  if (wiring.moves[0].side == Side::kRight) drive.left_channel = 3 - before.left_channel;
+  if (wiring.moves[0].side == commissioning::Side::kRight)
+    drive.left_channel = 3 - before.left_channel;
 }
 
 }  // namespace
 
-void applyWiring(const WiringReport& wiring, RobotFindings& findings) {
+void applyWiring(const commissioning::WiringReport& wiring, RobotFindings& findings) {
   if (findings.robot.drive.isCar()) {
     applyToCar(wiring, findings);
   } else {
     applyToSides(wiring, findings.robot.drive);
   }
   double& yaw = findings.robot.ins.angles.yaw;
-  if (wiring.has(FaultKind::kInsTurned)) yaw = wrapAngle(yaw + wiring.mounting_yaw.value);
+  if (wiring.has(commissioning::FaultKind::kInsTurned))
+    yaw = wrapAngle(yaw + wiring.mounting_yaw.value);
 }
 
 }  // namespace tread::setup

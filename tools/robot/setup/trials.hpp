@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/robot/setup/core/wiring_drive.hpp"
+#include "modules/commissioning/core/wiring_drive.hpp"
 #include "tools/robot/setup/direct_robot.hpp"
 #include "tools/robot/setup/interview.hpp"
 
@@ -22,7 +22,7 @@ struct LiftedSide {
 /// Wheels up: result for each side.
 struct LiftReport {
   std::array<LiftedSide, 2> sides;  ///< configured left and right
-  SideMotion seen;                  ///< what a person saw the configured left side do
+  commissioning::SideMotion seen;   ///< what a person saw the configured left side do
   std::vector<std::string> problems;
 };
 
@@ -36,7 +36,7 @@ LiftReport tryWheelsUp(Site& site, Interview& person, const Drivers& drivers);
 
 /// Wheels down: result of the minute in the free circle.
 struct GroundReport {
-  WiringReport wiring;
+  commissioning::WiringReport wiring;
   std::vector<TimedCommand> commands;
   std::vector<TimedPose> fixes;
   double watchdog = 0.0;  ///< [s] from the last command to standstill of the INS; 0 = not tested
@@ -44,10 +44,11 @@ struct GroundReport {
 };
 
 /// Drives the wiring test; `watchdog`: afterwards also stops sending while driving.
-GroundReport tryWheelsDown(Site& site, const Drivers& drivers, const WiringDriveConfig& how,
-                           const WiringExpectation& expected, bool watchdog);
+GroundReport tryWheelsDown(Site& site, const Drivers& drivers,
+                           const commissioning::WiringDriveConfig& how,
+                           const commissioning::WiringExpectation& expected, bool watchdog);
 
 /// Applies the findings to the configuration: channels, directions, mounting of the INS.
-void applyWiring(const WiringReport& wiring, RobotFindings& findings);
+void applyWiring(const commissioning::WiringReport& wiring, RobotFindings& findings);
 
 }  // namespace tread::setup

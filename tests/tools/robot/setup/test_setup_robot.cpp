@@ -17,6 +17,7 @@
 
 using namespace tread;
 using namespace tread::setup;
+using namespace tread::commissioning;
 using tread::samples::OwnFolder;
 
 namespace {

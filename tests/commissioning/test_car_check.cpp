@@ -6,13 +6,13 @@
 
 #include <random>
 
+#include "modules/commissioning/core/wiring_check.hpp"
+#include "modules/commissioning/core/wiring_drive.hpp"
 #include "modules/simulator/simulator_files.hpp"
 #include "tests/helpers.hpp"
-#include "tools/robot/setup/core/wiring_check.hpp"
-#include "tools/robot/setup/core/wiring_drive.hpp"
 
 using namespace tread;
-using namespace tread::setup;
+using namespace tread::commissioning;
 using tread::testing::effort;
 using tread::testing::kDeg;
 

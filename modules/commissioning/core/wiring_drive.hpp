@@ -12,7 +12,7 @@
 #include "common/geometry/se2.hpp"
 #include "common/pattern/pattern.hpp"
 
-namespace tread::setup {
+namespace tread::commissioning {
 
 /// Extent of the wiring drive.
 struct WiringDriveConfig {
@@ -88,4 +88,4 @@ class WiringDrive {
   std::string problem_;
 };
 
-}  // namespace tread::setup
+}  // namespace tread::commissioning

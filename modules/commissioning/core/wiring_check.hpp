@@ -8,18 +8,10 @@
 #include <vector>
 
 #include "common/statistics/statistics.hpp"
-#include "tools/robot/setup/core/wiring_fit.hpp"
+#include "modules/commissioning/core/wiring_faults.hpp"
+#include "modules/commissioning/core/wiring_fit.hpp"
 
-namespace tread::setup {
-
-enum class Side { kLeft, kRight };
-
-constexpr const char* nameOf(Side side) {
-  return side == Side::kLeft ? "left" : "right";
-}
-constexpr Side otherOf(Side side) {
-  return side == Side::kLeft ? Side::kRight : Side::kLeft;
-}
+namespace tread::commissioning {
 
 /// The sides that move if one side is commanded forward.
 struct SideMotion {
@@ -37,29 +29,6 @@ struct WiringExpectation {
   /// [m] of a car with throttle and steering commands instead of left and right: `seen.forward` is
   /// the direction of the throttle, `seen.side` that of the steering. 0 = two sides.
   double wheelbase = 0.0;
-};
-
-enum class FaultKind {
-  kNoMotion,
-  kSwapped,
-  kReversed,
-  kDead,
-  kWeak,
-  kInsTurned,
-  kInsMirrored,
-  kInsElsewhere,
-  kGauge,
-  kSteeringReversed,
-  kSteeringDead,
-  kSteeringAskew
-};
-
-/// A deviation from the configuration.
-struct WiringFault {
-  FaultKind kind = FaultKind::kNoMotion;
-  std::optional<Side> side;  ///< the side, for faults of one side only
-  double amount = 0.0;       ///< weak: share of the other side; turned [rad]; elsewhere, gauge [m]
-  std::string words;         ///< one line: what, how much, what to do
 };
 
 /// Results of the drive.
@@ -92,14 +61,16 @@ struct WiringReport {
 /// Compares the INS's measurements with the commands: connections, directions and speeds of the
 /// sides, mounting of the INS.
 /** 1. Commands pass delay, dead power and lag; the INS's velocity and yaw rate are linear in the
- *   result.
- * 2. Forward is the direction in which both sides move the vehicle without turning. A point away
- *    from the middle also moves by turning, which yields its position. Ahead or astern is decided
- *    by `seen`, else by the smaller rotation of the INS.
- * 3. A yaw of the wrong sign does not fit the path.
- * 4. Intervals come from leaving out a twelfth of the drive at a time (jackknife).
+ *    result (WiringFit).
+ * 2. Forward is the direction in which both sides move the vehicle without turning, or in which the
+ *    rear axle of a car moves. A point elsewhere also moves by turning, which yields its position.
+ *    The direction and strength of a car's turn, with the wheelbase, give the wheel angle.
+ * 3. Ahead or astern: both explain the same motions, with other parts swapped or reversed. `seen`
+ *    decides, else the explanation with fewer faulty parts, else the smaller rotation of the INS.
+ * 4. A yaw of the wrong sign does not fit the path.
+ * 5. Intervals come from leaving out a twelfth of the drive at a time (jackknife).
  * The drive must contain straight motion, turns and each side alone, in both directions. */
 WiringReport checkWiring(const std::vector<TimedCommand>& commands,
                          const std::vector<TimedPose>& fixes, const WiringExpectation& expected);
 
-}  // namespace tread::setup
+}  // namespace tread::commissioning

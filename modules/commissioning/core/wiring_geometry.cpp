@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/robot/setup/core/wiring_geometry.hpp"
+#include "modules/commissioning/core/wiring_geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
 
-namespace tread::setup {
+namespace tread::commissioning {
 namespace {
 
 constexpr double kFull = 0.99;         // [1] a full command
@@ -29,6 +29,16 @@ TrackCommand ofRealSides(const TrackCommand& given, const WiringGeometry& geomet
   const double left = geometry.reverse_left ? -given.left : given.left;
   const double right = geometry.reverse_right ? -given.right : given.right;
   return geometry.swapped ? TrackCommand{right, left} : TrackCommand{left, right};
+}
+
+/// Adds the mounting of the INS, and the response in time.
+void place(const WiringFit& fit, double yaw, const Eigen::Vector2d& ins, WiringGeometry& found) {
+  found.of[kYaw] = yaw;
+  found.of[kX] = ins.x();
+  found.of[kY] = ins.y();
+  found.of[kDelay] = fit.delay;
+  found.of[kLag] = fit.lag;
+  found.of[kDeadPower] = fit.dead;
 }
 
 }  // namespace
@@ -62,15 +72,8 @@ WiringGeometry geometryOf(const WiringFit& fit, bool swapped) {
     const double weight = turn * turn / (c_left * c_left + c_right * c_right);
     lever += weight * Eigen::Vector2d(rest.y(), -rest.x()) / turn;
   }
-  found.of = {swapped ? full_right : full_left,
-              swapped ? full_left : full_right,
-              width,
-              wrapAngle(-away),
-              lever.x(),
-              lever.y(),
-              fit.delay,
-              fit.lag,
-              fit.dead};
+  found.of = {swapped ? full_right : full_left, swapped ? full_left : full_right, width};
+  place(fit, wrapAngle(-away), lever, found);
   return found;
 }
 
@@ -85,10 +88,24 @@ WiringGeometry geometryOfOne(const WiringFit& fit, int alive) {
   const double speed = 2.0 * moved.norm() * fit.atFull();
   found.of[is_left ? kLeft : kRight] = speed;
   found.of[kWidth] = 2.0 * moved.norm() / std::max(1e-6, std::abs(turn));
-  found.of[kYaw] = wrapAngle(-angleOf(ahead ? moved : Eigen::Vector2d(-moved)));
-  found.of[kDelay] = fit.delay;
-  found.of[kLag] = fit.lag;
-  found.of[kDeadPower] = fit.dead;
+  place(fit, wrapAngle(-angleOf(ahead ? moved : Eigen::Vector2d(-moved))), {0.0, 0.0}, found);
+  return found;
+}
+
+WiringGeometry geometryOfCar(const WiringFit& fit, bool backwards, double wheelbase) {
+  WiringGeometry found;
+  const double sign = backwards ? -1.0 : 1.0;
+  found.of[kLeft] = found.of[kRight] = fit.atFull() * fit.ahead().norm();
+  const double yaw = wrapAngle(-angleOf(sign * fit.ahead()));
+  const Pose2 to_body{0.0, 0.0, yaw};
+  place(fit, yaw, to_body * Eigen::Vector2d(fit.response(1, 1), -fit.response(0, 1)), found);
+  const auto angle = [&](double u) { return std::atan(wheelbase * sign * fit.curvature(u)); };
+  found.of[kSteeringLeft] = angle(1.0);
+  found.of[kSteeringRight] = angle(-1.0);
+  found.of[kSteeringStraight] = angle(0.0);
+  found.of[kSteeringLag] = fit.steering_lag;
+  found.reverse_left = backwards;
+  found.reverse_right = found.of[kSteeringLeft] <= found.of[kSteeringRight];
   return found;
 }
 
@@ -122,4 +139,4 @@ std::vector<StraightSpeed> straightSpeeds(const std::vector<TimedCommand>& comma
   return speeds;
 }
 
-}  // namespace tread::setup
+}  // namespace tread::commissioning

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
-#include "tools/robot/setup/core/wiring_drive.hpp"
+#include "modules/commissioning/core/wiring_drive.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "common/geometry/microseconds.hpp"
 
-namespace tread::setup {
+namespace tread::commissioning {
 namespace {
 
 constexpr double kLongestPulse = 2.0;    // [s]
@@ -172,4 +172,4 @@ void WiringDrive::begin(int64_t utime) {
   pause_end_ = pulse_end_ + toMicroseconds(config_.pause);
 }
 
-}  // namespace tread::setup
+}  // namespace tread::commissioning

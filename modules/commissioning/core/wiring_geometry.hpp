@@ -3,23 +3,42 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <vector>
 
-#include "tools/robot/setup/core/wiring_fit.hpp"
+#include "modules/commissioning/core/wiring_fit.hpp"
 
-namespace tread::setup {
+namespace tread::commissioning {
 
 /// Quantities derived from a fit, in the order of WiringReport.
 /** Speeds of the real sides at full command [m/s], effective gauge [m], yaw of the INS [rad], its
- * position [m], delay, lag [s], dead power [1]. */
-enum Quantity { kLeft, kRight, kWidth, kYaw, kX, kY, kDelay, kLag, kDeadPower, kQuantities };
+ * position [m], delay, lag [s], dead power [1]; of a car also wheel angles at full steering to the
+ * left, to the right, and at zero command [rad], and the lag of the steering [s]. */
+enum Quantity {
+  kLeft,
+  kRight,
+  kWidth,
+  kYaw,
+  kX,
+  kY,
+  kDelay,
+  kLag,
+  kDeadPower,
+  kSteeringLeft,
+  kSteeringRight,
+  kSteeringStraight,
+  kSteeringLag,
+  kQuantities
+};
 using Quantities = std::array<double, kQuantities>;
 
-/// Connection of the configured left and right side, for either answer to "are they swapped?".
+constexpr bool isAngle(size_t quantity) {
+  return quantity == kYaw || (quantity >= kSteeringLeft && quantity <= kSteeringStraight);
+}
+
+/// Connection of the configured left and right side, or of throttle and steering.
 struct WiringGeometry {
   bool swapped = false;
-  bool reverse_left = false;  ///< the configured left side
+  bool reverse_left = false;  ///< the configured left side, or the throttle
   bool reverse_right = false;
   Quantities of{};
 };
@@ -31,6 +50,9 @@ WiringGeometry geometryOf(const WiringFit& fit, bool swapped);
 /// The same if only one configured side moves (0 = left). The width is then unknown; ahead is the
 /// INS's direction.
 WiringGeometry geometryOfOne(const WiringFit& fit, int alive);
+
+/// The same of a car, for a throttle that drives forwards or backwards.
+WiringGeometry geometryOfCar(const WiringFit& fit, bool backwards, double wheelbase);
 
 /// Full speed of the real sides [m/s], straight ahead and back.
 struct StraightSpeed {
@@ -44,4 +66,4 @@ std::vector<StraightSpeed> straightSpeeds(const std::vector<TimedCommand>& comma
                                           const std::vector<TimedPose>& fixes,
                                           const WiringGeometry& geometry);
 
-}  // namespace tread::setup
+}  // namespace tread::commissioning
