@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "core_rig.hpp"
-#include "modules/identification/core/discovery.hpp"
+#include "modules/identification/core/adequacy.hpp"
 #include "modules/identification/core/variables.hpp"
 
 using namespace tread;

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "core_rig.hpp"
-#include "modules/identification/core/discovery.hpp"
 #include "modules/identification/core/evidence.hpp"
+#include "modules/identification/core/identified_model.hpp"
 
 using namespace tread;
 using namespace tread::gap;
@@ -18,14 +18,14 @@ namespace {
 
 /// Evidence of wheels that follow the tracks of `tracks`, for the effects hidden in a drive, in
 /// order.
-std::vector<std::optional<Evidence>> wheelsOf(const Values& hidden, const Values& tracks,
-                                              double late = 0.0) {
+std::vector<std::optional<MeasuredEvidence>> wheelsOf(const Values& hidden, const Values& tracks,
+                                                      double late = 0.0) {
   Rig rig(hidden, 400.0, 3);
   rig.drives.front().encoders = encodersOf(samples::vehicleWith(tracks), rig.drives.front(), late);
   std::vector<std::string> names;
   for (const auto& [path, value] : hidden) names.push_back(effectOf(path));
   const auto said = evidenceBy(EvidenceSource::kWheels, rig.fitter, rig.fitted(hidden), names);
-  std::vector<std::optional<Evidence>> shown;
+  std::vector<std::optional<MeasuredEvidence>> shown;
   for (const std::string& name : names) {
     const auto one = said.find(name);
     shown.push_back(one == said.end() ? std::nullopt : std::optional(one->second));
@@ -33,7 +33,8 @@ std::vector<std::optional<Evidence>> wheelsOf(const Values& hidden, const Values
   return shown;
 }
 
-std::optional<Evidence> wheelOf(const Values& hidden, const Values& tracks, double late = 0.0) {
+std::optional<MeasuredEvidence> wheelOf(const Values& hidden, const Values& tracks,
+                                        double late = 0.0) {
   return wheelsOf(hidden, tracks, late).front();
 }
 
@@ -86,7 +87,8 @@ std::vector<CurrentSample> currentsOf(const Values& hidden, const Drive& drive, 
 using Change = void (*)(CurrentSample&, const TrackCommand&);
 
 /// Evidence on the first hidden effect from modified currents.
-std::optional<Evidence> currentOf(const Values& hidden, const Draw& draw, Change change = nullptr) {
+std::optional<MeasuredEvidence> currentOf(const Values& hidden, const Draw& draw,
+                                          Change change = nullptr) {
   Rig rig(hidden, 400.0, 3);
   Drive& drive = rig.drives.front();
   drive.currents = currentsOf(hidden, drive, draw);
@@ -107,7 +109,7 @@ constexpr double kVoltageDrive = 400.0;  // [s]
 const Values kSag{{"battery_sag.per_hour", 1.8}};
 
 /// Evidence on the hidden effect from a voltage of 25 V that falls linearly by a share.
-std::optional<Evidence> voltageOf(const Values& hidden, double falls) {
+std::optional<MeasuredEvidence> voltageOf(const Values& hidden, double falls) {
   Rig rig(hidden, kVoltageDrive, 3);
   for (double time = 0.0; time < kVoltageDrive; time += 0.05)
     rig.drives.front().voltage.push_back({time, 25.0 * (1.0 - falls * time / kVoltageDrive)});

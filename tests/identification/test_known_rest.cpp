@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "core_rig.hpp"
+#include "modules/identification/core/discovery.hpp"
 #include "modules/identification/core/rest.hpp"
 #include "nameless_drive.hpp"
 

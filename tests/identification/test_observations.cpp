@@ -3,7 +3,6 @@
 #include <catch2/catch.hpp>
 
 #include "core_rig.hpp"
-#include "modules/identification/core/discovery.hpp"
 #include "modules/identification/core/pruning.hpp"
 
 using namespace tread;

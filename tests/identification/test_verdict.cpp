@@ -4,8 +4,8 @@
 
 #include <set>
 
-#include "modules/identification/core/discovery.hpp"
 #include "modules/identification/core/fit.hpp"
+#include "modules/identification/core/verdict.hpp"
 #include "synthetic_drive.hpp"
 
 using namespace tread;

@@ -3,7 +3,7 @@
 #include "modules/identification/core/adequacy.hpp"
 
 #include "modules/identification/core/candidates.hpp"
-#include "modules/identification/core/discovery.hpp"
+#include "modules/identification/core/search.hpp"
 
 #include <algorithm>
 #include <cmath>

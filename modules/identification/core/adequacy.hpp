@@ -19,4 +19,12 @@ namespace tread::gap {
  * predicts a rest, both are tested for what exceeds it. */
 Adequacy testAdequacy(const Fitter& fitter, const FitState& state, double alpha, uint64_t seed);
 
+/// The residuals of two models: curves of every channel over the standard variables and over the
+/// unexplained ones, and maps over speed and yaw rate.
+/** The interval of a curve's cell is from the scatter of its blocks' means; cells that exclude 0
+ * after correction for the number of cells (Bonferroni, 5 %) are marked. */
+ResidualAtlas residualAtlas(const Observations& observations, const ModelDocument& before,
+                            const ModelDocument& after,
+                            const std::vector<Unexplained>& unexplained = {});
+
 }  // namespace tread::gap

@@ -7,367 +7,18 @@
 #include <map>
 #include <optional>
 #include <stdexcept>
-#include <tuple>
 
 #include "common/soundness/core/lag_table.hpp"
 #include "common/statistics/statistics.hpp"
 #include "modules/identification/core/adequacy.hpp"
 #include "modules/identification/core/end_errors.hpp"
-#include "modules/identification/core/evidence.hpp"
-#include "modules/identification/core/moved_terms.hpp"
+#include "modules/identification/core/identified_model.hpp"
 #include "modules/identification/core/rest.hpp"
 #include "modules/identification/core/search_steps.hpp"
 #include "modules/identification/core/unnamed.hpp"
+#include "modules/identification/core/verdict.hpp"
 
 namespace tread::gap {
-
-namespace {
-
-constexpr double kChangeNats = 10.0;  // 2 nats, corrected for correlated ground
-constexpr double kInvisible = 2.0;    // times its typical size: not excited
-/// Minimum half-width of the 95 % interval as a share of a found size. No vehicle follows the
-/// catalogue's equations exactly, and no drive shows the resulting error of their sizes: 1 to 5 %
-/// in the blind study, for effects that only resemble them.
-constexpr double kForm = 0.05;
-constexpr double kTermChanged = 0.7;  // of the largest value of an unnamed term
-
-/// `half` of the 95 % interval.
-ParameterEstimate estimateOf(const std::string& path, const ModelDocument& before,
-                             const ModelDocument& after, double half) {
-  const double value = *findParameter(after, path);
-  return {path, unitOf(path), value, value - half, value + half, *findParameter(before, path)};
-}
-
-bool isShape(const std::string& path) {
-  const EffectParameter* known = findEffectParameter(path);
-  return known != nullptr && known->role == ParameterRole::kShape;
-}
-
-/// Half-width of a given term's interval, infinite if the drive does not excite it.
-double halfInterval(const FitState& state, size_t index, double half) {
-  const std::string& path = state.free[index].path;
-  const EffectParameter* known = findEffectParameter(path);
-  if (known == nullptr) return half;
-  const double visible =
-      std::max(kInvisible * std::abs(known->typical), std::abs(*findParameter(state.model, path)));
-  return half < visible ? half : std::numeric_limits<double>::infinity();
-}
-
-/// Whether a value of a model's unnamed term has changed, significantly and by kTermChanged of the
-/// term's largest value.
-/** Such a term is only similar to its cause: on another drive its values differ by more than the
- * blocks of one drive show. */
-bool hasTermMoved(const UnnamedTerm& term, const ParameterEstimate& estimate,
-                  double most_by_chance) {
-  const double change = std::abs(estimate.value - estimate.before);
-  return change > most_by_chance && change > kTermChanged * largestValue(term);
-}
-
-FoundEffect foundEffect(const std::string& name, const FoundTerms& result,
-                        const SearchSettings& settings, std::vector<ParameterEstimate> parameters) {
-  const auto known = result.evidence.find(name);
-  const EffectEvidence evidence = known == result.evidence.end() ? EffectEvidence{} : known->second;
-  FoundEffect effect;
-  effect.name = name;
-  effect.parameters = std::move(parameters);
-  effect.score = evidence.score;
-  effect.p_value = evidence.p_value.value_or(0.0);
-  effect.gain = evidence.gain.value;
-  effect.gain_error = evidence.gain.error;
-  effect.accepted = contains(settings.accepted, name);
-  if (effect.accepted) return effect;  // accepted by a person: it has no alternatives
-  const VehicleLayout layout = result.state.model.vehicle.layout();
-  std::vector<std::string> group = confoundedEffects(name, result.state.model.measurement);
-  for (const std::string& pair : evidence.replaced) group.push_back(pair);
-  for (const std::string& other : group)
-    if (!contains(settings.rejected, other) && !contains(evidence.told_from, other) &&
-        effectNamed(other).isOf(layout))
-      effect.group.push_back(other);
-  // Runners-up that were accepted later are not alternatives.
-  for (const RunnerUp& other : evidence.runner_ups)
-    if (!contains(result.effects, other.effect) && !contains(result.released, other.effect))
-      effect.runner_ups.push_back(other);
-  return effect;
-}
-
-constexpr double kLateWheels = 0.3;  // [s] by which encoders themselves may lag
-
-/// Drops INS explanations of an effect that the wheels show.
-/** Of a delay only above kLateWheels, because encoders lag too. */
-void dropRefutedNames(FoundEffect& effect) {
-  const Evidence* wheels = effect.evidenceBy(EvidenceSource::kWheels);
-  if (wheels == nullptr || !wheels->confirms()) return;
-  const bool is_delay = effectNamed(effect.name).search.late_by == LateBy::kCommand;
-  if (is_delay && effect.parameters.front().low < kLateWheels) return;
-  const auto isOfIns = [](const std::string& other) {
-    return effectNamed(other).kind() == EffectKind::kMeasurement;
-  };
-  effect.group.erase(std::remove_if(effect.group.begin(), effect.group.end(), isOfIns),
-                     effect.group.end());
-  effect.runner_ups.erase(
-      std::remove_if(effect.runner_ups.begin(), effect.runner_ups.end(),
-                     [&](const RunnerUp& other) { return isOfIns(other.effect); }),
-      effect.runner_ups.end());
-}
-
-bool isExcited(const CandidateTest& test) {
-  const double typical = parameterNamed(effectNamed(test.effect), test.parameter).typical;
-  return test.detectable <= kInvisible * std::abs(typical);
-}
-
-ParameterCovariance knownCovariance(const FitState& state, const Eigen::MatrixXd& covariance) {
-  ParameterCovariance known;
-  std::vector<Eigen::Index> sure;
-  for (size_t i = 0; i < state.free.size(); ++i) {
-    const FreeParameter& parameter = state.free[i];
-    const auto at = static_cast<Eigen::Index>(i);
-    if (restTermOf(parameter.path)) continue;  // it has its own standard deviation
-    if (!(std::sqrt(covariance(at, at)) < parameter.max - parameter.min)) continue;
-    known.parameters.push_back(parameter.path);
-    sure.push_back(at);
-  }
-  for (Eigen::Index i : sure) {
-    known.matrix.emplace_back();
-    for (Eigen::Index j : sure) known.matrix.back().push_back(covariance(i, j));
-  }
-  return known;
-}
-
-Envelope envelopeOf(const Observations& data, const VehicleModel& vehicle) {
-  Envelope envelope;
-  for (const auto& motion : data.simulate(vehicle))
-    for (size_t i = 1; i < motion.size(); ++i) {
-      const double dt = motion[i].time - motion[i - 1].time;
-      if (dt > 0.0)
-        envelope.include(twistTo(between(motion[i - 1].T_map_body, motion[i].T_map_body), dt));
-    }
-  return envelope;
-}
-
-constexpr double kShareOfTypical = 0.1;
-
-bool isAmbiguous(const FoundEffect& effect) {
-  if (!effect.group.empty()) return true;
-  return std::any_of(effect.runner_ups.begin(), effect.runner_ups.end(),
-                     [](const RunnerUp& other) { return other.behind < other.error; });
-}
-
-EffectKind kindOf(const ParameterEstimate& estimate) {
-  return effectNamed(effectOfPath(estimate.parameter)).kind();
-}
-
-/// Whether a term of the INS has changed by a share of its typical size: the ends of executions do
-/// not show it, because they start with the same error.
-bool hasInstrumentChanged(const ParameterEstimate& estimate) {
-  const size_t dot = estimate.parameter.find('.');
-  if (dot == std::string::npos || kindOf(estimate) != EffectKind::kMeasurement) return false;
-  const double typical = parameterNamed(effectNamed(effectOfPath(estimate.parameter)),
-                                        estimate.parameter.substr(dot + 1))
-                             .typical;
-  return std::abs(estimate.value - estimate.before) > kShareOfTypical * std::abs(typical);
-}
-
-/// A change of a given term is a discrepancy if the end error falls with it, or would fall if the
-/// new model were right.
-/** The scatter of errors hides the gain from a small change: if two models differ by d and the
- * right one has an error of e, the wrong one has the root of e^2 + d^2. */
-void dropIrrelevantMoves(GapFinding& finding, double least_gain) {
-  const Gap& gap = *finding.gap;
-  const double least = 1.0 - least_gain;
-  const double share = std::sqrt(1.0 / (least * least) - 1.0);
-  const auto falls = [&](const ErrorFigure& before, const ErrorFigure& after,
-                         const ErrorFigure& apart) {
-    return after.median < least * before.median || apart.median > share * after.median;
-  };
-  const bool matters = falls(gap.before.position, gap.after.position, gap.apart.position) ||
-                       falls(gap.before.yaw, gap.after.yaw, gap.apart.yaw);
-  for (ParameterEstimate& estimate : finding.identified.calibrated)
-    estimate.moved = estimate.moved && (matters || hasInstrumentChanged(estimate));
-  if (!matters) finding.identified.moved_terms.clear();
-}
-
-bool anyMoved(const GapFinding& finding) {
-  return std::any_of(finding.identified.calibrated.begin(), finding.identified.calibrated.end(),
-                     [](const ParameterEstimate& estimate) { return estimate.moved; });
-}
-
-GapVerdict verdictWithoutEffects(const GapFinding& finding, bool adequate) {
-  bool vehicle = false;
-  for (const ParameterEstimate& estimate : finding.identified.calibrated)
-    vehicle = vehicle || (estimate.moved && kindOf(estimate) == EffectKind::kVehicle);
-  const bool known = finding.before.rest && !finding.before.rest->empty();
-  if (!anyMoved(finding))
-    return !adequate ? GapVerdict::kNotInCatalogue
-           : known   ? GapVerdict::kNothingNew
-                     : GapVerdict::kNoDiscrepancy;
-  if (!adequate) return GapVerdict::kPartial;
-  return vehicle ? GapVerdict::kFound : GapVerdict::kMeasurement;
-}
-
-GapVerdict verdictOf(const GapFinding& finding, const std::vector<FoundEffect>& shown,
-                     bool adequate) {
-  if (!adequate) return GapVerdict::kPartial;
-  if (std::any_of(shown.begin(), shown.end(), isAmbiguous)) return GapVerdict::kAmbiguous;
-  const bool measurement = std::all_of(shown.begin(), shown.end(), [](const FoundEffect& effect) {
-    return effectNamed(effect.name).kind() == EffectKind::kMeasurement;
-  });
-  // A changed term of the vehicle is a finding, too.
-  const bool moved =
-      std::any_of(finding.identified.calibrated.begin(), finding.identified.calibrated.end(),
-                  [](const ParameterEstimate& estimate) {
-                    return estimate.moved && kindOf(estimate) == EffectKind::kVehicle;
-                  });
-  return measurement && !moved ? GapVerdict::kMeasurement : GapVerdict::kFound;
-}
-
-constexpr double kUndescribed = 0.15;  // of the distance: a larger error means another vehicle
-constexpr double kLeastWay =
-    1.0;  // [m]: below it, noise and patches of ground can cause such errors
-
-/// Whether all that may be added was: a search that ended early or without an effect that a person
-/// rejected says nothing about the kernel.
-bool searchedWhole(const GapFinding& finding) {
-  const std::vector<EffectDecision>& decisions = finding.source.decisions;
-  return !finding.search.cut_short &&
-         std::all_of(decisions.begin(), decisions.end(),
-                     [](const EffectDecision& decision) { return decision.accepted; });
-}
-
-/// Effects on a model that is far from the vehicle are not valid names for the deviations.
-/** Of cars and holonomic bases, whose kernels are the simpler ones. On tracks noisy positions cause
- * such errors, too, and adequacy judges the rest. */
-void refuseUndescribed(GapFinding& finding) {
-  if (finding.identified.model.vehicle.layout() == VehicleLayout::kTracks) return;
-  if (!finding.gap || exitStatus(finding.verdict) == 0) return;
-  if (finding.verdict == GapVerdict::kCannotTell || !searchedWhole(finding)) return;
-  const double off = finding.gap->after.position.median;
-  const double way = finding.gap->way;
-  if (!(way > kLeastWay && off > kUndescribed * way)) return;
-  finding.verdict = GapVerdict::kCannotTell;
-  finding.reason = "the best model is " + digits(off, 2) + " m off after " +
-                   digits(finding.gap->horizon, 0) + " s that lead " + digits(way, 1) +
-                   " m away: this vehicle is not what the model describes";
-}
-
-/// A size at the end of its plausible range is no measurement.
-void refuseOnBound(const ParameterEstimate& estimate, GapFinding& finding) {
-  if (!runsToBound(finding.identified.model, freeParameter(finding.before, estimate.parameter)))
-    return;
-  finding.verdict = GapVerdict::kCannotTell;
-  finding.reason = estimate.parameter + " runs to the end of its plausible range";
-}
-
-}  // namespace
-
-IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& before,
-                                const SearchSettings& settings, const FoundTerms& result) {
-  const Observations& data = fitter.data();
-  const FitState& state = result.state;
-  const Eigen::MatrixXd covariance = parameterCovariance(fitter, state);
-  const double freedom = data.measuredBlocks() - 1;
-  const double quantile = studentQuantile(freedom);
-  const Moves moves = movesOf(fitter, before, result);
-  IdentifiedModel identified;
-  std::map<std::string, std::vector<ParameterEstimate>> of_effect;
-  for (size_t i = 0; i < state.free.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    if (isNameless(state,
-                   i)) {  // the adequacy test reports a rest, and an unnamed term reports itself
-      const UnnamedTerm* const had = termOfPath(before, state.free[i].path);
-      if (had != nullptr && !settings.calibrate && !contains(identified.moved_terms, had->name) &&
-          hasTermMoved(*had, estimateOf(state.free[i].path, before, state.model, 0.0),
-                       moves.byChance(i)))
-        identified.moved_terms.push_back(had->name);
-      continue;
-    }
-    const double error = std::sqrt(covariance(at, at));
-    const std::string effect = effectOf(state.free[i].path);
-    const bool found = contains(result.effects, effect);
-    const bool has_form = found && !isShape(state.free[i].path);
-    const double form =
-        has_form ? kForm * std::abs(*findParameter(state.model, state.free[i].path)) : 0.0;
-    const double half =
-        found ? std::hypot(quantile * error, form) : halfInterval(state, i, quantile * error);
-    ParameterEstimate estimate = estimateOf(state.free[i].path, before, state.model, half);
-    if (found) {
-      of_effect[effect].push_back(estimate);
-    } else {
-      estimate.moved =
-          hasMoved(estimate, moves.byChance(i), settings.calibrate) || moves.together[i];
-      identified.calibrated.push_back(estimate);
-    }
-  }
-  for (const std::string& path : changePointsOn(state.model)) {
-    const std::string effect = effectOf(path);
-    if (!contains(result.effects, effect)) continue;
-    ParameterEstimate estimate = estimateOf(path, ModelDocument{}, state.model, 0.0);
-    std::tie(estimate.low, estimate.high) = changePointInterval(fitter, state, path, kChangeNats);
-    of_effect[effect].push_back(estimate);
-  }
-  std::map<std::string, std::vector<Evidence>> evidence;
-  for (const EvidenceSource source :
-       {EvidenceSource::kWheels, EvidenceSource::kCurrents, EvidenceSource::kVoltage})
-    for (const auto& [name, shown] : evidenceBy(source, fitter, state, result.effects))
-      evidence[name].push_back(shown);
-  for (const std::string& name : result.effects) {
-    FoundEffect effect = foundEffect(name, result, settings, of_effect[name]);
-    effect.evidence = evidence[name];
-    dropRefutedNames(effect);
-    identified.effects.push_back(std::move(effect));
-  }
-  for (const CandidateTest& test : result.record.candidates)
-    if (!contains(result.effects, test.effect) && !isExcited(test) &&
-        !isOn(effectNamed(test.effect), before))
-      identified.not_excited.push_back(test.effect);
-  identified.model = state.model;
-  identified.model.covariance = knownCovariance(state, covariance);
-  identified.model.envelope = envelopeOf(data, state.model.vehicle);
-  return identified;
-}
-
-std::string tooLittleDriving(const Observations& data) {
-  const int measured = data.measuredBlocks();
-  if (measured >= kLeastBlocks) return "";
-  double driven = 0.0;
-  for (const Drive& drive : data.drives()) driven += drive.driven();
-  if (data.blocks() > measured && data.blockLength() > 0.0) driven = measured * data.blockLength();
-  return "only " + fixed(driven, 0) +
-         " s of measured driving, too little to tell chance from cause: drive at least " +
-         fixed(kLeastBlocks * ObservationSettings{}.block, 0) + " s";
-}
-
-void judge(GapFinding& finding, double adequacy_alpha, double least_gain) {
-  std::vector<FoundEffect> shown;
-  std::copy_if(finding.identified.effects.begin(), finding.identified.effects.end(),
-               std::back_inserter(shown), isShown);
-  if (shown.empty()) dropIrrelevantMoves(finding, least_gain);
-  // A dependence explained only by an unnamed term has no name: it counts as unexplained.
-  const bool adequate = finding.adequacy.p_value > adequacy_alpha &&
-                        finding.identified.unnamed.empty() &&
-                        finding.identified.moved_terms.empty();
-  if (shown.empty()) {
-    finding.verdict = verdictWithoutEffects(finding, adequate);
-  } else {
-    finding.verdict = verdictOf(finding, shown, adequate);
-  }
-  if (exitStatus(finding.verdict) == 0 && !finding.search.at_bound.empty()) {
-    finding.verdict = GapVerdict::kCannotTell;
-    finding.reason = finding.search.at_bound.front() + " runs to the end of its plausible range";
-  }
-  if (finding.search.cut_short) {
-    const bool any = !shown.empty() || anyMoved(finding) || !finding.identified.unnamed.empty() ||
-                     !finding.identified.moved_terms.empty();
-    finding.verdict = any ? GapVerdict::kPartial : GapVerdict::kCannotTell;
-    if (!any)
-      finding.reason = "the time limit ended the search before anything was found; give it more";
-  }
-  for (const ParameterEstimate& estimate : finding.identified.calibrated)
-    refuseOnBound(estimate, finding);
-  for (const FoundEffect& effect : finding.identified.effects)
-    for (const ParameterEstimate& estimate : effect.parameters) refuseOnBound(estimate, finding);
-  refuseUndescribed(finding);
-}
-
 namespace {
 
 constexpr int kLeastHalf = 10;           // blocks from which effects can be chosen
@@ -522,66 +173,117 @@ Noise residualNoise(const Fitter& fitter, const ModelDocument& model) {
                        fitter.mask());
 }
 
+/// The model at the start: a calibrated one is treated as new, without priors.
+ModelDocument modelBefore(const GapTask& task) {
+  ModelDocument before = task.model;
+  if (task.calibrate) before.rest.reset();
+  return before;
+}
+
+/// One run of the five steps.
+class Discovery {
+ public:
+  Discovery(const GapTask& task, const Progress& say)
+      : task_(task),
+        say_(say),
+        before_(modelBefore(task)),
+        data_(task.train, {}),
+        fitter_(data_, task.parallel, restConditions(data_, before_)),
+        settings_(settingsOf(task)) {}
+
+  GapFinding run() {
+    if (!check()) return finding_;
+    searchEffects();
+    describeRemainder();
+    identify();
+    measureErrors();
+    return finding_;
+  }
+
+ private:
+  bool check() {
+    const int blocks = data_.measuredBlocks();
+    finding_.source = {task_.seed, task_.log_notes, task_.decisions, static_cast<size_t>(blocks),
+                       data_.blockLength()};
+    finding_.before = before_;
+    finding_.identified.model = before_;
+    finding_.reason = reasonNotToTell(task_, data_);
+    if (!finding_.reason.empty()) return false;
+    say_("1 check: " + std::to_string(data_.all().size()) + " rows in " + std::to_string(blocks) +
+         " blocks");
+    return true;
+  }
+
+  void searchEffects() {
+    say_("2 search: calibrate, test, refit, validate, prune");
+    result_ = search(fitter_, before_, settings_, memory_, say_);
+    requireSized(result_, settings_);
+    tested_ = result_.state;
+    if (!task_.keep_small) dropUnconfirmed({fitter_, settings_, say_, result_});
+    finding_.search = result_.record;
+  }
+
+  void describeRemainder() {
+    say_("3 remainder");
+    // Detected but irrelevant dependences are not part of the unnamed rest.
+    finding_.adequacy = testAdequacy(fitter_, tested_, kAdequacyAlpha, task_.seed);
+    // An effect that a person rejected, or that is irrelevant, would return without its name.
+    const bool all_kept = result_.state.free.size() == tested_.free.size();
+    const bool has_terms = !before_.vehicle.isOmni();  // its kernel has none
+    if (has_terms && !task_.named_only && settings_.rejected.empty() && all_kept)
+      addUnnamedTerms({fitter_, settings_, say_, result_}, kAdequacyAlpha, finding_.adequacy,
+                      unnamed_);
+    finding_.search.cut_short = result_.record.cut_short;
+    ModelDocument& model = result_.state.model;
+    // A rest without anything new stays as it was.
+    if (!before_.rest || !unnamed_.empty() || finding_.adequacy.p_value <= kAdequacyAlpha) {
+      model.rest = restOf(fitter_, result_.state, task_.seed);
+      countTermsToRest(data_, model);
+    } else {
+      model.rest = before_.rest;
+    }
+  }
+
+  void identify() {
+    say_("4 identified model");
+    finding_.identified = identifiedModel(fitter_, before_, settings_, result_);
+    describe(fitter_, before_, unnamed_, finding_.identified);
+  }
+
+  void measureErrors() {
+    say_("5 error on driving that was not used, and verdict");
+    const ModelDocument& after = finding_.identified.model;
+    std::optional<Observations> test;
+    if (!task_.test.empty()) test.emplace(task_.test, ObservationSettings{});
+    const UnseenErrors unseen =
+        test ? errorsOnTest(task_, *test, after)
+             : errorsOnHalves(before_, fitter_, result_, unnamed_, settings_, memory_);
+    if (!test) widenByHalves(unseen.parts, finding_.identified);
+    finding_.gap = unseen.gap;
+    finding_.gap->apart = apart(test ? *test : data_, task_.model, after);
+    finding_.gap->floor = deadReckoningFloor(test ? task_.test : task_.train);
+    finding_.atlas = residualAtlas(data_, task_.model, after, finding_.adequacy.unexplained);
+    finding_.shown = shownExecutions(unseen.parts, task_.model, residualNoise(fitter_, after));
+    judge(finding_, kAdequacyAlpha, settings_.least_gain);
+  }
+
+  const GapTask& task_;
+  const Progress& say_;
+  const ModelDocument before_;
+  const Observations data_;
+  const Fitter fitter_;
+  const SearchSettings settings_;
+  SearchMemory memory_;
+  FoundTerms result_;
+  FitState tested_;  ///< the result before irrelevant effects were dropped
+  std::vector<UnnamedFinding> unnamed_;
+  GapFinding finding_;
+};
+
 }  // namespace
 
 GapFinding findGap(const GapTask& task, const Progress& say) {
-  const Observations data(task.train, {});
-  ModelDocument before = task.model;
-  // A calibrated model is treated as new: without priors.
-  if (task.calibrate) before.rest.reset();
-  const Fitter fitter(data, task.parallel, restConditions(data, before));
-  const int blocks = data.measuredBlocks();
-  GapFinding finding;
-  finding.source = {task.seed, task.log_notes, task.decisions, static_cast<size_t>(blocks),
-                    data.blockLength()};
-  finding.before = before;
-  finding.identified.model = before;
-  finding.reason = reasonNotToTell(task, data);
-  if (!finding.reason.empty()) return finding;
-  say("1 calibrate: " + std::to_string(data.all().size()) + " rows in " + std::to_string(blocks) +
-      " blocks");
-  say("2-5 test, refit, validate, prune");
-  const SearchSettings settings = settingsOf(task);
-  SearchMemory memory;
-  FoundTerms result = search(fitter, before, settings, memory, say);
-  requireSized(result, settings);
-  // Detected but irrelevant dependences are not part of the unnamed rest.
-  const FitState tested = result.state;
-  if (!task.keep_small) dropUnconfirmed({fitter, settings, say, result});
-  finding.search = result.record;
-  say("6 adequacy");
-  finding.adequacy = testAdequacy(fitter, tested, kAdequacyAlpha, task.seed);
-  std::vector<UnnamedFinding> unnamed;
-  // An effect that a person rejected, or that is irrelevant, would return without its name.
-  const bool all_kept = result.state.free.size() == tested.free.size();
-  const bool has_terms = !before.vehicle.isOmni();  // its kernel has none
-  if (has_terms && !task.named_only && settings.rejected.empty() && all_kept)
-    addUnnamedTerms({fitter, settings, say, result}, kAdequacyAlpha, finding.adequacy, unnamed);
-  finding.search.cut_short = result.record.cut_short;
-  // A rest without anything new stays as it was.
-  if (!before.rest || !unnamed.empty() || finding.adequacy.p_value <= kAdequacyAlpha) {
-    result.state.model.rest = restOf(fitter, result.state, task.seed);
-    countTermsToRest(data, result.state.model);
-  } else {
-    result.state.model.rest = before.rest;
-  }
-  finding.identified = identifiedModel(fitter, before, settings, result);
-  describe(fitter, before, unnamed, finding.identified);
-  say("7 error on driving that was not used");
-  std::optional<Observations> test;
-  if (!task.test.empty()) test.emplace(task.test, ObservationSettings{});
-  const ModelDocument& after = finding.identified.model;
-  const UnseenErrors unseen =
-      test ? errorsOnTest(task, *test, after)
-           : errorsOnHalves(before, fitter, result, unnamed, settings, memory);
-  if (!test) widenByHalves(unseen.parts, finding.identified);
-  finding.gap = unseen.gap;
-  finding.gap->apart = apart(test ? *test : data, task.model, after);
-  finding.gap->floor = deadReckoningFloor(task.test.empty() ? task.train : task.test);
-  finding.atlas = residualAtlas(data, task.model, after, finding.adequacy.unexplained);
-  finding.shown = shownExecutions(unseen.parts, task.model, residualNoise(fitter, after));
-  judge(finding, kAdequacyAlpha, settings.least_gain);
-  return finding;
+  return Discovery(task, say).run();
 }
 
 }  // namespace tread::gap

@@ -10,36 +10,20 @@
 #include "modules/identification/core/fit.hpp"
 #include "modules/identification/core/search.hpp"
 
-// What a drive reveals about a model, and what the residuals still depend on.
+// Where simulation and measurement disagree, the most probable name of the difference, and its
+// certainty, in five steps:
+//   1. Check. Are the logs sound, does the model cover the vehicle, is there enough driving? If
+//      not, the verdict is kCannotTell, with the reason.
+//   2. Search (search.hpp). Calibrate; test every effect of the catalogue; add the best, refit,
+//      validate on blocks that were left out, prune; until nothing is left to add.
+//   3. Remainder (adequacy.hpp, unnamed.hpp, rest.hpp). Test what the residuals still depend on;
+//      add unnamed terms for it, and describe the noise of the rest.
+//   4. Identified model (identified_model.hpp, evidence.hpp). Sizes with 95 % intervals, and what
+//      wheels, currents and voltage show of each effect.
+//   5. Errors (end_errors.hpp) and verdict (verdict.hpp). Errors on driving that was used neither
+//      for choosing the effects nor for their sizes: the test drives or, without any, alternate
+//      blocks of the training drives, each half predicted from the other.
 namespace tread::gap {
-
-/// The residuals of two models: curves of every channel over the standard variables and over the
-/// unexplained ones, and maps over speed and yaw rate.
-/** The interval of a curve's cell is from the scatter of its blocks' means; cells that exclude 0
- * after correction for the number of cells (Bonferroni, 5 %) are marked. */
-ResidualAtlas residualAtlas(const Observations& observations, const ModelDocument& before,
-                            const ModelDocument& after,
-                            const std::vector<Unexplained>& unexplained = {});
-
-/// Fewest blocks of measured driving for a statistical conclusion.
-inline constexpr int kLeastBlocks = 10;
-
-/// Empty if the rows suffice for a conclusion; otherwise one line with the amount of driving
-/// needed.
-std::string tooLittleDriving(const Observations& data);
-
-/// The result of a search as a model: effects and terms with their 95 % intervals, covariance and
-/// envelope, and the effects that the drive could not have shown.
-/** `before` is the model at the start of the search. */
-IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& before,
-                                const SearchSettings& settings, const FoundTerms& result);
-
-/// Sets the verdict of a finding from its effects, calibrated terms, adequacy and errors, with the
-/// reason for kCannotTell.
-/** Adequate means a p-value above `adequacy_alpha`. Moved terms of the model count if the end error
- * falls by more than the share `least_gain`. A search that was cut short is kPartial with its
- * results, and kCannotTell without any. */
-void judge(GapFinding& finding, double adequacy_alpha, double least_gain);
 
 /// The task of `tread-gap find`.
 struct GapTask {
@@ -62,13 +46,8 @@ struct GapTask {
   TimeLimit is_over = neverOver;     ///< if so, the search returns the best result so far
 };
 
-/// Where simulation and measurement disagree, the most probable name of the difference, and its
-/// certainty.
-/** Calibrates, tests and selects effects, tests the remainder, and measures the error on driving
- * that was used neither for choosing the effects nor for their sizes: the test drives or, without
- * any, alternate blocks of the training drives, each half predicted from the other. Deterministic
- * for a seed. Throws std::invalid_argument for an accepted effect whose size the drives cannot
- * determine. */
+/// The five steps. Deterministic for a seed.
+/** Throws std::invalid_argument for an accepted effect whose size the drives cannot determine. */
 GapFinding findGap(const GapTask& task, const Progress& say);
 
 }  // namespace tread::gap

@@ -80,12 +80,13 @@ struct Columns {
   /// Coefficients of the groups, from sums over blocks.
   std::function<Eigen::VectorXd(const Grams&)> estimate;
   /// Whether the answer about a group is clear; of all answers with their standard errors.
-  std::function<bool(const std::vector<Evidence>&, const Eigen::VectorXd& errors, size_t)> is_clear;
+  std::function<bool(const std::vector<MeasuredEvidence>&, const Eigen::VectorXd& errors, size_t)>
+      is_clear;
 };
 
 /// Estimates from all blocks together, with intervals from the jackknife over them.
 void addEvidence(EvidenceSource source, const Columns& columns,
-                 std::map<std::string, Evidence>& evidence) {
+                 std::map<std::string, MeasuredEvidence>& evidence) {
   if (columns.asked.empty() || columns.blocks.size() < 2) return;
   const Grams all = sumOf(columns.blocks);
   const Eigen::VectorXd values = columns.estimate(all);
@@ -97,7 +98,7 @@ void addEvidence(EvidenceSource source, const Columns& columns,
   const auto count = static_cast<double>(columns.blocks.size());
   const Eigen::VectorXd errors = (sums * (count - 1.0) / count).cwiseSqrt();
   const double quantile = studentQuantile(count - 1.0);
-  std::vector<Evidence> answers;
+  std::vector<MeasuredEvidence> answers;
   for (size_t i = 0; i < columns.asked.size(); ++i) {
     const auto at = static_cast<Index>(i);
     const double half = quantile * errors[at];
@@ -125,12 +126,11 @@ std::vector<std::string> askedOf(const std::vector<std::string>& effects) {
 
 // Wheel speeds.
 
-constexpr double kUnlikeScale =
-    0.2;                         // of the effect, in directions that are no scale of the motion
-constexpr double kShown = 0.7;   // of the effect, outside of lateral motion
-constexpr double kSharp = 0.25;  // largest standard error of an informative share
-constexpr double kAlike = 0.8;   // correlation from which two effects are evaluated together
-constexpr int kRounds = 60;      // until scales and shares have converged
+constexpr double kUnlikeScale = 0.2;  // of the effect, in directions that are no scale
+constexpr double kShown = 0.7;        // of the effect, outside of lateral motion
+constexpr double kSharp = 0.25;       // largest standard error of an informative share
+constexpr double kAlike = 0.8;        // correlation from which two effects are evaluated together
+constexpr int kRounds = 60;           // until scales and shares have converged
 constexpr size_t kLeastWheelRows = 100;  // with wheel speeds
 
 /// The track speeds of a drive during the measurement of a row.
@@ -249,9 +249,10 @@ double likeness(const Grams& grams, Index a, Index b) {
 
 /// Whether an effect resembles another one with a different answer: the wheels cannot decide how to
 /// divide what they show.
-bool isContradicted(const Grams& grams, const std::vector<Evidence>& answers, size_t index) {
+bool isContradicted(const Grams& grams, const std::vector<MeasuredEvidence>& answers,
+                    size_t index) {
   for (size_t other = 0; other < answers.size(); ++other) {
-    const Evidence &one = answers[index], &two = answers[other];
+    const MeasuredEvidence &one = answers[index], &two = answers[other];
     const bool agree = (one.confirms() && two.confirms()) || (one.refutes() && two.refutes());
     if (other != index && !agree &&
         likeness(grams, static_cast<Index>(2 + index), static_cast<Index>(2 + other)) > kAlike)
@@ -310,7 +311,7 @@ Columns wheelColumns(const Fitter& fitter, const FitState& state,
   columns.blocks = wheelGrams(fitter, state, without, rows);
   if (rows < kLeastWheelRows || columns.blocks.empty()) return {};
   columns.estimate = sharesOf;
-  columns.is_clear = [all = sumOf(columns.blocks)](const std::vector<Evidence>& answers,
+  columns.is_clear = [all = sumOf(columns.blocks)](const std::vector<MeasuredEvidence>& answers,
                                                    const Eigen::VectorXd& errors, size_t i) {
     const auto at = static_cast<Index>(i);
     return errors[at] < kSharp && unlikeScale(all, 2 + at) >= kUnlikeScale &&
@@ -513,7 +514,7 @@ Columns currentColumns(const Fitter& fitter, const FitState& state,
       rise[static_cast<Index>(e)] = of.values[effectAt(e)] / ordinaryPerSpeed(grams, of, e);
     return rise;
   };
-  columns.is_clear = [=, bins = std::move(measured.bins)](const std::vector<Evidence>&,
+  columns.is_clear = [=, bins = std::move(measured.bins)](const std::vector<MeasuredEvidence>&,
                                                           const Eigen::VectorXd&, size_t e) {
     return ordinaryPerSpeed(all, fit, e) > 0.0 &&
            isVisible(all, kEffects + static_cast<Index>(e), kSpeed) && actsSteadily(bins, e) &&
@@ -630,27 +631,28 @@ std::vector<Columns> voltageColumns(const Fitter& fitter, const FitState& state,
     const auto blocks = blockMotions(bins, drives, e);
     if (blocks.size() < kLeastVoltageBlocks || !isFactorOverTime(blocks)) continue;
     const auto usual = static_cast<Index>(1 + drives.size());
-    all.push_back(
-        {{{asked[e]}},
-         voltageGrams(blocks, drives.size()),
-         [usual](const Grams& grams) -> Eigen::VectorXd {
-           return fitColumns(grams, usual, {1.0, 0.0}).values.tail(1);
-         },
-         [](const std::vector<Evidence>&, const Eigen::VectorXd&, size_t) { return true; }});
+    all.push_back({{{asked[e]}},
+                   voltageGrams(blocks, drives.size()),
+                   [usual](const Grams& grams) -> Eigen::VectorXd {
+                     return fitColumns(grams, usual, {1.0, 0.0}).values.tail(1);
+                   },
+                   [](const std::vector<MeasuredEvidence>&, const Eigen::VectorXd&, size_t) {
+                     return true;
+                   }});
   }
   return all;
 }
 
 }  // namespace
 
-std::map<std::string, Evidence> evidenceBy(EvidenceSource source, const Fitter& fitter,
-                                           const FitState& state,
-                                           const std::vector<std::string>& effects) {
+std::map<std::string, MeasuredEvidence> evidenceBy(EvidenceSource source, const Fitter& fitter,
+                                                   const FitState& state,
+                                                   const std::vector<std::string>& effects) {
   std::vector<Columns> all;
   if (source == EvidenceSource::kWheels) all = {wheelColumns(fitter, state, effects)};
   if (source == EvidenceSource::kCurrents) all = {currentColumns(fitter, state, effects)};
   if (source == EvidenceSource::kVoltage) all = voltageColumns(fitter, state, effects);
-  std::map<std::string, Evidence> evidence;
+  std::map<std::string, MeasuredEvidence> evidence;
   for (const Columns& columns : all) addEvidence(source, columns, evidence);
   return evidence;
 }

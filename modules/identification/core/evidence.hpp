@@ -30,8 +30,8 @@ namespace tread::gap {
 
 /// The evidence of one source about each effect; no entry for an effect without any. `state`: of
 /// the whole model, with a current prediction.
-std::map<std::string, Evidence> evidenceBy(EvidenceSource source, const Fitter& fitter,
-                                           const FitState& state,
-                                           const std::vector<std::string>& effects);
+std::map<std::string, MeasuredEvidence> evidenceBy(EvidenceSource source, const Fitter& fitter,
+                                                   const FitState& state,
+                                                   const std::vector<std::string>& effects);
 
 }  // namespace tread::gap

@@ -69,7 +69,7 @@ enum class EvidenceSource { kWheels, kCurrents, kVoltage };
  * reduces the speed by drawing current, more than in proportion, as otherwise it would stop the
  * motor; a weak drive draws the current of the lower speed, and so do slipping tracks. Values in
  * between suggest currents that were computed from the command. */
-struct Evidence {
+struct MeasuredEvidence {
   EvidenceSource source = EvidenceSource::kWheels;
   double value = 0.0;
   double low = 0.0;
@@ -93,11 +93,12 @@ struct FoundEffect {
   double gain = 0.0;     ///< [nats] on blocks that were not fitted
   double gain_error = 0.0;
   bool accepted = false;  ///< accepted by a person: it stays whatever the numbers above are
-  std::vector<Evidence> evidence{};  ///< other evidence in the log, at most one of each source
+  std::vector<MeasuredEvidence>
+      evidence{};  ///< other evidence in the log, at most one of each source
 
   /// nullptr if the log has none of this source.
-  const Evidence* evidenceBy(EvidenceSource source) const {
-    for (const Evidence& one : evidence)
+  const MeasuredEvidence* evidenceBy(EvidenceSource source) const {
+    for (const MeasuredEvidence& one : evidence)
       if (one.source == source) return &one;
     return nullptr;
   }

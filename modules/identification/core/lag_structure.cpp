@@ -20,9 +20,9 @@ struct LagNames {
   std::vector<std::string> all() const { return {drive, yaw, body}; }
 };
 
-constexpr double kLeastLag = 0.03;   // [s] start value of a fit
-constexpr double kLeastNats = 10.0;  // by which another structure must be better
-constexpr double kLongLag = 0.1;     // [s] of a model's lag that may consist of two
+constexpr double kLeastLag = 0.03;     // [s] start value of a fit
+constexpr double kLeastNats = 10.0;    // by which another structure must be better
+constexpr double kLongModelLag = 0.1;  // [s] of a model's lag that may consist of two
 
 std::string pathOf(const std::string& lag) {
   return primaryPath(effectNamed(lag));
@@ -114,7 +114,7 @@ bool chooseLags(const SearchState& search) {
                           nominal && lag == lag_names.drive ? std::string("lag") : pathOf(lag));
   };
   const double drive = lagOf(lag_names.drive);
-  if (now.empty() && !(nominal && drive > kLongLag)) return false;
+  if (now.empty() && !(nominal && drive > kLongModelLag)) return false;
   const Eigen::VectorXd loss_now = heldOutLoss(search.fitter, result.state);
   std::optional<Trial> best;
   double most = 0.0;

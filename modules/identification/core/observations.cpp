@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "common/vehicle/omni_kernel.hpp"
+#include "common/words/words.hpp"
 
 namespace tread::gap {
 namespace {
@@ -408,6 +409,17 @@ Eigen::VectorXd Observations::predict(const Motions& motions, const MeasurementM
     predicted[static_cast<Eigen::Index>(i)] = value;
   }
   return predicted;
+}
+
+std::string tooLittleDriving(const Observations& data) {
+  const int measured = data.measuredBlocks();
+  if (measured >= kLeastBlocks) return "";
+  double driven = 0.0;
+  for (const Drive& drive : data.drives()) driven += drive.driven();
+  if (data.blocks() > measured && data.blockLength() > 0.0) driven = measured * data.blockLength();
+  return "only " + fixed(driven, 0) +
+         " s of measured driving, too little to tell chance from cause: drive at least " +
+         fixed(kLeastBlocks * ObservationSettings{}.block, 0) + " s";
 }
 
 }  // namespace tread::gap

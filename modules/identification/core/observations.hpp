@@ -160,4 +160,11 @@ class Observations {
 /// Degrees of freedom of the residuals' Student distribution: limits the influence of an INS jump.
 inline constexpr double kFreedom = 4.0;
 
+/// Fewest blocks of measured driving for a statistical conclusion.
+inline constexpr int kLeastBlocks = 10;
+
+/// Empty if the rows suffice for a conclusion; otherwise one line with the amount of driving
+/// needed.
+std::string tooLittleDriving(const Observations& data);
+
 }  // namespace tread::gap

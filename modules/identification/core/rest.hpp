@@ -8,8 +8,8 @@
 
 #include <Eigen/Core>
 
-#include "modules/identification/core/discovery.hpp"
 #include "modules/identification/core/fit.hpp"
+#include "modules/identification/core/search.hpp"
 #include "modules/identification/core/variables.hpp"
 
 // Deviations that a model left unexplained when it was made are no news when they appear again: the

@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "modules/identification/core/discovery.hpp"
+#include "modules/identification/core/search.hpp"
 #include "modules/identification/core/variables.hpp"
 
 namespace tread::gap {

@@ -11,8 +11,8 @@
 #include "common/soundness/core/log_validation.hpp"
 #include "modules/identification/core/adequacy.hpp"
 #include "modules/identification/core/candidates.hpp"
-#include "modules/identification/core/discovery.hpp"
 #include "modules/identification/core/rest.hpp"
+#include "modules/identification/core/search.hpp"
 #include "modules/identification/core/search_steps.hpp"
 
 namespace tread::gap {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "modules/identification/core/discovery.hpp"
+#include "modules/identification/core/search.hpp"
 
 namespace tread::gap {
 namespace {

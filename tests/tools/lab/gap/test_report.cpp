@@ -167,9 +167,9 @@ TEST_CASE("after it stands whether it is load, as the motor currents say") {
 
 TEST_CASE("wheel speeds and motor currents together tell the drive, the load and slipping tracks") {
   FoundEffect effect = samples::turnLimit();
-  const Evidence in_wheels{EvidenceSource::kWheels, 0.97, 0.9, 1.04};
-  const Evidence under_wheels{EvidenceSource::kWheels, 0.1, -0.1, 0.3};
-  const Evidence no_load{EvidenceSource::kCurrents, 0.1, -0.1, 0.3};
+  const MeasuredEvidence in_wheels{EvidenceSource::kWheels, 0.97, 0.9, 1.04};
+  const MeasuredEvidence under_wheels{EvidenceSource::kWheels, 0.1, -0.1, 0.3};
+  const MeasuredEvidence no_load{EvidenceSource::kCurrents, 0.1, -0.1, 0.3};
   effect.evidence = {in_wheels, no_load};
   CHECK_THAT(evidenceSentences(effect), Catch::EndsWith("(-0.1 to 0.3): the drive gives less."));
   effect.evidence = {under_wheels, no_load};

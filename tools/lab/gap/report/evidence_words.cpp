@@ -22,16 +22,16 @@ std::string percents(double low, double high) {
 }
 
 std::string wheelSentence(const FoundEffect& effect) {
-  const Evidence* evidence = effect.evidenceBy(EvidenceSource::kWheels);
+  const MeasuredEvidence* evidence = effect.evidenceBy(EvidenceSource::kWheels);
   if (evidence == nullptr) return "";
-  const Evidence& wheels = *evidence;
+  const MeasuredEvidence& wheels = *evidence;
   const std::string whole = wheels.of_lags ? "the lags together" : "it";
   const std::string text = " The wheel speeds show " +
                            (wheels.low > 1.0 ? "all of " + whole + " and more"
                                              : percent(wheels.value) + " % of " + whole) +
                            percents(wheels.low, wheels.high);
   // A load also slows the wheels.
-  const Evidence* currents = effect.evidenceBy(EvidenceSource::kCurrents);
+  const MeasuredEvidence* currents = effect.evidenceBy(EvidenceSource::kCurrents);
   const bool by_load = currents != nullptr && currents->confirms();
   if (wheels.confirms())
     return text + (by_load ? ": the wheels turn slower." : ": it is in the drive.");
@@ -40,9 +40,9 @@ std::string wheelSentence(const FoundEffect& effect) {
 }
 
 std::string currentSentence(const FoundEffect& effect) {
-  const Evidence* evidence = effect.evidenceBy(EvidenceSource::kCurrents);
+  const MeasuredEvidence* evidence = effect.evidenceBy(EvidenceSource::kCurrents);
   if (evidence == nullptr) return "";
-  const Evidence& currents = *evidence;
+  const MeasuredEvidence& currents = *evidence;
   const std::string size = " by " + fixed(currents.value, 1) + " % per percent (" +
                            fixed(currents.low, 1) + " to " + fixed(currents.high, 1) + ")";
   if (currents.confirms())
@@ -52,7 +52,7 @@ std::string currentSentence(const FoundEffect& effect) {
     return " The motor currents do not show whether it is load or in the drive.";
   const std::string text =
       " Where it reduces speed, the motor currents do not rise as with a load, but" + size;
-  const Evidence* wheels = effect.evidenceBy(EvidenceSource::kWheels);
+  const MeasuredEvidence* wheels = effect.evidenceBy(EvidenceSource::kWheels);
   if (wheels != nullptr && wheels->confirms()) return text + ": the drive gives less.";
   if (wheels != nullptr && wheels->refutes()) return text + ": the tracks slip.";
   return text + ": the drive gives less, or the tracks slip.";
@@ -66,9 +66,9 @@ bool isOfBattery(const FoundEffect& effect) {
 }
 
 std::string voltageSentence(const FoundEffect& effect) {
-  const Evidence* evidence = effect.evidenceBy(EvidenceSource::kVoltage);
+  const MeasuredEvidence* evidence = effect.evidenceBy(EvidenceSource::kVoltage);
   if (evidence == nullptr) return "";
-  const Evidence& voltage = *evidence;
+  const MeasuredEvidence& voltage = *evidence;
   const std::string size =
       percent(voltage.value) + " % as much" + percents(voltage.low, voltage.high);
   if (voltage.confirms())

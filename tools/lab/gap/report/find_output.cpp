@@ -55,7 +55,7 @@ Json answerJson(bool yes, bool no) {
 constexpr const char* kEvidenceNames[] = {"wheel_speeds_show", "motor_currents_rise",
                                           "battery_voltage_falls"};
 
-Json evidenceJson(const Evidence& evidence) {
+Json evidenceJson(const MeasuredEvidence& evidence) {
   const bool currents = evidence.source == EvidenceSource::kCurrents;
   Json json = {{currents ? "rise" : "share", number(evidence.value)},
                {"low", number(evidence.low)},
@@ -77,7 +77,7 @@ Json effectJson(const FoundEffect& effect) {
       {"group", effect.group},
       {"runner_up", runner_ups},
       {"accepted", effect.accepted}};
-  for (const Evidence& evidence : effect.evidence)
+  for (const MeasuredEvidence& evidence : effect.evidence)
     json[kEvidenceNames[static_cast<size_t>(evidence.source)]] = evidenceJson(evidence);
   return json;
 }
