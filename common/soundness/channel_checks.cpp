@@ -18,7 +18,6 @@ namespace {
 constexpr double kFrozen = 3.0;        // [s] of a constant pose while driving: the INS hangs
 constexpr double kNoticedHold = 1.0;   // [s]
 constexpr double kClearCommand = 0.5;  // of the largest one: a robot does not stand still with it
-constexpr double kSilence = 1.5;       // [s] of the INS
 constexpr double kSecondKind = 0.01;   // of the commands
 
 double largestCommand(const std::vector<HeardSpan>& spans) {
@@ -27,18 +26,6 @@ double largestCommand(const std::vector<HeardSpan>& spans) {
     for (const CommandSample& sample : span.commands.commands)
       largest = std::max(largest, driveOf(span.commands.layout, sample.command));
   return largest;
-}
-
-/// Seconds of clear commands between two times.
-double drivenBetween(const CommandSpan& span, double begin, double end, double least) {
-  double sum = 0.0;
-  for (size_t i = 0; i < span.commands.size(); ++i) {
-    const double from = std::max(begin, span.commands[i].time);
-    const double to =
-        std::min(end, i + 1 < span.commands.size() ? span.commands[i + 1].time : span.end);
-    if (to > from && driveOf(span.layout, span.commands[i].command) >= least) sum += to - from;
-  }
-  return sum;
 }
 
 void checkHeld(const std::vector<HeardSpan>& spans, Diagnostics& notes) {
@@ -50,20 +37,17 @@ void checkHeld(const std::vector<HeardSpan>& spans, Diagnostics& notes) {
     repeated += span.ins.repeated;
     for (const HeldPose& held : span.ins.held) {
       if (held.end - held.begin <= kNoticedHold) continue;
-      const double driven = drivenBetween(span.commands, held.begin, held.end, least);
+      const double driven = drivenBetween(span.commands.layout, span.commands.commands,
+                                          span.commands.end, held.begin, held.end, least);
       if (least > 0.0 && driven > kFrozen)
-        notes.fatal("the INS is frozen: one pose from " + digits(held.begin) + " to " +
-                    digits(held.end) +
-                    " s while commands drive; cut the log before, check the INS");
+        notes.add(findings::kInsFrozen, {digits(held.begin), digits(held.end)});
       else
-        notes.note("one pose from " + digits(held.begin) + " to " + digits(held.end) +
-                   " s; not used as measurement");
+        notes.add(findings::kPoseHeld, {digits(held.begin), digits(held.end)});
     }
   }
   if (repeated > 0)
-    notes.note("the INS repeats its pose in " +
-               digits(100.0 * static_cast<double>(repeated) / static_cast<double>(poses), 0) +
-               " % of its messages while it drives; only new poses count");
+    notes.add(findings::kPosesRepeated,
+              {digits(100.0 * static_cast<double>(repeated) / static_cast<double>(poses), 0)});
 }
 
 void checkKinds(const SortedLog& log, Diagnostics& notes) {
@@ -79,10 +63,8 @@ void checkKinds(const SortedLog& log, Diagnostics& notes) {
   }
   if (static_cast<double>(std::min(power, speed)) >
       kSecondKind * static_cast<double>(power + speed))
-    notes.fatal("commands of two kinds: " + std::to_string(power) + " power, " +
-                std::to_string(speed) + " track speed; cut the log where the kind changes");
-  if (invalid > 0)
-    notes.note(std::to_string(invalid) + " MOTOR messages without a number as command; left out");
+    notes.add(findings::kTwoKinds, {std::to_string(power), std::to_string(speed)});
+  if (invalid > 0) notes.add(findings::kInvalidCommands, {std::to_string(invalid)});
 }
 
 /// Checks for missing INS poses in the middle of a span.
@@ -95,19 +77,16 @@ void checkSilences(const std::vector<HeardSpan>& spans, Diagnostics& notes) {
     double last = span.commands.begin();
     for (const InsReading& reading : span.ins.readings) {
       if (!reading.fresh) continue;
-      if (reading.sample.time - last > kSilence && silences++ == 0) first_silence = last;
+      if (reading.sample.time - last > kInsSilence && silences++ == 0) first_silence = last;
       if (reading.new_track && last > span.commands.begin() && jumps++ == 0)
         first_jump = reading.sample.time;
       last = reading.sample.time;
     }
-    if (span.commands.end - last > kSilence && silences++ == 0) first_silence = last;
+    if (span.commands.end - last > kInsSilence && silences++ == 0) first_silence = last;
   }
   if (silences > 0)
-    notes.note("no new INS pose for more than 1.5 s " + std::to_string(silences) +
-               " times, first at " + digits(first_silence) + " s; driving there is not used");
-  if (jumps > 0)
-    notes.note("the INS announces " + std::to_string(jumps) + " jumps, first at " +
-               digits(first_jump) + " s; each begins a new segment");
+    notes.add(findings::kInsSilences, {std::to_string(silences), digits(first_silence)});
+  if (jumps > 0) notes.add(findings::kJumpsAnnounced, {std::to_string(jumps), digits(first_jump)});
 }
 
 void checkCommandGaps(const std::vector<HeardSpan>& spans, Diagnostics& notes) {
@@ -120,9 +99,7 @@ void checkCommandGaps(const std::vector<HeardSpan>& spans, Diagnostics& notes) {
     longest = std::max(longest, spans[i].commands.begin() - spans[i - 1].commands.end);
   }
   if (gaps > 0)
-    notes.note("MOTOR is silent for more than 0.3 s " + std::to_string(gaps) + " times (first at " +
-               digits(first) + " s, longest " + digits(longest) +
-               " s); each silence ends a segment");
+    notes.add(findings::kMotorSilences, {std::to_string(gaps), digits(first), digits(longest)});
 }
 
 constexpr size_t kFewClashes = 5;
@@ -189,8 +166,7 @@ void checkRepeated(const std::string& channel, const std::vector<Stamp>& stamps,
   for (size_t i = 1; i < stamps.size(); ++i) {
     run = sameMessage(stamps[i], stamps[i - 1]) ? run + 1 : 1;
     if (run == kRepeated)
-      return notes.fatal("the " + channel + " is frozen: one message of " +
-                         digits(log.seconds(stamps[i].utime)) + " s comes again and again");
+      return notes.add(findings::kMessageFrozen, {channel, digits(log.seconds(stamps[i].utime))});
   }
 }
 
@@ -199,30 +175,21 @@ void checkChannel(const std::string& channel, const std::vector<Stamp>& stamps, 
   checkRepeated(channel, stamps, log, notes);
   const size_t falls = seqFallsBack(stamps);
   if (std::max(falls, clashes) < std::max(kFewClashes, stamps.size() / 100)) {
-    if (falls > 0)
-      notes.note(channel + "'s publisher was started again " + std::to_string(falls) +
-                 " times, or messages came out of order");
+    if (falls > 0) notes.add(findings::kPublisherRestarts, {channel, std::to_string(falls)});
     return;
   }
   if (const auto place = clockWentBack(stamps))
-    return notes.fatal("clock jump: " + channel + " goes back at " +
-                       digits(log.seconds(place->utime)) +
-                       " s, and its messages of both times are mixed; cut the log there");
-  notes.fatal("two robots in one log: " + channel + " has two publishers (its seq falls back " +
-              std::to_string(falls) + " times, " + std::to_string(clashes) +
-              " messages contradict another one of the same time); record one robot");
+    return notes.add(findings::kTimesMixed, {channel, digits(log.seconds(place->utime))});
+  notes.add(findings::kTwoPublishers, {channel, std::to_string(falls), std::to_string(clashes)});
 }
 
 }  // namespace
 
 void checkChannels(const SortedLog& log, const std::vector<HeardSpan>& spans, Diagnostics& notes) {
-  const std::string of = " among " + std::to_string(log.drive.events.size()) + " events";
-  if (log.motor.empty())
-    notes.fatal("no MOTOR message" + of + ": the commands are unknown; record channel MOTOR");
-  if (log.ins.empty())
-    notes.fatal("no INS message" + of + ": the motion is unknown; record channel INS");
-  if (!log.motor.empty() && spans.empty())
-    notes.fatal("the bridge never drives or stands armed for a second: no command is known");
+  const std::string events = std::to_string(log.drive.events.size());
+  if (log.motor.empty()) notes.add(findings::kNoMotor, {events});
+  if (log.ins.empty()) notes.add(findings::kNoIns, {events});
+  if (!log.motor.empty() && spans.empty()) notes.add(findings::kNeverDriven);
   checkKinds(log, notes);
   checkHeld(spans, notes);
   checkSilences(spans, notes);
@@ -238,9 +205,7 @@ void checkPublishers(const SortedLog& log, Diagnostics& notes) {
     if (ids.empty() || ids.back() != config.config_boot_id) ids.push_back(config.config_boot_id);
   }
   for (const auto& [process, ids] : boots)
-    if (bootsAlternate(ids))
-      return notes.fatal("two robots in one log: CONFIG of " + process +
-                         " alternates between two boots; record one robot");
+    if (bootsAlternate(ids)) return notes.add(findings::kTwoBoots, {process});
 }
 
 }  // namespace tread::gap

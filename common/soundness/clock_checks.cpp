@@ -63,22 +63,18 @@ void checkStamps(const std::string& channel, const std::vector<Stamp>& stamps, c
   for (size_t i = 1; i < stamps.size(); ++i) {
     const int64_t step = stamps[i].utime - stamps[i - 1].utime;
     const int64_t logged = stamps[i].logged - stamps[i - 1].logged;
-    const std::string place = " at " + digits(log.seconds(stamps[i - 1].utime)) + " s";
+    const std::string place = digits(log.seconds(stamps[i - 1].utime));
     if (step < -kOvertaking)
-      return notes.fatal("clock jump: " + channel + " goes back by " +
-                         digits(-1e-6 * static_cast<double>(step), 2) + " s" + place +
-                         "; cut the log there");
+      return notes.add(findings::kClockGoesBack,
+                       {channel, digits(-1e-6 * static_cast<double>(step), 2), place});
     overtaken += step < 0 ? 1 : 0;
     const bool parts = same_pace && std::abs(logged - step) > kClockStep && clocksPart(stamps, i);
     if (parts && step > kClockStep)
-      return notes.fatal("clock jump: " + channel + " goes on by " +
-                         digits(1e-6 * static_cast<double>(step), 2) + " s" + place +
-                         ", the recorder by " + digits(1e-6 * static_cast<double>(logged), 2) +
-                         " s; cut the log there");
+      return notes.add(findings::kClockGoesOn,
+                       {channel, digits(1e-6 * static_cast<double>(step), 2), place,
+                        digits(1e-6 * static_cast<double>(logged), 2)});
   }
-  if (overtaken > 0)
-    notes.note(std::to_string(overtaken) + " messages of " + channel +
-               " come out of order; sorted by their own time");
+  if (overtaken > 0) notes.add(findings::kOutOfOrder, {std::to_string(overtaken), channel});
 }
 
 /// Threshold of motion around a pause. If MOTOR pauses with the INS, and neither misses a number,
@@ -182,15 +178,12 @@ bool stoodStill(const Pause& pause, bool with_motor) {
   return one_message && (less_way || (with_motor && less_turn));
 }
 
-std::string lineOf(const Pause& pause, const std::string& place, bool with_motor) {
-  std::string line = std::string("clock jump: INS") + (with_motor ? " and MOTOR go" : " goes") +
-                     " on by " + digits(pause.length, 2) + " s" + place +
-                     ", but the robot moves on by " + digits(pause.moved, 2) + " m at " +
-                     digits(pause.motion.speed, 2) + " m/s";
-  if (with_motor)
-    line += " and turns by " + digits(pause.turned, 2) + " rad at " + digits(pause.motion.rate, 2) +
-            " rad/s";
-  return line + "; cut the log there";
+void addJump(const Pause& pause, const std::string& place, bool with_motor, Diagnostics& notes) {
+  const std::string turn = " and turns by " + digits(pause.turned, 2) + " rad at " +
+                           digits(pause.motion.rate, 2) + " rad/s";
+  notes.add(findings::kClockLeavesRobot,
+            {with_motor ? "INS and MOTOR go" : "INS goes", digits(pause.length, 2), place,
+             digits(pause.moved, 2), digits(pause.motion.speed, 2), with_motor ? turn : ""});
 }
 
 /// Checks for pauses after which the robot is where it was one message later, although it moves:
@@ -210,18 +203,15 @@ void checkPauses(const SortedLog& log, Numbering numbering, Diagnostics& notes) 
     const auto before = beside(ins, i - 1, -1);
     const auto after = beside(ins, i, 1);
     if (!before || !after) continue;
-    const std::string place = " at " + digits(log.seconds(ins[i - 1].utime)) + " s";
+    const std::string place = digits(log.seconds(ins[i - 1].utime));
     if (!before->moves(least) || !after->moves(least)) {
       if (with_motor)
-        notes.note("INS and MOTOR are silent for " + digits(1e-6 * static_cast<double>(step), 2) +
-                   " s" + place +
-                   " and miss no number, while the robot stands: if its clock jumped there, what "
-                   "depends on time is wrong");
+        notes.add(findings::kPauseStanding, {digits(1e-6 * static_cast<double>(step), 2), place});
       continue;
     }
     const Pause pause = pauseBetween(*before, *after, step);
     if (!stoodStill(pause, with_motor)) continue;
-    return notes.fatal(lineOf(pause, place, with_motor));
+    return addJump(pause, place, with_motor, notes);
   }
 }
 
@@ -235,8 +225,7 @@ void checkClocks(const SortedLog& log, Numbering numbering, Diagnostics& notes) 
   if (!log.motor.empty()) last = std::max(last, log.motor.back().utime);
   if (!log.ins.empty()) last = std::max(last, log.ins.back().utime);
   if (last - log.origin > kLongestLog)
-    notes.fatal("clock jump: INS and MOTOR span " + digits(log.seconds(last) / 3600.0) +
-                " hours; are both on the robot's clock?");
+    notes.add(findings::kClockSpan, {digits(log.seconds(last) / 3600.0)});
 }
 
 }  // namespace tread::gap

@@ -151,12 +151,9 @@ void checkOffset(const SortedLog& log, const std::vector<HeardSpan>& spans, Diag
   if (is_usual || best.second < enough || best.second < usual.second + kBetter ||
       best.second < other + kAloneBetter)
     return;
-  notes.contradiction(
-      "commands and poses are on two clocks: the motion fits its commands if it "
-      "comes " +
-      digits(std::abs(best.first)) + " s " + (best.first > 0.0 ? "after" : "before") +
-      " them (correlation " + digits(std::sqrt(best.second), 2) + ", without this " +
-      digits(std::sqrt(usual.second), 2) + "); correct the times of one of them by that");
+  notes.add(findings::kTwoClocks,
+            {digits(std::abs(best.first)), best.first > 0.0 ? "after" : "before",
+             digits(std::sqrt(best.second), 2), digits(std::sqrt(usual.second), 2)});
 }
 
 }  // namespace tread::gap

@@ -62,15 +62,13 @@ std::vector<Execution> recordsOf(const SortedLog& log) {
 void takeOutBroken(Drive& drive, Diagnostics& notes) {
   const std::vector<size_t> broken = brokenSegments(drive);
   if (broken.empty()) return;
-  const std::string of =
-      std::to_string(broken.size()) + " of " + std::to_string(drive.segments.size()) +
-      " segments have poses in a wrong frame (heading against gyro, or way against heading), "
-      "first at " +
-      digits(drive.segments[broken.front()].begin()) + " s";
-  if (static_cast<double>(broken.size()) > kManyBroken * static_cast<double>(drive.segments.size()))
-    return notes.note(of + "; too many to be exceptions, so they stay");
-  notes.note(of + "; left out");
-  removeSegments(broken, drive);
+  const bool many =
+      static_cast<double>(broken.size()) > kManyBroken * static_cast<double>(drive.segments.size());
+  notes.add(findings::kSegmentsLeftOut,
+            {std::to_string(broken.size()), std::to_string(drive.segments.size()),
+             digits(drive.segments[broken.front()].begin()),
+             many ? "too many to be exceptions, so they stay" : "left out"});
+  if (!many) removeSegments(broken, drive);
 }
 
 constexpr double kSameGauge = 0.02;  // relative: accuracy of tape measures and data sheets
@@ -130,7 +128,7 @@ Drive toDrive(const DriveLog& messages) {
   drive.segments = segmentsOf(spans, drive.encoders);
   drive.executions = executionsOf(drive.layout, drive.segments, recordsOf(log));
   Diagnostics notes(drive.name);
-  for (const std::string& note : messages.notes) notes.note(note);
+  for (const std::string& note : messages.notes) notes.add(findings::kFileNote, {note});
   checkPublishers(log, notes);
   checkOffset(log, spans, notes);
   checkClocks(log, drive.imported ? Numbering::kByImport : Numbering::kByRobot, notes);
@@ -155,7 +153,7 @@ Drive readDrive(const std::string& path) {
   const double span = 1e-6 * static_cast<double>(events.back().utime - events.front().utime);
   drive.lost = log.damage + "; its " + std::to_string(events.size()) + " whole events, " +
                digits(span, 0) + " s, are used; copy the log again if the robot still has it";
-  drive.notes.insert(drive.notes.begin(), LogNote{drive.name, drive.lost, false});
+  drive.notes.insert(drive.notes.begin(), LogNote{drive.name, drive.lost});
   return drive;
 }
 
@@ -200,7 +198,7 @@ Drive readDriveFor(const ModelDocument& model, const std::string& path) {
 Drive readSoundDriveFor(const ModelDocument& model, const std::string& path) {
   Drive drive = readDriveFor(model, path);
   for (const LogNote& note : drive.notes)
-    if (note.fatal) throw std::runtime_error(path + ": " + note.what);
+    if (note.isFatal()) throw std::runtime_error(path + ": " + note.what);
   if (drive.executions.empty())
     throw std::runtime_error(path + ": nothing was driven for two seconds; give a log of a drive");
   return drive;

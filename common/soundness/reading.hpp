@@ -94,6 +94,8 @@ struct HeardSpan {
   SpanReadings ins;
 };
 
+inline constexpr double kInsSilence = 1.5;  ///< [s] without a new pose, which ends a track
+
 /// Length of an execution [s].
 inline constexpr double kExecutionLength = 2.0;
 

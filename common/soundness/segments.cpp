@@ -10,7 +10,6 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kInsSilence = 1.5;            // [s]
 constexpr double kLead = 3.0;                  // [s] of commands before poses; longer than any lag
 constexpr double kEncoderDelay = 0.3;          // [s] at the begin for which encoders are valid
 constexpr double kSameSpeed = 0.35;            // [m/s] of encoders held for a quarter second

@@ -52,27 +52,27 @@ const char* unitOf(double gain) {
 
 class Checker {
  public:
-  Checker(const Drive& drive, const std::vector<PoseIncrement>& increments)
-      : drive_(drive), increments_(increments) {
+  Checker(const Drive& drive, const std::vector<PoseIncrement>& increments, Diagnostics& notes)
+      : drive_(drive), increments_(increments), notes_(notes) {
     const double reach = lagReach(drive);
     lags_ = lagGrid(-reach, reach, 0.1);
   }
 
-  MotionCheck run() {
+  void run() {
     checkPlausible();
-    if (drive_.layout == VehicleLayout::kOmni) return std::move(result_);
-    if (result_.problems.empty()) checkHeading();
-    describe();
-    if (!result_.problems.empty()) return std::move(result_);
-    checkSigns();
-    if (result_.problems.empty()) checkGains();
-    return std::move(result_);
+    if (drive_.layout != VehicleLayout::kOmni) compare();
+    notes_.append(problems_.notes());
   }
 
  private:
-  using Rate = std::function<double(const TrackCommand&)>;
+  void compare() {
+    if (!problems_.hasFatal()) checkHeading();
+    describe();
+    if (!problems_.hasFatal()) checkSigns();
+    if (!problems_.hasFatal()) checkGains();
+  }
 
-  void problem(const std::string& what) { result_.problems.push_back(what); }
+  using Rate = std::function<double(const TrackCommand&)>;
 
   LagTable table(const std::vector<double>& rates, const Rate& command) const {
     return {increments_, rates, commandSums(drive_, command), lags_};
@@ -126,16 +126,10 @@ class Checker {
     const double speed = nearlyLargest(way_rates);
     const double rate = nearlyLargest(gyro);
     const double turn = nearlyLargest(turns(1.0));
-    if (rate > kPlausibleTurn)
-      problem("the gyro reads up to " + digits(rate) +
-              " rad/s, and no ground vehicle turns so: are these degrees per second?");
-    if (turn > kPlausibleTurn)
-      problem("the heading turns by up to " + digits(turn) +
-              " rad/s, and no ground vehicle does: are these degrees?");
+    if (rate > kPlausibleTurn) problems_.add(findings::kGyroTooFast, {digits(rate)});
+    if (turn > kPlausibleTurn) problems_.add(findings::kHeadingTooFast, {digits(turn)});
     if (speed > std::max(kPlausibleSpeed, fastestOf(drive_.layout)))
-      problem("the positions go by up to " + digits(speed) +
-              " m/s, and no ground vehicle does: are these mm or cm, or is the time in another "
-              "unit?");
+      problems_.add(findings::kPositionsTooFast, {digits(speed)});
   }
 
   void checkHeading() {
@@ -146,36 +140,32 @@ class Checker {
     if (isTurned(heading_) && follows(table(speeds(heading_), driveRate())) < 0)
       heading_.offset = wrapAngle(heading_.offset + kPi);
     if (heading_.factor == kDegree)
-      problem("the course agrees with the heading if that is in degrees, but not in radians");
+      problems_.add(findings::kHeadingInDegrees);
     else if (heading_.factor == 1.0 / kDegree)
-      problem("the course agrees with the heading if that is in radians, but not in degrees");
+      problems_.add(findings::kHeadingInRadians);
     else if (heading_.factor == -1.0)
       nameMirror();
     else if (isTurned(heading_))
-      problem("the way goes " + digits(std::abs(heading_.offset) / kDegree, 0) +
-              " degrees to the " + (heading_.offset > 0.0 ? "left" : "right") +
-              " of the heading all the time: is its zero north instead of east (heading: zero), or "
-              "are x and y those of another frame?");
+      problems_.add(findings::kHeadingTurned, {digits(std::abs(heading_.offset) / kDegree, 0),
+                                               heading_.offset > 0.0 ? "left" : "right"});
   }
 
   /// Course and heading are mirror images of each other: the commands show which is wrong.
   void nameMirror() {
     const int turn = follows(table(turns(1.0), turnRate()));
     const bool quarter = std::abs(heading_.offset) > kPi / 4.0;
-    const std::string mirrored =
-        "the course agrees with the heading only if one of them is mirrored: ";
+    std::string which = "yaw is clockwise, or x or y is inverted";
     if (turn > 0) {
       turn_factor_ = 1.0;
-      problem(mirrored + (quarter ? "x and y are swapped"
-                                  : "y (or x) is inverted; the heading turns with the commands"));
+      which = quarter ? "x and y are swapped"
+                      : "y (or x) is inverted; the heading turns with the commands";
     } else if (turn < 0) {
-      problem(mirrored + "yaw counts clockwise" +
+      which = std::string("yaw counts clockwise") +
               (quarter ? " from north, as a compass does (heading: {sense: clockwise, zero: 90})"
                        : " (heading: {sense: clockwise})") +
-              "; it turns against the commands, too");
-    } else {
-      problem(mirrored + "yaw is clockwise, or x or y is inverted");
+              "; it turns against the commands, too";
     }
+    problems_.add(findings::kMirrored, {which});
   }
 
   static Rate driveRate() {
@@ -196,15 +186,11 @@ class Checker {
     gauge_ = speed_commands && !car && gauge > 0.0 ? gauge : 0.0;
     const auto line = [&](const char* what, const LagTable& of,
                           const std::optional<LagMatch>& match, const std::string& gain) {
-      if (!match)
-        return result_.lines.push_back(std::string(what) +
-                                       ": too little changes to be "
-                                       "compared with the commands");
-      result_.lines.push_back(
-          std::string(what) + ": " + gain + ", correlation " + digits(match->correlation, 2) +
-          " over " + std::to_string(match->rows) + " intervals, " +
-          (tellsLag(of, *match) ? digits(match->lag, 2) + " s after the commands"
-                                : "commands too steady to see the delay"));
+      if (!match) return notes_.add(findings::kTooSteady, {what});
+      notes_.add(findings::kFollows,
+                 {what, gain, digits(match->correlation, 2), std::to_string(match->rows),
+                  tellsLag(of, *match) ? digits(match->lag, 2) + " s after the commands"
+                                       : "commands too steady to see the delay"});
     };
     const double v = speed_ ? speed_->slope : 0.0;
     const double w = turn_ ? turn_->slope : 0.0;
@@ -226,22 +212,13 @@ class Checker {
     const LagTable turn = table(omega, turnRate());
     const int forward = follows(speed);
     const int left = follows(turn);
-    const auto against = [&](const LagTable& of) {
-      return " (correlation " + digits(correlation(of, -1.0), 2) + ")";
-    };
-    if (forward < 0 && left < 0)
-      return problem("it goes backwards and turns right when commanded forwards and left" +
-                     against(turn) + ": both commands have the other sign");
-    if (left < 0)
-      return problem("the robot turns against its commands" + against(turn) +
-                     ": left and right are swapped, or y, yaw and gyro are inverted (z down)");
-    if (forward < 0)
-      return problem(
-          "the robot goes backwards when commanded forward" + against(speed) +
-          ": the heading is turned half round, or the commands are negative and swapped");
+    const auto against = [&](const LagTable& of) { return digits(correlation(of, -1.0), 2); };
+    if (forward < 0 && left < 0) return problems_.add(findings::kBothReversed, {against(turn)});
+    if (left < 0) return problems_.add(findings::kTurnsAgainst, {against(turn)});
+    if (forward < 0) return problems_.add(findings::kGoesBackwards, {against(speed)});
     if (forward > 0 && left > 0) return checkBody(v, omega, speed, turn);
     checkOneSide(v, omega, speed, turn);
-    if (result_.problems.empty()) checkBody(v, omega, speed, turn);
+    if (!problems_.hasFatal()) checkBody(v, omega, speed, turn);
   }
 
   /// Speed follows the difference of the sides, and turn their sum: one of them is negative.
@@ -253,9 +230,7 @@ class Checker {
     for (const double sign : {1.0, -1.0})
       if (sign * correlation(speed_by_turn, sign) > kClear &&
           sign * correlation(turn_by_speed, sign) > kClear)
-        problem(std::string("speed goes with the difference of the commands and turn with their "
-                            "sum: the ") +
-                (sign > 0.0 ? "left" : "right") + " side's command has the other sign");
+        problems_.add(findings::kOneSideReversed, {sign > 0.0 ? "left" : "right"});
   }
 
   /// Speed follows one column, and turn the other: they are body speeds, not sides.
@@ -271,9 +246,7 @@ class Checker {
       const LagTable by_side = table(omega, sides[1 - speed_side]);
       const double about = std::max(correlation(by_side, 1.0), -correlation(by_side, -1.0));
       if (along > kBodyClear && about > kBodyClear && along + about > as_sides + kBodyClearer)
-        return problem(std::string("speed goes with the ") + (speed_side == 0 ? "left" : "right") +
-                       " command alone and turn with the other one alone: these are speed and turn "
-                       "of the body, not commands of two sides");
+        return problems_.add(findings::kBodySpeeds, {speed_side == 0 ? "left" : "right"});
     }
   }
 
@@ -283,18 +256,16 @@ class Checker {
     };
     if (drive_.kind == CommandKind::kTrackSpeed && clear(speed_))
       if (const char* unit = unitOf(speed_->slope); unit != nullptr)
-        problem("the speed is " + digits(speed_->slope, speed_->slope < 0.1 ? 4 : 2) +
-                " of the commanded: " + unit);
+        problems_.add(findings::kSpeedUnit,
+                      {digits(speed_->slope, speed_->slope < 0.1 ? 4 : 2), unit});
     checkWheels();
     checkGyroUnit();
-    if (gauge_ > 0.0 && clear(turn_) && clear(speed_) && result_.problems.empty()) {
+    if (gauge_ > 0.0 && clear(turn_) && clear(speed_) && !problems_.hasFatal()) {
       const double gain = turn_->slope * gauge_;
       if (gain < 3.0 * kDegree)
-        problem("the heading turns " + digits(gain, 4) +
-                " of the commanded: is it in radians, not in degrees?");
+        problems_.add(findings::kTurnInRadians, {digits(gain, 4)});
       else if (gain > 0.2 / kDegree)
-        problem("the heading turns " + digits(gain, 1) +
-                " times the commanded: is it in degrees, not in radians?");
+        problems_.add(findings::kTurnInDegrees, {digits(gain, 1)});
     }
   }
 
@@ -307,14 +278,12 @@ class Checker {
     const LagTable turn = by(turns(turn_factor_), turnRate());
     const bool with_commands = turn_ && turn_->correlation > kClear;
     if (with_commands && goesAgainst(turn, -1.0, 1.0))
-      problem("the robot turns against its wheels' speeds (correlation " +
-              digits(turn.best(0, increments_.size(), -1.0)->correlation, 2) +
-              "), but with its commands: the measured speeds of left and right are swapped");
+      problems_.add(findings::kWheelsSwapped,
+                    {digits(turn.best(0, increments_.size(), -1.0)->correlation, 2)});
     const auto along = by(speeds(heading_), driveRate()).best(0, increments_.size());
     if (!along || along->correlation < kVeryClear) return;
-    if (const char* unit = unitOf(along->slope); unit != nullptr)
-      problem("the speed is " + digits(along->slope, along->slope < 0.1 ? 4 : 2) +
-              " of the wheels' measured one: is that in m/s?");
+    if (unitOf(along->slope) != nullptr)
+      problems_.add(findings::kWheelUnit, {digits(along->slope, along->slope < 0.1 ? 4 : 2)});
   }
 
   void checkGyroUnit() {
@@ -322,17 +291,16 @@ class Checker {
     if (!match || std::abs(match->correlation) < kVeryClear) return;
     const double slope = std::abs(match->slope);
     if (slope > 0.7 / kDegree && slope < 1.4 / kDegree)
-      problem("the heading turns " + digits(slope) +
-              " times as much as the gyro: is the gyro in rad/s, not in degrees per second?");
+      problems_.add(findings::kGyroInRadians, {digits(slope)});
     if (slope > 0.7 * kDegree && slope < 1.4 * kDegree)
-      problem("the heading turns " + digits(slope, 4) +
-              " of what the gyro says: is the gyro in degrees per second?");
+      problems_.add(findings::kGyroInDegrees, {digits(slope, 4)});
   }
 
   const Drive& drive_;
   const std::vector<PoseIncrement>& increments_;
   std::vector<double> lags_;
-  MotionCheck result_;
+  Diagnostics& notes_;
+  Diagnostics problems_{drive_.name};  ///< they follow the comparisons
   HeadingFit heading_;
   double turn_factor_ = 1.0;  ///< of the heading's rate, as far as its unit and sign are known
   double gauge_ = 0.0;        ///< [m] 0 = turns are not commanded in rad/s
@@ -358,8 +326,9 @@ double lagReach(const Drive& drive) {
   return 0.5;
 }
 
-MotionCheck checkMotion(const Drive& drive, const std::vector<PoseIncrement>& increments) {
-  return Checker(drive, increments).run();
+void checkMotion(const Drive& drive, const std::vector<PoseIncrement>& increments,
+                 Diagnostics& notes) {
+  Checker(drive, increments, notes).run();
 }
 
 }  // namespace tread::gap

@@ -2,7 +2,6 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "common/soundness/core/lag_table.hpp"
@@ -28,12 +27,9 @@ inline constexpr double kLever =
     0.8;  // [m] largest distance of the measured point from the centre of rotation
 inline constexpr double kGentle = 0.8;  // [rad] of a turn whose arc is nearly its chord
 
-struct MotionCheck {
-  std::vector<std::string> lines;     ///< of speed and turn: gain, correlation and delay
-  std::vector<std::string> problems;  ///< one line each, named by kind
-};
-
-MotionCheck checkMotion(const Drive& drive, const std::vector<PoseIncrement>& increments);
+/// `notes`: without anything fatal so far.
+void checkMotion(const Drive& drive, const std::vector<PoseIncrement>& increments,
+                 Diagnostics& notes);
 
 /// Whether one rate clearly opposes the other at every lag from `from` to `to` [s].
 /** Alternating commands agree and disagree equally well, at different lags. */

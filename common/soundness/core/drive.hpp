@@ -12,6 +12,7 @@
 
 #include "common/geometry/track.hpp"
 #include "common/pattern/pattern.hpp"
+#include "common/soundness/core/log_findings.hpp"
 
 namespace tread::gap {
 
@@ -83,14 +84,6 @@ struct CurrentSample {
   double time = 0.0;   ///< [s]
   double left = 0.0;   ///< [A]
   double right = 0.0;  ///< [A]
-};
-
-/// One line about the state of a log.
-struct LogNote {
-  std::string log;
-  std::string what;          ///< one clear line
-  bool fatal = false;        ///< nothing can be concluded from this log
-  bool of_commands = false;  ///< about commands against the motion
 };
 
 /// What a log records about its import.

@@ -18,8 +18,8 @@ constexpr double kPrecedes = 0.1;  // of correlation^2 that a motion before its 
 constexpr double kLagStep = 0.6;   // [s] more than any vehicle's lag varies within a drive
 constexpr double kBetterSquare = 0.25;  // of correlation^2 that another lag must gain
 constexpr double kLagGrid = 0.02;       // [s] between the tested lags of the gyro
-constexpr const char* kFitted = "; the fit determines the delay of the heading (INS latency)";
-constexpr const char* kAhead = "; the heading is ahead of the gyro: are both stamped by one clock?";
+constexpr const char* kFitted = "the fit determines the delay of the heading (INS latency)";
+constexpr const char* kAhead = "the heading is ahead of the gyro: are both stamped by one clock?";
 constexpr double kPart = 60.0;       // [s] of increments
 constexpr double kLeastDrift = 0.3;  // [s] over a drive
 constexpr double kEvenly = 0.9;      // share of the lags' differences that a drift must explain
@@ -80,10 +80,8 @@ void checkFrozenGyro(const Drive& drive, Diagnostics& notes) {
       const double time = sample.time - from->time;
       const double turned = std::abs(yaw - yaw_from);
       if (time > 3.0 && turned > 1.0 + 3.0 * std::abs(from->omega) * time)
-        return notes.fatal("the gyro is frozen: it reads " + digits(from->omega, 4) +
-                           " rad/s all the time from " + digits(from->time) + " to " +
-                           digits(sample.time) + " s while the heading turns " + digits(turned) +
-                           " rad; check the INS");
+        return notes.add(findings::kGyroFrozen, {digits(from->omega, 4), digits(from->time),
+                                                 digits(sample.time), digits(turned)});
     }
   }
 }
@@ -126,12 +124,10 @@ bool clocksDrift(const std::vector<PartLag>& parts, Diagnostics& notes) {
   const double slope = tl / tt;
   const double span = parts.back().end - parts.front().begin;
   if (std::abs(slope) * span < kLeastDrift || tl * tl < kEvenly * tt * ll) return false;
-  notes.contradiction("the clocks of INS and MOTOR drift: the motion follows its commands by " +
-                      digits(lag + slope * (parts.front().begin - t), 2) + " s at " +
-                      digits(parts.front().begin, 0) + " s and by " +
-                      digits(lag + slope * (parts.back().end - t), 2) + " s at " +
-                      digits(parts.back().end, 0) + " s, " + digits(1e6 * slope, 0) +
-                      " us more each second; correct the times of one of them");
+  notes.add(findings::kClocksDrift,
+            {digits(lag + slope * (parts.front().begin - t), 2), digits(parts.front().begin, 0),
+             digits(lag + slope * (parts.back().end - t), 2), digits(parts.back().end, 0),
+             digits(1e6 * slope, 0)});
   return true;
 }
 
@@ -150,10 +146,8 @@ void checkParts(const LagTable& table, const std::vector<PartLag>& parts,
     const double left = as_whole ? square(std::max(0.0, as_whole->correlation)) : 0.0;
     if (std::abs(part.match.lag - whole.lag) > kLagStep &&
         square(part.match.correlation) - left > kBetterSquare)
-      return notes.contradiction("clock jump between INS and MOTOR: from " + digits(part.begin) +
-                                 " to " + digits(part.end) +
-                                 " s the motion follows the commands by " + digits(part.match.lag) +
-                                 " s, elsewhere by " + digits(whole.lag) + " s; cut the log there");
+      return notes.add(findings::kLagJumps, {digits(part.begin), digits(part.end),
+                                             digits(part.match.lag), digits(whole.lag)});
   }
 }
 
@@ -166,8 +160,7 @@ void checkLag(const LagTable& table, const std::vector<PoseIncrement>& increment
   const auto usual = table.best(0, increments.size(), 1.0, -kEarlier, kLongestLag);
   const double left = usual ? square(std::max(0.0, usual->correlation)) : 0.0;
   if (best->lag < -kEarlier && square(best->correlation) - left > kPrecedes)
-    return notes.contradiction("the motion precedes its commands by " + digits(-best->lag) +
-                               " s: INS and MOTOR are not on one clock");
+    return notes.add(findings::kMotionPrecedes, {digits(-best->lag)});
   checkParts(table, parts, increments, *best, notes);
 }
 
@@ -244,22 +237,18 @@ void checkGyro(const Drive& drive, Diagnostics& notes) {
   const auto increments = poseIncrements(drive);
   const LagTable table = gyroTable(drive, increments);
   const auto match = table.best(0, increments.size());
-  if (!match || !turns(increments))
-    return notes.note("no gyro to compare with the heading, or no turns: not compared");
+  if (!match || !turns(increments)) return notes.add(findings::kNoGyro);
   if (goesAgainst(table, -1.0, 1.0)) {
     const auto against = table.best(0, increments.size(), -1.0);
-    return notes.contradiction("flipped sign: the gyro turns against the heading (slope " +
-                               digits(against->slope, 2) + ", correlation " +
-                               digits(against->correlation, 2) + " over " +
-                               std::to_string(against->rows) +
-                               " intervals); check how the INS is mounted and which sign it uses");
+    return notes.add(findings::kGyroFlipped,
+                     {digits(against->slope, 2), digits(against->correlation, 2),
+                      std::to_string(against->rows)});
   }
-  const std::string r = "correlation " + digits(match->correlation, 2) + " over " +
-                        std::to_string(match->rows) + " intervals";
-  if (match->correlation < kClear) return notes.note("gyro and heading hardly agree (" + r + ")");
+  const std::string r = digits(match->correlation, 2), rows = std::to_string(match->rows);
+  if (match->correlation < kClear) return notes.add(findings::kGyroHardlyAgrees, {r, rows});
   // Steady turns show little of a lag: the fit, which uses the commands, determines it.
-  notes.note("gyro and heading agree: the heading turns " + digits(match->slope, 3) +
-             " of the gyro; " + r + (isAhead(table, *match) ? kAhead : kFitted));
+  notes.add(findings::kGyroAgrees,
+            {digits(match->slope, 3), r, rows, isAhead(table, *match) ? kAhead : kFitted});
 }
 
 void checkLags(const Drive& drive, const std::vector<PoseIncrement>& increments,
@@ -276,16 +265,12 @@ std::vector<LogNote> validateLog(const Drive& drive) {
   Diagnostics notes(drive.name);
   const auto increments = poseIncrements(drive);
   if (increments.empty()) {
-    notes.fatal(
-        "no motion with known commands: no two new poses are within 1.2 s while MOTOR contains the "
-        "commands");
+    notes.add(findings::kNoKnownMotion);
     return notes.notes();
   }
-  const MotionCheck motion = checkMotion(drive, increments);
-  for (const std::string& line : motion.lines) notes.following(line);
-  for (const std::string& problem : motion.problems) notes.contradiction(problem);
+  checkMotion(drive, increments, notes);
   // Signals read in the wrong unit or sign prove nothing about gyro and clocks.
-  if (!motion.problems.empty()) return notes.notes();
+  if (notes.hasFatal()) return notes.notes();
   checkGyro(drive, notes);
   checkLags(drive, increments, notes);
   checkMidway(drive, increments, notes);

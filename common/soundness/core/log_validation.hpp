@@ -5,11 +5,9 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "common/soundness/core/drive.hpp"
-#include "common/words/words.hpp"
 
 namespace tread::gap {
 
@@ -35,24 +33,6 @@ struct LagMatch {
   size_t rows = 0;
   double spread = 0.0;          ///< RMS of the following rate about its mean
   double leading_spread = 0.0;  ///< the same for the leading rate
-};
-
-/// Notes about one log, in the order of their making.
-class Diagnostics {
- public:
-  explicit Diagnostics(std::string log) : log_(std::move(log)) {}
-
-  /// The log is unusable.
-  void fatal(const std::string& what) { notes_.push_back({log_, what, true}); }
-  void note(const std::string& what) { notes_.push_back({log_, what, false}); }
-  /// The same, for commands against the motion.
-  void contradiction(const std::string& what) { notes_.push_back({log_, what, true, true}); }
-  void following(const std::string& what) { notes_.push_back({log_, what, false, true}); }
-  std::vector<LogNote> notes() { return std::move(notes_); }
-
- private:
-  std::string log_;
-  std::vector<LogNote> notes_;
 };
 
 /// [m/s] beyond which a pose has jumped.

@@ -44,10 +44,6 @@ std::vector<Window> windowsOf(const std::vector<PoseIncrement>& increments) {
   return windows;
 }
 
-std::string times(const Window& from, const Window& to) {
-  return "from " + digits(from.begin) + " to " + digits(to.end) + " s";
-}
-
 /// The longest run of windows that differ from the majority, with undecided ones in between;
 /// nullopt if too few are decided. `signs`: +1, -1, 0 = undecided; `sure`: one window alone is
 /// enough.
@@ -129,8 +125,8 @@ void checkSign(const Followed& followed, const std::vector<Window>& windows, Dia
     sure.push_back(speaks && followed.one_is_enough && std::abs(match->correlation) > kVeryClear);
   }
   if (const auto found = minority(signs, sure))
-    notes.fatal("flipped sign: " + times(windows[found->first], windows[found->second]) + " " +
-                followed.what + ", elsewhere it does not; cut the log there");
+    notes.add(findings::kFlipsMidway, {digits(windows[found->first].begin),
+                                       digits(windows[found->second].end), followed.what});
 }
 
 /// Checks for position and heading that agree in one part and not in another.
@@ -159,21 +155,8 @@ void checkCourses(const std::vector<PoseIncrement>& increments, const std::vecto
   const auto found = minority(signs, sure);
   if (found &&
       std::count(signs.begin(), signs.end(), -1) < std::count(signs.begin(), signs.end(), 1))
-    notes.fatal(times(windows[found->first], windows[found->second]) +
-                " the way does not go along the heading, else it does: heading or position have "
-                "turned; cut the log there");
-}
-
-/// Time between two instants during which commands moved the robot [s].
-double drivenBetween(VehicleLayout layout, const Segment& segment, double from, double to,
-                     double least) {
-  double sum = 0.0;
-  for (size_t i = 0; i < segment.commands.size(); ++i) {
-    if (driveOf(layout, segment.commands[i].command) <= least) continue;
-    const double end = i + 1 < segment.commands.size() ? segment.commands[i + 1].time : segment.end;
-    sum += std::max(0.0, std::min(to, end) - std::max(from, segment.commands[i].time));
-  }
-  return sum;
+    notes.add(findings::kTurnsMidway,
+              {digits(windows[found->first].begin), digits(windows[found->second].end)});
 }
 
 bool isSame(double a, double b) {
@@ -208,16 +191,18 @@ struct Frozen {
 /** A gyro's noise is never constant, not even while the robot is held; a gyro that reads exactly 0
  * may have no noise. */
 void checkFrozen(const Drive& drive, Diagnostics& notes) {
+  for (const LogNote& note : drive.notes)
+    if (note.is(findings::kInsFrozen)) return;  // the reader has found it
   const double least = kDriving * largestCommand(drive);
   for (const Segment& segment : drive.segments) {
     Frozen run;
     const auto told = [&] {
       if (run.rows < kFrozenRows || run.pose == nullptr ||
-          drivenBetween(drive.layout, segment, run.first->time, run.last->time, least) < kFrozen)
+          drivenBetween(drive.layout, segment.commands, segment.end, run.first->time,
+                        run.last->time, least) < kFrozen)
         return false;
-      notes.fatal("the INS is frozen: it repeats the same " + std::to_string(run.rows) +
-                  " times from " + digits(run.first->time) + " to " + digits(run.last->time) +
-                  " s while the robot is driven; cut the log there");
+      notes.add(findings::kInsRepeats,
+                {std::to_string(run.rows), digits(run.first->time), digits(run.last->time)});
       return true;
     };
     for (const InsSample& sample : segment.ins) {

@@ -64,9 +64,7 @@ void checkCourse(const std::vector<PoseIncrement>& increments, Diagnostics& note
     ++rows;
   }
   if (rows < 20 || along >= kLeastAlong * all) return;
-  notes.fatal("only " + digits(100.0 * along / all, 0) +
-              " % of the way is along the heading: position and heading do not belong together (a "
-              "mirrored or turned map?)");
+  notes.add(findings::kCourseOff, {digits(100.0 * along / all, 0)});
 }
 
 /// Times in which a segment commands zero for long.
@@ -151,6 +149,17 @@ double largestCommand(const Drive& drive) {
   return largest;
 }
 
+double drivenBetween(VehicleLayout layout, const std::vector<CommandSample>& commands, double end,
+                     double from, double to, double least) {
+  double sum = 0.0;
+  for (size_t i = 0; i < commands.size(); ++i) {
+    const double begin = std::max(from, commands[i].time);
+    const double until = std::min(to, i + 1 < commands.size() ? commands[i + 1].time : end);
+    if (until > begin && driveOf(layout, commands[i].command) >= least) sum += until - begin;
+  }
+  return sum;
+}
+
 size_t differentCommands(const Drive& drive) {
   const double largest = largestCommand(drive);
   std::vector<std::array<long, Command::kMaxChannels>> all;
@@ -171,19 +180,15 @@ void checkPoses(const Drive& drive, const std::vector<PoseIncrement>& increments
   if (steps.durations.empty()) return;
   const auto count = static_cast<double>(steps.durations.size());
   const double longest = *std::max_element(steps.durations.begin(), steps.durations.end());
-  notes.note("new poses every " + digits(quantileOf(steps.durations, 0.5), 2) +
-             " s as a rule, longest " + digits(longest, 2) + " s; " +
-             digits(100.0 * (1.0 - (count + 1.0) / static_cast<double>(steps.readings)), 0) +
-             " % of the INS messages have none");
+  notes.add(findings::kPoseRate,
+            {digits(quantileOf(steps.durations, 0.5), 2), digits(longest, 2),
+             digits(100.0 * (1.0 - (count + 1.0) / static_cast<double>(steps.readings)), 0)});
   if (steps.jumps > 0) {
-    const std::string what = std::to_string(steps.jumps) + " pose jumps faster than " +
-                             digits(fastestOf(drive.layout), 0) + " m/s, first at " +
-                             digits(steps.first_jump) + " s, fastest " +
-                             digits(steps.fastest_jump) + " m/s";
-    if (steps.jumps >= 10 && static_cast<double>(steps.jumps) > kTooManyJumps * count)
-      notes.fatal(what + ": too many for one robot's INS; two robots, or no fix?");
-    else
-      notes.note(what + "; a heavy-tailed likelihood bears them");
+    const bool too_many =
+        steps.jumps >= 10 && static_cast<double>(steps.jumps) > kTooManyJumps * count;
+    notes.add(too_many ? findings::kTooManyJumps : findings::kJumps,
+              {std::to_string(steps.jumps), digits(fastestOf(drive.layout), 0),
+               digits(steps.first_jump), digits(steps.fastest_jump)});
   }
   if (drive.layout != VehicleLayout::kOmni) checkCourse(increments, notes);
 }
@@ -204,17 +209,15 @@ void describeStandstill(const Drive& drive, Diagnostics& notes) {
       }
       for (Spread* spread : {&gyro, &x, &y, &yaw}) spread->endStandstill();
     }
-  if (seconds < 2.0)
-    return notes.note(
-        "it never stands still for long: gyro bias and noise cannot be measured separately");
-  std::string what = digits(seconds, 0) + " s of standstill:";
+  if (seconds < 2.0) return notes.add(findings::kNeverStands);
+  std::string rates, poses;
   if (gyro.known())
-    what += " gyro " + digits(gyro.mean(), 4) + " +- " + digits(gyro.deviation(), 4) + " rad/s";
+    rates = " gyro " + digits(gyro.mean(), 4) + " +- " + digits(gyro.deviation(), 4) + " rad/s";
   if (x.known())
-    what += (gyro.known() ? ", position +- " : " position +- ") +
+    poses = (gyro.known() ? ", position +- " : " position +- ") +
             digits(std::hypot(x.deviation(), y.deviation()), 3) + " m, heading +- " +
             digits(yaw.deviation(), 4) + " rad";
-  notes.note(what);
+  notes.add(findings::kStandstill, {digits(seconds, 0), rates, poses});
 }
 
 void describeDriving(const Drive& drive, const std::vector<PoseIncrement>& increments,
@@ -223,11 +226,10 @@ void describeDriving(const Drive& drive, const std::vector<PoseIncrement>& incre
   std::vector<double> omega = ratesOf(increments, &PoseIncrement::omega);
   std::vector<double> v_omega;
   for (size_t i = 0; i < v.size(); ++i) v_omega.push_back(v[i] * omega[i]);
-  notes.note("driven " + digits(drive.driven(), 0) + " s in " +
-             std::to_string(drive.segments.size()) + " segments: speed " + range(v, "m/s") +
-             ", yaw rate " + range(omega, "rad/s") + ", their product " + range(v_omega, "m/s2") +
-             ", " + std::to_string(differentCommands(drive)) + " commands, " +
-             std::to_string(reversals(drive)) + " reversals, " + slopes(drive));
+  notes.add(findings::kDriven, {digits(drive.driven(), 0), std::to_string(drive.segments.size()),
+                                range(v, "m/s"), range(omega, "rad/s"), range(v_omega, "m/s2"),
+                                std::to_string(differentCommands(drive)),
+                                std::to_string(reversals(drive)), slopes(drive)});
 }
 
 }  // namespace tread::gap

@@ -8,6 +8,9 @@ namespace tread::gap {
 
 /// The largest of the commands that move the vehicle.
 double largestCommand(const Drive& drive);
+/// Seconds between two times in which commands of at least `least` act, the last one until `end`.
+double drivenBetween(VehicleLayout layout, const std::vector<CommandSample>& commands, double end,
+                     double from, double to, double least);
 /// Number of different commands, to a hundredth of the largest one.
 size_t differentCommands(const Drive& drive);
 

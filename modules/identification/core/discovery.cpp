@@ -43,7 +43,7 @@ std::string beyondTheModel(const GapTask& task) {
 /// Why no conclusion is possible; empty if one is.
 std::string reasonNotToTell(const GapTask& task, const Observations& data) {
   for (const LogNote& note : task.log_notes)
-    if (note.fatal) return note.log + ": " + note.what;
+    if (note.isFatal()) return note.log + ": " + note.what;
   const std::string beyond = beyondTheModel(task);
   return beyond.empty() ? tooLittleDriving(data) : beyond;
 }

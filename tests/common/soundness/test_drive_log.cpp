@@ -267,11 +267,11 @@ TEST_CASE(
     for (const LogEvent& event : log.sorted())
       writer.write(event.utime, event.channel, event.bytes.data(), event.bytes.size());
   }
-  for (const LogNote& note : readDrive(path).notes) REQUIRE_FALSE(note.fatal);
+  for (const LogNote& note : readDrive(path).notes) REQUIRE_FALSE(note.isFatal());
   REQUIRE(readDrive(path).name == "cut.lcmlog");
   std::filesystem::resize_file(path, std::filesystem::file_size(path) - 30);
   const Drive cut = readDrive(path);
-  for (const LogNote& note : cut.notes) REQUIRE_FALSE(note.fatal);
+  for (const LogNote& note : cut.notes) REQUIRE_FALSE(note.isFatal());
   REQUIRE_THAT(cut.notes.at(0).what, Catch::Contains("ends in the middle of an event; its 299 "
                                                      "whole events, 10 s, are used"));
   REQUIRE(cut.lost == cut.notes[0].what);
@@ -341,7 +341,7 @@ TEST_CASE(
     INFO(name);
     for (const LogNote& note : result.notes) {
       INFO(note.what);
-      REQUIRE_FALSE(note.fatal);
+      REQUIRE_FALSE(note.isFatal());
     }
     REQUIRE(result.segments.size() <= expected.segments);
     REQUIRE(result.segments.size() + expected.most_broken >= expected.segments);

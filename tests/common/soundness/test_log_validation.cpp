@@ -96,7 +96,7 @@ Drive makeDrive(const Made& made) {
 
 std::string fatal(const Drive& drive) {
   for (const LogNote& note : validateLog(drive))
-    if (note.fatal) return note.what;
+    if (note.isFatal()) return note.what;
   return "";
 }
 
@@ -281,7 +281,7 @@ TEST_CASE("every contradiction is one fatal line that names the log and ends in 
       CHECK_FALSE(note.what.empty());
       CHECK(note.what.find('\n') == std::string::npos);
       CHECK(note.what.find("nan") == std::string::npos);
-      fatal_lines += note.fatal;
+      fatal_lines += note.isFatal();
     }
     CHECK(fatal_lines >= 1);
     CHECK(fatal_lines <= 2);
@@ -312,7 +312,7 @@ TEST_CASE("checks look at motion and not at the place, the direction or the time
   const auto there = validateLog(moved);
   REQUIRE(here.size() == there.size());
   for (size_t i = 0; i < here.size(); ++i) {
-    CHECK(here[i].fatal == there[i].fatal);
+    CHECK(here[i].isFatal() == there[i].isFatal());
     CHECK(here[i].what.substr(0, 5) == there[i].what.substr(0, 5));
   }
 }

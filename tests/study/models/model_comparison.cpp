@@ -65,7 +65,7 @@ void summarise(const RungErrors& errors, ComparisonRow& row) {
 /// Why a log allows no conclusion; empty if it is sound.
 std::string fatalNote(const Drive& drive) {
   for (const LogNote& note : drive.notes)
-    if (note.fatal) return note.what;
+    if (note.isFatal()) return note.what;
   return "";
 }
 

@@ -69,7 +69,7 @@ void say(const std::string& line) {
 void tell(const Drive& drive) {
   say("0 " + drive.name + ": " + threeDigits(drive.driven()) + " s of driving, " +
       std::to_string(drive.executions.size()) + " executions");
-  for (const LogNote& note : drive.notes) say((note.fatal ? "  ! " : "  ") + note.what);
+  for (const LogNote& note : drive.notes) say((note.isFatal() ? "  ! " : "  ") + note.what);
 }
 
 /// Reads logs of one role; refuses duplicates, which would count their noise twice.

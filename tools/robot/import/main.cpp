@@ -150,10 +150,10 @@ int verdictOnMotion(const std::vector<LogEvent>& events, const Arguments& argume
   int verdict = 0;
   for (const gap::LogNote& note :
        gap::toDrive(toDriveLog(arguments.csv, std::move(driven))).notes) {
-    if (!note.fatal && note.of_commands) std::printf("%s\n", note.what.c_str());
-    if (note.fatal && !note.of_commands)
+    if (!note.isFatal() && note.isOfCommands()) std::printf("%s\n", note.what.c_str());
+    if (note.isFatal() && !note.isOfCommands())
       std::printf("tread-gap will not use it: %s\n", note.what.c_str());
-    if (!note.fatal || !note.of_commands) continue;
+    if (!note.isFatal() || !note.isOfCommands()) continue;
     std::fflush(stdout);
     std::fprintf(stderr, "tread-import: %s: the commands do not explain the motion: %s\n",
                  arguments.csv.c_str(), note.what.c_str());

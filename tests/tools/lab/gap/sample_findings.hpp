@@ -140,7 +140,7 @@ inline void addDetails(GapFinding& finding) {
       {"turn_power_limit", "inverse_limit", 41.0, 0.0, 0.8, 0.4},
       {"grip_limit", "inverse_limit", 0.1, 1.0, 0.9, std::numeric_limits<double>::infinity()},
       {"slip_ratio", "slip", 2.1, 0.4, 0.3, 0.021}};
-  finding.source.log_notes = {{"a.lcmlog", "52 % of the poses repeat the one before", false}};
+  finding.source.log_notes = {{"a.lcmlog", "52 % of the poses repeat the one before"}};
   finding.source.blocks = 30;
   finding.source.block_length = 20.0;
   finding.adequacy.p_value = 0.41;

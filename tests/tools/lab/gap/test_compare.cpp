@@ -105,7 +105,7 @@ TEST_CASE("logs of which one is frozen midway repeat nothing, and say which") {
     task.train.push_back(syntheticDrive(task.model, 200.0, 40 + day));
     task.train.back().name = "day" + std::to_string(day + 1);
   }
-  task.train[1].notes.push_back({"day2", "the INS is frozen", true});
+  task.train[1].notes.push_back({"day2", "the INS is frozen", findings::kInsFrozen});
   task.log_notes = task.train[1].notes;
   const Repetition repetition = repeatLogs(task, kSilent);
   CHECK(repetition.alone[0].verdict == GapVerdict::kNoDiscrepancy);

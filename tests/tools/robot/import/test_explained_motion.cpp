@@ -110,7 +110,7 @@ Told told(const std::function<void(DriveRow&)>& change, const std::string& comma
   Told result;
   const auto events = logOf(change, command, gyro, speeds);
   for (const gap::LogNote& note : gap::toDrive(toDriveLog("drive", events)).notes)
-    if (note.of_commands) (note.fatal ? result.problems : result.lines).push_back(note.what);
+    if (note.isOfCommands()) (note.isFatal() ? result.problems : result.lines).push_back(note.what);
   return result;
 }
 
@@ -262,7 +262,7 @@ TEST_CASE("where commands are missing nothing is predicted, executed or measured
   const bool both = GENERATE(false, true);
   const auto events = logOf([](DriveRow&) {}, "unit: m/s", true, false, given, both);
   const gap::Drive drive = gap::toDrive(toDriveLog("drive", events));
-  for (const gap::LogNote& note : drive.notes) CHECK_FALSE(note.fatal);
+  for (const gap::LogNote& note : drive.notes) CHECK_FALSE(note.isFatal());
   CHECK(drive.segments.size() == 6);
   CHECK(drive.driven() == Approx(6 * 44.0).margin(1.0));
   for (const gap::Segment& segment : drive.segments)

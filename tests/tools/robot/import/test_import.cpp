@@ -389,5 +389,5 @@ TEST_CASE("real recordings become logs in all their formats") {
   REQUIRE(whole.motor.back().battery_voltage == Approx(48.25).margin(0.5));
   for (const Imported* log : {&steps, &aligned, &whole})
     for (const gap::LogNote& note : gap::toDrive(toDriveLog("drive", log->events)).notes)
-      CHECK_FALSE((note.of_commands && note.fatal));
+      CHECK_FALSE((note.isOfCommands() && note.isFatal()));
 }

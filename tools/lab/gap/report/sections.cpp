@@ -285,7 +285,7 @@ std::vector<Block> logsBlocks(const GapFinding& finding) {
   Points points;
   for (const LogNote& note : finding.source.log_notes)
     points.items.push_back((note.log.empty() ? "" : note.log + ": ") + note.what +
-                           (note.fatal ? " (nothing can be concluded from this log)" : ""));
+                           (note.isFatal() ? " (nothing can be concluded from this log)" : ""));
   if (finding.source.log_notes.empty()) points.items.push_back("Nothing unusual.");
   blocks.push_back(points);
   if (finding.source.blocks > 0)
