@@ -3,7 +3,7 @@
 # What other projects may link: find_package(tread), then tread::learner (patterns and their learner) or
 # tread::identification. tests/packages/examples shows each. They are in the package tread-lab.
 include(CMakePackageConfigHelpers)
-set(exported tread_options tread_learner_core tread_gap_core tread_log_validation tread_execution tread_stop_reason tread_geometry
+set(exported tread_options tread_enums tread_learner_core tread_gap_core tread_log_validation tread_execution tread_stop_reason tread_geometry
     tread_grid tread_ground tread_omni_wheels tread_parallel tread_pattern tread_vehicle)
 foreach(target IN LISTS exported)
   string(REPLACE tread_ "" name ${target})
@@ -18,6 +18,7 @@ foreach(folder common/execution common/geometry common/grid common/ground common
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/${folder}/ DESTINATION include/tread/${folder} COMPONENT lab
           FILES_MATCHING PATTERN *.hpp)
 endforeach()
+install(FILES ${CMAKE_BINARY_DIR}/lcmtypes/plain/lcmtypes/enums.hpp DESTINATION include/tread/lcmtypes COMPONENT lab)
 
 set(exports ${CMAKE_CURRENT_BINARY_DIR}/exports)
 file(WRITE ${exports}/tread-config.cmake [[

@@ -3,31 +3,9 @@
 #pragma once
 
 #include <array>
+#include <tuple>
 
-#include <tread/arm_t.hpp>
-#include <tread/config_t.hpp>
-#include <tread/estop_t.hpp>
-#include <tread/execution_t.hpp>
-#include <tread/fence_t.hpp>
-#include <tread/fences_t.hpp>
-#include <tread/goal_t.hpp>
-#include <tread/grip_t.hpp>
-#include <tread/health_t.hpp>
-#include <tread/ins_t.hpp>
-#include <tread/learner_state_t.hpp>
-#include <tread/learning_t.hpp>
-#include <tread/manual_t.hpp>
-#include <tread/map_tile_t.hpp>
-#include <tread/mark_t.hpp>
-#include <tread/motor_t.hpp>
-#include <tread/operator_t.hpp>
-#include <tread/pattern_set_part_t.hpp>
-#include <tread/plan_t.hpp>
-#include <tread/plan_tree_t.hpp>
-#include <tread/program_t.hpp>
-#include <tread/scan_t.hpp>
-#include <tread/shock_t.hpp>
-#include <tread/stopping_t.hpp>
+#include <tread/message_list.hpp>
 
 namespace tread {
 
@@ -104,11 +82,16 @@ inline void forgetSender(fence_t& message) {
   message.fence_by.clear();
 }
 
-/// The whole table, for README, health checks and tests.
-inline constexpr std::array<ChannelSpec, 25> kChannels{
+/// The whole table with its types.
+inline constexpr std::tuple kTypedChannels{
     kIns,     kScanMatching, kScan,      kMap,        kGoal,         kPlan,     kPlanTree,
     kProgram, kMotor,        kExecution, kPatternSet, kLearnerState, kLearning, kShock,
     kGrip,    kHealth,       kArm,       kOperator,   kManual,       kEstop,    kStoppingTime,
     kFence,   kFences,       kMark,      kConfig};
+
+/// The same for README, health checks and tests.
+inline constexpr auto kChannels = std::apply(
+    [](const auto&... channel) { return std::array{static_cast<ChannelSpec>(channel)...}; },
+    kTypedChannels);
 
 }  // namespace tread

@@ -5,11 +5,9 @@
 #include <cstdint>
 
 #include "common/execution/stop_reason.hpp"
+#include "lcmtypes/enums.hpp"
 
 namespace tread {
-
-/// Outcome of an execution; the numbers are those of execution_record_t.
-enum class ExecutionOutcome : int16_t { kRunning = 0, kCompleted = 1, kAborted = 2 };
 
 /// One execution as it really took place, as the motor bridge records it.
 struct ExecutionRecord {

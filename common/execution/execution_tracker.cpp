@@ -150,8 +150,7 @@ ExecutionTracker::Event ExecutionTracker::followMotor(const RobotReadings& readi
     return Event::kNone;
   }
   const bool settled = bridge.utime > handed_over_ + kSettle;
-  if (!confirmed_ || !settled || bridge.state == BridgeReading::State::kDriving)
-    return Event::kNone;
+  if (!confirmed_ || !settled || bridge.state == BridgeState::kDriving) return Event::kNone;
   const bool in_time = bridge.utime >= ends() - kSettle;
   return finish(in_time ? Event::kEnded : Event::kAborted, bridge.reason);
 }

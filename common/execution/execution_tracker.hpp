@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/execution/bridge_state.hpp"
 #include "common/execution/execution_record.hpp"
 #include "common/geometry/track.hpp"
 #include "common/pattern/pattern.hpp"
@@ -28,19 +29,15 @@ struct PoseReading : TimedPose {
 
 /// State reported by the motor bridge.
 struct BridgeReading {
-  enum class State { kDisarmed, kArmed, kDriving, kStopping, kFault, kEstopped, kByHand };
   int64_t utime = 0;  ///< [us] when it gave its last command
-  State state = State::kDisarmed;
+  BridgeState state = BridgeState::kDisarmed;
   Reason reason;
   int64_t run_id = 0;
   int64_t execution_id = 0;  ///< being played; 0 = none
   int command_index = -1;
 
   /// Whether it may drive without being armed again.
-  bool armed() const {
-    return state == State::kArmed || state == State::kDriving || state == State::kStopping ||
-           state == State::kByHand;
-  }
+  bool armed() const { return isArmed(state); }
 };
 
 /// What the driving process knows about the robot at one instant.

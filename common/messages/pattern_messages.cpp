@@ -72,7 +72,7 @@ Problem channelProblem(const pattern_set_part_t& part) {
         part.channel_highest.size(), part.entry_steady.size(), part.exit_steady.size()})
     if (size != channels) return "lengths are not the number of channels";
   for (const int16_t kind : part.channel_kind)
-    if (nameOf(static_cast<CommandKind>(kind))[0] == '\0') return "command kind is unknown";
+    if (!knownCommandKind(kind)) return "command kind is unknown";
   return {};
 }
 
@@ -159,18 +159,6 @@ bool addClass(std::vector<MotionClass>& classes, const std::string& name, const 
 std::string about(const pattern_set_part_t& part) {
   return "PATTERN_SET version " + std::to_string(part.set_version) + ", part " +
          std::to_string(part.part) + ": ";
-}
-
-BridgeReading::State stateFrom(int16_t state) {
-  using State = BridgeReading::State;
-  // The same states in the same order.
-  static_assert(static_cast<int16_t>(State::kArmed) == motor_t::STATE_ARMED);
-  static_assert(static_cast<int16_t>(State::kDriving) == motor_t::STATE_DRIVING);
-  static_assert(static_cast<int16_t>(State::kStopping) == motor_t::STATE_STOPPING);
-  static_assert(static_cast<int16_t>(State::kEstopped) == motor_t::STATE_ESTOP);
-  static_assert(static_cast<int16_t>(State::kByHand) == motor_t::STATE_MANUAL);
-  const bool known = state >= motor_t::STATE_DISARMED && state <= motor_t::STATE_MANUAL;
-  return known ? static_cast<State>(state) : State::kDisarmed;
 }
 
 /// Far more than the eight that are repeated.
@@ -278,7 +266,7 @@ std::optional<PatternSet> PatternSetAssembler::refuse(const std::string& why) {
 BridgeReading readingFrom(const motor_t& message) {
   BridgeReading reading;
   reading.utime = message.utime;
-  reading.state = stateFrom(message.bridge_state);
+  reading.state = knownBridgeState(message.bridge_state).value_or(BridgeState::kDisarmed);
   reading.reason = {stopReasonFrom(message.state_code), message.state_reason};
   reading.run_id = message.motor_run_id;
   reading.execution_id = message.execution_id;
@@ -287,9 +275,7 @@ BridgeReading readingFrom(const motor_t& message) {
 }
 
 bool mayDrive(int16_t bridge_state) {
-  BridgeReading reading;
-  reading.state = stateFrom(bridge_state);
-  return reading.armed();
+  return isArmed(knownBridgeState(bridge_state).value_or(BridgeState::kDisarmed));
 }
 
 ExecutionRecord recordFrom(const execution_record_t& message) {

@@ -10,15 +10,9 @@
 #include <utility>
 #include <vector>
 
-namespace tread {
+#include "lcmtypes/enums.hpp"
 
-/// What the value of a channel means, with its unit; the numbers are those of
-/// program_slot_t.KIND_*.
-enum class CommandKind : int16_t {
-  kPower = 1,         ///< share of a motor's power, -1..1 [1], + forward
-  kTrackSpeed = 2,    ///< of a track or wheel [m/s], + forward
-  kSteeringAngle = 3  ///< mean angle of the steered axle [rad], + left
-};
+namespace tread {
 
 /// "power", "track_speed" or "steering_angle"; empty for an unknown kind.
 const char* nameOf(CommandKind kind);

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cstring>
+#include <regex>
 #include <stdexcept>
+#include <utility>
 
 namespace tread {
 namespace {
@@ -160,7 +162,7 @@ class Parser {
 
   MessageType structure() {
     MessageType type;
-    type.comment = before_;
+    type.comment = std::exchange(before_, "");
     type.name = take("a struct's name");
     sign("{");
     while (!isSign("}")) {
@@ -175,10 +177,17 @@ class Parser {
   }
 
   void constants(MessageType& type) {
+    static const std::regex named("enum ([A-Za-z]+)(: bits)?");
+    if (std::smatch match; std::regex_match(before_, match, named)) {
+      type.enumeration = match[1];
+      type.is_bit_set = match[2].matched;
+    }
+    before_.clear();
     advance();
-    take("a constant's type");
+    const std::string value_type = take("a constant's type");
     for (bool more = true; more;) {
       MessageConstant constant;
+      constant.type = value_type;
       constant.name = take("a constant's name");
       sign("=");
       constant.value = take("a constant's value");
@@ -358,6 +367,14 @@ const MessageField* MessageType::field(const std::string& wanted) const {
     return candidate.name == wanted;
   });
   return found == fields.end() ? nullptr : &*found;
+}
+
+int64_t blankInteger(const MessageField& field) {
+  static const std::regex blank("; (blank )?(-?[0-9]+)( |;|$)");
+  for (std::sregex_iterator match(field.comment.begin(), field.comment.end(), blank), end;
+       match != end; ++match)
+    if ((*match)[1].matched || (*match)[2] == "-1") return std::stoll((*match)[2]);
+  return 0;
 }
 
 MessageTypes MessageTypes::fromText(const std::string& text) {

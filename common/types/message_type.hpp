@@ -22,6 +22,7 @@ struct MessageField {
 
 /// A named constant of a type.
 struct MessageConstant {
+  std::string type;  ///< int8_t to int64_t, float or double
   std::string name;
   std::string value;  ///< as it was written
   std::string comment;
@@ -33,9 +34,17 @@ struct MessageType {
   std::string comment;  ///< in front of it
   std::vector<MessageField> fields;
   std::vector<MessageConstant> constants;
+  /// Name of the enumeration of the constants, from the comment "enum NAME" in front of them;
+  /// empty = none
+  std::string enumeration;
+  bool is_bit_set = false;  ///< "enum NAME: bits": its constants are combined
 
   const MessageField* field(const std::string& wanted) const;
 };
+
+/// The integer that means "unknown" or "none" in a field, from its comment: "; -1" at the begin of
+/// a part, or "; blank N"; 0 without either.
+int64_t blankInteger(const MessageField& field);
 
 /// A set of types that may contain each other.
 class MessageTypes {

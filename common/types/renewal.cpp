@@ -71,7 +71,7 @@ StopReason codeBeside(const std::string& field, const Json& message) {
 /// empty.
 Json unknownOf(const MessageField& field, const Json& message) {
   if (field.type == "byte" && !field.lengths.empty()) return "";
-  Json value = 0;
+  Json value = blankInteger(field);
   if (const MessageType* const inner = treadTypes().find(field.type)) {
     value = Json::object();
     fillMissing(value, *inner);

@@ -49,17 +49,6 @@ GeoOrigin readOrigin(ConfigReader& reader) {
   return origin;
 }
 
-constexpr bool same(int32_t core_bit, int32_t message_bit) {
-  return core_bit == message_bit;
-}
-static_assert(same(kNoPosition, ins_t::STATUS_NO_POSITION));
-static_assert(same(kNoHeading, ins_t::STATUS_NO_HEADING));
-static_assert(same(kGap, ins_t::STATUS_GAP));
-static_assert(same(kJump, ins_t::STATUS_JUMP));
-static_assert(same(kNoAttitude, ins_t::STATUS_NO_ATTITUDE));
-static_assert(same(kNoVelocity, ins_t::STATUS_NO_VELOCITY));
-static_assert(same(kFilledIn, ins_t::STATUS_FILLED_IN));
-
 FillInConfig readFillIn(ConfigReader reader) {
   FillInConfig config;
   reader.seconds("after", config.after_us, {0.02, 5.0});
@@ -237,12 +226,12 @@ void InsDriverNode::loseLink() {
 void InsDriverNode::publishFinished(int64_t utime) {
   while (std::optional<InsEstimate> estimate = source_->next(utime)) {
     if (estimate->device_utc >= 0) device_utc_ = estimate->device_utc;
-    if (!(estimate->status & kNoPosition)) {
+    if (!(estimate->status & InsStatus::kNoPosition)) {
       last_position_ = utime;
       too_far_before_ = source_->tooFar().first;
     }
     if (std::isfinite(estimate->p_map_body.z())) last_height_ = utime;
-    if (!(estimate->status & kNoHeading)) last_heading_ = utime;
+    if (!(estimate->status & InsStatus::kNoHeading)) last_heading_ = utime;
     if (!fill_in_ || fill_in_->complete(*estimate, utime)) publish(*estimate);
   }
   if (fill_in_) {

@@ -79,26 +79,6 @@ ProgramSlot fromMessage(const program_slot_t& message) {
   return slot;
 }
 
-int16_t toMessage(State state) {
-  switch (state) {
-    case State::kDriving:
-      return motor_t::STATE_DRIVING;
-    case State::kManual:
-      return motor_t::STATE_MANUAL;
-    case State::kArmed:
-      return motor_t::STATE_ARMED;
-    case State::kStopping:
-      return motor_t::STATE_STOPPING;
-    case State::kDisarmed:
-      return motor_t::STATE_DISARMED;
-    case State::kFault:
-      return motor_t::STATE_FAULT;
-    case State::kEstopped:
-      return motor_t::STATE_ESTOP;
-  }
-  return motor_t::STATE_FAULT;
-}
-
 std::string reasonOf(const FailsafeOutputs& failsafe) {
   const std::string reason = failsafe.standing_said
                                  ? failsafe.reason
@@ -209,7 +189,7 @@ motor_t toMessage(const BridgeOutput& output, const MotorTelemetry& telemetry, s
   message.motor_run_id = output.run_id;
   message.execution_id = output.execution_id;
   message.command_index = output.command_index;
-  message.bridge_state = toMessage(output.failsafe.state);
+  message.bridge_state = static_cast<int16_t>(output.failsafe.state);
   message.state_code = static_cast<int16_t>(output.failsafe.cause.code);
   message.state_reason = reasonOf(output.failsafe);
   for (size_t i = 0; i < output.kinds.size(); ++i)
@@ -364,7 +344,7 @@ void MotorBridgeNode::reportHealth() {
                      link_.address() + ": " + failsafe.standing_fault.words);
   } else if (!failsafe.standing_fault.empty()) {
     health_.setState(health_t::HEALTH_DEGRADED, failsafe.standing_fault.words);
-  } else if (failsafe.state == State::kFault || failsafe.state == State::kEstopped) {
+  } else if (failsafe.state == BridgeState::kFault || failsafe.state == BridgeState::kEstop) {
     health_.setState(health_t::HEALTH_DEGRADED, failsafe.reason);
   } else if (const std::string line = controller_->lineProblem(); !line.empty()) {
     health_.setState(health_t::HEALTH_DEGRADED, link_.address() + ": " + line);

@@ -86,7 +86,7 @@ struct Worst {
 };
 
 void compare(const InsEstimate& ins, Worst& worst) {
-  if (ins.status & (kNoPosition | kNoHeading)) return;
+  if (ins.status & (InsStatus::kNoPosition | InsStatus::kNoHeading)) return;
   const Truth truth = truthAt(ins.utime);
   ++worst.poses;
   worst.position = std::max(worst.position, (ins.p_map_body - truth.p_map).norm());
@@ -94,7 +94,7 @@ void compare(const InsEstimate& ins, Worst& worst) {
   worst.yaw = std::max(worst.yaw, std::abs(wrapAngle(yaw - truth.yaw)));
   const Eigen::Vector2d v(3.0 * kTurn, 0.0);
   // The first heading has no rate yet for correcting the arm's motion.
-  if (!(ins.status & kNoVelocity) && worst.poses > 1)
+  if (!(ins.status & InsStatus::kNoVelocity) && worst.poses > 1)
     worst.velocity = std::max(worst.velocity, (ins.v_body.head<2>() - v).norm());
   if (!std::isfinite(ins.rate_body.z())) return;
   ++worst.rates;
@@ -209,7 +209,7 @@ TEST_CASE("random and mutated bytes neither crash, nor grow, nor make a pose wit
       fed += static_cast<int64_t>(chunk.size());
       while (const auto ins = device.driver->next(now)) {
         CHECK(ins->utime <= now);
-        if (!(ins->status & kNoPosition)) CHECK(ins->p_map_body.norm() < 100.0);
+        if (!(ins->status & InsStatus::kNoPosition)) CHECK(ins->p_map_body.norm() < 100.0);
       }
       CHECK(device.driver->framer().waiting() < kMaxFrame);
     }

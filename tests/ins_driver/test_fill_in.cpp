@@ -90,7 +90,7 @@ TEST_CASE("a silent device is filled in for by scan matching, from its last pose
   // The first after 150 ms, then one per scan.
   CHECK(body.track.size() >= before + 37);
   for (size_t i = before; i < body.track.size(); ++i) {
-    CHECK(body.track[i].status == (kFilledIn | kNoAttitude));
+    CHECK(body.track[i].status == (InsStatus::kFilledIn | InsStatus::kNoAttitude));
     CHECK(body.track[i].utime > body.track[i - 1].utime);
   }
   CHECK(body.fill_in.since() == body.track[before].utime);
@@ -119,9 +119,10 @@ TEST_CASE("a device that comes back corrects, and where it is far off it jumps")
     });
     CHECK_FALSE(body.fill_in.since());
     int jumps = 0;
-    for (const InsEstimate& estimate : body.track) jumps += (estimate.status & kJump) != 0 ? 1 : 0;
+    for (const InsEstimate& estimate : body.track)
+      jumps += (estimate.status & InsStatus::kJump) != 0 ? 1 : 0;
     CHECK(jumps == (off > 0.0 ? 1 : 0));
-    CHECK(body.track.back().status == kGood);
+    CHECK(body.track.back().status == InsStatus::kGood);
   }
 }
 
@@ -131,12 +132,12 @@ TEST_CASE("a device that knows no position, or no heading, keeps what it knows")
   body.run(2.0, [](int64_t utime) {
     InsEstimate estimate = Watched::measured(utime);
     estimate.p_map_body.setConstant(kUnmeasured);
-    estimate.status |= kNoPosition;
+    estimate.status |= InsStatus::kNoPosition;
     return std::optional<InsEstimate>(estimate);
   });
   // At the device's rate: between two scans the pose is extrapolated with the twist.
   CHECK(body.track.size() == 250);
-  CHECK(body.track.back().status == kFilledIn);
+  CHECK(body.track.back().status == InsStatus::kFilledIn);
   CHECK(body.error() < 0.06);
   CHECK(body.track.back().attitude_std.z() == 0.01);
 
@@ -149,10 +150,10 @@ TEST_CASE("a device that knows no position, or no heading, keeps what it knows")
     estimate.position_std.head<2>().setConstant(std::hypot(0.02, 1.0));
     estimate.R_map_body.coeffs().setConstant(kUnmeasured);
     estimate.v_body.setConstant(kUnmeasured);
-    estimate.status |= kNoHeading | kNoAttitude | kNoVelocity;
+    estimate.status |= InsStatus::kNoHeading | InsStatus::kNoAttitude | InsStatus::kNoVelocity;
     return std::optional<InsEstimate>(estimate);
   });
-  CHECK(body.track.back().status == (kFilledIn | kNoAttitude));
+  CHECK(body.track.back().status == (InsStatus::kFilledIn | InsStatus::kNoAttitude));
   CHECK(body.error() < 1e-3);
   CHECK(body.yawError() < 1e-3);
   CHECK(body.track.back().p_map_body.z() == Approx(231.0));

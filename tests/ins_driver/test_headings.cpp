@@ -28,10 +28,10 @@ TEST_CASE("the course is no heading before nose and tail were told apart") {
   Bench bench(withCourse());
   int tenth = 0;
   for (int i = 0; i < 20; ++i) step(bench, tenth, 90.0, 7.2, kNoTurn);
-  CHECK((bench.last().status & kNoHeading) != 0);
+  CHECK((bench.last().status & InsStatus::kNoHeading) != 0);
   step(bench, tenth, 90.0, 7.2, hdt(90.0) + kNoTurn);
   for (int i = 0; i < 20; ++i) step(bench, tenth, 100.0, 7.2, kNoTurn);
-  CHECK_FALSE(bench.last().status & kNoHeading);
+  CHECK_FALSE(bench.last().status & InsStatus::kNoHeading);
   CHECK(bench.angles().yaw == Approx(-10.0 * kDeg).margin(1e-6));
   CHECK(bench.last().v_body.x() == Approx(2.0).margin(1e-6));
 }
@@ -57,10 +57,10 @@ TEST_CASE("without a measured rate a stop makes nose and tail unknown again") {
   int tenth = 0;
   step(bench, tenth, 90.0, 7.2, hdt(90.0));
   for (int i = 0; i < 20; ++i) step(bench, tenth, 90.0, 7.2);
-  CHECK_FALSE(bench.last().status & kNoHeading);
+  CHECK_FALSE(bench.last().status & InsStatus::kNoHeading);
   step(bench, tenth, 90.0, 0.5);
   for (int i = 0; i < 20; ++i) step(bench, tenth, 270.0, 7.2);
-  CHECK((bench.last().status & kNoHeading) != 0);
+  CHECK((bench.last().status & InsStatus::kNoHeading) != 0);
   CHECK(bench.ins.assembler().headings().coursesRefused() == 20);
 }
 
@@ -70,7 +70,7 @@ TEST_CASE(
   int tenth = 0;
   step(bench, tenth, 90.0, 7.2, hdt(90.0) + kNoTurn);
   for (int i = 0; i < 20; ++i) step(bench, tenth, 180.0, 7.2, kNoTurn);  // slides to its right
-  CHECK((bench.last().status & kNoHeading) != 0);
+  CHECK((bench.last().status & InsStatus::kNoHeading) != 0);
 
   InsConfig car = withCourse();
   car.drives_backward = false;
@@ -80,7 +80,7 @@ TEST_CASE(
   CHECK(forward.angles().yaw == Approx(45.0 * kDeg).margin(1e-6));
   step(forward, tenth, 45.0, 1.8);  // too slow
   step(forward, tenth, 45.0, 1.8);
-  CHECK((forward.last().status & kNoHeading) != 0);
+  CHECK((forward.last().status & InsStatus::kNoHeading) != 0);
 }
 
 TEST_CASE("a heading that is not configured is not used, and the order is the configured one") {
@@ -92,5 +92,5 @@ TEST_CASE("a heading that is not configured is not used, and the order is the co
   config.headings = {HeadingSource::kAttitude};
   Bench attitude_only(config);
   attitude_only.at(kSecond, gga(kNoon) + hdt(80.0));
-  CHECK((attitude_only.last().status & kNoHeading) != 0);
+  CHECK((attitude_only.last().status & InsStatus::kNoHeading) != 0);
 }

@@ -16,7 +16,7 @@ TEST_CASE("position, attitude and velocity of one epoch end in one estimate") {
   const InsEstimate& ins = bench.last();
   CHECK(ins.utime == kSecond);
   CHECK(ins.device_utc == 1260360000000000);
-  CHECK(ins.status == kGood);
+  CHECK(ins.status == InsStatus::kGood);
   CHECK(ins.p_map_body.x() == Approx(3.0).margin(0.01));
   CHECK(ins.p_map_body.y() == Approx(4.0).margin(0.01));
   CHECK(ins.p_map_body.z() == Approx(1.5).margin(0.001));
@@ -57,7 +57,7 @@ TEST_CASE("the first good fix becomes the origin, a poor one does not") {
   Bench bench(config);
   bench.at(kSecond, line("GPGGA,120000.000,4205.7,N,08802.0,W,1,04,3.0,200.0,M,,M,,"));
   CHECK_FALSE(bench.ins.assembler().origin());
-  CHECK(bench.last().status & kNoPosition);
+  CHECK(bench.last().status & InsStatus::kNoPosition);
   bench.at(2 * kSecond, line("GPGGA,120001.000,4205.7,N,08802.0,W,1,08,1.0,200.0,M,,M,,"));
   REQUIRE(bench.ins.assembler().origin());
   CHECK(bench.ins.assembler().origin()->altitude == 200.0);
@@ -110,7 +110,7 @@ TEST_CASE("turning on the spot the antenna moves, the body does not") {
       CHECK(bench.last().p_map_body.head<2>().norm() < 0.01);
       if (i == 0 && !with_rot) continue;  // a single heading has no rate
       CHECK(bench.last().v_body.head<2>().norm() < 0.01);
-      CHECK_FALSE(bench.last().status & (kJump | kGap));
+      CHECK_FALSE(bench.last().status & (InsStatus::kJump | InsStatus::kGap));
     }
     CHECK(std::isnan(bench.last().rate_body.z()) != with_rot);
   }
@@ -136,7 +136,7 @@ TEST_CASE("at standstill the course is not believed: velocity is zero whatever i
                                         vtg(static_cast<double>(random() % 360), 0.07));
     CHECK(bench.last().v_body.head<2>().norm() == 0.0);
     CHECK(bench.angles().yaw == Approx(65.0 * kDeg).margin(1e-9));
-    CHECK(bench.last().status == kGood);
+    CHECK(bench.last().status == InsStatus::kGood);
   }
 }
 
@@ -148,7 +148,7 @@ TEST_CASE(
   Bench bench(config);
   bench.at(kSecond, gga(kNoon) + vtg(60.0, 20.0) + line("GPHDT,,T"));
   const InsEstimate& ins = bench.last();
-  CHECK(ins.status == (kNoHeading | kNoAttitude | kNoVelocity));
+  CHECK(ins.status == (InsStatus::kNoHeading | InsStatus::kNoAttitude | InsStatus::kNoVelocity));
   CHECK(std::isnan(ins.R_map_body.w()));
   CHECK(std::isnan(ins.v_body.x()));
   // The arm is left out, which the accuracy reflects.
@@ -159,16 +159,16 @@ TEST_CASE(
 TEST_CASE("speed without course is no velocity, unless the vehicle stands") {
   Bench bench(withOrigin());
   bench.at(kSecond, gga(kNoon) + pashr(kNoon, 0.0) + line("GPVTG,,T,,M,,N,2.0,K,D"));
-  CHECK(bench.last().status == kNoVelocity);
+  CHECK(bench.last().status == InsStatus::kNoVelocity);
   bench.at(2 * kSecond, gga(kNoon + 1) + pashr(kNoon + 1, 0.0) + line("GPVTG,,T,,M,,N,0.1,K,D"));
-  CHECK(bench.last().status == kGood);
+  CHECK(bench.last().status == InsStatus::kGood);
   CHECK(bench.last().v_body.x() == 0.0);
 }
 
 TEST_CASE("a heading without roll and pitch says that it assumes them") {
   Bench bench(withOrigin());
   bench.at(kSecond, gga(kNoon) + hdt(90.0));
-  CHECK(bench.last().status == (kNoAttitude | kNoVelocity));
+  CHECK(bench.last().status == (InsStatus::kNoAttitude | InsStatus::kNoVelocity));
   CHECK(bench.angles().yaw == Approx(0.0).margin(1e-9));
   CHECK(std::isnan(bench.last().attitude_std.x()));
   CHECK(std::isnan(bench.last().attitude_std.z()));
@@ -178,7 +178,7 @@ TEST_CASE("a lost fix is said at once, with position NaN") {
   Bench bench(withOrigin());
   bench.at(kSecond, gga(kNoon) + pashr(kNoon, 0.0));
   bench.at(2 * kSecond, gga(kNoon + 1, 0.0, 0.0, 0) + pashr(kNoon + 1, 0.0));
-  CHECK(bench.last().status == (kNoPosition | kNoVelocity));
+  CHECK(bench.last().status == (InsStatus::kNoPosition | InsStatus::kNoVelocity));
   CHECK(std::isnan(bench.last().p_map_body.x()));
   CHECK(bench.angles().yaw == Approx(90.0 * kDeg));
 }
@@ -186,7 +186,7 @@ TEST_CASE("a lost fix is said at once, with position NaN") {
 TEST_CASE("a fix far from the origin is refused, for the plane ends there") {
   Bench bench(withOrigin());
   bench.at(kSecond, line("GPGGA,120000.000,4305.7,N,08802.0,W,4,12,1.0,221,M,,M,,"));
-  CHECK(bench.last().status & kNoPosition);
+  CHECK(bench.last().status & InsStatus::kNoPosition);
   CHECK(bench.ins.assembler().counts().too_far == 1);
   CHECK(bench.ins.assembler().farDistance() == Approx(111000.0).epsilon(0.01));
 }
@@ -200,7 +200,7 @@ TEST_CASE("RMC alone gives position and velocity, and leaves the height unknown"
                  hdt(90.0));
   }
   const InsEstimate& ins = bench.last();
-  CHECK_FALSE(ins.status & kNoPosition);
+  CHECK_FALSE(ins.status & InsStatus::kNoPosition);
   CHECK(ins.p_map_body.head<2>().norm() < 1e-6);
   CHECK(std::isnan(ins.p_map_body.z()));
   CHECK(ins.v_body.x() == Approx(4.8435).epsilon(1e-4));

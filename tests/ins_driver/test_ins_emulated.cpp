@@ -56,17 +56,17 @@ struct Worst {
 void compare(const InsEstimate& ins, Worst& worst) {
   const sim::InsMeasurement truth = truthAt(ins.utime);
   ++worst.messages;
-  if (!(ins.status & kNoPosition))
+  if (!(ins.status & InsStatus::kNoPosition))
     worst.position = std::max(worst.position, (ins.p_map_body - truth.p_map).norm());
-  if (!(ins.status & kNoHeading)) {
+  if (!(ins.status & InsStatus::kNoHeading)) {
     const YawPitchRoll angles = yawPitchRoll(ins.R_map_body);
     worst.yaw = std::max(worst.yaw, std::abs(wrapAngle(angles.yaw - truth.yaw)));
-    if (!(ins.status & kNoAttitude)) {
+    if (!(ins.status & InsStatus::kNoAttitude)) {
       worst.tilt = std::max(
           {worst.tilt, std::abs(angles.pitch - truth.pitch), std::abs(angles.roll - truth.roll)});
     }
   }
-  if (!(ins.status & kNoVelocity))
+  if (!(ins.status & InsStatus::kNoVelocity))
     worst.velocity = std::max(worst.velocity, (ins.v_body - truth.v_body).head<2>().norm());
 }
 

@@ -17,7 +17,7 @@ TEST_CASE("a position between two attitudes takes the last one, carried on by it
   CHECK(bench.ins.assembler().counts().carried == 1);
   // An old attitude is not extrapolated.
   bench.at(300'000, gga(kNoon + 0.3));
-  CHECK(bench.last().status & kNoHeading);
+  CHECK(bench.last().status & InsStatus::kNoHeading);
 }
 
 TEST_CASE("25 Hz of attitudes with 10 Hz of positions are 25 poses a second, carried by velocity") {
@@ -37,7 +37,7 @@ TEST_CASE("25 Hz of attitudes with 10 Hz of positions are 25 poses a second, car
     for (const InsEstimate& ins : bench.out) {
       CHECK(ins.p_map_body.x() == Approx(2.0 * static_cast<double>(ins.utime) * 1e-6).margin(0.01));
       CHECK(ins.v_body.x() == Approx(2.0).margin(1e-6));
-      CHECK(ins.status == kGood);
+      CHECK(ins.status == InsStatus::kGood);
       const bool carried = ins.utime % 100'000 != 0;
       CHECK((ins.position_std.x() > 0.0142) == carried);
     }
@@ -53,7 +53,7 @@ TEST_CASE(
   }
   // The first attitudes have only one earlier position; the others have it for 150 ms.
   CHECK(bench.out.size() == 4 + 3 * 3);
-  CHECK(bench.last().status == kNoVelocity);
+  CHECK(bench.last().status == InsStatus::kNoVelocity);
   CHECK(bench.last().p_map_body.x() == Approx(0.72).margin(0.01));
 }
 
@@ -62,7 +62,7 @@ TEST_CASE("instants with attitude alone are published when positions stay away")
   bench.at(0, gga(kNoon) + pashr(kNoon, 10.0));
   for (int i = 0; i < 50; ++i) bench.at(2'000'000 + i * 40'000, pashr(kNoon + 2 + i * 0.04, 10.0));
   CHECK(bench.out.size() == 51);
-  CHECK(bench.last().status == (kNoPosition | kNoVelocity));
+  CHECK(bench.last().status == (InsStatus::kNoPosition | InsStatus::kNoVelocity));
 }
 
 TEST_CASE("more than three periods of silence are a gap, once") {
@@ -71,14 +71,14 @@ TEST_CASE("more than three periods of silence are a gap, once") {
   double t = kNoon;
   for (int i = 0; i < 10; ++i, utime += 20'000, t += 0.02) {
     bench.at(utime, gga(t) + pashr(t, 0.0));
-    CHECK_FALSE(bench.last().status & kGap);
+    CHECK_FALSE(bench.last().status & InsStatus::kGap);
   }
   utime += 60'000;
   t += 0.06;
   bench.at(utime, gga(t) + pashr(t, 0.0));
-  CHECK(bench.last().status & kGap);
+  CHECK(bench.last().status & InsStatus::kGap);
   bench.at(utime + 20'000, gga(t + 0.02) + pashr(t + 0.02, 0.0));
-  CHECK_FALSE(bench.last().status & kGap);
+  CHECK_FALSE(bench.last().status & InsStatus::kGap);
   CHECK(bench.ins.assembler().counts().gaps == 1);
 }
 
@@ -93,7 +93,7 @@ TEST_CASE("a position that the vehicle cannot have reached is a jump, once the n
     const double t = kNoon + i * 0.1;
     bench.at(i * 100'000, gga(t, east) + pashr(t, 90.0));
     CHECK(bench.out.size() == static_cast<size_t>(i < 10 ? i + 1 : i));
-    CHECK(((bench.last().status & kJump) != 0) == (i == 11));
+    CHECK(((bench.last().status & InsStatus::kJump) != 0) == (i == 11));
     east += 0.4;
   }
   CHECK(bench.ins.assembler().counts().doubted == 1);
@@ -107,7 +107,7 @@ TEST_CASE("a gap before a position that is left out is still told") {
     if (i > 9 && i < 15) continue;
     const double t = kNoon + i * 0.1;
     bench.at(i * 100'000, gga(t, i == 15 ? 400.0 : 0.0) + pashr(t, 90.0));
-    CHECK(((bench.last().status & kGap) != 0) == (i == 16));
+    CHECK(((bench.last().status & InsStatus::kGap) != 0) == (i == 16));
   }
 }
 
@@ -124,7 +124,7 @@ TEST_CASE("a position far off and alone, as a weak checksum lets through, is lef
   CHECK(bench.ins.assembler().counts().doubted == 2);
   for (const InsEstimate& ins : bench.out) {
     CHECK(ins.p_map_body.head<2>().norm() < 2.0);
-    CHECK_FALSE(ins.status & (kJump | kGap));
+    CHECK_FALSE(ins.status & (InsStatus::kJump | InsStatus::kGap));
   }
 }
 
@@ -144,7 +144,7 @@ TEST_CASE("a device clock that is set, back or forth, is a jump and times run on
   for (size_t i = 0; i < bench.out.size(); ++i) {
     CAPTURE(i);
     CHECK(bench.out[i].utime == 5 * kSecond + static_cast<int64_t>(i) * 100'000);
-    CHECK(((bench.out[i].status & kJump) != 0) == (i == 20 || i == 40));
+    CHECK(((bench.out[i].status & InsStatus::kJump) != 0) == (i == 20 || i == 40));
   }
   CHECK(bench.ins.assembler().counts().clock_steps == 2);
 }
@@ -175,7 +175,7 @@ TEST_CASE("a backlog read at one instant keeps its spacing and ends at its arriv
   REQUIRE(out.size() == 150);
   for (int i = 0; i < 150; ++i) {
     CHECK(out[static_cast<size_t>(i)].utime == 10 * kSecond - (149 - i) * 20'000);
-    CHECK(out[static_cast<size_t>(i)].status == kNoVelocity);
+    CHECK(out[static_cast<size_t>(i)].status == InsStatus::kNoVelocity);
   }
 }
 
@@ -188,5 +188,5 @@ TEST_CASE("a device that tells no time is stamped with its arrival less the late
   CHECK(bench.last().device_utc == -1);
   bench.at(kSecond + 100'000, line("GPGGA,,4205.7,N,08802.0,W,4,12,1.0,221,M,,M,,") + hdt(90.0));
   CHECK(bench.last().utime == kSecond + 97'000);
-  CHECK_FALSE(bench.last().status & kNoPosition);
+  CHECK_FALSE(bench.last().status & InsStatus::kNoPosition);
 }

@@ -42,7 +42,7 @@ NmeaLogSummary summarise(std::string_view log, const InsConfig& config) {
   ins.interrupt();
   collect(now);
   for (const InsEstimate& estimate : summary.estimates) {
-    if (estimate.status & (kNoPosition | kNoHeading)) continue;
+    if (estimate.status & (InsStatus::kNoPosition | InsStatus::kNoHeading)) continue;
     if (!summary.first_pose) summary.first_pose = estimate;
     summary.last_pose = estimate;
   }
@@ -124,8 +124,8 @@ TEST_CASE("rst39.log: every sentence is decoded, 100 poses with heading, 40 of t
   CHECK(emptyOf(summary, "GGA") == 0);
   int64_t poses = 0;
   for (const InsEstimate& ins : summary.estimates) {
-    if (!(ins.status & (kNoPosition | kNoHeading))) ++poses;
-    CHECK_FALSE(ins.status & (kGap | kJump));
+    if (!(ins.status & (InsStatus::kNoPosition | InsStatus::kNoHeading))) ++poses;
+    CHECK_FALSE(ins.status & (InsStatus::kGap | InsStatus::kJump));
   }
   CHECK(poses - summary.epochs.positions_carried == 40);
   CHECK(poses >= 100);
@@ -152,7 +152,9 @@ TEST_CASE("rst39.log: the velocity that it tells is the one that its positions s
     const InsEstimate& before = summary.estimates[i - 1];
     const InsEstimate& ins = summary.estimates[i];
     const InsEstimate& after = summary.estimates[i + 1];
-    if ((ins.status | before.status) & kNoPosition || ins.status & kNoVelocity) continue;
+    if ((ins.status | before.status) & InsStatus::kNoPosition ||
+        ins.status & InsStatus::kNoVelocity)
+      continue;
     const Eigen::Vector3d v_map = (after.p_map_body - before.p_map_body) /
                                   (static_cast<double>(after.utime - before.utime) * 1e-6);
     const Eigen::Vector3d v_body = ins.R_map_body.conjugate() * v_map;
@@ -179,9 +181,9 @@ TEST_CASE("hemi.log: 215 epochs, of which 21 hold a fix and 4 a heading") {
   CHECK(summary.estimates.size() == 215);
   int headings = 0;
   for (const InsEstimate& ins : summary.estimates) {
-    if (!(ins.status & kNoHeading)) ++headings;
+    if (!(ins.status & InsStatus::kNoHeading)) ++headings;
     // At rest: its course varies over all directions, its velocity must not.
-    if (!(ins.status & kNoVelocity)) CHECK(ins.v_body.head<2>().norm() == 0.0);
+    if (!(ins.status & InsStatus::kNoVelocity)) CHECK(ins.v_body.head<2>().norm() == 0.0);
   }
   CHECK(headings == 4);
 }
@@ -214,7 +216,7 @@ TEST_CASE("nmea_sample.txt: two fixes out of GGA with 13 and 14 fields, dated by
   CHECK(summary.origin);
   int fixes = 0;
   for (const InsEstimate& ins : summary.estimates) {
-    if (ins.status & kNoPosition) continue;
+    if (ins.status & InsStatus::kNoPosition) continue;
     ++fixes;
     CHECK(ins.device_utc / 1'000'000 >= 1543387769);  // 2018-11-28 06:49:29
     CHECK(ins.device_utc / 1'000'000 <= 1543387770);

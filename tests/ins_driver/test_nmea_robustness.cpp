@@ -9,6 +9,7 @@
 #include "modules/ins_driver/nmea/nmea_parser.hpp"
 #include "tests/ins_driver/nmea_lines.hpp"
 
+using namespace tread;
 using namespace tread::ins;
 
 namespace {
@@ -38,13 +39,13 @@ std::vector<std::string> acceptedOf(const std::string& bytes) {
 
 /// Promises of an estimate for any input: status bits and NaN agree, everything else is finite.
 void checkHonest(const InsEstimate& ins, int64_t now) {
-  const bool position = !(ins.status & kNoPosition);
+  const bool position = !(ins.status & InsStatus::kNoPosition);
   CHECK(std::isfinite(ins.p_map_body.x()) == position);
   CHECK(std::isfinite(ins.p_map_body.y()) == position);
-  const bool heading = !(ins.status & kNoHeading);
+  const bool heading = !(ins.status & InsStatus::kNoHeading);
   CHECK(std::isfinite(ins.R_map_body.norm()) == heading);
   if (heading) CHECK(std::abs(ins.R_map_body.norm() - 1.0) < 1e-9);
-  CHECK(std::isfinite(ins.v_body.x()) == !(ins.status & kNoVelocity));
+  CHECK(std::isfinite(ins.v_body.x()) == !(ins.status & InsStatus::kNoVelocity));
   CHECK(ins.utime <= now);
   for (int i = 0; i < 3; ++i) CHECK_FALSE(std::isinf(ins.position_std[i]));
 }

@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
@@ -38,24 +39,40 @@ TEST_CASE("an empty message of every type round-trips, too") {
 }
 
 TEST_CASE("decoded fields have the values that were sent") {
+  auto sent = testing::sampleOf<program_t>();
+  sent.lease = 200'000;
+  sent.running.execution_id = 51;
+  sent.next.execution_id = 62;
+  sent.next.command = {{0.5F, -0.5F}, {1.0F, -1.0F}};
+  sent.inputs_heard = 63;
+  sent.newest_input = "INS";
+  sent.newest_input_utime = 1'000'012;
+  sent.newest_input_seq = 12;
   program_t program{};
-  REQUIRE(testing::decode(testing::encode(testing::sampleOf<program_t>()), program));
+  REQUIRE(testing::decode(testing::encode(sent), program));
   CHECK(program.lease == 200'000);
   CHECK(program.running.execution_id == 51);
   CHECK(program.next.execution_id == 62);
-  CHECK(program.next.command[2] == std::vector<float>{1.0F, -1.0F});
+  CHECK(program.next.command[1] == std::vector<float>{1.0F, -1.0F});
   CHECK(program.inputs_heard == 63);
   CHECK(program.newest_input == "INS");
   CHECK(program.newest_input_utime == 1'000'012);
   CHECK(program.newest_input_seq == 12);
+  auto sent_tile = testing::sampleOf<map_tile_t>();
+  sent_tile.cells = {static_cast<uint8_t>(map_tile_t::CELL_OBSTACLE),
+                     static_cast<uint8_t>(map_tile_t::CELL_UNKNOWN)};
   map_tile_t tile{};
-  REQUIRE(testing::decode(testing::encode(testing::sampleOf<map_tile_t>()), tile));
-  CHECK(tile.cells[2] == map_tile_t::CELL_OBSTACLE);
-  CHECK(tile.cells[3] == map_tile_t::CELL_UNKNOWN);
+  REQUIRE(testing::decode(testing::encode(sent_tile), tile));
+  CHECK(tile.cells[0] == map_tile_t::CELL_OBSTACLE);
+  CHECK(tile.cells[1] == map_tile_t::CELL_UNKNOWN);
+  auto sent_scan = testing::sampleOf<scan_t>();
+  sent_scan.ranges = {std::numeric_limits<float>::infinity(),
+                      std::numeric_limits<float>::quiet_NaN()};
+  sent_scan.points[0] = {1.0F, -2.0F, 0.5F};
   scan_t scan{};
-  REQUIRE(testing::decode(testing::encode(testing::sampleOf<scan_t>()), scan));
-  CHECK(std::isinf(scan.ranges[1]));
-  CHECK(std::isnan(scan.ranges[2]));
+  REQUIRE(testing::decode(testing::encode(sent_scan), scan));
+  CHECK(std::isinf(scan.ranges[0]));
+  CHECK(std::isnan(scan.ranges[1]));
   CHECK(scan.points[0][1] == -2.0F);
 }
 

@@ -53,7 +53,7 @@ struct BridgeWorld {
     arm();
     run(200'000);
   }
-  State state() const { return out.failsafe.state; }
+  BridgeState state() const { return out.failsafe.state; }
   const std::string& reason() const { return out.failsafe.reason; }
   const ExecutionRecord& last() const { return bridge.executions().records().back(); }
 };

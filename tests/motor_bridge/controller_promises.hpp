@@ -17,7 +17,7 @@ namespace tread::motor {
 template <class Rig>
 void requireDriving(Rig& rig) {
   rig.drive();
-  REQUIRE(rig.state() == State::kDriving);
+  REQUIRE(rig.state() == BridgeState::kDriving);
   REQUIRE(rig.turning());
 }
 

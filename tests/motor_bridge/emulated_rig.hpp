@@ -95,7 +95,7 @@ struct EmulatedRig {
     const auto found = counters.find(name);
     return found == counters.end() ? 0 : found->second;
   }
-  State state() const { return out.failsafe.state; }
+  BridgeState state() const { return out.failsafe.state; }
 };
 
 }  // namespace tread::motor

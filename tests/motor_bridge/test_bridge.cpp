@@ -26,7 +26,7 @@ int64_t timeToZero(BridgeWorld& world) {
 TEST_CASE("armed with a planner and an INS it drives, series joined to series without a gap") {
   BridgeWorld world;
   world.drive();
-  REQUIRE(world.state() == State::kDriving);
+  REQUIRE(world.state() == BridgeState::kDriving);
   for (int i = 0; i < 6'000; ++i) {
     world.step();
     REQUIRE_FALSE(isZero(world.out.command));
@@ -67,16 +67,16 @@ TEST_CASE("a silent planner: zero one step after the lease, then ARM is needed")
   const int64_t lease_end = world.now - world.now % 50'000 - 1'000 + 200'000;
   timeToZero(world);
   CHECK(world.now - lease_end <= BridgeWorld::kStep);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   CHECK(world.reason() == "no good PROGRAM within its lease");
   CHECK(world.last().outcome == ExecutionOutcome::kAborted);
   CHECK(world.last().reason.words == "no good PROGRAM within its lease");
   world.planner_alive = true;
   world.run(5'000'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   world.arm();
   world.run(200'000);
-  CHECK(world.state() == State::kDriving);
+  CHECK(world.state() == BridgeState::kDriving);
 }
 
 TEST_CASE(
@@ -96,10 +96,10 @@ TEST_CASE(
   CHECK(isZero(world.out.command));
   CHECK(world.now == world.last().ended);
   CHECK(world.last().outcome == ExecutionOutcome::kCompleted);
-  CHECK(world.state() == State::kStopping);
+  CHECK(world.state() == BridgeState::kStopping);
   world.planner_alive = true;
   world.run(100'000);
-  CHECK(world.state() == State::kDriving);
+  CHECK(world.state() == BridgeState::kDriving);
 }
 
 TEST_CASE("an empty running slot stops at once and stays armed") {
@@ -108,7 +108,7 @@ TEST_CASE("an empty running slot stops at once and stays armed") {
   world.planner_alive = false;
   world.bridge.receive(makeProgram(world.now + 1, ProgramSlot{}), world.now + 1);
   CHECK(timeToZero(world) == BridgeWorld::kStep);
-  CHECK(world.state() == State::kStopping);
+  CHECK(world.state() == BridgeState::kStopping);
   CHECK(world.reason() == "stopped by the planner");
   CHECK(world.last().reason.words == "stopped by the planner");
   CHECK(world.last().outcome == ExecutionOutcome::kAborted);
@@ -119,7 +119,7 @@ TEST_CASE("a silent INS stops 100 ms later") {
   world.drive();
   world.ins_alive = false;
   CHECK(timeToZero(world) <= 100'000 + BridgeWorld::kStep);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   CHECK(world.reason() == "INS is stale: nothing new within 100 ms");
 }
 
@@ -129,12 +129,12 @@ TEST_CASE("E-stop, link fault and device fault stop in the next step") {
   SECTION("E-stop") {
     world.bridge.receive(EstopRequest{world.now, true, "operator", "person"}, world.now);
     CHECK(timeToZero(world) == BridgeWorld::kStep);
-    CHECK(world.state() == State::kEstopped);
+    CHECK(world.state() == BridgeState::kEstop);
     CHECK(world.out.hold_device_stop);
     world.run(2'000'000);
     world.arm();
     world.run(100'000);
-    CHECK(world.state() == State::kEstopped);
+    CHECK(world.state() == BridgeState::kEstop);
     world.bridge.receive(EstopRequest{world.now, false, "operator", "clear"}, world.now);
     world.step();
     CHECK(world.out.release_device_stop);
@@ -143,12 +143,12 @@ TEST_CASE("E-stop, link fault and device fault stop in the next step") {
   SECTION("link") {
     world.device.link_fault = "controller lost";
     CHECK(timeToZero(world) == BridgeWorld::kStep);
-    CHECK(world.state() == State::kFault);
+    CHECK(world.state() == BridgeState::kFault);
   }
   SECTION("device") {
     world.device.device_fault = "controller: overheat";
     CHECK(timeToZero(world) == BridgeWorld::kStep);
-    CHECK(world.state() == State::kFault);
+    CHECK(world.state() == BridgeState::kFault);
     CHECK(world.reason() == "controller: overheat");
   }
   world.device = {};
@@ -156,7 +156,7 @@ TEST_CASE("E-stop, link fault and device fault stop in the next step") {
   CHECK(isZero(world.out.command));
   world.arm();
   world.run(200'000);
-  CHECK(world.state() == State::kDriving);
+  CHECK(world.state() == BridgeState::kDriving);
 }
 
 TEST_CASE("clearing an E-stop twice within a step releases the controller's own, too") {
@@ -164,7 +164,7 @@ TEST_CASE("clearing an E-stop twice within a step releases the controller's own,
   world.drive();
   world.bridge.receive(EstopRequest{world.now, true, "operator", "person"}, world.now);
   world.step();
-  REQUIRE(world.state() == State::kEstopped);
+  REQUIRE(world.state() == BridgeState::kEstop);
   for (int copy = 0; copy < 2; ++copy)
     world.bridge.receive(EstopRequest{world.now, false, "operator", "gone"}, world.now);
   world.step();
@@ -178,22 +178,22 @@ TEST_CASE("an E-stop that the controller has kept over a restart of the bridge m
   world.run(500'000);
   world.device = DeviceReport{"", "the controller's emergency stop", true};
   world.run(1'500'000);
-  CHECK(world.state() == State::kEstopped);
+  CHECK(world.state() == BridgeState::kEstop);
   CHECK(world.reason() ==
         "E-stop: the controller has held it since before the start (motor_bridge)");
   world.arm();
   world.run(200'000);
-  CHECK(world.state() == State::kEstopped);
+  CHECK(world.state() == BridgeState::kEstop);
   CHECK(world.out.hold_device_stop);
   world.bridge.receive(EstopRequest{world.now, false, "operator", "clear"}, world.now);
   world.step();
   CHECK(world.out.release_device_stop);
   world.device = DeviceReport{};
   world.run(1'500'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   world.arm();
   world.run(200'000);
-  CHECK(world.state() == State::kDriving);
+  CHECK(world.state() == BridgeState::kDriving);
 }
 
 TEST_CASE("a stop at the controller itself while the bridge runs is released by ARM") {
@@ -201,7 +201,7 @@ TEST_CASE("a stop at the controller itself while the bridge runs is released by 
   world.drive();
   world.device = DeviceReport{"", "the controller's emergency stop", true};
   world.run(500'000);
-  CHECK(world.state() == State::kFault);
+  CHECK(world.state() == BridgeState::kFault);
   world.arm();
   world.step();
   CHECK(world.out.release_device_stop);
@@ -220,7 +220,7 @@ TEST_CASE("one bad slot in one program stops, whichever slot it is") {
       if (fault == 3) slot.period_us = 33'000;
       world.bridge.receive(program, world.now + 1);
       CHECK(timeToZero(world) == BridgeWorld::kStep);
-      CHECK(world.state() == State::kDisarmed);
+      CHECK(world.state() == BridgeState::kDisarmed);
       CHECK(world.reason().rfind("PROGRAM with a", 0) == 0);
     }
   }
@@ -232,11 +232,11 @@ TEST_CASE("a planner that was restarted while driving is a reason to stop, armed
   world.planner = EndlessPlanner(2);
   CHECK(timeToZero(world) <= 60'000);
   CHECK(world.reason() == "the planner was restarted while armed");
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   world.run(1'300'000);
   world.arm();
   world.run(200'000);
-  CHECK(world.state() == State::kDriving);
+  CHECK(world.state() == BridgeState::kDriving);
   CHECK(world.out.run_id == 2);
 }
 
@@ -248,7 +248,7 @@ TEST_CASE("two planners at once can never be armed") {
     world.bridge.receive(second.plan(world.now + 1, newest(world.bridge.executions())),
                          world.now + 1);
     world.arm();
-    CHECK(world.state() == State::kDisarmed);
+    CHECK(world.state() == BridgeState::kDisarmed);
   }
 }
 
@@ -258,7 +258,7 @@ TEST_CASE("a planner that talks about another execution does not keep the robot 
   world.drive();
   world.planner_alive = false;
   const int64_t from = world.now;
-  while (world.state() == State::kDriving && world.now - from < 1'000'000) {
+  while (world.state() == BridgeState::kDriving && world.now - from < 1'000'000) {
     world.step();
     world.bridge.receive(makeProgram(world.now, makeSlot(900, 20)), world.now);
   }
@@ -275,7 +275,7 @@ TEST_CASE("a bridge that was held up stops and says so") {
   world.bridge.receive(world.planner.plan(world.now, newest(world.bridge.executions())), world.now);
   world.step();
   CHECK(isZero(world.out.command));
-  CHECK(world.state() == State::kFault);
+  CHECK(world.state() == BridgeState::kFault);
   CHECK(world.reason() ==
         "motor_bridge was held up for 210 ms: too much runs on this computer, or it was halted");
 }
@@ -288,12 +288,12 @@ TEST_CASE("disarming and late copies of an old ARM") {
   world.step();
   world.bridge.receive(ArmRequest{world.now, false, "operator", "stop"}, world.now);
   world.step();
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   CHECK(world.reason() == "disarmed by operator");
   world.run(1'200'000);
   world.bridge.receive(arm, world.now);
   world.step();
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
 }
 
 TEST_CASE("an ARM given before the bridge started does not arm it, one given after it does") {
@@ -337,7 +337,7 @@ TEST_CASE("an INS driver that is back within its limit is no reason to drive on:
   BridgeWorld world;
   world.drive();
   world.run(1'000'000);
-  REQUIRE(world.state() == State::kDriving);
+  REQUIRE(world.state() == BridgeState::kDriving);
   world.ins_alive = false;
   world.run(70'000);
   world.ins_alive = true;
@@ -345,8 +345,8 @@ TEST_CASE("an INS driver that is back within its limit is no reason to drive on:
   CHECK(timeToZero(world) <= 30'000);
   CHECK(world.reason() == "the INS driver has been restarted");
   world.run(10'000'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   world.arm();
   world.run(100'000);
-  CHECK(world.state() == State::kDriving);
+  CHECK(world.state() == BridgeState::kDriving);
 }

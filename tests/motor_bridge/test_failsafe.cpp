@@ -40,13 +40,13 @@ struct Rig {
     in.arm = true;
     in.requested_by = "operator";
     step();
-    REQUIRE(out.state == State::kArmed);
+    REQUIRE(out.state == BridgeState::kArmed);
   }
   void drive() {
     arm();
     in.start_wanted = true;
     step();
-    REQUIRE(out.state == State::kDriving);
+    REQUIRE(out.state == BridgeState::kDriving);
     in.start_wanted = false;
     in.playing = true;
   }
@@ -55,20 +55,20 @@ struct Rig {
 /// The inputs that stop, highest priority first, with the resulting state.
 struct Cause {
   Reason FailsafeInputs::*fault;
-  State state;
+  BridgeState state;
   StopReason code;
 };
 const std::vector<Cause> kCauses = {
-    {&FailsafeInputs::link_fault, State::kFault, StopReason::kControllerLost},
-    {&FailsafeInputs::device_fault, State::kFault, StopReason::kControllerFault},
-    {&FailsafeInputs::bridge_fault, State::kFault, StopReason::kBridgeHeldUp},
-    {&FailsafeInputs::program_fault, State::kDisarmed, StopReason::kBadProgram},
-    {&FailsafeInputs::operator_fault, State::kDisarmed, StopReason::kOperatorLost},
-    {&FailsafeInputs::lease_fault, State::kDisarmed, StopReason::kProgramLate},
-    {&FailsafeInputs::ins_fault, State::kDisarmed, StopReason::kInsStale},
-    {&FailsafeInputs::tilt_fault, State::kDisarmed, StopReason::kTilt},
-    {&FailsafeInputs::fence_fault, State::kDisarmed, StopReason::kFenceNear},
-    {&FailsafeInputs::motion_fault, State::kDisarmed, StopReason::kStuck},
+    {&FailsafeInputs::link_fault, BridgeState::kFault, StopReason::kControllerLost},
+    {&FailsafeInputs::device_fault, BridgeState::kFault, StopReason::kControllerFault},
+    {&FailsafeInputs::bridge_fault, BridgeState::kFault, StopReason::kBridgeHeldUp},
+    {&FailsafeInputs::program_fault, BridgeState::kDisarmed, StopReason::kBadProgram},
+    {&FailsafeInputs::operator_fault, BridgeState::kDisarmed, StopReason::kOperatorLost},
+    {&FailsafeInputs::lease_fault, BridgeState::kDisarmed, StopReason::kProgramLate},
+    {&FailsafeInputs::ins_fault, BridgeState::kDisarmed, StopReason::kInsStale},
+    {&FailsafeInputs::tilt_fault, BridgeState::kDisarmed, StopReason::kTilt},
+    {&FailsafeInputs::fence_fault, BridgeState::kDisarmed, StopReason::kFenceNear},
+    {&FailsafeInputs::motion_fault, BridgeState::kDisarmed, StopReason::kStuck},
 };
 
 }  // namespace
@@ -87,7 +87,7 @@ TEST_CASE("it comes up disarmed and does not arm by itself") {
   Rig rig;
   rig.in.start_wanted = true;
   rig.run(60'000'000);
-  CHECK(rig.out.state == State::kDisarmed);
+  CHECK(rig.out.state == BridgeState::kDisarmed);
   CHECK_FALSE(rig.out.may_drive);
   CHECK(rig.out.reason == "not armed yet");
 }
@@ -97,13 +97,13 @@ TEST_CASE("arming needs a second of good inputs, and says so") {
   rig.run(500'000);
   rig.in.arm = true;
   rig.step();
-  CHECK(rig.out.state == State::kDisarmed);
+  CHECK(rig.out.state == BridgeState::kDisarmed);
   CHECK(rig.out.arm_refused);
   CHECK(rig.out.reason == "not armed yet; ARM refused: inputs good for 500 ms, 1000 are needed");
   rig.run(600'000);
   rig.in.arm = true;
   rig.step();
-  CHECK(rig.out.state == State::kArmed);
+  CHECK(rig.out.state == BridgeState::kArmed);
 }
 
 TEST_CASE("every cause stops in the very step it is seen, stays stopped and needs ARM") {
@@ -123,10 +123,10 @@ TEST_CASE("every cause stops in the very step it is seen, stays stopped and need
     CHECK(rig.out.standing_fault.empty());
     rig.in.arm = true;
     rig.step();
-    CHECK(rig.out.state == State::kArmed);
+    CHECK(rig.out.state == BridgeState::kArmed);
     CHECK_FALSE(rig.out.may_drive);
     rig.step();
-    CHECK(rig.out.state == State::kDriving);
+    CHECK(rig.out.state == BridgeState::kDriving);
   }
 }
 
@@ -137,7 +137,7 @@ TEST_CASE("ARM while a fault stands is refused with that fault") {
     rig.in.*cause.fault = {cause.code, "something"};
     rig.in.arm = true;
     rig.step();
-    CHECK(rig.out.state == State::kDisarmed);
+    CHECK(rig.out.state == BridgeState::kDisarmed);
     CHECK(rig.out.reason == "not armed yet; ARM refused: something");
   }
 }
@@ -175,22 +175,22 @@ TEST_CASE("an E-stop wins over everything, latches, and needs clearing and then 
   rig.in.estop_reason = "person in front (operator)";
   rig.in.link_fault = {StopReason::kControllerLost, "gone"};
   rig.step();
-  CHECK(rig.out.state == State::kEstopped);
+  CHECK(rig.out.state == BridgeState::kEstop);
   CHECK(rig.out.reason == "E-stop: person in front (operator)");
   rig.in.playing = false;
   rig.in.link_fault = {};
   rig.run(3'000'000);
   rig.in.arm = true;
   rig.step();
-  CHECK(rig.out.state == State::kEstopped);
+  CHECK(rig.out.state == BridgeState::kEstop);
   CHECK(rig.out.arm_refused);
   rig.in.estop = false;
   rig.run(5'000'000);
-  CHECK(rig.out.state == State::kDisarmed);
+  CHECK(rig.out.state == BridgeState::kDisarmed);
   CHECK(rig.out.reason == "E-stop cleared");
   rig.in.arm = true;
   rig.step();
-  CHECK(rig.out.state == State::kArmed);
+  CHECK(rig.out.state == BridgeState::kArmed);
 }
 
 TEST_CASE("an E-stop reaches a bridge that is disarmed or in fault, too") {
@@ -200,11 +200,11 @@ TEST_CASE("an E-stop reaches a bridge that is disarmed or in fault, too") {
       rig.drive();
       rig.in.link_fault = {StopReason::kControllerLost, "gone"};
       rig.step();
-      REQUIRE(rig.out.state == State::kFault);
+      REQUIRE(rig.out.state == BridgeState::kFault);
     }
     rig.in.estop = true;
     rig.step();
-    CHECK(rig.out.state == State::kEstopped);
+    CHECK(rig.out.state == BridgeState::kEstop);
   }
 }
 
@@ -215,11 +215,11 @@ TEST_CASE("the normal end of a series stops, stays armed and may go on after one
   rig.in.start_wanted = true;
   rig.in.series_end = StopReason::kSeriesEnded;
   rig.step();
-  CHECK(rig.out.state == State::kStopping);
+  CHECK(rig.out.state == BridgeState::kStopping);
   CHECK_FALSE(rig.out.may_drive);
   CHECK(rig.out.reason == "series ended without a next");
   rig.step();
-  CHECK(rig.out.state == State::kDriving);
+  CHECK(rig.out.state == BridgeState::kDriving);
 }
 
 TEST_CASE(
@@ -231,7 +231,7 @@ TEST_CASE(
   const int64_t stopped = rig.in.now;
   while (rig.out.zero_fast) rig.step();
   CHECK(rig.in.now - stopped == 1'000'000);
-  CHECK(rig.out.state == State::kArmed);
+  CHECK(rig.out.state == BridgeState::kArmed);
   rig.run(5'000'000);
   rig.in.estop = true;
   rig.step();
@@ -245,7 +245,7 @@ TEST_CASE("disarming stops, and wins over arming in the same step") {
   rig.in.disarm = true;
   rig.in.requested_by = "operator";
   rig.step();
-  CHECK(rig.out.state == State::kDisarmed);
+  CHECK(rig.out.state == BridgeState::kDisarmed);
   CHECK(rig.out.reason == "disarmed by operator");
 }
 
@@ -257,7 +257,7 @@ TEST_CASE("any sequence of inputs keeps the promises (ten hours of random scenar
   Rig rig;
   int64_t good_since = 0;
   for (int step = 0; step < testing::effort(3'600'000); ++step) {
-    const State before = rig.failsafe.state();
+    const BridgeState before = rig.failsafe.state();
     bool good = true;
     for (const Cause& cause : kCauses) {
       Reason& fault = rig.in.*cause.fault;
@@ -270,16 +270,16 @@ TEST_CASE("any sequence of inputs keeps the promises (ten hours of random scenar
     const bool arm = rig.in.arm = chance(0.01);
     rig.in.disarm = chance(0.0005);
     rig.in.start_wanted = chance(0.5);
-    rig.in.playing = before == State::kDriving && chance(0.98);
+    rig.in.playing = before == BridgeState::kDriving && chance(0.98);
     rig.step();
     if (!good) good_since = rig.in.now + kCycle;
-    const State after = rig.out.state;
+    const BridgeState after = rig.out.state;
     const bool enabled = !isArmed(before) && isArmed(after);
-    REQUIRE(rig.out.may_drive == (after == State::kDriving));
+    REQUIRE(rig.out.may_drive == (after == BridgeState::kDriving));
     REQUIRE((good || !rig.out.may_drive));
     REQUIRE((!enabled || (arm && rig.in.now - good_since >= 1'000'000)));
-    REQUIRE((before != State::kDriving || rig.in.playing || !rig.out.may_drive));
-    REQUIRE((!rig.in.estop || after == State::kEstopped));
+    REQUIRE((before != BridgeState::kDriving || rig.in.playing || !rig.out.may_drive));
+    REQUIRE((!rig.in.estop || after == BridgeState::kEstop));
   }
 }
 
@@ -315,16 +315,16 @@ TEST_CASE("each change of state, of its reason or of a refusal is told, and noth
   CHECK(rig.out.changed);
   rig.in.playing = rig.in.start_wanted = true;
   rig.step();
-  REQUIRE(rig.out.state == State::kDriving);
+  REQUIRE(rig.out.state == BridgeState::kDriving);
   rig.in.playing = rig.in.start_wanted = false;
   rig.step();
-  REQUIRE(rig.out.state == State::kStopping);
+  REQUIRE(rig.out.state == BridgeState::kStopping);
   const std::string reason = rig.out.reason;
   CHECK(reason == "series ended");  // no reason was given
   const int64_t stopped = rig.in.now;
-  while (rig.out.state == State::kStopping) {
+  while (rig.out.state == BridgeState::kStopping) {
     rig.step();
-    CHECK(rig.out.changed == (rig.out.state == State::kArmed));
+    CHECK(rig.out.changed == (rig.out.state == BridgeState::kArmed));
   }
   CHECK(rig.out.reason == reason);  // only the state is new
   CHECK(rig.in.now - stopped == 1'000'000);
@@ -341,7 +341,7 @@ TEST_CASE("disarming a robot in fault leaves the fault to be seen, and when it s
   rig.run(100'000);
   rig.in.disarm = true;
   rig.step();
-  CHECK(rig.out.state == State::kFault);
+  CHECK(rig.out.state == BridgeState::kFault);
   CHECK(rig.out.reason == "the line is down");
   CHECK(rig.failsafe.disarmedAt() == stopped);
   rig.arm();
@@ -358,16 +358,16 @@ TEST_CASE("armed for the hand it says whose, and a series waits a step after it 
   rig.in.arm = true;
   rig.in.requested_by = "ada";
   rig.step();
-  CHECK(rig.out.state == State::kManual);
+  CHECK(rig.out.state == BridgeState::kManual);
   CHECK(rig.out.reason == "driven by hand by ada");
   rig.in.ins_fault = {};
   rig.in.hand = false;
   rig.in.start_wanted = true;
   rig.step();
-  CHECK(rig.out.state == State::kStopping);
+  CHECK(rig.out.state == BridgeState::kStopping);
   CHECK(rig.out.reason == "given back by hand");
   rig.step();
-  CHECK(rig.out.state == State::kDriving);
+  CHECK(rig.out.state == BridgeState::kDriving);
 }
 
 TEST_CASE("armed with no hand there it says by whom") {

@@ -95,11 +95,11 @@ TEST_CASE(
     for (const double power : {1.0, 0.4, -1.0}) {
       FencedWorld world({yard()}, {0, 0, yaw});
       world.start(power, power);
-      REQUIRE(world.state() == State::kDriving);
+      REQUIRE(world.state() == BridgeState::kDriving);
       world.runFor(30'000'000);
       CHECK(world.least_room >= 0.0);
       CHECK(world.least_room < 1.0);
-      CHECK(world.state() == State::kDisarmed);
+      CHECK(world.state() == BridgeState::kDisarmed);
       CHECK_THAT(world.reason(), Contains("fence yard") && Contains("less than it takes to stop"));
     }
   }
@@ -112,7 +112,7 @@ TEST_CASE("a turn beside a fence stops before a corner of the outline crosses it
     world.start(-1.0, 1.0);
     world.runFor(5'000'000);
     CHECK(world.least_room >= 0.0);
-    CHECK(world.state() == State::kDisarmed);
+    CHECK(world.state() == BridgeState::kDisarmed);
   }
 }
 
@@ -120,11 +120,11 @@ TEST_CASE("along a fence, and in the middle of the yard, it drives on") {
   FencedWorld along({yard()}, {-4, 5.0 - 0.34 - 0.15, 0});
   along.start(1.0, 1.0);
   along.runFor(8'000'000);
-  CHECK(along.state() == State::kDriving);
+  CHECK(along.state() == BridgeState::kDriving);
   FencedWorld turning({yard()});
   turning.start(-1.0, 1.0);
   turning.runFor(8'000'000);
-  CHECK(turning.state() == State::kDriving);
+  CHECK(turning.state() == BridgeState::kDriving);
 }
 
 TEST_CASE("it keeps out of a polygon from every side, and of one that is smaller than itself") {
@@ -138,7 +138,7 @@ TEST_CASE("it keeps out of a polygon from every side, and of one that is smaller
       world.runFor(15'000'000);
       CHECK(world.least_room >= 0.0);
       CHECK(world.least_room < 1.0);
-      CHECK(world.state() == State::kDisarmed);
+      CHECK(world.state() == BridgeState::kDisarmed);
     }
   }
 }
@@ -167,7 +167,7 @@ TEST_CASE("what measures no velocity counts as fast as it can be") {
   world.motion = InsMotion{0, 9.0, 0.0, 0.0};
   world.drive();
   // It would cross the fence within its stopping time.
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   CHECK_THAT(world.reason(), Contains("fence yard"));
 }
 
@@ -176,23 +176,23 @@ TEST_CASE("blind for its speed it stops at a fence, and is driven away from it a
     FencedWorld world({yard()}, {9.0, 0, 0});
     world.blind(true, no_turn);
     world.start(0.3, 0.3);
-    CHECK(world.state() == State::kDisarmed);
+    CHECK(world.state() == BridgeState::kDisarmed);
     CHECK_THAT(world.reason(), Contains("fence yard"));
     CHECK(world.truth.x < 9.1);
     world.restart(-1.0, -1.0);
     world.runFor(3'000'000);
-    CHECK(world.state() == State::kDriving);
+    CHECK(world.state() == BridgeState::kDriving);
     CHECK(world.truth.x < 7.0);
     FencedWorld out({yard()}, {14.0, 0, 0});
     out.blind(true, no_turn);
     out.start(0.3, 0.3);
     out.runFor(1'000'000);
-    CHECK(out.state() == State::kDisarmed);
+    CHECK(out.state() == BridgeState::kDisarmed);
     CHECK_THAT(out.reason(), Contains("outside fence yard"));
     CHECK(out.truth.x < 14.2);
     out.restart(-1.0, -1.0);
     out.runFor(9'000'000);
-    CHECK(out.state() == State::kDriving);
+    CHECK(out.state() == BridgeState::kDriving);
     CHECK(out.truth.x < 9.0);
   }
 }
@@ -201,7 +201,7 @@ TEST_CASE("blind for its speed it counts as fast after its last command, and the
   FencedWorld world({yard()}, {4.0, 0, 0});
   world.blind(true, false);
   world.start(1.0, 1.0);
-  while (world.state() == State::kDriving) world.runFor(10'000);
+  while (world.state() == BridgeState::kDriving) world.runFor(10'000);
   const int64_t stopped = world.now;
   // It reports the reason as long as it may still continue.
   while (world.now < stopped + 700'000) {
@@ -209,7 +209,7 @@ TEST_CASE("blind for its speed it counts as fast after its last command, and the
     REQUIRE_THAT(world.reason(), Contains("fence yard"));
   }
   world.restart(-1.0, -1.0);
-  CHECK(world.state() == State::kDriving);
+  CHECK(world.state() == BridgeState::kDriving);
 }
 
 TEST_CASE("a turn that is not measured does not make a known speed unknown") {
@@ -217,7 +217,7 @@ TEST_CASE("a turn that is not measured does not make a known speed unknown") {
   world.blind(false, true);
   world.start(0.15, 0.15);
   world.runFor(20'000'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   CHECK(world.least_room >= 0.0);
   CHECK(world.least_room < 0.25);
 }
@@ -230,24 +230,24 @@ TEST_CASE("over a ditch it drives out to either side, but not across, and not ba
       FencedWorld out({ditch}, there);
       out.start(side, side);
       out.runFor(3'000'000);
-      CHECK(out.state() == State::kDriving);
+      CHECK(out.state() == BridgeState::kDriving);
       CHECK(side * out.truth.x > 1.0);
       FencedWorld across({ditch}, there);
       across.start(-side, -side);
       across.runFor(3'000'000);
-      CHECK(across.state() == State::kDisarmed);
+      CHECK(across.state() == BridgeState::kDisarmed);
       CHECK_THAT(across.reason(), Contains("outside fence ditch") && Contains("only back in"));
       CHECK(side * across.truth.x > 0.1);
       // Outwards for a part, then back.
       FencedWorld turns({ditch}, there);
       turns.start(0.5 * side, 0.5 * side);
       turns.runFor(300'000);
-      REQUIRE(turns.state() == State::kDriving);
+      REQUIRE(turns.state() == BridgeState::kDriving);
       const double reached = side * turns.truth.x;
       REQUIRE(reached < 0.6);
       turns.planner.always = TrackCommand{-0.5 * side, -0.5 * side};
       turns.runFor(3'000'000);
-      CHECK(turns.state() == State::kDisarmed);
+      CHECK(turns.state() == BridgeState::kDisarmed);
       CHECK(side * turns.truth.x > reached - 0.1);
     }
 }
@@ -257,13 +257,13 @@ TEST_CASE("over a fence only the way back in is driven") {
     FencedWorld out({yard()}, {x, 0, 0});
     out.start(1.0, 1.0);
     out.runFor(2'000'000);
-    CHECK(out.state() == State::kDisarmed);
+    CHECK(out.state() == BridgeState::kDisarmed);
     CHECK_THAT(out.reason(), Contains("outside fence yard by") && Contains("only back in"));
     CHECK(out.truth.x < x + 0.4);
     FencedWorld back({yard()}, {x, 0, 0});
     back.start(-1.0, -1.0);
     back.runFor(9'000'000);
-    CHECK(back.state() == State::kDriving);
+    CHECK(back.state() == BridgeState::kDriving);
     CHECK(back.truth.x < 9.0);
   }
 }
@@ -272,11 +272,11 @@ TEST_CASE("over a fence it does not go back and forth: half a way back is not gi
   FencedWorld world({yard()}, {14, 0, 0});
   world.start(-1.0, -1.0);
   world.runFor(2'000'000);
-  REQUIRE(world.state() == State::kDriving);
+  REQUIRE(world.state() == BridgeState::kDriving);
   const double reached = world.truth.x;
   world.planner.always = TrackCommand{1.0, 1.0};
   world.runFor(3'000'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   CHECK(world.truth.x < reached + 0.1);
 }
 
@@ -284,7 +284,7 @@ TEST_CASE("back over one fence it does not cross another one") {
   FencedWorld world({yard(), {"pond", true, {{5, -3}, {8, -3}, {8, 3}, {5, 3}}}}, {14, 0, 0});
   world.start(-1.0, -1.0);
   world.runFor(15'000'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   CHECK_THAT(world.reason(), Contains("fence pond"));
   CHECK(world.truth.x - 0.65 >= 8.0);
 }
@@ -292,11 +292,11 @@ TEST_CASE("back over one fence it does not cross another one") {
 TEST_CASE("a fence that comes while it drives stops it, whoever sent it") {
   FencedWorld world({});
   world.start(1.0, 1.0);
-  REQUIRE(world.state() == State::kDriving);
+  REQUIRE(world.state() == BridgeState::kDriving);
   world.add(yard());
   world.runFor(20'000'000);
   CHECK(world.least_room >= 0.0);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   CHECK(world.bridge.counters().at("FENCE added") == 1);
 }
 
@@ -332,7 +332,7 @@ TEST_CASE("without fences nothing is looked at") {
   FencedWorld world({});
   world.start(1.0, 1.0);
   world.runFor(60'000'000);
-  CHECK(world.state() == State::kDriving);
+  CHECK(world.state() == BridgeState::kDriving);
   CHECK(world.truth.x > 50.0);
 }
 
@@ -350,7 +350,7 @@ TEST_CASE(
   world.add({"pond", true, {{near, -9}, {near + 9, -9}, {near + 9, 9}, {near, 9}}});
   world.arm();
   world.runFor(60'000'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   CHECK(world.truth.x > near - 5.0);
   CHECK(world.least_room >= 0.0);
 }

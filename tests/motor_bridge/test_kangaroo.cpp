@@ -134,7 +134,7 @@ TEST_CASE("Kangaroo: a channel that lost control is a fault in words, and stands
   requireDriving(rig);
   rig.device.loseControl(1);
   rig.run(500'000);
-  CHECK(rig.state() != State::kDriving);
+  CHECK(rig.state() != BridgeState::kDriving);
   CHECK(rig.connection.report(rig.now).device_fault.rfind("channel 2 has lost control", 0) == 0);
   CHECK_FALSE(rig.turning());
 }

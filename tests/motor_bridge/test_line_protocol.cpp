@@ -105,7 +105,7 @@ TEST_CASE("Roboteq's own protocol is a description: it drives the emulated contr
   rig.device.measure(someMeasurements());
   rig.drive();
   rig.run(10'000'000);
-  REQUIRE(rig.state() == State::kDriving);
+  REQUIRE(rig.state() == BridgeState::kDriving);
   CHECK(rig.device.output(rig.now)[0] == Approx(rig.out.command[0]).margin(0.0006));
   CHECK(rig.device.output(rig.now)[1] == Approx(rig.out.command[1]).margin(0.0006));
   readsThem(rig.connection.telemetry());
@@ -131,7 +131,7 @@ TEST_CASE("a controller nobody has is driven by its description alone") {
   rig.device.measure(someMeasurements());
   rig.drive();
   rig.run(5'000'000);
-  REQUIRE(rig.state() == State::kDriving);
+  REQUIRE(rig.state() == BridgeState::kDriving);
   CHECK(rig.device.watchdog() == 0.2);
   CHECK(rig.device.output(rig.now)[1] == Approx(-rig.out.command[0]).margin(1e-4));
   CHECK(rig.device.output(rig.now)[0] == Approx(rig.out.command[1]).margin(1e-4));
@@ -188,7 +188,7 @@ TEST_CASE("described controller: lost, cut and garbled replies are counted and s
     if (i % 3 == 1) rig.device.cutReply();
     if (i % 3 == 2) rig.device.garbleReply();
   }
-  CHECK(rig.state() == State::kDriving);
+  CHECK(rig.state() == BridgeState::kDriving);
   CHECK(rig.count("start-ups") == 1);
   CHECK(rig.count("wrong checksums") > 100);
   CHECK(rig.count("replies missing") > 100);

@@ -44,7 +44,7 @@ struct HandWorld : BridgeWorld {
     arm();
     run(100'000);
     wish.hold = holds;
-    REQUIRE(state() == State::kArmed);
+    REQUIRE(state() == BridgeState::kArmed);
   }
   void stick(double left, double right) {
     wish.left = left;
@@ -58,14 +58,14 @@ struct HandWorld : BridgeWorld {
     run(200'000);
     wish.hold = true;
     run(100'000);
-    REQUIRE(state() == State::kDriving);
+    REQUIRE(state() == BridgeState::kDriving);
   }
   /// Runs until a person drives at full stick.
   void driveByHand() {
     drive();
     stick(1.0, 1.0);
     run(1'000'000);
-    REQUIRE(state() == State::kManual);
+    REQUIRE(state() == BridgeState::kManual);
     REQUIRE(out.command == Command{0.5, 0.5});
   }
   /// Steps until `done`; returns the duration [us].
@@ -86,7 +86,7 @@ TEST_CASE("a moved stick takes over within 100 ms of its message, and the progra
   const int64_t execution = world.out.execution_id;
   world.stick(0.6, 0.4);
   world.tell();
-  CHECK(world.until([&] { return world.state() == State::kManual; }) <= kBridgeStep);
+  CHECK(world.until([&] { return world.state() == BridgeState::kManual; }) <= kBridgeStep);
   CHECK(world.stands());  // the pattern's power is gone before the manual command rises
   CHECK(world.until([&] { return world.out.command[0] > 0.0; }) <= 100'000 - kBridgeStep);
   CHECK(world.reason() == "driven by hand by operator");
@@ -98,7 +98,7 @@ TEST_CASE("a moved stick takes over within 100 ms of its message, and the progra
   CHECK(world.out.command_index == -1);
   CHECK(world.out.kinds == kindsOf(trackChannels(CommandKind::kPower)));
   world.run(5'000'000);
-  CHECK(world.state() == State::kManual);
+  CHECK(world.state() == BridgeState::kManual);
   CHECK(world.last().execution_id == execution);
   CHECK(world.bridge.counters().at("PROGRAM refused: the robot is driven by hand") > 50);
 }
@@ -134,10 +134,10 @@ TEST_CASE("a released dead-man's button: zero in the next step, armed, in the ha
   world.wish.hold = false;
   world.tell();
   CHECK(world.until([&] { return world.stands(); }) == kBridgeStep);
-  CHECK(world.state() == State::kManual);
+  CHECK(world.state() == BridgeState::kManual);
   CHECK(world.reason() == "in the hand of operator, dead-man's button released");
   world.run(3'000'000);
-  CHECK(world.state() == State::kManual);
+  CHECK(world.state() == BridgeState::kManual);
   CHECK(world.stands());
   world.wish.hold = true;
   CHECK(world.until([&] { return !world.stands(); }) <= 60'000);
@@ -156,7 +156,7 @@ TEST_CASE(
   world.until([&] { return world.stands(); });
   CHECK(world.now - world.seen <= 200'000 + kBridgeStep);
   CHECK(world.now - world.seen > 200'000);
-  CHECK(world.state() == State::kManual);
+  CHECK(world.state() == BridgeState::kManual);
   CHECK(world.reason() == "in the hand of operator, who is silent");
   world.run(2'000'000);
   CHECK(world.stands());
@@ -184,15 +184,15 @@ TEST_CASE("given back: zero, then the planner's next program, and what was taken
   world.tell();
   world.step();
   CHECK(world.stands());
-  CHECK(world.state() == State::kStopping);
+  CHECK(world.state() == BridgeState::kStopping);
   CHECK(world.reason() == "given back by hand");
   world.run(300'000);
-  CHECK(world.state() == State::kDriving);
+  CHECK(world.state() == BridgeState::kDriving);
   CHECK(world.last().execution_id > execution);
   world.wish.give_back = false;
   world.stick(0.0, 0.0);
   world.run(1'000'000);
-  CHECK(world.state() == State::kDriving);
+  CHECK(world.state() == BridgeState::kDriving);
 }
 
 TEST_CASE("neither ending nor falling silent gives back, and who starts anew may give back") {
@@ -203,14 +203,14 @@ TEST_CASE("neither ending nor falling silent gives back, and who starts anew may
     world.bridge.receive(OperatorNotice{7, "operator", true, world.now, 0, ""}, world.now);
     world.bridge.receive(OperatorNotice{7, "operator", false, world.now, 0, ""}, world.now);
     world.run(300'000);
-    CHECK(world.state() == State::kDisarmed);
+    CHECK(world.state() == BridgeState::kDisarmed);
     CHECK(world.reason() == "disarmed by operator, whose program has ended");
   }
   SECTION("another program lets go") {
     world.bridge.receive(OperatorNotice{8, "operator", true, world.now, 0, ""}, world.now);
     world.bridge.receive(OperatorNotice{8, "operator", false, world.now, 0, ""}, world.now);
     world.run(1'000'000);
-    CHECK(world.state() == State::kManual);
+    CHECK(world.state() == BridgeState::kManual);
   }
   SECTION("started anew with the stick held: nothing moves before it was let go") {
     world.run(500'000);
@@ -221,7 +221,7 @@ TEST_CASE("neither ending nor falling silent gives back, and who starts anew may
     CHECK(world.stands());
     world.wish.give_back = true;
     world.run(300'000);
-    CHECK(world.state() == State::kDriving);
+    CHECK(world.state() == BridgeState::kDriving);
   }
 }
 
@@ -259,14 +259,14 @@ TEST_CASE("a lost operator stops the hand, and so does one who lets go with all 
   SECTION("silent") {
     world.hand_alive = false;
     world.run(1'300'000);
-    CHECK(world.state() == State::kDisarmed);
+    CHECK(world.state() == BridgeState::kDisarmed);
     CHECK(world.reason().find("the operator is lost") != std::string::npos);
   }
   SECTION("let go") {
     world.bridge.receive(OperatorNotice{1, "operator", false, world.now, 0, ""}, world.now);
     world.step();
     CHECK(world.stands());
-    CHECK(world.state() == State::kStopping);
+    CHECK(world.state() == BridgeState::kStopping);
     CHECK(world.reason() == "operator has let go");
   }
 }
@@ -283,12 +283,12 @@ TEST_CASE(
     world.planner_alive = false;
   }
   world.run(1'000'000);
-  CHECK(world.state() == State::kManual);
+  CHECK(world.state() == BridgeState::kManual);
   CHECK(world.out.command == Command{0.5, 0.5});
   CHECK_FALSE(world.out.failsafe.standing_fault.empty());
   world.wish.give_back = true;
   world.run(50'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   CHECK(world.stands());
 }
 
@@ -321,14 +321,14 @@ TEST_CASE("the hand needs the dead-man's button, the lease and valid numbers to 
       world.run(200'000);
       world.stick(left, right);
       world.run(1'000'000);
-      CHECK(world.state() == State::kDriving);
+      CHECK(world.state() == BridgeState::kDriving);
     }
     world.wish.hold = false;
   }
   world.stick(1.0, 1.0);
   if (!world.hand_alive) world.bridge.receive(world.wish, world.now);  // seq and view as before
   world.run(1'000'000);
-  CHECK(world.state() == State::kDriving);
+  CHECK(world.state() == BridgeState::kDriving);
 }
 
 TEST_CASE("a second hand of the same operator is refused while the first is there") {
@@ -352,12 +352,12 @@ TEST_CASE(
   HandWorld world;
   world.stick(1.0, 1.0);
   world.run(2'000'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   world.planner_alive = false;  // nothing else may begin
   world.arm();
   world.run(1'000'000);
   CHECK(world.stands());
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
 }
 
 TEST_CASE("armed again after a stop with the stick still held, nothing moves before it rests") {
@@ -375,7 +375,7 @@ TEST_CASE("armed again after a stop with the stick still held, nothing moves bef
   world.planner.stands = true;  // so that only manual control may move it
   world.arm();
   world.run(50'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   CHECK_THAT(world.reason(), Catch::EndsWith("; ARM refused: the stick was not seen at rest: let "
                                              "it go once"));
   world.wish.hold = false;
@@ -387,12 +387,12 @@ TEST_CASE("armed again after a stop with the stick still held, nothing moves bef
     world.step();
     REQUIRE(world.stands());
   }
-  CHECK(world.state() == State::kArmed);
+  CHECK(world.state() == BridgeState::kArmed);
   world.stick(0.0, 0.0);
   world.run(100'000);
   world.stick(1.0, 1.0);
   world.run(100'000);
-  CHECK(world.state() == State::kManual);
+  CHECK(world.state() == BridgeState::kManual);
   CHECK_FALSE(world.stands());
 }
 
@@ -402,12 +402,12 @@ TEST_CASE("a repeated ARM of a hand that was disarmed at once does not arm it ag
   const ArmRequest ahead{world.now + 40'000, true, "operator", "go"};
   world.bridge.receive(ahead, world.now);
   world.step();
-  REQUIRE(world.state() == State::kManual);
+  REQUIRE(world.state() == BridgeState::kManual);
   world.bridge.receive(ArmRequest{world.now, false, "operator", ""}, world.now);
   world.step();
   world.bridge.receive(ahead, world.now);
   world.run(100'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
 }
 
 TEST_CASE("a stick that goes to rest gives zero in the next step") {
@@ -432,7 +432,7 @@ TEST_CASE(
   world.run(1'300'000);
   world.arm();
   world.run(50'000);
-  CHECK(world.state() == State::kManual);
+  CHECK(world.state() == BridgeState::kManual);
   CHECK(world.stands());
   world.stick(1.0, 1.0);
   world.run(1'000'000);
@@ -446,7 +446,7 @@ TEST_CASE("without the button ARM needs what a program needs") {
   world.run(1'300'000);
   world.arm();
   world.run(50'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
 }
 
 TEST_CASE("an overtaken message of the hand counts for nothing") {
@@ -465,10 +465,10 @@ TEST_CASE("a hand's command changes every 20 ms, and grows from zero when it tak
   world.driveByHand();
   world.wish.give_back = true;
   world.run(100'000);
-  REQUIRE(world.state() == State::kDriving);
+  REQUIRE(world.state() == BridgeState::kDriving);
   world.wish.give_back = false;
   world.tell();
-  world.until([&] { return world.state() == State::kManual; });
+  world.until([&] { return world.state() == BridgeState::kManual; });
   CHECK(world.stands());
   std::vector<int64_t> changes;
   for (Command before; world.out.command[0] < 0.4; before = world.out.command) {
@@ -498,15 +498,15 @@ TEST_CASE("where the hand has limits of tilt or fences to keep, a silent INS sto
   world.driveByHand();
   world.ins_alive = false;
   CHECK(world.until([&] { return world.stands(); }) <= 550'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   CHECK_THAT(world.reason(), Catch::StartsWith(told));
   world.stick(0.0, 0.0);
   world.run(2'500'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   // A person who arms again knows it.
   world.arm();
   world.run(50'000);
-  CHECK(world.state() == State::kManual);
+  CHECK(world.state() == BridgeState::kManual);
   world.stick(1.0, 1.0);
   world.run(1'000'000);
   CHECK(world.out.command == Command{0.5, 0.5});
@@ -528,7 +528,7 @@ TEST_CASE("with fences a position that does not move with the robot stops the ha
   world.wish.hold = true;
   world.stick(1.0, 1.0);
   world.run(4'000'000);
-  CHECK((world.state() == State::kManual) == !fenced);
+  CHECK((world.state() == BridgeState::kManual) == !fenced);
   CHECK(world.stands() == fenced);
 }
 
@@ -540,7 +540,7 @@ TEST_CASE("`go_back` takes a lost person's robot from the hand, and says so") {
   world.driveByHand();
   world.operator_alive = world.hand_alive = false;
   CHECK(world.until([&] { return world.stands(); }) <= 200'000 + kBridgeStep);
-  world.until([&] { return world.state() != State::kManual; });
+  world.until([&] { return world.state() != BridgeState::kManual; });
   CHECK_THAT(world.reason(), Catch::Contains("the operator is lost"));
   CHECK(isArmed(world.state()));
 }
@@ -572,7 +572,7 @@ TEST_CASE("a stick that was not seen at rest moves nothing, whatever is done wit
     if (i % 30 == 0) world.wish.hold = !world.wish.hold;
     world.step();
     REQUIRE(world.stands());
-    REQUIRE(world.state() == State::kArmed);
+    REQUIRE(world.state() == BridgeState::kArmed);
   }
   world.wish.hold = true;
   world.run(50'000);
@@ -585,7 +585,7 @@ TEST_CASE("a stick that was not seen at rest moves nothing, whatever is done wit
   world.wish.hold = true;
   world.stick(0.5, 0.5);
   world.run(100'000);
-  CHECK(world.state() == State::kManual);
+  CHECK(world.state() == BridgeState::kManual);
   CHECK_FALSE(world.stands());
 }
 
@@ -614,7 +614,7 @@ TEST_CASE("a stick whose place is lost while it drives: zero in the next step, u
   world.stick(1.0, 1.0);
   world.run(500'000);
   CHECK(world.stands());
-  CHECK(world.state() == State::kManual);
+  CHECK(world.state() == BridgeState::kManual);
   world.stick(0.0, 0.0);
   world.run(50'000);
   world.stick(1.0, 1.0);
@@ -629,7 +629,7 @@ TEST_CASE("with its place unknown a stick gives back, and arms nothing for the h
     world.stick(kUnknown, kUnknown);
     world.wish.give_back = true;
     world.run(300'000);
-    CHECK(world.state() == State::kDriving);
+    CHECK(world.state() == BridgeState::kDriving);
   }
   SECTION("arms nothing") {
     world.planner_alive = world.ins_alive = false;
@@ -637,7 +637,7 @@ TEST_CASE("with its place unknown a stick gives back, and arms nothing for the h
     world.run(1'300'000);
     world.arm();
     world.run(50'000);
-    CHECK(world.state() == State::kDisarmed);
+    CHECK(world.state() == BridgeState::kDisarmed);
   }
 }
 
@@ -646,10 +646,10 @@ TEST_CASE("a worn spring: up to a twentieth counts as rest, and moves nothing") 
   world.armForHand();
   world.stick(0.05, -0.05);
   world.run(500'000);
-  CHECK(world.state() == State::kArmed);
+  CHECK(world.state() == BridgeState::kArmed);
   world.stick(0.06, -0.05);
   world.run(500'000);
-  CHECK(world.state() == State::kManual);
+  CHECK(world.state() == BridgeState::kManual);
   CHECK(world.out.command[0] == Approx(0.03));
   world.stick(-0.05, 0.05);
   world.tell();
@@ -666,11 +666,11 @@ TEST_CASE("a stick deflected with its button released while the robot is armed m
   world.run(100'000);
   world.arm();
   world.run(100'000);
-  REQUIRE(world.state() == State::kArmed);
+  REQUIRE(world.state() == BridgeState::kArmed);
   world.wish.hold = true;
   world.run(1'000'000);
   CHECK(world.stands());
-  CHECK(world.state() == State::kArmed);
+  CHECK(world.state() == BridgeState::kArmed);
 }
 
 TEST_CASE("a stick that was silent while the planner drove takes over only after it rests again") {
@@ -681,12 +681,12 @@ TEST_CASE("a stick that was silent while the planner drove takes over only after
   world.stick(1.0, 1.0);
   world.hand_alive = true;
   world.run(500'000);
-  CHECK(world.state() == State::kDriving);
+  CHECK(world.state() == BridgeState::kDriving);
   world.stick(0.0, 0.0);
   world.run(50'000);
   world.stick(1.0, 1.0);
   world.run(50'000);
-  CHECK(world.state() == State::kManual);
+  CHECK(world.state() == BridgeState::kManual);
 }
 
 TEST_CASE("two stations of which each rests for the other move nothing") {
@@ -720,7 +720,7 @@ TEST_CASE("while kept fences are lost neither hand nor planner drives, until the
   world.run(1'500'000);
   world.arm();
   world.run(100'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   CHECK_THAT(world.reason(), Catch::Contains("ARM refused: kept fences are lost"));
   world.bridge.receive(FenceRequest{"operator", true, lostFences()}, world.now);
   world.run(1'500'000);

@@ -187,7 +187,8 @@ std::string reasonFor(size_t channels) {
     return slot;
   };
   world.drive();
-  if (world.state() == State::kDriving) return "drives " + std::to_string(world.out.command[2]);
+  if (world.state() == BridgeState::kDriving)
+    return "drives " + std::to_string(world.out.command[2]);
   for (const auto& [name, count] : world.bridge.counters())
     if (count > 0 && name.find("PROGRAM refused") == 0) return name;
   return world.reason();

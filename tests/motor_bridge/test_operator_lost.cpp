@@ -36,7 +36,7 @@ TEST_CASE("without an operator's program ARM is refused, with the reason") {
   BridgeWorld world;
   world.operator_alive = false;
   world.drive();
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   CHECK(world.reason() == "not armed yet; ARM refused: no operator's program is heard (OPERATOR)");
 }
 
@@ -45,7 +45,7 @@ TEST_CASE("operator killed, frozen or cut off: zero within the lease, armed agai
     BridgeWorld world;
     world.drive();
     world.run(3'000'000);
-    REQUIRE(world.state() == State::kDriving);
+    REQUIRE(world.state() == BridgeState::kDriving);
     const int64_t cut = world.now;
     for (int64_t seen = cut; !isZero(world.out.command);) {
       // A frozen view: its messages continue, its view of the robot does not.
@@ -56,14 +56,14 @@ TEST_CASE("operator killed, frozen or cut off: zero within the lease, armed agai
       REQUIRE(world.now - cut < 10'000'000);
     }
     CHECK(world.now - cut <= kLease + BridgeWorld::kStep);
-    CHECK(world.state() == State::kDisarmed);
+    CHECK(world.state() == BridgeState::kDisarmed);
     CHECK(world.reason() == "the operator is lost: operator has not seen the robot for 1.0 s");
     world.operator_alive = true;
     world.run(10'000'000);
-    CHECK(world.state() == State::kDisarmed);
+    CHECK(world.state() == BridgeState::kDisarmed);
     world.arm();
     world.run(300'000);
-    CHECK(world.state() == State::kDriving);
+    CHECK(world.state() == BridgeState::kDriving);
   }
 }
 
@@ -77,13 +77,13 @@ TEST_CASE("`go_back`: programs count for as long as a return may last, but nothi
   world.run(3'000'000);
   world.operator_alive = false;
   world.run(59'000'000);
-  CHECK(world.state() == State::kDriving);
+  CHECK(world.state() == BridgeState::kDriving);
   world.run(2'100'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   CHECK(isZero(world.out.command));
   world.arm();
   world.run(3'000'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
 }
 
 TEST_CASE("`go_back`: standing for its waiting time with nobody there, it is disarmed") {
@@ -95,17 +95,17 @@ TEST_CASE("`go_back`: standing for its waiting time with nobody there, it is dis
   world.run(29'000'000);
   CHECK(isArmed(world.state()));
   world.run(5'000'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
 }
 
 TEST_CASE("`finish`: what runs ends, nothing begins, and the robot is disarmed") {
   BridgeWorld world = worldThat(OperatorLost::kFinish);
   world.drive();
   world.run(3'000'000);
-  REQUIRE(world.state() == State::kDriving);
+  REQUIRE(world.state() == BridgeState::kDriving);
   world.operator_alive = false;
   world.run(kLease + 300'000);
-  CHECK(world.state() == State::kDriving);
+  CHECK(world.state() == BridgeState::kDriving);
   // The planner has no next pattern.
   const int64_t running = world.out.execution_id;
   world.planner_alive = false;
@@ -121,7 +121,7 @@ TEST_CASE("`finish` has an end: a planner that never stops is stopped") {
   world.run(1'000'000);
   world.operator_alive = false;
   CHECK(stepsToZero(world) < 17'000'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
 }
 
 TEST_CASE(
@@ -133,13 +133,13 @@ TEST_CASE(
   world.bridge.receive(OperatorNotice{1, "operator", false, world.now, 0, ""}, world.now);
   world.step();
   CHECK(isZero(world.out.command));
-  CHECK(world.state() == State::kStopping);
+  CHECK(world.state() == BridgeState::kStopping);
   CHECK(world.reason() == "operator has let go");
   world.run(20'000'000);
-  CHECK(world.state() == State::kArmed);
+  CHECK(world.state() == BridgeState::kArmed);
   CHECK(isZero(world.out.command));
   world.run(11'000'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
 }
 
 TEST_CASE("two operators: the second one cannot arm, nor take over, before it is handed over") {
@@ -151,7 +151,7 @@ TEST_CASE("two operators: the second one cannot arm, nor take over, before it is
   CHECK(world.reason() == "not armed yet; ARM refused: the robot is held by operator");
   world.arm();
   world.run(200'000);
-  REQUIRE(world.state() == State::kDriving);
+  REQUIRE(world.state() == BridgeState::kDriving);
   world.bridge.receive(notice(world, 2, "bob"), world.now);
   OperatorNotice giving = notice(world, 1, "operator");
   giving.hand_over_to = "bob";
@@ -160,7 +160,7 @@ TEST_CASE("two operators: the second one cannot arm, nor take over, before it is
   for (int i = 0; i < 300; ++i) {
     if (i % 20 == 0) world.bridge.receive(notice(world, 2, "bob"), world.now);
     world.step();
-    REQUIRE(world.state() == State::kDriving);
+    REQUIRE(world.state() == BridgeState::kDriving);
   }
   world.run(kLease + 20'000);
   CHECK(world.reason() == "the operator is lost: bob has not seen the robot for 1.0 s");
@@ -179,6 +179,6 @@ TEST_CASE("a request from another clock is refused with a word of clocks") {
   world.step();
   world.bridge.receive(EstopRequest{world.now + 1'000'000, false, "operator", ""}, world.now);
   world.step();
-  CHECK(world.state() == State::kEstopped);
+  CHECK(world.state() == BridgeState::kEstop);
   CHECK_THAT(world.reason(), Catch::Contains("do the clocks differ?"));
 }

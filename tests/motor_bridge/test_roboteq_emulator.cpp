@@ -31,7 +31,7 @@ TEST_CASE("emulated controller: started up, it gets what is played, and every li
   rig.device.measure(measured);
   rig.drive();
   rig.run(10'000'000);
-  REQUIRE(rig.state() == State::kDriving);
+  REQUIRE(rig.state() == BridgeState::kDriving);
   CHECK(rig.device.output(rig.now)[0] == Approx(rig.out.command[0]).margin(0.0006));
   CHECK(rig.device.output(rig.now)[1] == Approx(rig.out.command[1]).margin(0.0006));
   const MotorTelemetry telemetry = rig.connection.telemetry();
@@ -54,7 +54,7 @@ TEST_CASE(
   Rig rig(config);
   rig.drive();
   rig.run(5'000'000);
-  CHECK(rig.state() == State::kDriving);
+  CHECK(rig.state() == BridgeState::kDriving);
   CHECK(rig.turning());
   CHECK(rig.count("queries refused") > 10);
   CHECK(std::isnan(rig.connection.telemetry().measured[0]));
@@ -76,12 +76,12 @@ TEST_CASE("emulated controller: planner dead, bridge dead, controller silent: ze
   SECTION("controller") {
     rig.device.setSilent(true);
     CHECK(rig.lastMotionWithin(2'000'000) <= 252'000);
-    CHECK(rig.state() == State::kFault);
+    CHECK(rig.state() == BridgeState::kFault);
     rig.device.setSilent(false);
     rig.run(3'000'000);
     CHECK(rig.now - rig.last_motion >= 4'000'000);
     rig.drive();
-    CHECK(rig.state() == State::kDriving);
+    CHECK(rig.state() == BridgeState::kDriving);
   }
 }
 
@@ -94,10 +94,10 @@ TEST_CASE("emulated controller: an undervoltage is told within 40 ms, at any mom
     rig.run(1'300'000 + 10'000 * i);
     rig.bridge.receive(ArmRequest{rig.now, true, "operator", "go"}, rig.now);
     rig.run(300'000);
-    REQUIRE(rig.state() == State::kDriving);
+    REQUIRE(rig.state() == BridgeState::kDriving);
     const int64_t low = rig.now;
     rig.device.setBrownOut(true);
-    while (rig.state() != State::kFault && rig.now - low < 1'000'000) rig.step();
+    while (rig.state() != BridgeState::kFault && rig.now - low < 1'000'000) rig.step();
     longest = std::max(longest, rig.now - low);
     rig.device.setBrownOut(false);
   }
@@ -128,13 +128,13 @@ TEST_CASE("emulated controller: reboot and brown-out stop, afterwards it drives 
   SECTION("reboot") {
     rig.device.reboot(rig.now);
     CHECK(rig.lastMotionWithin(3'000'000) <= 10'000);
-    CHECK(rig.state() == State::kFault);
+    CHECK(rig.state() == BridgeState::kFault);
     CHECK(rig.count("start-ups") == 2);
   }
   SECTION("brown-out") {
     rig.device.setBrownOut(true);
     rig.run(1'000'000);
-    CHECK(rig.state() == State::kFault);
+    CHECK(rig.state() == BridgeState::kFault);
     CHECK(rig.out.failsafe.reason.rfind("controller: undervoltage", 0) == 0);
     rig.device.setBrownOut(false);
     rig.last_motion = 0;
@@ -142,7 +142,7 @@ TEST_CASE("emulated controller: reboot and brown-out stop, afterwards it drives 
     CHECK(rig.last_motion == 0);
   }
   rig.drive();
-  CHECK(rig.state() == State::kDriving);
+  CHECK(rig.state() == BridgeState::kDriving);
   CHECK(rig.turning());
 }
 
@@ -152,14 +152,14 @@ TEST_CASE("emulated controller: its emergency stop is held and released, and not
   rig.bridge.receive(EstopRequest{rig.now, true, "operator", "person"}, rig.now);
   CHECK(rig.lastMotionWithin(2'000'000) <= 15'000);
   CHECK(rig.connection.report(rig.now).stop_latched);
-  CHECK(rig.state() == State::kEstopped);
+  CHECK(rig.state() == BridgeState::kEstop);
   rig.bridge.receive(EstopRequest{rig.now, false, "operator", "clear"}, rig.now);
   rig.last_motion = 0;
   rig.run(2'000'000);
   CHECK_FALSE(rig.connection.report(rig.now).stop_latched);
   CHECK(rig.last_motion == 0);
   rig.drive();
-  CHECK(rig.state() == State::kDriving);
+  CHECK(rig.state() == BridgeState::kDriving);
 }
 
 TEST_CASE("emulated controller: lost and cut replies at random for ten minutes stop nobody") {
@@ -174,7 +174,7 @@ TEST_CASE("emulated controller: lost and cut replies at random for ten minutes s
       rig.device.cutReply();
     }
   }
-  CHECK(rig.state() == State::kDriving);
+  CHECK(rig.state() == BridgeState::kDriving);
   CHECK(rig.count("start-ups") == 1);
   CHECK(rig.count("replies missing") > 300);
 }

@@ -30,7 +30,7 @@ struct TiltWorld : BridgeWorld {
     bridge = Bridge(watched());
     tilt = level();
     drive();
-    REQUIRE(state() == State::kDriving);
+    REQUIRE(state() == BridgeState::kDriving);
   }
   /// Time until zero [us].
   int64_t timeToZero() {
@@ -57,7 +57,7 @@ TEST_CASE(
     TiltWorld world;
     world.tilt = tilt;
     CHECK(world.timeToZero() <= 150'000);
-    CHECK(world.state() == State::kDisarmed);
+    CHECK(world.state() == BridgeState::kDisarmed);
     CHECK(world.reason() == reason);
     CHECK(world.last().reason.words == reason);
   }
@@ -67,17 +67,17 @@ TEST_CASE("just below its limits it drives on, and a bump of 80 ms does not stop
   TiltWorld world;
   world.tilt = {0, 29 * kDeg, -24 * kDeg, 59 * kDeg, 59 * kDeg};
   world.run(5'000'000);
-  CHECK(world.state() == State::kDriving);
+  CHECK(world.state() == BridgeState::kDriving);
   world.tilt.roll = kLimits.roll;
   world.run(1'000'000);
-  CHECK(world.state() == State::kDriving);
+  CHECK(world.state() == BridgeState::kDriving);
   for (int bump = 0; bump < 20; ++bump) {
     world.tilt.roll = 40 * kDeg;
     world.run(80'000);
     world.tilt.roll = 0.0;
     world.run(40'000);
   }
-  CHECK(world.state() == State::kDriving);
+  CHECK(world.state() == BridgeState::kDriving);
 }
 
 TEST_CASE("a slow INS is waited for: two measurements are no proof, however far apart") {
@@ -97,26 +97,26 @@ TEST_CASE(
   TiltWorld world;
   world.tilt.roll = 35 * kDeg;
   world.run(3'000'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
   world.arm();
   world.run(1'000'000);
-  CHECK(world.state() == State::kArmed);
+  CHECK(world.state() == BridgeState::kArmed);
   CHECK(isZero(world.out.command));
   CHECK_THAT(world.reason(), Contains("programs refused: rolled 35 deg, limit 30"));
   world.tilt.roll = 28 * kDeg;  // below, but not by the margin
   world.run(2'000'000);
-  CHECK(world.state() == State::kArmed);
+  CHECK(world.state() == BridgeState::kArmed);
   CHECK_THAT(world.reason(), Contains("programs refused: rolled 35 deg, limit 30"));
   world.tilt.roll = 26 * kDeg;
   world.run(400'000);
-  CHECK(world.state() == State::kArmed);
+  CHECK(world.state() == BridgeState::kArmed);
   world.tilt.roll = 35 * kDeg;  // another swing restarts the half second
   world.run(40'000);
   world.tilt.roll = 26 * kDeg;
   world.run(400'000);
-  CHECK(world.state() == State::kArmed);
+  CHECK(world.state() == BridgeState::kArmed);
   world.run(200'000);
-  CHECK(world.state() == State::kDriving);
+  CHECK(world.state() == BridgeState::kDriving);
 }
 
 TEST_CASE("it does not arm while it has just tipped, and never by itself") {
@@ -128,11 +128,11 @@ TEST_CASE("it does not arm while it has just tipped, and never by itself") {
     world.run(wait);
     world.arm();
     world.run(100'000);
-    CHECK(world.state() == State::kDisarmed);
+    CHECK(world.state() == BridgeState::kDisarmed);
   }
   world.tilt = level();
   world.run(10'000'000);
-  CHECK(world.state() == State::kDisarmed);
+  CHECK(world.state() == BridgeState::kDisarmed);
 }
 
 TEST_CASE("attitude that is not measured stops a robot whose description has limits of tilt") {
@@ -154,7 +154,7 @@ TEST_CASE("rates that are not measured are passed over") {
   TiltWorld world;
   world.tilt.roll_rate = world.tilt.pitch_rate = InsTilt::kUnknown;
   world.run(2'000'000);
-  CHECK(world.state() == State::kDriving);
+  CHECK(world.state() == BridgeState::kDriving);
 }
 
 TEST_CASE("what is told late stops for as long as what is told at once") {

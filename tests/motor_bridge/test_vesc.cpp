@@ -46,7 +46,7 @@ void drivesAndReads(Rig& rig) {
   rig.device.measure(measured);
   rig.drive();
   rig.run(5'000'000);
-  REQUIRE(rig.state() == State::kDriving);
+  REQUIRE(rig.state() == BridgeState::kDriving);
   CHECK(rig.device.output(rig.now)[0] == Approx(rig.out.command[0]).margin(1e-4));
   CHECK(rig.device.output(rig.now)[1] == Approx(rig.out.command[1]).margin(1e-4));
   const MotorTelemetry told = rig.connection.telemetry();
@@ -142,7 +142,7 @@ TEST_CASE("VESC over UART: a car's servo follows, and goes straight when the dri
   UartRig rig(configOf("{}", drivenCar()), settings);
   rig.drive();
   rig.run(5'000'000);
-  REQUIRE(rig.state() == State::kDriving);
+  REQUIRE(rig.state() == BridgeState::kDriving);
   CHECK(rig.device.output(rig.now)[0] == Approx(rig.out.command[0]).margin(1e-4));
   CHECK(rig.device.output(rig.now)[1] ==
         Approx(std::clamp(rig.out.command[1] / 0.5, -1.0, 1.0)).margin(3e-3));
@@ -246,7 +246,7 @@ TEST_CASE("VESC: a reboot and a stall are noticed, and nothing moves before it i
     standsUntilArmed(rig, 1'000'000);
     rig.device.setSilent(true);
     CHECK(rig.lastMotionWithin(2'000'000) <= 215'000);
-    CHECK(rig.state() == State::kFault);
+    CHECK(rig.state() == BridgeState::kFault);
     rig.device.setSilent(false);
     standsUntilArmed(rig, 3'000'000);
   };
@@ -279,7 +279,7 @@ TEST_CASE("VESC over UART: lost, cut and garbled packets are counted and stop no
     if (i % 3 == 1) rig.device.cutReply();
     if (i % 3 == 2) rig.device.garbleReply();
   }
-  CHECK(rig.state() == State::kDriving);
+  CHECK(rig.state() == BridgeState::kDriving);
   CHECK(rig.count("start-ups") == 1);
   CHECK(rig.count("wrong checksums") > 50);
 }

@@ -29,7 +29,7 @@ PlannerInputs playing(int64_t now, int64_t execution_id, int index = 0) {
   PlannerInputs s = at(now);
   s.bridge = BridgeReading{};
   s.bridge->utime = now;
-  s.bridge->state = BridgeReading::State::kDriving;
+  s.bridge->state = BridgeState::kDriving;
   s.bridge->run_id = kRun;
   s.bridge->execution_id = execution_id;
   s.bridge->command_index = index;
@@ -156,7 +156,7 @@ TEST_CASE("A standing bridge in the middle of a pattern means that it was aborte
   PlannerInputs s = at(10 * kSecond + 500'000);
   s.bridge = BridgeReading{};
   s.bridge->utime = s.now;
-  s.bridge->state = BridgeReading::State::kDisarmed;
+  s.bridge->state = BridgeState::kDisarmed;
   s.bridge->reason = {StopReason::kUnsaid, "no good PROGRAM within its lease"};
   CHECK(tracker.follow(s) == Event::kAborted);
 }

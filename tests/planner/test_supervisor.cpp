@@ -214,7 +214,7 @@ TEST_CASE("A pattern that the bridge ends early is told with the bridge's reason
   rig.bridge().setArmed(false);
   // Without the message of disarming only the aborted execution shows it.
   const Decision decision =
-      rig.run(0.1, [](PlannerInputs& s) { s.bridge->state = BridgeReading::State::kArmed; });
+      rig.run(0.1, [](PlannerInputs& s) { s.bridge->state = BridgeState::kArmed; });
   CHECK(decision.report.status == PlanStatus::kWaiting);
   CHECK(decision.report.reason.words.find("stopped by motor_bridge: ") == 0);
 }
@@ -289,7 +289,7 @@ TEST_CASE(
     "robot is") {
   Rig rig;
   const auto by_hand = [](PlannerInputs& s) {
-    s.bridge->state = BridgeReading::State::kByHand;
+    s.bridge->state = BridgeState::kManual;
     s.bridge->reason = {StopReason::kByHand, "driven by hand by ada"};
     s.bridge->execution_id = 0;
   };
@@ -330,7 +330,7 @@ TEST_CASE("What a person drives over without INS or map does not end the goal") 
   Rig rig;
   rig.run(2.0);
   const auto blind = [](PlannerInputs& s) {
-    s.bridge->state = BridgeReading::State::kByHand;
+    s.bridge->state = BridgeState::kManual;
     s.bridge->reason = {StopReason::kByHand, "driven by hand by ada"};
     s.pose->utime -= 2'000'000;
   };

@@ -91,7 +91,7 @@ TEST_CASE("what ins_driver reads from the emulated INS is where the simulated ro
       velocity += std::pow(estimate->v_body.x() - there.v_body.v_x, 2) +
                   std::pow(estimate->v_body.y() - there.v_body.v_y, 2);
       rate += std::pow(estimate->rate_body.z() - there.v_body.omega, 2);
-      CHECK(estimate->status == ins::kGood);
+      CHECK(estimate->status == InsStatus::kGood);
       ++count;
     }
   }

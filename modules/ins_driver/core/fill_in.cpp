@@ -88,10 +88,10 @@ void FillIn::measured(InsEstimate& estimate) {
         expected &&
         (distanceBetween(expected->T_map_body, T_map_body) > config_.jump ||
          std::abs(wrapAngle(expected->T_map_body.yaw - T_map_body.yaw)) > config_.yaw_jump);
-    if (far) estimate.status |= kJump;
+    if (far) estimate.status |= InsStatus::kJump;
     since_.reset();
   }
-  if (estimate.status & kJump) {
+  if (estimate.status & InsStatus::kJump) {
     device_.clear();
     anchor_.reset();
   }
@@ -105,8 +105,8 @@ bool FillIn::complete(InsEstimate& estimate, int64_t now) {
   heard_ = now;
   if (last_utime_ && estimate.utime <= *last_utime_) return false;
   last_utime_ = estimate.utime;
-  const bool no_position = (estimate.status & kNoPosition) != 0;
-  const bool no_heading = (estimate.status & kNoHeading) != 0;
+  const bool no_position = (estimate.status & InsStatus::kNoPosition) != 0;
+  const bool no_heading = (estimate.status & InsStatus::kNoHeading) != 0;
   if (!no_position && !no_heading) {
     measured(estimate);
     return true;
@@ -120,7 +120,7 @@ bool FillIn::complete(InsEstimate& estimate, int64_t now) {
     estimate.R_map_body = Eigen::AngleAxisd(filled->T_map_body.yaw, Eigen::Vector3d::UnitZ());
     estimate.attitude_std = {kUnmeasured, kUnmeasured, filled->std[2]};
     estimate.rate_body.z() = filled->v_body.omega;
-    estimate.status |= kNoAttitude;
+    estimate.status |= InsStatus::kNoAttitude;
   }
   if (no_position) {
     estimate.p_map_body = {filled->T_map_body.x, filled->T_map_body.y, anchor_->z};
@@ -135,10 +135,10 @@ bool FillIn::complete(InsEstimate& estimate, int64_t now) {
       estimate.position_std[i] =
           std::sqrt(std::max(0.0, square(estimate.position_std[i]) - gained));
   }
-  if (estimate.status & kNoVelocity)
+  if (estimate.status & InsStatus::kNoVelocity)
     estimate.v_body = {filled->v_body.v_x, filled->v_body.v_y, kUnmeasured};
-  estimate.status &= ~(kNoPosition | kNoHeading | kNoVelocity);
-  estimate.status |= kFilledIn;
+  estimate.status &= ~(InsStatus::kNoPosition | InsStatus::kNoHeading | InsStatus::kNoVelocity);
+  estimate.status |= InsStatus::kFilledIn;
   markFilled(estimate.utime);
   return true;
 }
@@ -160,7 +160,7 @@ std::optional<InsEstimate> FillIn::next(int64_t now) {
   estimate.rate_body.z() = filled->v_body.omega;
   estimate.position_std = {filled->std[0], filled->std[1], kUnmeasured};
   estimate.attitude_std.z() = filled->std[2];
-  estimate.status = kNoAttitude | kFilledIn;
+  estimate.status = InsStatus::kNoAttitude | InsStatus::kFilledIn;
   last_utime_ = estimate.utime;
   markFilled(estimate.utime);
   return estimate;

@@ -129,9 +129,11 @@ std::optional<InsEstimate> InsAssembler::solve(const DeviceEpoch& epoch) {
   }
   watchTrack(estimate);
   ++counts_.published;
-  if (estimate.status & kNoHeading) ++counts_.without_heading;
+  if (estimate.status & InsStatus::kNoHeading) ++counts_.without_heading;
   // Without a heading a velocity has no direction in the body.
-  if ((estimate.status & (kNoVelocity | kNoHeading)) == kNoVelocity) ++counts_.without_velocity;
+  if ((estimate.status & (InsStatus::kNoVelocity | InsStatus::kNoHeading)) ==
+      InsStatus::kNoVelocity)
+    ++counts_.without_velocity;
   return estimate;
 }
 
@@ -148,14 +150,14 @@ void InsAssembler::setRate(const DeviceEpoch& epoch, InsEstimate& estimate) cons
 void InsAssembler::setOrientation(const std::optional<Attitude>& attitude,
                                   InsEstimate& estimate) const {
   if (!attitude) {
-    estimate.status |= kNoHeading | kNoAttitude;
+    estimate.status |= InsStatus::kNoHeading | InsStatus::kNoAttitude;
     return;
   }
   const Eigen::Quaterniond R_map_device = rotation(
       {attitude->yaw - yawOf(frame_), attitude->pitch.value_or(0.0), attitude->roll.value_or(0.0)});
   estimate.R_map_body = R_map_device * R_body_device_.conjugate();
   estimate.attitude_std = {attitude->roll_std, attitude->pitch_std, attitude->yaw_std};
-  if (!attitude->pitch || !attitude->roll) estimate.status |= kNoAttitude;
+  if (!attitude->pitch || !attitude->roll) estimate.status |= InsStatus::kNoAttitude;
 }
 
 double InsAssembler::yawRateOf(const InsEstimate& estimate) const {
@@ -178,8 +180,8 @@ void InsAssembler::setVelocity(const std::optional<GroundVelocity>& ground,
     estimate.v_body.head<2>().setZero();
     return;
   }
-  if (!ground || !ground->course || (estimate.status & kNoHeading)) {
-    estimate.status |= kNoVelocity;
+  if (!ground || !ground->course || (estimate.status & InsStatus::kNoHeading)) {
+    estimate.status |= InsStatus::kNoVelocity;
     return;
   }
   const double course_in_map = *ground->course - yawOf(frame_);
@@ -251,7 +253,7 @@ bool InsAssembler::setPosition(const DeviceEpoch& epoch, InsEstimate& estimate) 
     if (point) ++counts_.positions_carried;
   }
   if (!point) {
-    estimate.status |= kNoPosition;
+    estimate.status |= InsStatus::kNoPosition;
     return true;
   }
   place(*point, estimate);
@@ -271,7 +273,7 @@ void InsAssembler::remember(const DeviceEpoch& epoch, const PointInMap& point, i
 }
 
 void InsAssembler::place(const PointInMap& point, InsEstimate& estimate) const {
-  const bool has_heading = !(estimate.status & kNoHeading);
+  const bool has_heading = !(estimate.status & InsStatus::kNoHeading);
   estimate.p_map_body = point.p_map;
   estimate.p_body_point = point.p_body;
   if (has_heading) estimate.p_map_body -= estimate.R_map_body * point.p_body;
@@ -288,11 +290,11 @@ void InsAssembler::place(const PointInMap& point, InsEstimate& estimate) const {
 
 void InsAssembler::watchTrack(InsEstimate& estimate) {
   if (monitor_.isGap(estimate.utime)) {
-    estimate.status |= kGap;
+    estimate.status |= InsStatus::kGap;
     ++counts_.gaps;
   }
   if (std::exchange(new_track_, false)) {
-    estimate.status |= kJump;
+    estimate.status |= InsStatus::kJump;
     ++counts_.jumps;
   }
 }

@@ -20,6 +20,7 @@
 
 #include "common/geometry/se2.hpp"
 #include "common/geometry/se3.hpp"
+#include "lcmtypes/enums.hpp"
 
 namespace tread::ins {
 
@@ -66,18 +67,6 @@ class LocalFrame {
 
 inline constexpr double kUnmeasured = std::numeric_limits<double>::quiet_NaN();
 
-/// Bits of InsEstimate::status; the same values as in ins_t.
-enum InsStatus : int32_t {
-  kGood = 0,
-  kNoPosition = 1,
-  kNoHeading = 2,
-  kGap = 4,
-  kJump = 8,
-  kNoAttitude = 16,
-  kNoVelocity = 32,
-  kFilledIn = 64
-};
-
 /// The device's measurements of one instant, for the body in the map. NaN = not measured.
 struct InsEstimate {
   int64_t utime = 0;        ///< host time of the measurement [us]
@@ -92,8 +81,8 @@ struct InsEstimate {
   Eigen::Vector3d attitude_std = Eigen::Vector3d::Constant(kUnmeasured);
   /// While the heading is unknown p_map_body is the position of this point of the body [m].
   Eigen::Vector3d p_body_point = Eigen::Vector3d::Zero();
-  int32_t status = kGood;  ///< bits of InsStatus
-  int satellites = -1;     ///< -1 unknown
+  int32_t status = InsStatus::kGood;  ///< bits of InsStatus
+  int satellites = -1;                ///< -1 unknown
 };
 
 /// Source of a heading.

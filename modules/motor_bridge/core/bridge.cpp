@@ -62,7 +62,7 @@ void Bridge::receive(const Program& program, int64_t now) {
 }
 
 void Bridge::take(const Program& program, int64_t now) {
-  if (failsafe_.state() == State::kManual) {
+  if (failsafe_.state() == BridgeState::kManual) {
     if (!program.running.empty()) count("PROGRAM refused: the robot is driven by hand");
     return gate_.renew(program, now);
   }
@@ -118,7 +118,7 @@ void Bridge::receive(const OperatorNotice& notice, int64_t now) {
   if (receipt != OperatorLease::Receipt::kTaken)
     count(std::string("OPERATOR ignored: ") + describe(receipt));
   const bool ends = receipt == OperatorLease::Receipt::kTaken && !notice.drives;
-  if (!ends || !manual_.letGo(notice.station) || failsafe_.state() != State::kManual) return;
+  if (!ends || !manual_.letGo(notice.station) || failsafe_.state() != BridgeState::kManual) return;
   // The robot was not handed back: it must not continue to a goal by itself.
   since_.disarm = true;
   since_.request = ArmRequest{now, false, notice.name + ", whose program has ended", ""};
@@ -224,7 +224,7 @@ void Bridge::lookForOperator(int64_t now, FailsafeInputs& in) {
 }
 
 void Bridge::lookForHand(int64_t now, FailsafeInputs& in) {
-  const bool has = failsafe_.state() == State::kManual;
+  const bool has = failsafe_.state() == BridgeState::kManual;
   manual_.update(now, has, isArmed(failsafe_.state()));
   const bool wants = isArmed(failsafe_.state()) ? manual_.takes() : manual_.ready();
   in.hand = operator_.valid(now) && (has ? !manual_.givenBack() : wants);
@@ -282,7 +282,7 @@ FailsafeInputs Bridge::look(int64_t now, const DeviceReport& device) {
 void Bridge::command(int64_t now, BridgeOutput& out) {
   if (!out.failsafe.may_drive) {
     player_.abort(now, out.failsafe.cause);
-    if (out.failsafe.state != State::kManual) return;
+    if (out.failsafe.state != BridgeState::kManual) return;
     out.command = commandOf(manual_.command(now), config_.manual);
     out.kinds = kindsOf(config_.gate.slot.channels);
     return;
@@ -296,7 +296,7 @@ void Bridge::command(int64_t now, BridgeOutput& out) {
 }
 
 void Bridge::schedule(int64_t now, BridgeOutput& out) {
-  const bool moves = out.failsafe.may_drive || out.failsafe.state == State::kManual;
+  const bool moves = out.failsafe.may_drive || out.failsafe.state == BridgeState::kManual;
   const bool fast = moves || out.failsafe.zero_fast;
   const int64_t interval = fast ? config_.command_interval_us : config_.idle_interval_us;
   out.send = !last_sent_ || out.command != sent_ || now - *last_sent_ >= interval;

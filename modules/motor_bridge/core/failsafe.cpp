@@ -11,14 +11,14 @@ constexpr int64_t kFastZero = 1'000'000;          // [us] of zero at the command
 constexpr int64_t kRestart = 100'000;  // [us] for which a restart is a fault
 
 struct Fault {
-  State state = State::kDisarmed;
+  BridgeState state = BridgeState::kDisarmed;
   Reason reason;
 };
 
 /// The most severe fault of the inputs, if any, ranked by StopReason.
 std::optional<Fault> worstFault(const FailsafeInputs& in) {
   if (in.estop)
-    return Fault{State::kEstopped, {StopReason::kEstopEngaged, "E-stop: " + in.estop_reason}};
+    return Fault{BridgeState::kEstop, {StopReason::kEstopEngaged, "E-stop: " + in.estop_reason}};
   const Reason* worst = nullptr;
   for (const Reason* fault :
        {&in.link_fault, &in.device_fault, &in.bridge_fault, &in.program_fault, &in.operator_fault,
@@ -27,7 +27,7 @@ std::optional<Fault> worstFault(const FailsafeInputs& in) {
   if (worst == nullptr) return std::nullopt;
   const bool of_bridge =
       worst == &in.link_fault || worst == &in.device_fault || worst == &in.bridge_fault;
-  return Fault{of_bridge ? State::kFault : State::kDisarmed, *worst};
+  return Fault{of_bridge ? BridgeState::kFault : BridgeState::kDisarmed, *worst};
 }
 
 /// The most severe fault that stops the present kind of driving: under manual control a person sees
@@ -97,20 +97,20 @@ bool OperatorRequests::receive(const EstopRequest& request, int64_t now) {
 }
 
 FailsafeOutputs Failsafe::update(const FailsafeInputs& in) {
-  const State state_before = state_;
+  const BridgeState state_before = state_;
   const Reason reason_before = reason_;
   const Refusal refusal_before = refusal_;
   if (!zero_since_) zero_since_ = disarmed_at_ = in.now;
   watchHealth(in);
   // Cleared does not mean armed; but people must see that it was cleared.
-  if (state_ == State::kEstopped && !in.estop)
-    enter(State::kDisarmed, StopReason::kEstopCleared, in.now);
+  if (state_ == BridgeState::kEstop && !in.estop)
+    enter(BridgeState::kDisarmed, StopReason::kEstopCleared, in.now);
   // A fault or a request is final for this step: the next series waits for the next step, so that
   // at least one zero is sent in between.
   if (!stopOnFault(in) && !serveRequest(in) && !serveHand(in)) serveSeries(in);
   FailsafeOutputs out;
   out.state = state_;
-  out.may_drive = state_ == State::kDriving;
+  out.may_drive = state_ == BridgeState::kDriving;
   out.zero_fast = in.now - *zero_since_ < kFastZero;
   out.arm_refused = in.arm && !refusal_.words.empty();
   out.cause = reason_;
@@ -136,8 +136,8 @@ std::string Failsafe::words(const FailsafeInputs& in) const {
   return all;
 }
 
-void Failsafe::enter(State state, const Reason& reason, int64_t now) {
-  const bool moved = state_ == State::kDriving || state_ == State::kManual;
+void Failsafe::enter(BridgeState state, const Reason& reason, int64_t now) {
+  const bool moved = state_ == BridgeState::kDriving || state_ == BridgeState::kManual;
   if (moved || !isArmed(state)) zero_since_ = now;
   if (!isArmed(state)) disarmed_at_ = now;
   state_ = state;
@@ -156,7 +156,7 @@ void Failsafe::watchHealth(const FailsafeInputs& in) {
 bool Failsafe::stopOnFault(const FailsafeInputs& in) {
   const std::optional<Fault> fault = worstStop(in);
   if (!fault) return false;
-  const bool worse = fault->state == State::kEstopped && state_ != State::kEstopped;
+  const bool worse = fault->state == BridgeState::kEstop && state_ != BridgeState::kEstop;
   if (isArmed(state_) || worse) enter(fault->state, fault->reason, in.now);
   if (in.arm) refusal_ = {"ARM refused: " + fault->reason.words, fault->reason, false};
   if (!in.arm && !in.refusal.empty()) refusal_ = {in.refusal, {}, false};
@@ -179,7 +179,7 @@ Failsafe::Refusal Failsafe::whyNotArm(const FailsafeInputs& in) const {
 bool Failsafe::serveRequest(const FailsafeInputs& in) {
   if (in.disarm) {
     if (isArmed(state_))
-      enter(State::kDisarmed, {in.disarm_code, "disarmed by " + in.requested_by}, in.now);
+      enter(BridgeState::kDisarmed, {in.disarm_code, "disarmed by " + in.requested_by}, in.now);
     return true;
   }
   if (!in.refusal.empty() && !in.arm && !isArmed(state_)) refusal_ = {in.refusal, {}, false};
@@ -189,7 +189,7 @@ bool Failsafe::serveRequest(const FailsafeInputs& in) {
     refusal_.words = "ARM refused: " + refusal_.words;
     return true;
   }
-  enter(in.hand ? State::kManual : State::kArmed,
+  enter(in.hand ? BridgeState::kManual : BridgeState::kArmed,
         in.hand ? Reason(StopReason::kByHand, in.hand_words)
                 : Reason(StopReason::kArmed, "armed by " + in.requested_by),
         in.now);
@@ -198,28 +198,28 @@ bool Failsafe::serveRequest(const FailsafeInputs& in) {
 
 bool Failsafe::serveHand(const FailsafeInputs& in) {
   if (in.hand && isArmed(state_)) {
-    enter(State::kManual, {StopReason::kByHand, in.hand_words}, in.now);
+    enter(BridgeState::kManual, {StopReason::kByHand, in.hand_words}, in.now);
     return true;
   }
-  if (state_ != State::kManual) return false;
-  enter(State::kStopping, in.unleased.empty() ? Reason(StopReason::kGivenBack) : in.unleased,
+  if (state_ != BridgeState::kManual) return false;
+  enter(BridgeState::kStopping, in.unleased.empty() ? Reason(StopReason::kGivenBack) : in.unleased,
         in.now);
   return true;
 }
 
 void Failsafe::serveSeries(const FailsafeInputs& in) {
-  const bool stands = state_ == State::kArmed || state_ == State::kStopping;
-  if (state_ == State::kDriving && !in.playing) {
-    enter(State::kStopping,
+  const bool stands = state_ == BridgeState::kArmed || state_ == BridgeState::kStopping;
+  if (state_ == BridgeState::kDriving && !in.playing) {
+    enter(BridgeState::kStopping,
           in.series_end.empty() ? Reason(StopReason::kProgramEnded) : in.series_end, in.now);
-  } else if (state_ == State::kDriving && !in.leased) {
-    enter(State::kStopping, in.unleased, in.now);
+  } else if (state_ == BridgeState::kDriving && !in.leased) {
+    enter(BridgeState::kStopping, in.unleased, in.now);
   } else if (stands && in.unattended) {
-    enter(State::kDisarmed, in.unleased, in.now);
+    enter(BridgeState::kDisarmed, in.unleased, in.now);
   } else if (stands && in.start_wanted && in.leased && in.program_bar.empty()) {
-    enter(State::kDriving, StopReason::kPlaying, in.now);
-  } else if (state_ == State::kStopping && in.now - *zero_since_ >= kFastZero) {
-    enter(State::kArmed, reason_, in.now);
+    enter(BridgeState::kDriving, StopReason::kPlaying, in.now);
+  } else if (state_ == BridgeState::kStopping && in.now - *zero_since_ >= kFastZero) {
+    enter(BridgeState::kArmed, reason_, in.now);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "common/execution/bridge_state.hpp"
 #include "common/execution/stop_reason.hpp"
 #include "modules/motor_bridge/core/motion_track.hpp"
 #include "modules/motor_bridge/core/tilt_watch.hpp"
@@ -96,22 +97,6 @@ class OperatorRequests {
   std::string reason_;
 };
 
-/// States by rank: a worse input always wins over a better one.
-enum class State : int {
-  kDriving = 0,   ///< armed, a series is being played
-  kManual = 1,    ///< armed, under manual control: no series is played
-  kArmed = 2,     ///< may drive, standing
-  kStopping = 3,  ///< armed; a series ended normally, zero is repeated at the command rate
-  kDisarmed = 4,  ///< needs ARM: not armed yet, disarmed, or stopped by the failsafe
-  kFault = 5,     ///< needs ARM: stopped by a fault of the controller or of the link to it
-  kEstopped = 6,  ///< until the E-stop is cleared; then disarmed
-};
-
-/// True for the states in which a series may be started without ARM.
-inline bool isArmed(State state) {
-  return state <= State::kStopping;
-}
-
 /// Inputs of the failsafe. No reason = nothing wrong.
 struct FailsafeInputs {
   int64_t now = 0;           ///< [us]
@@ -147,7 +132,7 @@ struct FailsafeInputs {
 
 /// What the bridge must do.
 struct FailsafeOutputs {
-  State state = State::kDisarmed;
+  BridgeState state = BridgeState::kDisarmed;
   bool may_drive = false;  ///< false: the command is zero, whatever is being played
   bool zero_fast = true;   ///< repeat zero at the command rate, not at the idle rate
   bool changed = false;    ///< the state or its reason changed in this step
@@ -167,7 +152,7 @@ class Failsafe {
  public:
   FailsafeOutputs update(const FailsafeInputs& in);
 
-  State state() const { return state_; }
+  BridgeState state() const { return state_; }
   const Reason& reason() const { return reason_; }
   /// When it last left the armed states, or was first updated [us]; an earlier request does not
   /// count.
@@ -180,7 +165,7 @@ class Failsafe {
     Reason why;            ///< if a fault or the operator is the cause
     bool by_hand = false;  ///< the button of manual control is held
   };
-  void enter(State state, const Reason& reason, int64_t now);
+  void enter(BridgeState state, const Reason& reason, int64_t now);
   bool refused() const { return !refusal_.words.empty() && !isArmed(state_); }
   bool says(const Reason& reason) const;
   std::string words(const FailsafeInputs& in) const;
@@ -191,7 +176,7 @@ class Failsafe {
   void serveSeries(const FailsafeInputs& in);
   Refusal whyNotArm(const FailsafeInputs& in) const;
 
-  State state_ = State::kDisarmed;
+  BridgeState state_ = BridgeState::kDisarmed;
   Reason reason_ = StopReason::kNotArmedYet;
   std::optional<int64_t> healthy_since_;
   std::optional<int64_t> zero_since_;

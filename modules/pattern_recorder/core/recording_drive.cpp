@@ -238,7 +238,7 @@ void RecordingDrive::drive(const RobotReadings& readings, const RecordingProgres
   }
   if (!standing_since_) standing_since_ = readings.now;
   if (readings.now - *standing_since_ > kLostAfter) under_way_.clear();
-  const bool stands = readings.bridge->state == BridgeReading::State::kArmed && progress.standing;
+  const bool stands = readings.bridge->state == BridgeState::kArmed && progress.standing;
   if (!may_begin || !stands) return;
   const auto& missing = progress.missing;
   if (std::all_of(missing.begin(), missing.end(), [](int count) { return count <= 0; })) {

@@ -52,29 +52,7 @@ health_t healthWithCounters() {
 }  // namespace
 
 TEST_CASE("every channel's type is described as lcm-gen made it, fingerprint and fields") {
-  isDescribed(kIns);
-  isDescribed(kScan);
-  isDescribed(kMap);
-  isDescribed(kGoal);
-  isDescribed(kPlan);
-  isDescribed(kPlanTree);
-  isDescribed(kProgram);
-  isDescribed(kMotor);
-  isDescribed(kExecution);
-  isDescribed(kPatternSet);
-  isDescribed(kLearnerState);
-  isDescribed(kLearning);
-  isDescribed(kShock);
-  isDescribed(kGrip);
-  isDescribed(kHealth);
-  isDescribed(kArm);
-  isDescribed(kOperator);
-  isDescribed(kManual);
-  isDescribed(kEstop);
-  isDescribed(kStoppingTime);
-  isDescribed(kFence);
-  isDescribed(kMark);
-  isDescribed(kConfig);
+  std::apply([](const auto&... channel) { (isDescribed(channel), ...); }, kTypedChannels);
   for (const ChannelSpec& spec : kChannels) REQUIRE(typeOfChannel(spec.name) != nullptr);
   REQUIRE(typeOfChannel("LIDAR") == nullptr);
 }
@@ -104,8 +82,24 @@ TEST_CASE("comments of a type and of its fields stay with them, also over two li
   REQUIRE(program.field("inputs_heard") != nullptr);
   REQUIRE(program.field("unheard_of") == nullptr);
   REQUIRE(motor.constants.size() == 7);
+  CHECK(motor.enumeration == "BridgeState");
+  CHECK_FALSE(motor.is_bit_set);
+  CHECK(treadTypes().find("ins_t")->is_bit_set);
   REQUIRE(motor.constants[1].name == "STATE_ARMED");
   REQUIRE(motor.constants[1].comment == "may drive, standing");
+}
+
+TEST_CASE("a blank message has the number that the comment of a field says") {
+  const auto blank = [](const std::string& comment) {
+    const MessageTypes types =
+        MessageTypes::fromText("struct a_t { int32_t x; // " + comment + "\n }");
+    return blankInteger(types.find("a_t")->fields.front());
+  };
+  CHECK(blank("[us]; -1 unknown") == -1);
+  CHECK(blank("0-based; -1 = none") == -1);
+  CHECK(blank("-1..1") == 0);
+  CHECK(blank("id; 0 = none") == 0);
+  CHECK(blank("bit set; 0 = good; blank 51") == 51);
 }
 
 TEST_CASE("what is no type is refused with its line and what is wrong there") {

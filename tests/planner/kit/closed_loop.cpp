@@ -55,9 +55,9 @@ Command ToyBridge::step(int64_t now) {
   }
   reading_ = {};
   reading_.utime = now;
-  reading_.state = !armed_            ? BridgeReading::State::kDisarmed
-                   : current_.empty() ? BridgeReading::State::kArmed
-                                      : BridgeReading::State::kDriving;
+  reading_.state = !armed_            ? BridgeState::kDisarmed
+                   : current_.empty() ? BridgeState::kArmed
+                                      : BridgeState::kDriving;
   reading_.run_id = run_id_;
   reading_.execution_id = current_.execution_id;
   if (current_.empty()) return {0.0, 0.0};

@@ -60,7 +60,7 @@ void DirectRobot::exchange() {
   if (!ins_link_->isOpen() && !ins_link_->reopen(now)) return;
   readLine(*ins_link_, [&](std::string_view bytes) { ins_->push(bytes, now); });
   while (const auto estimate = ins_->next(now)) {
-    const auto missing = ins::kNoPosition | ins::kNoHeading | ins::kJump;
+    const auto missing = InsStatus::kNoPosition | InsStatus::kNoHeading | InsStatus::kJump;
     if ((estimate->status & missing) != 0) continue;
     attitude_ = yawPitchRoll(estimate->R_map_body);
     const Pose2 pose{estimate->p_map_body.x(), estimate->p_map_body.y(), attitude_.yaw};

@@ -136,9 +136,9 @@ class Search {
       for (Heard& heard : all) {
         if (!bytes.empty()) heard.source->push(bytes, site_.now());
         while (const auto estimate = heard.source->next(site_.now())) {
-          heard.positions += (estimate->status & ins::kNoPosition) == 0;
-          heard.headings += (estimate->status & ins::kNoHeading) == 0;
-          heard.attitudes += (estimate->status & ins::kNoAttitude) == 0;
+          heard.positions += (estimate->status & InsStatus::kNoPosition) == 0;
+          heard.headings += (estimate->status & InsStatus::kNoHeading) == 0;
+          heard.attitudes += (estimate->status & InsStatus::kNoAttitude) == 0;
         }
       }
     }

@@ -3,11 +3,14 @@
 #include "tools/robot/top/monitor.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <sstream>
+#include <utility>
 
 #include "common/bus/bus.hpp"
 #include "common/log/event_log.hpp"
 #include "common/report/text.hpp"
+#include "lcmtypes/enums.hpp"
 
 namespace tread::top {
 namespace {
@@ -53,6 +56,28 @@ bool counts(const std::string& channel) {
 
 std::string ageWords(double seconds) {
   return seconds < 100.0 ? formatted("%6.2f s", seconds) : formatted("%6.0f s", seconds);
+}
+
+/// The bridge's state in a word, and how bad it is.
+std::pair<const char*, Mood> wordOf(std::optional<BridgeState> state) {
+  if (!state) return {"unknown", Mood::kDoubt};
+  switch (*state) {
+    case BridgeState::kArmed:
+      return {"armed", Mood::kGood};
+    case BridgeState::kDriving:
+      return {"driving", Mood::kGood};
+    case BridgeState::kManual:
+      return {"by hand", Mood::kGood};
+    case BridgeState::kStopping:
+      return {"stopping", Mood::kDoubt};
+    case BridgeState::kFault:
+      return {"FAULT", Mood::kBad};
+    case BridgeState::kEstop:
+      return {"E-STOP", Mood::kBad};
+    case BridgeState::kDisarmed:
+      break;
+  }
+  return {"disarmed", Mood::kDoubt};
 }
 
 }  // namespace
@@ -183,19 +208,9 @@ Line Monitor::lineOf(const Process& process, int64_t now) const {
 
 std::vector<Line> Monitor::lines(int64_t now) const {
   std::vector<Line> lines;
-  constexpr const char* kMotorWords[] = {"disarmed", "armed",  "driving", "stopping",
-                                         "FAULT",    "E-STOP", "by hand"};
   if (motor_) {
-    const int16_t state = motor_->bridge_state;
-    const bool known = state >= 0 && state <= 6;
-    const bool good = state == motor_t::STATE_ARMED || state == motor_t::STATE_DRIVING ||
-                      state == motor_t::STATE_MANUAL;
-    lines.push_back({good ? Mood::kGood
-                     : state == motor_t::STATE_FAULT || state == motor_t::STATE_ESTOP
-                         ? Mood::kBad
-                         : Mood::kDoubt,
-                     std::string("motors   ") + (known ? kMotorWords[state] : "unknown") + ": " +
-                         motor_->state_reason});
+    const auto [word, mood] = wordOf(knownBridgeState(motor_->bridge_state));
+    lines.push_back({mood, std::string("motors   ") + word + ": " + motor_->state_reason});
   } else {
     lines.push_back({Mood::kBad, "motors   no MOTOR message: is tread-motor-bridge running?"});
   }

@@ -12,6 +12,7 @@
 #include "common/execution/execution_tracker.hpp"
 #include "common/geometry/track.hpp"
 #include "common/vehicle/robot_description.hpp"
+#include "lcmtypes/enums.hpp"
 #include "modules/planner/core/execution/motion_planner.hpp"
 #include "modules/planner/core/map/collision_checker.hpp"
 #include "modules/planner/core/map/distance_to_goal.hpp"
@@ -27,17 +28,6 @@ struct PlannerInputs : RobotReadings {
   Reason bar;                ///< why the robot may not drive until a person has checked it
   int64_t set_received = 0;  ///< [us] when the last part of a pattern set arrived; 0 = never
   Reason map_fault;          ///< why mapping distrusts a range finder; none if it does not
-};
-
-/// State of the planner with respect to its goal; the numbers are those of plan_t.
-enum class PlanStatus : int16_t {
-  kIdle = 0,
-  kDriving = 1,
-  kArrived = 2,
-  kWaiting = 3,
-  kBlocked = 4,
-  kUnreachable = 5,
-  kStopped = 6
 };
 
 /// The planner's intentions, for viewers.

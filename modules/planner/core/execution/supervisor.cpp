@@ -120,7 +120,7 @@ void Supervisor::shadow(const PlannerInputs& s, const Preconditions& ready) {
 
 void Supervisor::act(const PlannerInputs& s, const Preconditions& ready) {
   const bool was_by_hand = by_hand_;
-  by_hand_ = s.bridge && s.bridge->state == BridgeReading::State::kByHand;
+  by_hand_ = s.bridge && s.bridge->state == BridgeState::kManual;
   if (by_hand_ != was_by_hand) {
     state_.settle(s.now);
     state_.plan.expire();
