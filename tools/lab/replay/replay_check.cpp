@@ -5,13 +5,11 @@
 #include "tools/lab/replay/robot_replay.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
-#include <iterator>
-#include <type_traits>
+#include <map>
+#include <set>
 
-#include "common/config/scalars.hpp"
+#include "common/types/message_difference.hpp"
 
 namespace tread::replay {
 namespace {
@@ -63,204 +61,43 @@ std::string differenceText(const ReplayCheck& check) {
 
 namespace {
 
-/// Compares two messages of one type field by field and stores the first difference.
+/// "head, field: log ..., replay ..."; empty if nothing differs.
 template <class Message>
-class FieldComparison {
- public:
-  /// Numbers may differ by `tolerance`; 0 = to the bit.
-  FieldComparison(const Message& log, const Message& replay, double tolerance)
-      : log_(log), replay_(replay), tolerance_(tolerance) {}
-
-  /// A number, a text, or an array of numbers.
-  template <class Field>
-  void field(const std::string& name, Field Message::*member) {
-    if constexpr (std::is_array_v<Field>)
-      numbers(name, log_.*member, replay_.*member);
-    else
-      values(name, log_.*member, replay_.*member);
-  }
-  void flag(const std::string& name, int8_t Message::*member) {
-    if (found_.empty() && (log_.*member != 0) != (replay_.*member != 0))
-      found_ = log_.*member != 0 ? name + ": log yes, replay no" : name + ": log no, replay yes";
-  }
-  template <class Value>
-  void values(const std::string& name, const Value& log, const Value& replay) {
-    if (!found_.empty() || same(log, replay)) return;
-    found_ = name + ": log " + text(log) + ", replay " + text(replay);
-  }
-  /// Arrays of equal length.
-  template <class Numbers>
-  void numbers(const std::string& name, const Numbers& log, const Numbers& replay) {
-    for (size_t i = 0; i < std::size(log); ++i)
-      values(name + "[" + std::to_string(i) + "]", log[i], replay[i]);
-  }
-  /// "head, field: log ..., replay ..."; empty if nothing differs.
-  std::string found(const std::string& head) const {
-    return found_.empty() ? "" : head + ", " + found_;
-  }
-  bool equal() const { return found_.empty(); }
-
- private:
-  template <class Value>
-  static std::string text(const Value& value) {
-    if constexpr (std::is_floating_point_v<Value>) {
-      return formatNumber(double{value});
-    } else if constexpr (std::is_integral_v<Value>) {
-      return std::to_string(value);
-    } else {
-      return "'" + value + "'";
-    }
-  }
-
-  /// Bitwise, so that an unknown value (NaN) equals itself.
-  template <class Value>
-  bool same(const Value& a, const Value& b) const {
-    if constexpr (std::is_floating_point_v<Value>)
-      return std::memcmp(&a, &b, sizeof a) == 0 || double{std::abs(a - b)} < tolerance_;
-    else
-      return a == b;
-  }
-
-  const Message& log_;
-  const Message& replay_;
-  double tolerance_;
-  std::string found_;
-};
-
-constexpr std::array<const char*, 3> kAxes{" x [m]", " y [m]", " yaw [rad]"};
-
-void compareSamples(FieldComparison<pattern_set_part_t>& compare, const pattern_set_part_t& log,
-                    const pattern_set_part_t& replay) {
-  compare.values("number of samples", log.num_samples, replay.num_samples);
-  if (log.num_samples != replay.num_samples) return;
-  for (size_t i = 0; i < log.trajectory.size(); ++i) {
-    const std::string at = " sample " + std::to_string(i + 1);
-    for (size_t channel = 0; channel < log.channel_name.size(); ++channel)
-      compare.values("command" + at + " " + log.channel_name[channel], log.command[i][channel],
-                     replay.command[i][channel]);
-    for (size_t axis = 0; axis < kAxes.size(); ++axis)
-      compare.values("trajectory" + at + kAxes[axis], log.trajectory[i][axis],
-                     replay.trajectory[i][axis]);
-  }
-}
-
-void compareSlots(FieldComparison<program_t>& compare, const std::string& name,
-                  const program_slot_t& log, const program_slot_t& replay) {
-  compare.values(name + " pattern", log.slot_pattern_id, replay.slot_pattern_id);
-  compare.values(name + " execution", log.execution_id, replay.execution_id);
-  compare.values(name + " set version", log.slot_set_version, replay.slot_set_version);
-  compare.values(name + " number of channels", log.num_channels, replay.num_channels);
-  compare.values(name + " period [us]", log.period, replay.period);
-  compare.values(name + " number of commands", log.num_commands, replay.num_commands);
-  if (log.num_commands != replay.num_commands || log.num_channels != replay.num_channels) return;
-  for (size_t channel = 0; channel < log.channel_kind.size(); ++channel) {
-    const std::string of = " channel " + std::to_string(channel + 1);
-    compare.values(name + of + " kind", log.channel_kind[channel], replay.channel_kind[channel]);
-    for (size_t i = 0; i < log.command.size(); ++i)
-      compare.values(name + " command " + std::to_string(i + 1) + of, log.command[i][channel],
-                     replay.command[i][channel]);
-  }
+std::string firstDifference(const std::string& head, const Message& log, const Message& replay,
+                            double tolerance, const std::set<std::string>& without) {
+  const std::string found = differenceBetween(log, replay, tolerance, without);
+  return found.empty() ? "" : head + ", " + found;
 }
 
 }  // namespace
 
 std::string differenceOf(const pattern_set_part_t& log, const pattern_set_part_t& replay,
                          double tolerance) {
-  using M = pattern_set_part_t;
-  FieldComparison<M> compare(log, replay, tolerance);
-  compare.field("pattern id", &M::set_pattern_id);
-  compare.field("pattern name", &M::pattern_name);
-  compare.values("number of channels", log.num_channels, replay.num_channels);
-  if (log.num_channels == replay.num_channels) {
-    compare.numbers("channel name", log.channel_name, replay.channel_name);
-    compare.numbers("command kind", log.channel_kind, replay.channel_kind);
-    compare.numbers("lowest command", log.channel_lowest, replay.channel_lowest);
-    compare.numbers("highest command", log.channel_highest, replay.channel_highest);
-    compare.numbers("entry steady", log.entry_steady, replay.entry_steady);
-    compare.numbers("exit steady", log.exit_steady, replay.exit_steady);
-    compareSamples(compare, log, replay);
-  }
-  compare.field("end covariance", &M::end_covariance);
-  compare.field("times learned", &M::times_learned);
-  compare.field("entry class", &M::entry_class);
-  compare.field("exit class", &M::exit_class);
-  compare.field("entry twist", &M::entry_twist);
-  compare.field("exit twist", &M::exit_twist);
-  compare.field("number of patterns", &M::part_count);
-  compare.field("set name", &M::set_name);
-  compare.field("period [us]", &M::set_period);
-  compare.field("newest measurement [us]", &M::utime);
-  compare.field("parent version", &M::parent_version);
-  if (tolerance == 0.0) compare.field("checksum (another pattern differs)", &M::set_checksum);
-  return compare.found("version " + std::to_string(log.set_version) + ", pattern " +
-                       std::to_string(log.set_pattern_id) + " '" + log.pattern_name + "'");
+  const std::string head = "version " + std::to_string(log.set_version) + ", pattern " +
+                           std::to_string(log.set_pattern_id) + " '" + log.pattern_name + "'";
+  const std::string found = firstDifference(head, log, replay, tolerance, {"seq", "set_checksum"});
+  // Checksums differ by another pattern alone, and by less than a tolerance.
+  if (!found.empty() || tolerance > 0.0) return found;
+  return firstDifference(head, log, replay, tolerance, {"seq"});
 }
 
 std::string differenceOf(const learning_t& log, const learning_t& replay, double tolerance) {
-  using M = learning_t;
-  FieldComparison<M> compare(log, replay, tolerance);
-  compare.flag("accepted", &M::accepted);
-  compare.field("reason", &M::gate_reason);
-  compare.field("pattern", &M::learned_pattern_id);
-  compare.field("pattern name", &M::learned_pattern_name);
-  compare.field("rule", &M::learning_rule);
-  compare.field("measured end", &M::measured_end);
-  compare.field("path length [m]", &M::path_length);
-  compare.field("measured entry", &M::measured_entry);
-  compare.field("slope [rad]", &M::slope);
-  compare.field("scored version", &M::scored_version);
-  compare.field("predicted end", &M::predicted_end);
-  compare.field("error of position [m]", &M::error_position);
-  compare.field("error of yaw [rad]", &M::error_yaw);
-  compare.field("reason of the change", &M::change_reason);
-  compare.field("probability of changed ground", &M::ground_changed);
-  compare.field("surface", &M::surface);
-  compare.field("probability of the surface", &M::surface_probability);
-  compare.flag("changed", &M::changed);
-  compare.field("scaling", &M::scaling);
-  compare.field("result version", &M::result_version);
-  compare.field("error of position after [m]", &M::error_position_after);
-  compare.field("error of yaw after [rad]", &M::error_yaw_after);
-  compare.field("end of execution [us]", &M::utime);
-  return compare.found("LEARNING of execution " + std::to_string(log.learned_execution_id));
+  return firstDifference("LEARNING of execution " + std::to_string(log.learned_execution_id), log,
+                         replay, tolerance, {"seq"});
 }
 
 std::string differenceOf(const program_t& log, const program_t& replay) {
-  using M = program_t;
-  FieldComparison<M> compare(log, replay, 0.0);
-  compareSlots(compare, "running", log.running, replay.running);
-  compareSlots(compare, "next", log.next, replay.next);
-  compare.field("run id", &M::run_id);
-  compare.field("lease [us]", &M::lease);
-  compare.field("utime [us]", &M::utime);
-  return compare.found("PROGRAM at " + std::to_string(log.utime) + " us");
+  return firstDifference(
+      "PROGRAM at " + std::to_string(log.utime) + " us", log, replay, 0.0,
+      {"seq", "inputs_heard", "newest_input", "newest_input_utime", "newest_input_seq"});
 }
 
 std::string differenceOf(const plan_t& log, const plan_t& replay) {
-  using M = plan_t;
-  FieldComparison<M> compare(log, replay, 0.0);
-  compare.field("newest INS [us]", &M::utime);
-  compare.field("goal", &M::goal_id);
-  compare.field("set version", &M::set_version);
-  compare.field("status", &M::plan_status);
-  compare.field("reason", &M::reason);
-  compare.field("expansions", &M::expansions);
-  compare.field("number of patterns", &M::num_patterns);
-  for (size_t i = 0; compare.equal() && i < log.pattern_id.size(); ++i) {
-    const std::string at = "pattern " + std::to_string(i + 1);
-    compare.values(at, log.pattern_id[i], replay.pattern_id[i]);
-    compare.values(at + " execution", log.execution_id[i], replay.execution_id[i]);
-    for (size_t axis = 0; axis < kAxes.size(); ++axis)
-      compare.values(at + kAxes[axis], log.pose[i][axis], replay.pose[i][axis]);
-    compare.numbers(at + " covariance", log.covariance[i], replay.covariance[i]);
-  }
-  compare.field("time to go [s]", &M::time_to_go);
+  std::set<std::string> without{"seq", "search_time"};
   // Plans in older logs have no risk.
-  if (std::isfinite(log.risk)) {
-    compare.field("risk", &M::risk);
-    compare.field("risk per metre", &M::risk_per_metre);
-  }
-  return compare.found("PLAN on INS of " + std::to_string(log.utime) + " us");
+  if (!std::isfinite(log.risk)) without.insert({"risk", "risk_per_metre"});
+  return firstDifference("PLAN on INS of " + std::to_string(log.utime) + " us", log, replay, 0.0,
+                         without);
 }
 
 std::vector<std::string> playableProcesses() {
