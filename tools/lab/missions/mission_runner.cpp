@@ -116,7 +116,7 @@ MissionRun runMission(const RobotConfig& robot, uint64_t seed, const MissionOpti
   if (options.log != nullptr || !options.shadows.empty())
     system.bus().setTap([&](int64_t utime, const char* channel, const uint8_t* bytes, size_t size) {
       if (options.log != nullptr) options.log->write(utime, channel, bytes, size);
-      if (shadows.hears(channel)) shadows.hear(utime, {utime, channel, {bytes, bytes + size}});
+      if (shadows.hears(channel)) shadows.hear({utime, channel, {bytes, bytes + size}});
     });
   const MissionWorld& world = run.scene.world;
   Operator person(system.bus().outside(), world.T_map_goal,

@@ -7,7 +7,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "common/bus/virtual_bus.hpp"
+#include "common/drive/node_replay.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "common/vehicle/kernel.hpp"
 
@@ -68,38 +68,44 @@ void addPattern(PatternSetContent& content, const VehicleModel& model, int id,
 }
 
 constexpr int64_t kSecond = 1'000'000;
-constexpr const char* kNode = "learner";
 
-/// Plays the events of a log; EXECUTION gets the versions that this learner has published.
-class Player {
+/// Names the set version with which a replayed learner scores each execution.
+class Scoring {
  public:
-  Player(VirtualBus& bus, Commitment commitment) : bus_(bus), commitment_(commitment) {}
+  explicit Scoring(Commitment commitment) : commitment_(commitment) {}
 
-  void play(const LogEvent& event) {
-    bus_.runUntil(std::max(bus_.now(), event.utime));
-    if (event.channel != kExecution.name)
-      return bus_.inject(event.channel.c_str(), event.bytes.data(), event.bytes.size());
+  /// The event with the versions that this learner has published, if it is EXECUTION.
+  LogEvent scored(const LogEvent& event, int64_t newest) {
     execution_t message;
-    if (!decode(event, kExecution, message)) return;
+    if (!decode(event, kExecution, message)) return event;
     for (execution_record_t& record : message.records)
-      record.record_set_version = versionFor(record);
-    bus_.outside().publish(kExecution, message);
+      record.record_set_version = versionFor(record, newest);
+    LogEvent scored = eventOf(kExecution, message);
+    scored.utime = event.utime;
+    return scored;
   }
 
  private:
-  int64_t versionFor(const execution_record_t& record) {
-    const int64_t newest =
-        static_cast<const learner::LearnerNode*>(bus_.node(kNode))->set().version();
+  int64_t versionFor(const execution_record_t& record, int64_t newest) {
     const bool running = record.outcome == execution_record_t::OUTCOME_RUNNING;
-    const ExecutionKey key = keyOf(record);
     if (commitment_ == Commitment::kPrompt && running) return newest;
-    return versions_.emplace(key, newest).first->second;
+    return versions_.emplace(keyOf(record), newest).first->second;
   }
 
-  VirtualBus& bus_;
   Commitment commitment_;
   std::map<ExecutionKey, int64_t> versions_;
 };
+
+/// Adds a message of the learner to its run.
+void note(const LogEvent& event, LearnerRun& run) {
+  learning_t learned;
+  if (decode(event, kLearning, learned)) run.learned.push_back(learned);
+  health_t health;
+  if (!decode(event, kHealth, health)) return;
+  run.health = health.health_reason;
+  for (const counter_t& counter : health.counters)
+    run.counters[counter.counter_name] = counter.counted;
+}
 
 /// The learner's inputs from a log, with executions ordered by their ends.
 DriveLog learnersPart(DriveLog log) {
@@ -165,22 +171,17 @@ LearnerRun runLearner(const DriveLog& log, const learner::LearnerNodeConfig& con
   LearnerRun run;
   run.title = title;
   if (log.events.empty()) return run;
-  MemoryStore store;
-  VirtualBus bus(1, {}, std::max<int64_t>(1, log.events.front().utime - kSecond));
-  bus.outside().subscribe<learning_t>(
-      kLearning, [&run](const learning_t& learned) { run.learned.push_back(learned); });
-  bus.outside().subscribe<health_t>(kHealth, [&run](const health_t& health) {
-    run.health = health.health_reason;
-    for (const counter_t& counter : health.counters)
-      run.counters[counter.counter_name] = counter.counted;
-  });
-  bus.addNode(kNode,
-              [&](Bus& end) { return std::make_unique<learner::LearnerNode>(config, end, store); });
-  Player player(bus, commitment);
-  for (const LogEvent& event : log.events) player.play(event);
+  const int64_t start = std::max<int64_t>(1, log.events.front().utime - kSecond);
+  NodeReplay<learner::LearnerNode> replay(
+      config, start, [&run](const LogEvent& event) { note(event, run); }, start);
+  Scoring scoring(commitment);
+  for (const LogEvent& event : log.events) {
+    replay.stepUntil(event.utime);
+    replay.play(scoring.scored(event, replay.node().set().version()));
+  }
   // Executions without INS at their end are given up after a while; HEALTH follows within 1 s.
-  bus.runUntil(bus.now() + config.settle_us + config.give_up_us + 2 * kSecond);
-  run.set = static_cast<const learner::LearnerNode*>(bus.node(kNode))->set();
+  replay.stepUntil(log.events.back().utime + config.settle_us + config.give_up_us + 2 * kSecond);
+  run.set = replay.node().set();
   return run;
 }
 

@@ -43,7 +43,7 @@ struct LearnerRun {
   std::optional<PatternSet> set;            ///< the last one
 };
 
-/// Feeds a log to the real learner node on the virtual bus, from an empty store. Deterministic.
+/// Feeds a log to the real learner node, from an empty store. Deterministic.
 LearnerRun runLearner(const DriveLog& log, const learner::LearnerNodeConfig& config,
                       Commitment commitment, const std::string& title);
 

@@ -10,10 +10,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "common/drive/log_bus.hpp"
+#include "common/drive/node_replay.hpp"
 #include "common/messages/pattern_messages.hpp"
 #include "common/pattern/pattern_file.hpp"
-#include "common/store/store.hpp"
 #include "tools/lab/replay/learner_lives.hpp"
 
 namespace tread::replay {
@@ -73,40 +72,30 @@ std::vector<int64_t> knownSteps(const RobotLog& log, const LearnerLife& life) {
 
 void playLife(const RobotLog& log, const LearnerLife& life,
               const learner::LearnerNodeConfig& config, Published& published) {
-  MemoryStore store;
-  LogBus bus(life.boot_id);
-  learner::LearnerNode node(config, bus, store);
-  node.resume(life.state, life.earlier);
   // Messages just before or after a step decide what it publishes: steps are at the known times,
   // and one period apart in between.
+  const int64_t period = config.period_us;
   const int64_t begin = log.events[life.first_event].utime;
   const std::vector<int64_t> known = knownSteps(log, life);
-  size_t next_known = 0;
-  int64_t next_step = begin;
+  int64_t first_step = begin;
   if (!known.empty() && known.front() > begin)
-    next_step = known.front() - (known.front() - begin) / node.period() * node.period();
-  const auto stepUntil = [&](int64_t utime) {
-    for (; next_step <= utime; next_step += node.period()) {
-      while (next_known < known.size() && known[next_known] < next_step - node.period() / 2)
-        ++next_known;
-      if (next_known < known.size() && known[next_known] <= next_step + node.period() / 2)
-        next_step = known[next_known++];
-      bus.setNow(next_step);
-      node.step(next_step);
-    }
-  };
-  for (size_t i = life.first_event; i < life.end_event; ++i) {
-    const LogEvent& event = log.events[i];
-    stepUntil(event.utime);
-    bus.setNow(event.utime);
-    bus.hear(event);
-  }
-  if (life.end_event == log.events.size()) stepUntil(log.events.back().utime + kAfterwards);
-  const int64_t late = lastMessageOf(log, life) - node.period();
-  for (LogEvent& event : bus.takePublished()) {
-    published.take(event, event.utime > late);
-    published.events.push_back(std::move(event));
-  }
+    first_step = known.front() - (known.front() - begin) / period * period;
+  const int64_t late = lastMessageOf(log, life) - period;
+  NodeReplay<learner::LearnerNode> replay(
+      config, life.boot_id,
+      [&](const LogEvent& event) {
+        published.take(event, event.utime > late);
+        published.events.push_back(event);
+      },
+      first_step);
+  replay.node().resume(life.state, life.earlier);
+  replay.setSchedule([&, next = size_t{0}](int64_t step) mutable {
+    while (next < known.size() && known[next] < step - period / 2) ++next;
+    const bool is_known = next < known.size() && known[next] <= step + period / 2;
+    return is_known ? known[next++] : step;
+  });
+  for (size_t i = life.first_event; i < life.end_event; ++i) replay.play(log.events[i]);
+  if (life.end_event == log.events.size()) replay.stepUntil(log.events.back().utime + kAfterwards);
 }
 
 Published replayed(const RobotLog& log, const std::vector<LearnerLife>& lives,

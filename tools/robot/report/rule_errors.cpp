@@ -79,7 +79,7 @@ RuleErrors errorsByRule(const std::vector<std::string>& logs, const std::string&
     const learner::LearnerNodeConfig config = report::learnerConfigOf(log, patterns_folder);
     errors.driven = config.rule.rule;
     report::ShadowLearners shadows(config, rules, log.events.front().utime);
-    for (const LogEvent& event : log.events) shadows.hear(event.utime, event);
+    for (const LogEvent& event : log.events) shadows.hear(event);
     shadows.finish();
     errors.executions = shadows.executions();
   } catch (const std::exception& error) {

@@ -6,9 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "common/drive/log_bus.hpp"
-#include "common/drive/robot_log.hpp"
-#include "common/store/store.hpp"
+#include "common/drive/node_replay.hpp"
 
 namespace tread::report {
 namespace {
@@ -24,26 +22,13 @@ learner::LearnerNodeConfig withRule(learner::LearnerNodeConfig config, learner::
 class ShadowLearners::Shadow {
  public:
   Shadow(const learner::LearnerNodeConfig& config, learner::Rule rule, int64_t boot_id)
-      : bus_(boot_id), node_(withRule(config, rule), bus_, store_) {
+      : replay_(withRule(config, rule), boot_id, [this](const LogEvent& event) { take(event); }) {
     notePredictions(boot_id);
   }
 
-  bool hears(const std::string& channel) const { return bus_.hears(channel); }
-
-  void hear(int64_t utime, const LogEvent& event) {
-    stepUntil(utime);
-    bus_.setNow(utime);
-    bus_.hear(event);
-  }
-
-  void stepUntil(int64_t utime) {
-    if (next_step_ < 0) next_step_ = utime;
-    for (; next_step_ <= utime; next_step_ += node_.period()) {
-      bus_.setNow(next_step_);
-      node_.step(next_step_);
-      takeMessages();
-    }
-  }
+  bool hears(const std::string& channel) const { return replay_.hears(channel); }
+  void play(const LogEvent& event) { replay_.play(event); }
+  void stepUntil(int64_t utime) { replay_.stepUntil(utime); }
 
   const std::map<ExecutionKey, learning_t>& reports() const { return reports_; }
 
@@ -69,32 +54,28 @@ class ShadowLearners::Shadow {
     std::map<int, Pose2> ends;  ///< by pattern id
   };
 
-  void takeMessages() {
-    for (const LogEvent& event : bus_.takePublished()) {
-      learning_t report;
-      if (decode(event, kLearning, report))
-        reports_.insert({{report.learned_run_id, report.learned_execution_id}, report});
-      // A planner has a set after its last part.
-      pattern_set_part_t part;
-      if (node_.set().version() != version_ && decode(event, kPatternSet, part) &&
-          part.set_version == node_.set().version() && part.part + 1 == part.part_count)
-        notePredictions(next_step_);
-    }
+  void take(const LogEvent& event) {
+    learning_t report;
+    if (decode(event, kLearning, report))
+      reports_.insert({{report.learned_run_id, report.learned_execution_id}, report});
+    // A planner has a set after its last part.
+    const PatternSet& set = replay_.node().set();
+    pattern_set_part_t part;
+    if (set.version() != version_ && decode(event, kPatternSet, part) &&
+        part.set_version == set.version() && part.part + 1 == part.part_count)
+      notePredictions(event.utime);
   }
 
   void notePredictions(int64_t since) {
-    version_ = node_.set().version();
+    const PatternSet& set = replay_.node().set();
+    version_ = set.version();
     Predictions predicted;
     predicted.since = since;
-    for (const MotionPattern& pattern : node_.set().patterns())
-      predicted.ends[pattern.id] = pattern.end();
+    for (const MotionPattern& pattern : set.patterns()) predicted.ends[pattern.id] = pattern.end();
     predictions_.push_back(std::move(predicted));
   }
 
-  MemoryStore store_;
-  LogBus bus_;
-  learner::LearnerNode node_;
-  int64_t next_step_ = -1;
+  NodeReplay<learner::LearnerNode> replay_;
   int64_t version_ = 0;
   std::vector<Predictions> predictions_;  ///< oldest first
   std::map<ExecutionKey, learning_t> reports_;
@@ -132,8 +113,8 @@ int64_t ShadowLearners::decisionTime(const ExecutionKey& key) const {
   return std::max(decided->second.since, began->second - kSetInTime);
 }
 
-void ShadowLearners::hear(int64_t utime, const LogEvent& event) {
-  newest_ = std::max(newest_, utime);
+void ShadowLearners::hear(const LogEvent& event) {
+  newest_ = std::max(newest_, event.utime);
   if (!hears(event.channel)) return;
   program_t program;
   if (decode(event, kProgram, program)) {
@@ -145,7 +126,7 @@ void ShadowLearners::hear(int64_t utime, const LogEvent& event) {
   if (decode(event, kExecution, executions))
     for (const execution_record_t& record : executions.records)
       began_[{record.record_run_id, record.record_execution_id}] = record.started;
-  for (const auto& shadow : shadows_) shadow->hear(utime, event);
+  for (const auto& shadow : shadows_) shadow->play(event);
 }
 
 void ShadowLearners::finish() {

@@ -40,8 +40,8 @@ class ShadowLearners {
                  int64_t boot_id);
   ~ShadowLearners();
 
-  /// Processes a message of the drive at the robot's time [us], which must not decrease.
-  void hear(int64_t utime, const LogEvent& event);
+  /// Processes a message of the drive at its time [us], which must not decrease.
+  void hear(const LogEvent& event);
   /// Whether this channel is used.
   bool hears(const std::string& channel) const;
   /// Call after the last message: finishes pending executions.

@@ -63,8 +63,8 @@ HillsideDrive driveHillside(uint64_t seed) {
   system.bus().setTap([&](int64_t utime, const char* channel, const uint8_t* bytes, size_t size) {
     if (!with.hears(channel)) return;
     const LogEvent event{utime, channel, {bytes, bytes + size}};
-    with.hear(utime, event);
-    without.hear(utime, event);
+    with.hear(event);
+    without.hear(event);
   });
   Referee watch(system, world);
   Operator person(system.bus().outside(), world.T_map_goal);
