@@ -217,7 +217,7 @@ TEST_CASE("a changed sample of a set is named with version, pattern, sample and 
   const LearnerCheck check = learnerCheck(std::move(events));
   REQUIRE(check.versions.different == 1);
   REQUIRE(contains(check.first_difference, "version " + std::to_string(version) + ", pattern "));
-  REQUIRE(contains(check.first_difference, "trajectory sample 3 y [m]: log 0.125, replay "));
+  REQUIRE(contains(check.first_difference, "trajectory[2][1]: log 0.125, replay "));
   REQUIRE_FALSE(check.equal());
 }
 
