@@ -10,6 +10,7 @@
 #include "common/execution/stop_reason.hpp"
 #include "common/geometry/se3.hpp"
 #include "common/messages/ins_messages.hpp"
+#include "common/messages/pattern_messages.hpp"
 #include "common/statistics/statistics.hpp"
 
 namespace tread::gap {
@@ -132,14 +133,6 @@ class Reader {
   bool jumped_ = false;
 };
 
-/// What the channels of a message's commands are; empty while none are played.
-std::vector<CommandKind> kindsIn(const motor_t& motor) {
-  std::vector<CommandKind> kinds;
-  for (const int16_t kind : motor.channel_kind)
-    if (kind != 0) kinds.push_back(static_cast<CommandKind>(kind));
-  return kinds;
-}
-
 template <class Message>
 void sortByTime(std::vector<Message>& messages) {
   std::stable_sort(messages.begin(), messages.end(),
@@ -153,7 +146,7 @@ SortedLog::SortedLog(const DriveLog& drive_log)
   sortByTime(motor);
   sortByTime(ins);
   for (const motor_t& message : motor)
-    if (const auto kinds = kindsIn(message); !kinds.empty()) {
+    if (const auto kinds = kindsFrom(message); !kinds.empty()) {
       layout = layoutOf(kinds);
       channels = std::max<size_t>(2, kinds.size());
     }
@@ -167,7 +160,7 @@ std::optional<Command> obeyed(const motor_t& motor) {
     case motor_t::STATE_DRIVING:
     case motor_t::STATE_MANUAL: {
       Command command;
-      for (size_t channel = 0; channel < std::max<size_t>(2, kindsIn(motor).size()); ++channel) {
+      for (size_t channel = 0; channel < std::max<size_t>(2, kindsFrom(motor).size()); ++channel) {
         command[channel] = static_cast<double>(motor.command[channel]);
         if (!std::isfinite(command[channel])) return std::nullopt;
       }
