@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copyright (c) 2026 The Tread authors
+#include <functional>
 #include <limits>
 
 #include <catch2/catch.hpp>
@@ -22,6 +23,11 @@ Candidate limitOf(double inverse) {
   return candidate;
 }
 
+/// Sizes with a score.
+std::function<double(size_t)> sizesAt(const ScoreTest& test, double score) {
+  return [&test, score](size_t i) { return score * test.sizeError(static_cast<Eigen::Index>(i)); };
+}
+
 }  // namespace
 
 TEST_CASE("of a limit the gentlest one that shows is what would have been seen") {
@@ -36,8 +42,8 @@ TEST_CASE("of a limit the gentlest one that shows is what would have been seen")
   const double needed = 1.1 / std::max(test.sizeError(1), test.sizeError(2) / 2.0) /* in between */;
   REQUIRE(0.5 < 0.9 * test.sizeError(0) / test.sizeError(1));
   for (size_t i : {0U, 1U, 2U}) {
-    CHECK(detectableSize(limits, test, i, 0.8 * needed) == 1.0);
-    CHECK(detectableSize(limits, test, i, 100.0 * needed) ==
+    CHECK(detectableSize(limits, sizesAt(test, 0.8 * needed), i) == 1.0);
+    CHECK(detectableSize(limits, sizesAt(test, 100.0 * needed), i) ==
           std::numeric_limits<double>::infinity());
   }
 }
@@ -50,5 +56,5 @@ TEST_CASE("an effect without a threshold is visible from a size that falls with 
   slip.change = 0.02;
   const ScoreTest test(rig.fitter, rig.stateOf(samples::blockNoise(rig.data, 5, 0.1), 1.0),
                        samples::waves(rig.data, 1));
-  CHECK(detectableSize({slip}, test, 0, 3.0) == Approx(3.0 * test.sizeError(0)));
+  CHECK(detectableSize({slip}, sizesAt(test, 3.0), 0) == Approx(3.0 * test.sizeError(0)));
 }

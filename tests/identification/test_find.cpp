@@ -171,10 +171,41 @@ TEST_CASE("effects that are both found do not stand in each other's place") {
     }
 }
 
-TEST_CASE("a drive of two minutes is too short to tell chance from cause") {
-  const GapFinding finding = findAfter({{"motor_deadband.speed", 0.1}}, 120.0, 8);
+TEST_CASE("a drive below a minute is too short to tell chance from cause") {
+  const GapFinding finding = findAfter({{"motor_deadband.speed", 0.1}}, 50.0, 8);
   CHECK(finding.verdict == GapVerdict::kCannotTell);
-  CHECK(finding.reason.find("drive at least 200 s") != std::string::npos);
+  CHECK(finding.reason.find("drive at least 60 s") != std::string::npos);
+}
+
+TEST_CASE("a minute names what it shows, and lists what it cannot show") {
+  const GapFinding finding = findAfter({{"slip_ratio.slip", 0.15}}, 60.0, 8);
+  CHECK(finding.source.brief);
+  CHECK(namesIn(finding) == Names{"slip_ratio"});
+  CHECK(contains(finding.identified.not_excited, "terrain_change"));
+  CHECK_FALSE(contains(finding.identified.not_excited, "slip_ratio"));
+  CHECK(finding.adequacy.unexplained.empty());
+  CHECK(finding.identified.unnamed.empty());
+  for (const ParameterEstimate& size : finding.identified.effects.front().parameters)
+    CHECK((size.low < 0.15 && size.high > 0.15));
+}
+
+TEST_CASE("chance names nothing in a minute") {
+  for (uint64_t seed = 1; seed <= 6; ++seed) {
+    const GapFinding finding = findAfter({}, 60.0, seed);
+    INFO(seed);
+    CHECK(exitStatus(finding.verdict) == 0);
+    CHECK(namesIn(finding).empty());
+  }
+}
+
+TEST_CASE("an effect that a brief drive shows as well as another one is named beside it") {
+  const GapFinding finding = findAfter({{"yaw_pull.pull", 0.1}}, 60.0, 8);
+  REQUIRE(finding.identified.effects.size() == 1);
+  const FoundEffect& found = finding.identified.effects.front();
+  Names names = found.group;
+  names.push_back(found.name);
+  for (const RunnerUp& other : found.runner_ups) names.push_back(other.effect);
+  CHECK(contains(names, "yaw_pull"));
 }
 
 TEST_CASE(

@@ -89,6 +89,26 @@ TEST_CASE("what is needed to tell chance from cause is 200 s of driving that was
   CHECK(tooLittleDriving(measured).find("only 100 s of measured driving") == 0);
 }
 
+TEST_CASE("a minute has ten short blocks, which count less than usual ones") {
+  const auto cut = [](const std::vector<Drive>& drives) {
+    return Observations(drives, fromOneMinute());
+  };
+  const std::vector<Drive> minute{syntheticDrive(syntheticVehicle(), 60.0, 1)};
+  CHECK(cut(minute).measuredBlocks() == 10);
+  CHECK(cut(minute).isBrief());
+  CHECK(cut(minute).dependence() == Approx(std::pow(20.0 / 6.0, 0.25)));
+  CHECK(tooLittleDriving(cut(minute)).empty());
+  const std::vector<Drive> longer{syntheticDrive(syntheticVehicle(), 100.0, 1)};
+  CHECK(cut(longer).dependence() == Approx(std::pow(2.0, 0.25)));
+  const std::vector<Drive> usual{syntheticDrive(syntheticVehicle(), 200.0, 1)};
+  CHECK_FALSE(cut(usual).isBrief());
+  CHECK(cut(usual).dependence() == 1.0);
+  CHECK(cut(usual).blockLength() == Observations(usual, {}).blockLength());
+  const std::vector<Drive> brief{syntheticDrive(syntheticVehicle(), 40.0, 1)};
+  CHECK(tooLittleDriving(cut(brief)) ==
+        "only 40 s of measured driving, too little to tell chance from cause: drive at least 60 s");
+}
+
 TEST_CASE("rows of the gyro are means over quarters of a second") {
   const std::vector<Drive> drives{saidDrive(10.0, 0.01, [](double time) {
     InsSample sample = nothingSaid(time);

@@ -187,7 +187,7 @@ class Discovery {
       : task_(task),
         say_(say),
         before_(modelBefore(task)),
-        data_(task.train, {}),
+        data_(task.train, fromOneMinute()),
         fitter_(data_, task.parallel, restConditions(data_, before_)),
         settings_(settingsOf(task)) {}
 
@@ -203,8 +203,9 @@ class Discovery {
  private:
   bool check() {
     const int blocks = data_.measuredBlocks();
-    finding_.source = {task_.seed, task_.log_notes, task_.decisions, static_cast<size_t>(blocks),
-                       data_.blockLength()};
+    finding_.source = {task_.seed,          task_.log_notes,
+                       task_.decisions,     static_cast<size_t>(blocks),
+                       data_.blockLength(), data_.isBrief()};
     finding_.before = before_;
     finding_.identified.model = before_;
     finding_.reason = reasonNotToTell(task_, data_);
@@ -226,17 +227,20 @@ class Discovery {
   void describeRemainder() {
     say_("3 remainder");
     // Detected but irrelevant dependences are not part of the unnamed rest.
-    finding_.adequacy = testAdequacy(fitter_, tested_, kAdequacyAlpha, task_.seed);
+    if (!data_.isBrief())
+      finding_.adequacy = testAdequacy(fitter_, tested_, kAdequacyAlpha, task_.seed);
     // An effect that a person rejected, or that is irrelevant, would return without its name.
     const bool all_kept = result_.state.free.size() == tested_.free.size();
-    const bool has_terms = !before_.vehicle.isOmni();  // its kernel has none
+    // The kernel of a holonomic base has none.
+    const bool has_terms = !before_.vehicle.isOmni() && !data_.isBrief();
     if (has_terms && !task_.named_only && settings_.rejected.empty() && all_kept)
       addUnnamedTerms({fitter_, settings_, say_, result_}, kAdequacyAlpha, finding_.adequacy,
                       unnamed_);
     finding_.search.cut_short = result_.record.cut_short;
     ModelDocument& model = result_.state.model;
     // A rest without anything new stays as it was.
-    if (!before_.rest || !unnamed_.empty() || finding_.adequacy.p_value <= kAdequacyAlpha) {
+    if (!data_.isBrief() &&
+        (!before_.rest || !unnamed_.empty() || finding_.adequacy.p_value <= kAdequacyAlpha)) {
       model.rest = restOf(fitter_, result_.state, task_.seed);
       countTermsToRest(data_, model);
     } else {

@@ -56,7 +56,7 @@ struct ParameterEstimate {
 struct RunnerUp {
   std::string effect;
   double behind = 0.0;  ///< [nats] cross-validated log likelihood behind the winner
-  double error = 0.0;   ///< [nats] standard error of that difference
+  double error = 0.0;   ///< [nats] standard error of that difference; twice it in a brief drive
 };
 
 /// A quantity that is measured beside the INS and predicted by the model of the drive.
@@ -279,6 +279,9 @@ struct FindingSource {
   std::vector<EffectDecision> decisions;  ///< of persons, in the given order
   size_t blocks = 0;                      ///< of measured driving
   double block_length = 0.0;              ///< [s]
+  /// Less driving than usual: judges the effects that it excites; whether anything else remains was
+  /// not tested.
+  bool brief = false;
 };
 
 /// The new model: each number with its interval.

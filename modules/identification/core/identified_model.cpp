@@ -104,9 +104,11 @@ void dropRefutedNames(FoundEffect& effect) {
       effect.runner_ups.end());
 }
 
-bool isExcited(const CandidateTest& test) {
-  const double typical = parameterNamed(effectNamed(test.effect), test.parameter).typical;
-  return test.detectable <= kInvisible * std::abs(typical);
+/// Whether the drive would have shown an effect; in a brief one, in its typical size.
+bool isExcited(const CandidateTest& test, bool brief) {
+  const EffectParameter& parameter = parameterNamed(effectNamed(test.effect), test.parameter);
+  const double sizes = brief && !parameter.reciprocal() ? 1.0 : kInvisible;
+  return test.detectable <= sizes * std::abs(parameter.typical);
 }
 
 ParameterCovariance knownCovariance(const FitState& state, const Eigen::MatrixXd& covariance) {
@@ -176,6 +178,10 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
       estimate.moved =
           hasMoved(estimate, moves.byChance(i), settings.calibrate) || moves.together[i];
       identified.calibrated.push_back(estimate);
+      const EffectParameter* const known = findEffectParameter(estimate.parameter);
+      if (data.isBrief() && known != nullptr && moves.byChance(i) > std::abs(known->typical) &&
+          !contains(identified.not_excited, effect))
+        identified.not_excited.push_back(effect);
     }
   }
   for (const std::string& path : changePointsOn(state.model)) {
@@ -197,7 +203,7 @@ IdentifiedModel identifiedModel(const Fitter& fitter, const ModelDocument& befor
     identified.effects.push_back(std::move(effect));
   }
   for (const CandidateTest& test : result.record.candidates)
-    if (!contains(result.effects, test.effect) && !isExcited(test) &&
+    if (!contains(result.effects, test.effect) && !isExcited(test, data.isBrief()) &&
         !isOn(effectNamed(test.effect), before))
       identified.not_excited.push_back(test.effect);
   identified.model = state.model;

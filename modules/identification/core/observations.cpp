@@ -219,14 +219,39 @@ const char* channelUnit(ObservedRate channel) {
   return channel == ObservedRate::kYawRate || channel == ObservedRate::kHeading ? "rad/s" : "m/s";
 }
 
+namespace {
+
+constexpr double kBlockStep = 0.5;  // [s]
+
+/// Number of blocks of a drive.
+int blocksIn(const Drive& drive, double block) {
+  const double driven = drive.driven();
+  return driven <= 0.0 ? 0 : std::max(1, static_cast<int>(driven / block + 1e-6));
+}
+
+/// Length of a block [s]: shorter than usual if there would be too few.
+double blockFor(const std::vector<Drive>& drives, const ObservationSettings& settings) {
+  const auto areFew = [&drives](double block) {
+    int count = 0;
+    for (const Drive& drive : drives) count += blocksIn(drive, block);
+    return count < kLeastBlocks;
+  };
+  double block = settings.block;
+  while (block > settings.shortest_block && areFew(block))
+    block = std::max(settings.shortest_block, block - kBlockStep);
+  return block;
+}
+
+}  // namespace
+
 Observations::Observations(const std::vector<Drive>& drives, const ObservationSettings& settings)
-    : drives_(drives), settings_(settings) {
+    : drives_(drives), settings_(settings), block_(blockFor(drives, settings)) {
   size_t all = 0;
   for (const Drive& drive : drives) {
     first_segment_.push_back(all);
     all += drive.segments.size();
   }
-  for (size_t i = 0; i < drives.size(); ++i) addDrive(i, settings.block);
+  for (size_t i = 0; i < drives.size(); ++i) addDrive(i);
   // Poses are simulated at the ends of rows: only latencies require interpolation.
   std::vector<std::vector<double>> cuts(all);
   for (const Observation& row : all_)
@@ -243,12 +268,11 @@ Observations::Observations(const std::vector<Drive>& drives, const ObservationSe
     measured_[static_cast<Eigen::Index>(i)] = all_[i].measured;
 }
 
-void Observations::addDrive(size_t index, double block) {
+void Observations::addDrive(size_t index) {
   const Drive& drive = drives_[index];
-  const double driven = drive.driven();
-  const int count = driven <= 0.0 ? 0 : std::max(1, static_cast<int>(driven / block + 1e-6));
+  const int count = blocksIn(drive, block_);
   drive_blocks_.emplace_back(blocks_, count);
-  drive_lengths_.push_back(count > 0 ? driven / count : block);
+  drive_lengths_.push_back(count > 0 ? drive.driven() / count : block_);
   double before = 0.0;
   for (size_t s = 0; s < drive.segments.size(); ++s) {
     const Segment& segment = drive.segments[s];
@@ -419,7 +443,7 @@ std::string tooLittleDriving(const Observations& data) {
   if (data.blocks() > measured && data.blockLength() > 0.0) driven = measured * data.blockLength();
   return "only " + fixed(driven, 0) +
          " s of measured driving, too little to tell chance from cause: drive at least " +
-         fixed(kLeastBlocks * ObservationSettings{}.block, 0) + " s";
+         fixed(std::ceil(data.settings().shortest_block) * kLeastBlocks, 0) + " s";
 }
 
 }  // namespace tread::gap

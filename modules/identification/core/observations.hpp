@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -90,8 +91,21 @@ struct ObservationSettings {
   double longest = 1.2;        ///< [s] largest time between fixes
   double smoothing = 0.05;     ///< [s] to either side, for averaging frequent fixes
   double block = 20.0;         ///< [s] of driving, at least
-  double piece = 0.05;         ///< [s] of simulation
+  /// [s] the same if the drives have fewer than kLeastBlocks otherwise
+  double shortest_block = 20.0;
+  double piece = 0.05;  ///< [s] of simulation
 };
+
+/// Fewest blocks of measured driving for a statistical conclusion.
+inline constexpr int kLeastBlocks = 10;
+
+/// For drives from one minute on: a log of 60 s may lack the seconds before its first and after its
+/// last command.
+inline ObservationSettings fromOneMinute() {
+  ObservationSettings settings;
+  settings.shortest_block = 5.5;
+  return settings;
+}
 
 /// Rows of drives, and a model's predictions for them.
 /** Increments instead of poses: the integral form needs no differentiation and lets the simulation
@@ -106,6 +120,15 @@ class Observations {
   const std::vector<Drive>& drives() const { return drives_; }
   int blocks() const { return blocks_; }
   double blockLength() const { return block_length_; }  ///< [s] of driving
+  const ObservationSettings& settings() const { return settings_; }
+  /// Whether blocks had to be shorter than usual.
+  bool isBrief() const { return block_ < settings_.block; }
+  /// Factor on the scatter of a sum over blocks: 1 for usual blocks, which count as independent.
+  /** Neighbouring short blocks share their ground, so that a short drive needs more evidence, not
+   * less. Measured on 16 long drives without a hidden effect, simulated, foreign and real: the
+   * variance over blocks of 20 s is that over blocks of 6 s times 1.1 in the median of the
+   * effects, 1.5 for the worst; the root of the ratio of lengths is 1.8. */
+  double dependence() const { return std::pow(settings_.block / block_, 0.25); }
 
   /// True motions of all segments.
   Motions simulate(const VehicleModel& vehicle) const;
@@ -138,12 +161,13 @@ class Observations {
   }
 
  private:
-  void addDrive(size_t drive, double block);
+  void addDrive(size_t drive);
   void addGyro(const Segment& segment, const Observation& like);
   void addPoses(const Segment& segment, const Observation& like);
 
   const std::vector<Drive>& drives_;
   ObservationSettings settings_;
+  double block_;  ///< [s] of driving, at least
   std::vector<SegmentPlan> plans_;
   std::vector<size_t> first_segment_;  ///< of each drive among all
   /// For each segment: driving before it in its drive, and its own [s].
@@ -159,9 +183,6 @@ class Observations {
 
 /// Degrees of freedom of the residuals' Student distribution: limits the influence of an INS jump.
 inline constexpr double kFreedom = 4.0;
-
-/// Fewest blocks of measured driving for a statistical conclusion.
-inline constexpr int kLeastBlocks = 10;
 
 /// Empty if the rows suffice for a conclusion; otherwise one line with the amount of driving
 /// needed.

@@ -34,8 +34,7 @@ Eigen::VectorXd releaseDirection(const FitState& state, const Candidate& candida
   throw std::logic_error("" + path + " is not free, and cannot be released");
 }
 
-constexpr double kChangeAlpha = 0.01;    // for effects that may begin at any time
-constexpr double kPowerQuantile = 0.84;  // normal: 80 % power
+constexpr double kChangeAlpha = 0.01;  // for effects that may begin at any time
 
 std::vector<size_t> bestOfEffects(const Screening& screening) {
   std::map<std::string, size_t> best;
@@ -52,18 +51,24 @@ std::vector<size_t> bestOfEffects(const Screening& screening) {
   return order;
 }
 
+/// Whether an effect may begin at any time: it can match a few random blocks anywhere, and must
+/// show in many.
+bool mayBeginLater(const Screening& screening, size_t candidate) {
+  return !effectNamed(screening.candidates[candidate].effect).search.change_points.empty();
+}
+
+double levelOf(const Screening& screening, size_t candidate) {
+  return mayBeginLater(screening, candidate) ? std::min(screening.alpha, kChangeAlpha)
+                                             : screening.alpha;
+}
+
 /// Evidence for a candidate relative to the requirement; less than 1 if chance explains it.
-double evidenceOf(const ScoreTest& test, Eigen::Index candidate, const Screening& screening,
-                  bool first) {
-  // A change can match a few random blocks anywhere: it must show in many.
-  const bool change = !effectNamed(screening.candidates[static_cast<size_t>(candidate)].effect)
-                           .search.change_points.empty();
-  const double level = change ? std::min(screening.alpha, kChangeAlpha) : screening.alpha;
-  const Needed needed{criticalScore(screening.chance, level), screening.overdispersion, first,
-                      !change};
-  const double found = evidence(test, candidate, needed);
-  return familyWise(screening.chance, test.score(candidate)) <= level ? std::max(1.0, found)
-                                                                      : found;
+double evidenceOf(const ScoreTest& test, size_t candidate, const Screening& screening) {
+  const auto at = static_cast<Eigen::Index>(candidate);
+  const double found = evidence(test, at, neededFor(screening, candidate));
+  return familyWise(screening.chance, test.score(at)) <= levelOf(screening, candidate)
+             ? std::max(1.0, found)
+             : found;
 }
 
 }  // namespace
@@ -111,11 +116,8 @@ void SensitivityCache::renew(const Fitter& fitter, const FitState& state,
   }
 }
 
-double detectableSize(const std::vector<Candidate>& candidates, const ScoreTest& test, size_t index,
-                      double needed) {
-  const auto sizeOf = [&](size_t i) {
-    return needed * test.sizeError(static_cast<Eigen::Index>(i));
-  };
+double detectableSize(const std::vector<Candidate>& candidates,
+                      const std::function<double(size_t)>& sizeOf, size_t index) {
   const Candidate& best = candidates[index];
   if (!parameterNamed(effectNamed(best.effect), best.parameter).reciprocal()) return sizeOf(index);
   double gentlest = std::numeric_limits<double>::infinity();
@@ -148,20 +150,32 @@ Screening screen(const Fitter& fitter, const FitState& state, const SearchSettin
     const auto at = static_cast<Eigen::Index>(i);
     screening.scores.push_back(test.score(at));
     screening.sizes.push_back(test.size(at));
-    screening.evidence.push_back(evidenceOf(test, at, screening, first));
+    screening.evidence.push_back(evidenceOf(test, i, screening));
     screening.promise.push_back(test.promise(at));
   }
   screening.best = bestOfEffects(screening);
-  const double needed = criticalScore(screening.chance, settings.alpha) + kPowerQuantile;
+  const Needed needed{criticalScore(screening.chance, settings.alpha), screening.overdispersion,
+                      first, true};
+  const auto leastOf = [&](size_t i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (!fitter.data().isBrief()) return (needed.score + kPowerQuantile) * test.sizeError(at);
+    return mayBeginLater(screening, i) ? std::numeric_limits<double>::infinity()
+                                       : leastSize(test, at, needed);
+  };
   for (size_t i : screening.best) {
     if (screening.candidates[i].release) continue;  // on, and fitted
     const auto at = static_cast<Eigen::Index>(i);
     screening.tests.push_back(
         {screening.candidates[i].effect, screening.candidates[i].parameter, screening.scores[i],
          familyWise(screening.chance, screening.scores[i]), test.uniqueness(at),
-         detectableSize(screening.candidates, test, i, needed)});
+         detectableSize(screening.candidates, leastOf, i)});
   }
   return screening;
+}
+
+Needed neededFor(const Screening& screening, size_t candidate) {
+  return {criticalScore(screening.chance, levelOf(screening, candidate)), screening.overdispersion,
+          screening.first, !mayBeginLater(screening, candidate)};
 }
 
 std::vector<size_t> significant(const Screening& screening) {

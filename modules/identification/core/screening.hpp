@@ -102,11 +102,11 @@ class SensitivityCache {
 
 /// The smallest size of a candidate's effect that would have been detected, in its parameter's
 /// unit.
-/** `needed`: score at which an effect is detected, with the required power. A limit either acts or
+/** `sizeOf`: the same for each candidate by its slope. A limit either acts or
  * does not, so its size cannot shrink: for a limit it is the weakest of the candidates that would
  * have been detected. Infinite if none would. */
-double detectableSize(const std::vector<Candidate>& candidates, const ScoreTest& test, size_t index,
-                      double needed);
+double detectableSize(const std::vector<Candidate>& candidates,
+                      const std::function<double(size_t)>& sizeOf, size_t index);
 
 /// A test of all candidates against one state, and the highest-scoring candidate of each effect.
 struct Screening {
@@ -127,6 +127,9 @@ struct Screening {
 /** `first`: no effect has been found yet, so that the usual scatter is unknown. */
 Screening screen(const Fitter& fitter, const FitState& state, const SearchSettings& settings,
                  bool first, SensitivityCache& cache);
+
+/// Requirements on a candidate's score.
+Needed neededFor(const Screening& screening, size_t candidate);
 
 /// The most promising candidate of each significant effect, the most promising effects first.
 std::vector<size_t> significant(const Screening& screening);

@@ -16,9 +16,10 @@
 namespace tread::gap {
 namespace {
 
-constexpr double kSame = 1.0;    // [nats] within which two terms are equivalent
-constexpr double kEdge = 0.05;   // minimum share of a drive before and after a change
-constexpr size_t kRenewed = 10;  // directions simulated again in a screening
+constexpr double kSame = 1.0;         // [nats] within which two terms are equivalent
+constexpr double kEdge = 0.05;        // minimum share of a drive before and after a change
+constexpr size_t kRenewed = 10;       // directions simulated again in a screening
+constexpr size_t kFittedInBrief = 8;  // candidates fitted in a screening of a brief drive
 
 bool hasVanished(const ModelDocument& model, const Candidate& candidate) {
   const double size =
@@ -117,7 +118,41 @@ class EffectSelection {
   }
 
   Screening test(SensitivityCache& cache) const {
-    return screen(fitter_, state(), settings_, !has_nuisance_, cache);
+    Screening screening = screen(fitter_, state(), settings_, !has_nuisance_, cache);
+    if (fitter_.data().isBrief()) judgeFitted(screening);
+    return screening;
+  }
+
+  /// Judges the likeliest candidates by what is left once they are fitted: in a brief drive the
+  /// misfit from a large effect counts as noise and hides it.
+  void judgeFitted(Screening& screening) const {
+    size_t fits = 0;
+    for (const size_t i : screening.best) {
+      const Candidate& candidate = screening.candidates[i];
+      if (!candidate.change_point.empty()) continue;
+      if (fits++ == kFittedInBrief) break;
+      FitState with = state();
+      addCandidate(fitter_, with, candidate, screening.sizes[i]);
+      settle(with);
+      if (hasVanished(with.model, candidate)) continue;
+      FitState lacking = state();
+      lacking.scales = with.scales;
+      fitter_.fitRoughly(lacking);
+      const Gain gain = gainOf(fitter_, heldOutLoss(fitter_, lacking), heldOutLoss(fitter_, with));
+      const ScoreTest test = testOfFitted(with, candidate.path());
+      screening.evidence[i] = std::max(
+          screening.evidence[i], evidenceOfGain(test, 0, gain.value, neededFor(screening, i)));
+    }
+  }
+
+  /// A fitted parameter's blocks, beside the others.
+  ScoreTest testOfFitted(const FitState& with, const std::string& path) const {
+    const auto is_it = [&path](const FreeParameter& parameter) { return parameter.path == path; };
+    const auto at = std::find_if(with.free.begin(), with.free.end(), is_it) - with.free.begin();
+    const Eigen::VectorXd direction = with.jacobian.col(at);
+    FitState others = with;
+    fitter_.release(others, static_cast<size_t>(at));
+    return ScoreTest(fitter_, others, direction);
   }
 
   /// Smallest sizes detectable in addition to the found effects, which would otherwise hide them.
@@ -427,6 +462,7 @@ FoundTerms search(const Fitter& fitter, const ModelDocument& model, const Search
   FoundTerms found = searchTwice(fitter, model, settings, memory, say);
   reestimateMoved({fitter, settings, say, found}, model);
   noteToldFrom({fitter, settings, say, found});
+  if (fitter.data().isBrief()) weighOthers({fitter, settings, say, found});
   return found;
 }
 

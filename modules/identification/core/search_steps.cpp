@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -351,12 +352,12 @@ bool isConfirmed(const SearchState& search, const FitState& lacking) {
   const std::vector<char> every(static_cast<size_t>(data.blocks()), 1);
   for (Eigen::Index i = 0; i < (measurement ? 3 : 2); ++i) {
     const Gain gain = gainOf(without.col(i), with.col(i), every);
-    if (gain.value > gain.error) return true;
+    if (gain.value > data.dependence() * gain.error) return true;
   }
   // The ends of executions scatter more than rows do: an effect that is highly significant in the
   // rows is real.
   const Gain nats = gainOf(without.col(3), with.col(3), every);
-  return nats.value > kConfirmed * nats.error;
+  return nats.value > kConfirmed * data.dependence() * nats.error;
 }
 
 }  // namespace
@@ -543,6 +544,83 @@ void noteToldFrom(const SearchState& search) {
       if (!contains(result.effects, other) && isOn(effectNamed(other), result.state.model) &&
           !search.isCutShort() && !mayStandFor(search, other, found))
         result.evidence[found].told_from.push_back(other);
+  }
+}
+
+namespace {
+
+constexpr double kHalfAsGood = 0.5;  // share of the largest promise from which an effect is fitted
+constexpr double kBriefLevel = 2.0;  // standard errors
+
+/// The most promising candidate of each effect that promises at least half of the largest gain in a
+/// state; effects that begin at any time are not simpler.
+std::vector<Candidate> promisingIn(const SearchState& search, const FitState& state) {
+  auto candidates = candidatesFor(state, excitationOf(search.data(), state.model));
+  leaveOut(candidates, search.settings.rejected);
+  const ScoreTest test(search.fitter, state, directionsOf(search.fitter, state, candidates));
+  std::map<std::string, size_t> best;
+  double most = 0.0;
+  const auto promise = [&test](size_t i) { return test.promise(static_cast<Eigen::Index>(i)); };
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    if (candidates[i].release || !candidates[i].change_point.empty()) continue;
+    const auto known = best.emplace(candidates[i].effect, i).first;
+    if (promise(i) > promise(known->second)) known->second = i;
+    most = std::max(most, promise(i));
+  }
+  std::vector<Candidate> promising;
+  for (const auto& [effect, i] : best)
+    if (promise(i) > kHalfAsGood * most) promising.push_back(candidates[i]);
+  return promising;
+}
+
+/// A found effect, or another one in its place.
+struct Contender {
+  std::string effect;
+  FitState state;
+  Eigen::VectorXd loss;  ///< on held-out blocks
+};
+
+std::vector<Contender> contendersFor(const SearchState& search, const std::string& found) {
+  const Fitter& fitter = search.fitter;
+  const FitState& now = search.result.state;
+  std::vector<Contender> all{{found, now, heldOutLoss(fitter, now)}};
+  const FitState lacking = without(fitter, now, found);
+  for (const Candidate& candidate : promisingIn(search, lacking)) {
+    if (candidate.effect == found || search.isCutShort()) continue;
+    FitState tried = lacking;
+    takeCandidate(fitter, tried, candidate);
+    if (anyOnBound(tried, {candidate.effect})) continue;
+    Eigen::VectorXd loss = heldOutLoss(fitter, tried);
+    all.push_back({candidate.effect, std::move(tried), std::move(loss)});
+  }
+  return all;
+}
+
+}  // namespace
+
+void weighOthers(const SearchState& search) {
+  FoundTerms& result = search.result;
+  for (std::string& name : result.effects) {
+    if (search.isAccepted(name)) continue;
+    std::vector<Contender> all = contendersFor(search, name);
+    const auto best = std::min_element(
+        all.begin(), all.end(),
+        [](const Contender& a, const Contender& b) { return a.loss.sum() < b.loss.sum(); });
+    std::vector<RunnerUp> level;
+    for (const Contender& other : all) {
+      if (other.effect == best->effect) continue;
+      const Gain behind = gainOf(search.fitter, other.loss, best->loss);
+      if (behind.value < kBriefLevel * behind.error)
+        level.push_back({other.effect, behind.value, kBriefLevel * behind.error});
+    }
+    if (best->effect != name) {
+      search.say("  = " + best->effect + " in the place of " + name);
+      result.evidence[best->effect] = result.evidence[name];
+      result.state = std::move(best->state);
+      search.fitter.fit(result.state);
+      name = best->effect;
+    }
+    result.evidence[name].runner_ups = std::move(level);
   }
 }
 

@@ -124,7 +124,9 @@ Gain gainOf(const Eigen::VectorXd& first, const Eigen::VectorXd& second,
 }
 
 Gain gainOf(const Fitter& fitter, const Eigen::VectorXd& first, const Eigen::VectorXd& second) {
-  return gainOf(first, second, fitter.blocksThatCount());
+  Gain gain = gainOf(first, second, fitter.blocksThatCount());
+  gain.error *= fitter.data().dependence();
+  return gain;
 }
 
 namespace {
@@ -154,7 +156,7 @@ Curvature curvatureOf(const Fitter& fitter, const FitState& state, const Eigen::
   }
   Curvature of;
   of.rows = state.jacobian.transpose() * metric.asDiagonal() * state.jacobian;
-  of.scatter = pulls.transpose() * pulls;
+  of.scatter = std::pow(data.dependence(), 2) * pulls.transpose() * pulls;
   const auto counts = fitter.blocksThatCount();
   const auto blocks = static_cast<double>(std::count(counts.begin(), counts.end(), char{1}));
   if (blocks > 1.0) of.scatter *= blocks / (blocks - 1.0);
@@ -216,8 +218,8 @@ Eigen::MatrixXd moveCovariance(const Fitter& fitter, const FitState& state) {
   return moves;
 }
 
-ScoreTest::ScoreTest(const Fitter& fitter, const FitState& state,
-                     const Eigen::MatrixXd& directions) {
+ScoreTest::ScoreTest(const Fitter& fitter, const FitState& state, const Eigen::MatrixXd& directions)
+    : dependence_(fitter.data().dependence()) {
   const Observations& data = fitter.data();
   const Eigen::VectorXd residuals = data.residuals(state.predicted);
   Eigen::VectorXd metric(residuals.size());
@@ -291,8 +293,8 @@ double ScoreTest::priorInformation(Eigen::Index candidate) const {
 }
 
 double ScoreTest::rootOf(Eigen::Index candidate) const {
-  return std::sqrt(pulls_.col(candidate).squaredNorm() + priorInformation(candidate) +
-                   variation_[candidate]);
+  return std::sqrt(dependence_ * dependence_ * pulls_.col(candidate).squaredNorm() +
+                   priorInformation(candidate) + variation_[candidate]);
 }
 
 double ScoreTest::size(Eigen::Index candidate) const {
@@ -334,11 +336,23 @@ double ScoreTest::usualOverdispersion() const {
   return quantileOf(std::move(all), 0.5, 1.0);
 }
 
+double ScoreTest::excessScatter(Eigen::Index candidate, double usual) const {
+  return dependence_ * dependence_ * std::max(usual, overdispersion(candidate));
+}
+
+double ScoreTest::sparseRoot(Eigen::Index candidate, double usual) const {
+  const double scatter = information_[candidate] * excessScatter(candidate, usual);
+  return std::sqrt(scatter + priorInformation(candidate) + variation_[candidate]);
+}
+
 double ScoreTest::sparseScore(Eigen::Index candidate, double usual) const {
   if (information_[candidate] <= 0.0) return 0.0;
-  const double scatter = information_[candidate] * std::max(usual, overdispersion(candidate));
-  return pullOn(candidate) /
-         std::sqrt(scatter + priorInformation(candidate) + variation_[candidate]);
+  return pullOn(candidate) / sparseRoot(candidate, usual);
+}
+
+double ScoreTest::sparseError(Eigen::Index candidate, double usual) const {
+  if (information_[candidate] <= 0.0) return std::numeric_limits<double>::infinity();
+  return sparseRoot(candidate, usual) / (information_[candidate] + priorInformation(candidate));
 }
 
 std::vector<double> ScoreTest::largestByChance(int draws, uint64_t seed) const {
@@ -370,7 +384,7 @@ std::vector<double> ScoreTest::largestByChance(int draws, uint64_t seed) const {
 }
 
 bool isSparse(const ScoreTest& test, Eigen::Index candidate, double score) {
-  return std::sqrt(test.activeBlocks(candidate)) < kFewBlocks * score;
+  return test.mostScore(candidate) < kFewBlocks * score;
 }
 
 double evidence(const ScoreTest& test, Eigen::Index candidate, const Needed& needed) {
@@ -384,6 +398,30 @@ double evidence(const ScoreTest& test, Eigen::Index candidate, const Needed& nee
                          studentQuantile(test.activeBlocks(candidate) - 1.0, kFirst)
                    : std::abs(test.sparseScore(candidate, needed.overdispersion)) / kSparse;
   return std::max(by_blocks, by_size);
+}
+
+namespace {
+
+/// Size of a candidate, in its standard errors, that chance rarely reaches; infinite if none is
+/// evidence.
+double neededSize(const ScoreTest& test, Eigen::Index candidate, const Needed& needed) {
+  if (!needed.size_counts || (needed.first && test.activeBlocks(candidate) < kLeastActive))
+    return std::numeric_limits<double>::infinity();
+  return needed.first ? studentQuantile(test.activeBlocks(candidate) - 1.0, kFirst) : kSparse;
+}
+
+}  // namespace
+
+double evidenceOfGain(const ScoreTest& test, Eigen::Index candidate, double gain,
+                      const Needed& needed) {
+  const double usual = needed.first ? 1.0 : needed.overdispersion;
+  const double scatter = test.excessScatter(candidate, usual);
+  return std::sqrt(2.0 * std::max(0.0, gain) / scatter) / neededSize(test, candidate, needed);
+}
+
+double leastSize(const ScoreTest& test, Eigen::Index candidate, const Needed& needed) {
+  return (neededSize(test, candidate, needed) + kPowerQuantile) *
+         test.sparseError(candidate, needed.first ? 1.0 : needed.overdispersion);
 }
 
 double chanceOfSize(double evidence, size_t candidates, bool first) {

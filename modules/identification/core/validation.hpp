@@ -2,6 +2,7 @@
 // Copyright (c) 2026 The Tread authors
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -77,6 +78,10 @@ class ScoreTest {
   /// Effective number of blocks that excite a candidate: (sum of information)^2 / sum of its
   /// squares.
   double activeBlocks(Eigen::Index candidate) const;
+  /// The largest |T| that so many blocks allow.
+  double mostScore(Eigen::Index candidate) const {
+    return std::sqrt(activeBlocks(candidate)) / dependence_;
+  }
   /// Scatter of the blocks' pulls about one common size, relative to the scales; at least 1.
   double overdispersion(Eigen::Index candidate) const;
   /// Median of it over the candidates.
@@ -85,6 +90,10 @@ class ScoreTest {
   /// `usual` one.
   /** For candidates excited by few blocks: their |T| cannot exceed the root of activeBlocks(). */
   double sparseScore(Eigen::Index candidate, double usual) const;
+  /// The factor by which blocks scatter more than information says.
+  double excessScatter(Eigen::Index candidate, double usual) const;
+  /// That standard error.
+  double sparseError(Eigen::Index candidate, double usual) const;
   /// The same with its own overdispersion only: Student's t with about activeBlocks() - 1 degrees
   /// of freedom, conservative if the scales exceed the scatter.
   double ownScore(Eigen::Index candidate) const { return sparseScore(candidate, 1.0); }
@@ -99,8 +108,10 @@ class ScoreTest {
                   const Eigen::VectorXd& off);
   double pullOn(Eigen::Index candidate) const;  ///< of all blocks and of the prior
   double rootOf(Eigen::Index candidate) const;  ///< of the sum of squares
+  double sparseRoot(Eigen::Index candidate, double usual) const;
   double priorInformation(Eigen::Index candidate) const;
 
+  double dependence_;       ///< see Observations
   Eigen::MatrixXd own_;     ///< rows x candidates
   Eigen::MatrixXd pulls_;   ///< blocks x candidates
   Eigen::VectorXd scores_;  ///< candidates
@@ -111,6 +122,8 @@ class ScoreTest {
   Eigen::MatrixXd prior_parts_;  ///< priors x candidates; their squares sum to the information
   Eigen::VectorXd variation_;    ///< of a pull, between drives, by a known rest
 };
+
+inline constexpr double kPowerQuantile = 0.84;  ///< normal: 80 % power
 
 /// Requirements on a score.
 struct Needed {
@@ -128,6 +141,15 @@ bool isSparse(const ScoreTest& test, Eigen::Index candidate, double score);
  * information and overdispersion, if that is clear. For a first effect the overdispersion is its
  * own, estimated from few blocks: Student's t. */
 double evidence(const ScoreTest& test, Eigen::Index candidate, const Needed& needed);
+
+/// The same for a fitted candidate, from its gain on held-out blocks [nats]; `test` at the fit.
+/** Residuals far beyond the scales hardly pull, so that a large effect shows in its gain. */
+double evidenceOfGain(const ScoreTest& test, Eigen::Index candidate, double gain,
+                      const Needed& needed);
+
+/// The smallest size of a candidate that such evidence finds with 80 % power if blocks are brief,
+/// so that only size counts; infinite if none.
+double leastSize(const ScoreTest& test, Eigen::Index candidate, const Needed& needed);
 
 /// Probability that chance gives any of this many candidates such evidence by its size alone
 /// (Bonferroni).

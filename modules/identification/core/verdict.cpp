@@ -82,6 +82,15 @@ GapVerdict verdictOf(const GapFinding& finding, const std::vector<FoundEffect>& 
   return measurement && !anyMoved(finding, true) ? GapVerdict::kMeasurement : GapVerdict::kFound;
 }
 
+/// Whether the drive would have shown any effect that the model does not have.
+bool anyExcited(const GapFinding& finding) {
+  const std::vector<std::string>& unseen = finding.identified.not_excited;
+  const std::vector<CandidateTest>& tests = finding.search.candidates;
+  return std::any_of(tests.begin(), tests.end(), [&unseen](const CandidateTest& test) {
+    return !contains(unseen, test.effect);
+  });
+}
+
 constexpr double kUndescribed = 0.15;  // of the distance: a larger error means another vehicle
 constexpr double kLeastWay =
     1.0;  // [m]: below it, noise and patches of ground can cause such errors
@@ -134,6 +143,10 @@ void judge(GapFinding& finding, double adequacy_alpha, double least_gain) {
     finding.verdict = verdictWithoutEffects(finding, adequate);
   } else {
     finding.verdict = verdictOf(finding, shown, adequate);
+  }
+  if (finding.source.brief && exitStatus(finding.verdict) == 0 && !anyExcited(finding)) {
+    finding.verdict = GapVerdict::kCannotTell;
+    finding.reason = "no effect of the catalogue would have shown in this drive in its usual size";
   }
   if (exitStatus(finding.verdict) == 0 && !finding.search.at_bound.empty()) {
     finding.verdict = GapVerdict::kCannotTell;

@@ -83,6 +83,24 @@ TEST_CASE("a headline that leaves names open is one line, with what is sure befo
       "Found: Crabbing, Grip limit and 2 more");
 }
 
+TEST_CASE("a brief drive lists by name what it cannot tell, and claims no more than it tested") {
+  GapFinding finding = withEffects(GapVerdict::kNoDiscrepancy, {});
+  finding.source.brief = true;
+  finding.source.blocks = 10;
+  finding.source.block_length = 6.0;
+  finding.identified.calibrated.clear();
+  CHECK(headlineOf(finding) == "Simulation and measurement agree as far as this brief drive shows");
+  const std::vector<std::string> lines = closingLines(finding);
+  REQUIRE(lines.size() > 1);
+  CHECK(lines[1] ==
+        "  60 s of driving: only effects that it would show in their usual size are judged. "
+        "CANNOT_TELL: grip_limit and slope_pitch. The report says what would show them. "
+        "Differences without a name are tested from 200 s on.");
+  CHECK(report(finding).find("significantly, over") == std::string::npos);
+  finding.verdict = GapVerdict::kNothingNew;
+  CHECK(headlineOf(finding) == "Nothing new that this brief drive would show");
+}
+
 TEST_CASE("a name that is open is marked under PARTIAL, too, and what it could be is listed") {
   const GapFinding finding =
       withEffects(GapVerdict::kPartial, {effect("slip_ratio"), samples::icrOffset()});

@@ -31,6 +31,20 @@ constexpr const char* kFittedNumbers =
     "Numbers of the model were refitted to the log; see the table of parameters. "
     "That done: ";
 
+/// What a brief drive tells, and what it does not, by name; empty for a longer one.
+std::string briefWords(const GapFinding& finding) {
+  if (!finding.source.brief || finding.search.candidates.empty()) return "";
+  const std::vector<std::string>& unseen = finding.identified.not_excited;
+  const double driven = static_cast<double>(finding.source.blocks) * finding.source.block_length;
+  return fixed(driven, 0) +
+         " s of driving: only effects that it would show in their usual size are "
+         "judged" +
+         (unseen.empty()
+              ? ": all."
+              : ". CANNOT_TELL: " + joined(unseen) + ". The report says what would show them.") +
+         " Differences without a name are tested from 200 s on.";
+}
+
 /// Effects of the model whose values have changed.
 std::vector<std::string> movedIn(const GapFinding& finding) {
   std::vector<std::string> names;
@@ -164,18 +178,16 @@ std::string opening(const GapFinding& finding) {
   switch (finding.verdict) {
     case GapVerdict::kNoDiscrepancy:
       return std::string(isMadeByFit(finding) ? kFittedNumbers : "") +
-             std::string(
-                 "Prediction and INS measurement do not differ significantly, "
-                 "over the whole catalogue and on all variables. Which effects would have been "
-                 "seen, "
-                 "from which size on, is listed below.") +
+             "Prediction and INS measurement do not differ significantly" +
+             (finding.source.brief ? "" : ", over the whole catalogue and on all variables") +
+             ". Which effects would have been seen, from which size on, is listed below." +
              (finding.search.negligible.empty()
                   ? std::string()
                   : " Real, but too small to matter: " + titlesOf(finding.search.negligible) + ".");
     case GapVerdict::kNothingNew:
-      return "The log differs from the model exactly as the drive did from which the model was "
-             "made, and in "
-             "nothing else.";
+      return finding.source.brief ? ""
+                                  : "The log differs from the model exactly as the drive did from "
+                                    "which the model was made, and in nothing else.";
     case GapVerdict::kNotInCatalogue:
       if (!finding.identified.unnamed.empty())
         return "There is a disagreement that no effect of the catalogue explains. What "
@@ -201,9 +213,11 @@ std::string headlineOf(const GapFinding& finding) {
   switch (finding.verdict) {
     case GapVerdict::kNoDiscrepancy:
       return std::string("Simulation and measurement agree") +
+             (finding.source.brief ? " as far as this brief drive shows" : "") +
              (isMadeByFit(finding) ? ", once the model's own numbers are fitted" : "");
     case GapVerdict::kNothingNew:
-      return "Nothing new: only the known residuals of the model";
+      return finding.source.brief ? "Nothing new that this brief drive would show"
+                                  : "Nothing new: only the known residuals of the model";
     case GapVerdict::kFound:
     case GapVerdict::kAmbiguous:
       return foundWords(finding);
@@ -240,6 +254,7 @@ std::vector<std::string> closingLines(const GapFinding& finding) {
     lines.push_back("  " + finding.reason);
     if (!finding.identified.effects.empty()) lines.push_back(std::string("  ") + kNoResult);
   }
+  if (const std::string brief = briefWords(finding); !brief.empty()) lines.push_back("  " + brief);
   for (const std::string& sentence : sentencesOf(finding)) lines.push_back("  " + sentence);
   if (!finding.adequacy.unexplained.empty())
     lines.push_back("  Unexplained: " + remainsOf(finding.adequacy.unexplained) + ".");
@@ -257,6 +272,8 @@ std::vector<Block> firstBlocks(const GapFinding& finding) {
   std::vector<Block> blocks;
   const std::string words = opening(finding);
   if (!words.empty()) blocks.push_back(Paragraph{words});
+  if (const std::string brief = briefWords(finding); !brief.empty())
+    blocks.push_back(Paragraph{brief});
   if (finding.search.cut_short) blocks.push_back(Paragraph{kCutShort});
   if (finding.verdict == GapVerdict::kCannotTell && !finding.identified.effects.empty())
     blocks.push_back(Paragraph{kNoResult});
