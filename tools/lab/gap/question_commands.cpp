@@ -22,6 +22,7 @@
 #include "tools/lab/gap/manoeuvres.hpp"
 #include "tools/lab/gap/plan_design.hpp"
 #include "tools/lab/gap/repeat.hpp"
+#include "tools/lab/gap/report/find_output.hpp"
 #include "tools/lab/gap/report/report.hpp"
 #include "tools/lab/gap/report/words.hpp"
 #include "tools/robot/patterns/recipe.hpp"
@@ -175,6 +176,8 @@ int plan(const PlanOptions& options) {
   DesignTask task;
   task.model = options.patterns.empty() ? readTwoTracks(options.model, "plan")
                                         : readTrackModelDocument(options.model);
+  for (const std::string& effect : {options.truth, options.rival})
+    requireOf("plan", effect, task.model.vehicle.layout());
   task.first = options.truth;
   task.second = options.rival;
   if (options.speed > 0.0 && task.model.vehicle.kind == CommandKind::kPower)

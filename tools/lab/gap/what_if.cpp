@@ -15,6 +15,7 @@
 #include "tools/lab/gap/compare.hpp"
 #include "tools/lab/gap/manoeuvres.hpp"
 #include "tools/lab/gap/repeat.hpp"
+#include "tools/lab/gap/report/find_output.hpp"
 #include "tools/lab/gap/report/pictures.hpp"
 
 namespace tread::gap {
@@ -94,7 +95,9 @@ void set(ModelDocument& model, const std::string& assignment, const Effect* last
   const std::string path = assignment.substr(0, equals);
   const size_t point = path.find('.');
   if (point != std::string::npos) {
-    setEffect(model, effectOrNear(path.substr(0, point)), path.substr(point + 1), *value);
+    const Effect& effect = effectOrNear(path.substr(0, point));
+    requireOf("--set", effect.name, model.vehicle.layout());
+    setEffect(model, effect, path.substr(point + 1), *value);
   } else if (double* number = findParameter(model, path)) {
     if (!(*value >= 0.0))
       throw std::runtime_error("--set " + assignment + ": must not be negative");
@@ -230,6 +233,7 @@ ModelDocument changed(const ModelDocument& model, const ModelChange& change) {
   const Effect* last_added = nullptr;
   for (const std::string& name : change.add) {
     last_added = &effectOrNear(name);
+    requireOf("--add", name, model.vehicle.layout());
     if (isOn(*last_added, other))
       throw std::runtime_error(
           "--add " + name + ": it is already on in this model; another size: " + "--set " + name +

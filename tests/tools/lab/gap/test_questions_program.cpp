@@ -72,6 +72,20 @@ TEST_CASE("plan writes a pattern set that tells two effects apart, and that can 
   CHECK(record.status == 0);
 }
 
+TEST_CASE("plan and what-if refuse an effect that the model's vehicle cannot have") {
+  const std::string model = " --model " + kModels + "warthog_asphalt.yaml";
+  const auto refused = [&](const std::string& question, const std::string& request) {
+    const Run answer = run(question + model);
+    INFO(answer.printed);
+    CHECK(answer.status == 2);
+    CHECK(answer.says(request + ": no effect of two tracks, which the model is of"));
+  };
+  refused("plan yaw_pull steering_ratio", "plan steering_ratio");
+  refused("plan wheel_1_loss yaw_pull", "plan wheel_1_loss");
+  refused("what-if --add steering_ratio", "--add steering_ratio");
+  refused("what-if --set steering_ratio.share=0.1", "--set steering_ratio");
+}
+
 TEST_CASE("the order in which plan is given two effects makes no difference") {
   const std::string model = " --model " + kModels + "warthog_asphalt.yaml";
   const Run one = run("plan track_asymmetry yaw_pull" + model);

@@ -159,14 +159,17 @@ void makeSymmetric(std::vector<std::vector<double>>& matrix) {
 
 }  // namespace
 
+void requireOf(const std::string& request, const std::string& effect, VehicleLayout layout) {
+  if (effectNamed(effect).isOf(layout)) return;
+  throw std::runtime_error(request + " " + effect + ": no effect of " + nameOf(layout) +
+                           ", which the model is of");
+}
+
 std::vector<EffectDecision> decisionsOf(const DecisionWords& words, const ModelDocument& model) {
   std::vector<EffectDecision> decisions;
   for (const std::string& name : words.accepted) add(decisions, name, true, words.by);
-  const VehicleLayout layout = model.vehicle.layout();
   for (const std::string& name : words.accepted)
-    if (!effectNamed(name).isOf(layout))
-      throw std::runtime_error("--accept " + name + ": no effect of " + nameOf(layout) +
-                               ", which the model is of");
+    requireOf("--accept", name, model.vehicle.layout());
   for (const std::string& name : words.rejected) {
     add(decisions, name, false, words.by);
     if (isOn(effectNamed(name), model))

@@ -13,6 +13,10 @@ struct DecisionWords {
   std::string by;
 };
 
+/// Throws std::runtime_error, beginning with the request, if vehicles of a layout cannot have an
+/// effect.
+void requireOf(const std::string& request, const std::string& effect, VehicleLayout layout);
+
 /// Decisions on effects of the catalogue, accepted ones first.
 /** Throws std::runtime_error with one clear line if an effect is unknown, is accepted and rejected,
  * or is named twice, if a rejected one is in the model, or if a person is named without decisions.
