@@ -289,13 +289,13 @@ class CauseSearch {
   /// Whether a process that publishes on a channel had died or hung; then adds the finding.
   bool processFault(const std::string& process, const std::string& channel, double longest) {
     if (const auto restart = drive_.restartOf(process, t_ - kBefore, t_ + kAfterwards)) {
-      say(process + "_died", process + " died and was restarted");
-      prove(*restart, "HEALTH", process + ": another boot_id");
+      say(process + "_died", diedWords(process, true));
+      finding_.evidence.push_back(deathEvidence(*restart, process, true));
       return true;
     }
     if (const auto death = drive_.deathOf(process); death && *death < t_ + 1.5) {
-      say(process + "_died", process + " died and was not restarted");
-      prove(*death, "HEALTH", process + ": its last message");
+      say(process + "_died", diedWords(process, false));
+      finding_.evidence.push_back(deathEvidence(*death, process, false));
       return true;
     }
     const auto silence = drive_.silenceOf(channel, t_, longest);

@@ -71,8 +71,8 @@ void addProcesses(const DriveTimeline& drive, std::vector<Finding>& findings) {
                           notes[i - 1].time,
                           notes[i].time,
                           process + "_died",
-                          process + " died and was started again; the robot was not stopped by it",
-                          {{notes[i].time, "HEALTH", process + ": another boot_id"}}});
+                          diedWords(process, true) + "; the robot was not stopped by it",
+                          {deathEvidence(notes[i].time, process, true)}});
     }
     const auto death = drive.deathOf(process);
     if (!death || isNear(findings, *death, process)) continue;
@@ -80,8 +80,8 @@ void addProcesses(const DriveTimeline& drive, std::vector<Finding>& findings) {
                         *death,
                         drive.duration,
                         process + "_died",
-                        process + " died, and nobody started it again",
-                        {{*death, "HEALTH", process + ": its last message"}}});
+                        diedWords(process, false),
+                        {deathEvidence(*death, process, false)}});
   }
 }
 
@@ -303,6 +303,15 @@ int weightOf(const Finding& finding) {
 }
 
 }  // namespace
+
+std::string diedWords(const std::string& process, bool started_again) {
+  return process +
+         (started_again ? " died and was started again" : " died, and nobody started it again");
+}
+
+Evidence deathEvidence(double time, const std::string& process, bool started_again) {
+  return {time, "HEALTH", process + (started_again ? ": another boot_id" : ": its last message")};
+}
 
 const char* nameOf(FindingKind kind) {
   constexpr const char* kNames[] = {"stop", "process", "messages",  "detour",

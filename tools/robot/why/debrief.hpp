@@ -33,6 +33,11 @@ struct Finding {
   std::vector<Evidence> evidence;
 };
 
+/// "ins_driver died and was started again".
+std::string diedWords(const std::string& process, bool started_again);
+/// Evidence of it: the first HEALTH of the next life, or the last one of this life.
+Evidence deathEvidence(double time, const std::string& process, bool started_again);
+
 /// A drive in numbers.
 struct DriveFigures {
   double duration = 0.0;  ///< [s]
