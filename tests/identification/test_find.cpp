@@ -198,6 +198,21 @@ TEST_CASE("chance names nothing in a minute") {
   }
 }
 
+TEST_CASE(
+    "a change of the model's term in a brief drive has the effects beside it that explain it") {
+  const Values known{{"right_track_loss.loss", 0.04}};
+  const GapFinding finding =
+      findOn({{"right_track_loss.loss", 0.04}, {"left_track_loss.loss", 0.12}},
+             sureOf(known, 0.003), 60.0, 8);
+  REQUIRE_FALSE(finding.identified.effects.empty());
+  Names names;
+  for (const FoundEffect& found : finding.identified.effects) {
+    names.push_back(found.name);
+    for (const RunnerUp& other : found.runner_ups) names.push_back(other.effect);
+  }
+  CHECK(contains(names, "left_track_loss"));
+}
+
 TEST_CASE("an effect that a brief drive shows as well as another one is named beside it") {
   const GapFinding finding = findAfter({{"yaw_pull.pull", 0.1}}, 60.0, 8);
   REQUIRE(finding.identified.effects.size() == 1);

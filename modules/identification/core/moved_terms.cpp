@@ -66,19 +66,6 @@ std::vector<size_t> movedTerms(const SearchState& search, const ModelDocument& b
   return moved;
 }
 
-/// Terms that the search has already released.
-std::vector<MovedTerm> releasedTerms(const SearchState& search) {
-  const FitState& state = search.result.state;
-  std::vector<MovedTerm> terms;
-  for (const FreeParameter& parameter : state.free) {
-    const double deviation = knownDeviation(state.model, parameter.path);
-    if (contains(search.result.released, effectOf(parameter.path)) &&
-        std::isinf(parameter.deviation) && std::isfinite(deviation) && isGiven(parameter))
-      terms.push_back({parameter.path, deviation});
-  }
-  return terms;
-}
-
 /// The state with the prior of one term restored, and everything fitted.
 FitState held(const Fitter& fitter, FitState state, const MovedTerm& term) {
   for (FreeParameter& parameter : state.free)
@@ -88,6 +75,17 @@ FitState held(const Fitter& fitter, FitState state, const MovedTerm& term) {
 }
 
 }  // namespace
+
+std::vector<MovedTerm> freedTerms(const SearchState& search) {
+  const FitState& state = search.result.state;
+  std::vector<MovedTerm> terms;
+  for (const FreeParameter& parameter : state.free) {
+    const double deviation = knownDeviation(state.model, parameter.path);
+    if (std::isinf(parameter.deviation) && std::isfinite(deviation) && isGiven(parameter))
+      terms.push_back({parameter.path, deviation});
+  }
+  return terms;
+}
 
 bool isNameless(const FitState& state, size_t index) {
   const std::string& path = state.free[index].path;
@@ -119,7 +117,7 @@ void reestimateMoved(const SearchState& search, const ModelDocument& before) {
   if (search.settings.calibrate || search.isCutShort()) return;
   const std::vector<size_t> moved = movedTerms(search, before);
   FitState freed = search.result.state;
-  std::vector<MovedTerm> terms = releasedTerms(search);
+  std::vector<MovedTerm> terms = freedTerms(search);
   for (const size_t i : moved) {
     terms.push_back({freed.free[i].path, freed.free[i].deviation});
     freed.free[i].deviation = std::numeric_limits<double>::infinity();

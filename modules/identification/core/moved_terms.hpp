@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "modules/identification/core/search.hpp"
+#include "modules/identification/core/search_steps.hpp"
 
 // Numbers and terms given by the model whose values have changed in this drive.
 namespace tread::gap {
@@ -33,6 +34,9 @@ bool isNameless(const FitState& state, size_t index);
 
 /// Whether a term of the model, or a number with a known certainty, has changed.
 bool hasMoved(const ParameterEstimate& estimate, double most_by_chance, bool calibrate);
+
+/// Given terms with a known certainty that a search has freed of their priors.
+std::vector<MovedTerm> freedTerms(const SearchState& search);
 
 /// Re-estimates moved terms without the model's prior, which describes the earlier vehicle and
 /// would hold back the new size.

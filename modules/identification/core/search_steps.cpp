@@ -14,6 +14,7 @@
 #include "modules/identification/core/candidates.hpp"
 #include "modules/identification/core/end_errors.hpp"
 #include "modules/identification/core/evidence.hpp"
+#include "modules/identification/core/moved_terms.hpp"
 #include "modules/identification/core/pruning.hpp"
 
 namespace tread::gap {
@@ -67,17 +68,23 @@ struct Single {
   Eigen::VectorXd direction;
 };
 
-/// One candidate of each such effect, including those that only replace others.
-std::vector<Single> imitated(const SearchState& search) {
-  const Fitter& fitter = search.fitter;
-  const FitState& state = search.result.state;
-  const Excitation most = excitationOf(fitter.data(), state.model);
+/// The candidates for a state, including effects that only replace others.
+std::vector<Candidate> allCandidates(const SearchState& search, const FitState& state) {
+  const Excitation most = excitationOf(search.data(), state.model);
   auto candidates = candidatesFor(state, most);
   for (const Effect& effect : effectCatalogue())
     if (effect.search.in_place)
       for (Candidate& candidate : candidatesOf(effect.name, state, most))
         candidates.push_back(std::move(candidate));
   leaveOut(candidates, search.settings.rejected);
+  return candidates;
+}
+
+/// One candidate of each such effect.
+std::vector<Single> imitated(const SearchState& search) {
+  const Fitter& fitter = search.fitter;
+  const FitState& state = search.result.state;
+  const auto candidates = allCandidates(search, state);
   const Eigen::MatrixXd directions = directionsOf(fitter, state, candidates);
   const ScoreTest test(fitter, state, directions);
   std::vector<Single> chosen;
@@ -555,8 +562,7 @@ constexpr double kBriefLevel = 2.0;  // standard errors
 /// The most promising candidate of each effect that promises at least half of the largest gain in a
 /// state; effects that begin at any time are not simpler.
 std::vector<Candidate> promisingIn(const SearchState& search, const FitState& state) {
-  auto candidates = candidatesFor(state, excitationOf(search.data(), state.model));
-  leaveOut(candidates, search.settings.rejected);
+  const auto candidates = allCandidates(search, state);
   const ScoreTest test(search.fitter, state, directionsOf(search.fitter, state, candidates));
   std::map<std::string, size_t> best;
   double most = 0.0;
@@ -580,11 +586,12 @@ struct Contender {
   Eigen::VectorXd loss;  ///< on held-out blocks
 };
 
-std::vector<Contender> contendersFor(const SearchState& search, const std::string& found) {
+/// `found` and others in its place, in a state without it.
+std::vector<Contender> contendersFor(const SearchState& search, const std::string& found,
+                                     const FitState& lacking) {
   const Fitter& fitter = search.fitter;
   const FitState& now = search.result.state;
   std::vector<Contender> all{{found, now, heldOutLoss(fitter, now)}};
-  const FitState lacking = without(fitter, now, found);
   for (const Candidate& candidate : promisingIn(search, lacking)) {
     if (candidate.effect == found || search.isCutShort()) continue;
     FitState tried = lacking;
@@ -596,32 +603,57 @@ std::vector<Contender> contendersFor(const SearchState& search, const std::strin
   return all;
 }
 
+/// Takes the best of several into the result, with those that are level as its runners-up; returns
+/// its name.
+std::string takeBest(const SearchState& search, std::vector<Contender> all) {
+  FoundTerms& result = search.result;
+  const std::string before = all.front().effect;
+  const auto best = std::min_element(
+      all.begin(), all.end(),
+      [](const Contender& a, const Contender& b) { return a.loss.sum() < b.loss.sum(); });
+  std::vector<RunnerUp> level;
+  for (const Contender& other : all) {
+    if (other.effect == best->effect) continue;
+    const Gain behind = gainOf(search.fitter, other.loss, best->loss);
+    if (behind.value < kBriefLevel * behind.error)
+      level.push_back({other.effect, behind.value, kBriefLevel * behind.error});
+  }
+  if (best->effect != before) {
+    search.say("  = " + best->effect + " in the place of " + before);
+    result.evidence[best->effect] = result.evidence[before];
+    result.state = std::move(best->state);
+    search.fitter.fit(result.state);
+  }
+  result.evidence[best->effect].runner_ups = std::move(level);
+  return best->effect;
+}
+
+/// The same for a changed term of the model, with other effects in the place of its change.
+void weighChange(const SearchState& search, const MovedTerm& term) {
+  FoundTerms& result = search.result;
+  const std::string given = effectOf(term.path);
+  FitState lacking = result.state;
+  holdAgain(lacking, term);
+  lacking.predicted = search.fitter.predict(lacking.model);
+  search.fitter.fit(lacking);
+  const std::string name = takeBest(search, contendersFor(search, given, lacking));
+  if (name == given) return;
+  result.effects.push_back(name);
+  result.released.erase(std::remove(result.released.begin(), result.released.end(), given),
+                        result.released.end());
+}
+
 }  // namespace
 
 void weighOthers(const SearchState& search) {
   FoundTerms& result = search.result;
-  for (std::string& name : result.effects) {
-    if (search.isAccepted(name)) continue;
-    std::vector<Contender> all = contendersFor(search, name);
-    const auto best = std::min_element(
-        all.begin(), all.end(),
-        [](const Contender& a, const Contender& b) { return a.loss.sum() < b.loss.sum(); });
-    std::vector<RunnerUp> level;
-    for (const Contender& other : all) {
-      if (other.effect == best->effect) continue;
-      const Gain behind = gainOf(search.fitter, other.loss, best->loss);
-      if (behind.value < kBriefLevel * behind.error)
-        level.push_back({other.effect, behind.value, kBriefLevel * behind.error});
-    }
-    if (best->effect != name) {
-      search.say("  = " + best->effect + " in the place of " + name);
-      result.evidence[best->effect] = result.evidence[name];
-      result.state = std::move(best->state);
-      search.fitter.fit(result.state);
-      name = best->effect;
-    }
-    result.evidence[name].runner_ups = std::move(level);
-  }
+  for (std::string& name : result.effects)
+    if (!search.isAccepted(name))
+      name =
+          takeBest(search, contendersFor(search, name, without(search.fitter, result.state, name)));
+  if (search.settings.calibrate) return;
+  for (const MovedTerm& term : freedTerms(search))
+    if (findEffectParameter(term.path) != nullptr) weighChange(search, term);
 }
 
 Eigen::MatrixXd missedOnOtherHalves(const Fitter& fitter, const FitState& state,

@@ -35,8 +35,9 @@ bool replaceMoved(const SearchState& search, std::vector<MovedTerm>& moved);
 /// that explain less at any size.
 void noteToldFrom(const SearchState& search);
 
-/// Tries every other effect in the place of each found one, takes the best and notes those that are
-/// level as its runners-up. For a brief drive, in which the right one may be the less visible one.
+/// Tries every other effect in the place of each found one and of each changed term, takes the best
+/// and notes those that are level as its runners-up. For a brief drive, in which the right one may
+/// be the less visible one.
 void weighOthers(const SearchState& search);
 
 /// Rows of alternate blocks: those of `half` (0 or 1) count.
