@@ -6,10 +6,10 @@
 #include <cmath>
 #include <cstring>
 
-#include <Eigen/Eigenvalues>
 #include <nlohmann/json.hpp>
 
 #include "common/config/config_reader.hpp"
+#include "common/geometry/principal_axes.hpp"
 #include "common/messages/ins_messages.hpp"
 #include "common/report/text.hpp"
 #include "common/vehicle/robot_description.hpp"
@@ -86,9 +86,9 @@ Json doubtOf(const double* pose, const std::vector<double>& covariance) {
   Eigen::Matrix2d position;
   position << covariance[0], covariance[1], covariance[1], covariance[3];
   if (!position.allFinite()) return nullptr;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(position);
-  const Eigen::Vector2d lengths = 4.0 * axes.eigenvalues().cwiseMax(1e-6).cwiseSqrt();
-  const double yaw = std::atan2(axes.eigenvectors()(1, 1), axes.eigenvectors()(0, 1));
+  const PrincipalAxes axes = principalAxes(position);
+  const Eigen::Vector2d lengths = 4.0 * axes.variances.cwiseMax(1e-6).cwiseSqrt();
+  const double yaw = std::atan2(axes.directions(1, 1), axes.directions(0, 1));
   return {{"pose", poseOf(pose[0], pose[1], 0.01, yaw)},
           {"size", vectorOf(lengths[1], lengths[0], 0.02)},
           {"bottom_scale", 1.0},

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "common/geometry/principal_axes.hpp"
 #include "modules/scan_matching/core/pose_search.hpp"
 
 namespace tread::scan_matching {
@@ -27,9 +27,7 @@ double secondsOf(int64_t us) {
 
 /// Standard deviation of the position along its worst direction [m].
 double positionStd(const Matrix3d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance.topLeftCorner<2, 2>(),
-                                                            Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
+  return std::sqrt(std::max(0.0, principalAxes(covariance.topLeftCorner<2, 2>()).variances[1]));
 }
 
 double yawStd(const Matrix3d& covariance) {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
+#include "common/geometry/principal_axes.hpp"
 
 namespace tread::scan_matching {
 namespace {
@@ -83,11 +83,10 @@ bool describe(const std::vector<Eigen::Vector2d>& points, size_t i,
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
   for (size_t j = begin; j < end; ++j)
     scatter += (points[j] - mean) * (points[j] - mean).transpose();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
-  axes.computeDirect(scatter);
-  const double across = std::max(0.0, axes.eigenvalues()[0]);
-  const double along = axes.eigenvalues()[1];
-  point.normal = axes.eigenvectors().col(0);
+  const PrincipalAxes axes = principalAxes(scatter);
+  const double across = std::max(0.0, axes.variances[0]);
+  const double along = axes.variances[1];
+  point.normal = axes.directions.col(0);
   if (point.normal.dot(p_body_sensor - point.p) < 0.0) point.normal = -point.normal;
   const double variance = std::max(across / (count - 2.0), range_noise * range_noise);
   point.normal_variance = variance / std::max(along, 1e-9);

@@ -8,8 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
+#include "common/geometry/principal_axes.hpp"
 #include "common/report/plot.hpp"
 
 namespace tread::patterns {
@@ -50,13 +49,13 @@ Points endEllipse(const MotionPattern& pattern) {
   if (std::isnan(c[0])) return {};
   Eigen::Matrix2d covariance;
   covariance << c[0], c[1], c[1], c[3];
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covariance);
-  const Eigen::Vector2d axes = (kChi2Of95 * solver.eigenvalues().cwiseMax(0.0)).cwiseSqrt();
+  const PrincipalAxes principal = principalAxes(covariance);
+  const Eigen::Vector2d axes = (kChi2Of95 * principal.variances.cwiseMax(0.0)).cwiseSqrt();
   Points ellipse;
   for (int i = 0; i <= 48; ++i) {
     const double angle = 2.0 * kPi * i / 48.0;
     const Eigen::Vector2d round(axes.x() * std::cos(angle), axes.y() * std::sin(angle));
-    ellipse.push_back(pattern.end().position() + solver.eigenvectors() * round);
+    ellipse.push_back(pattern.end().position() + principal.directions * round);
   }
   return ellipse;
 }
