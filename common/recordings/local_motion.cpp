@@ -33,7 +33,6 @@ void readPattern(ConfigReader& reader, PatternRecipe& recipe) {
 constexpr double kBandwidth = 1.1;
 /// Differences beyond this many robust standard deviations are no vehicle motion.
 constexpr double kPlausible = 3.5;
-constexpr double kMadToSigma = 1.4826;  // of a normal distribution
 /// Lower limits of the residual scales: m/s, m/s, rad/s and the same per second.
 constexpr double kSmall[6] = {0.01, 0.01, 0.01, 0.01, 0.01, 0.01};
 

@@ -15,8 +15,7 @@ namespace tread::recordings {
 namespace {
 
 constexpr int kIterations = 30;
-constexpr double kHuber = 1.345;        // 95 % efficiency for normal errors
-constexpr double kMadToSigma = 1.4826;  // of a normal distribution
+constexpr double kHuber = 1.345;  // 95 % efficiency for normal errors
 
 /// Length of each observation's residual, per row.
 Eigen::VectorXd lengths(const Eigen::VectorXd& residuals, int group) {
@@ -98,7 +97,7 @@ Eigen::VectorXd fitPosition(const std::vector<PoseSample>& poses, const Eigen::V
   return huberFit(A, b, Eigen::VectorXd::Ones(n), {2, kPositionNoise});
 }
 
-std::string rounded(double value) {
+std::string hundredths(double value) {
   const std::string text = std::to_string(std::round(value * 100.0) / 100.0);
   return text.substr(0, text.find('.') + 3);
 }
@@ -150,7 +149,7 @@ std::string windowProblem(const std::vector<PoseSample>& poses, double duration)
     last = pose.time;
   }
   gap = std::max(gap, duration - last);
-  if (gap > kMaxGap + 1e-9) return "no new pose for more than " + rounded(kMaxGap) + " s";
+  if (gap > kMaxGap + 1e-9) return "no new pose for more than " + hundredths(kMaxGap) + " s";
   if (static_cast<int>(poses.size()) < kMinPoses)
     return "fewer than " + std::to_string(kMinPoses) + " poses";
   return "";

@@ -12,6 +12,9 @@
 
 namespace tread::recordings {
 
+/// Standard deviation of a normal distribution relative to its median absolute deviation.
+inline constexpr double kMadToSigma = 1.4826;
+
 /// How a robust fit groups and scales its rows.
 struct HuberLimits {
   int group = 1;             ///< number of neighbouring rows of one observation
@@ -19,8 +22,8 @@ struct HuberLimits {
 };
 
 /// x that minimises the sum of rho(|A x - b| per observation), rho of Huber (k = 1.345 scales).
-/** Solved by iteratively reweighted least squares (QR); the scale is 1.4826 times the median
- * residual length per row, at least `least_scale`. `prior` holds a weight for each observation;
+/** Solved by iteratively reweighted least squares (QR); the scale is kMadToSigma times the
+ * median residual length per row, at least `least_scale`. `prior` holds a weight for each observation;
  * zero excludes it. Deterministic. */
 Eigen::VectorXd huberFit(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
                          const Eigen::VectorXd& prior, const HuberLimits& limits);

@@ -371,15 +371,15 @@ TEST_CASE("an INS message that was overtaken puts the robot nowhere else") {
 
 namespace {
 
-constexpr int64_t kNow = 10'000'000;  // [us]
+constexpr int64_t kFenceNow = 10'000'000;  // [us]
 
 /// The watch alone: a robot in the yard, `room` [m] from its front to the fence ahead.
 struct FenceBench {
   FenceWatch watch{{{yard()}, kBody, 0.5}, {}};
-  InsMotion ins{kNow, 0, 0, 0, 0.0, 0.0, 0.0, 0.0};
+  InsMotion ins{kFenceNow, 0, 0, 0, 0.0, 0.0, 0.0, 0.0};
 
   explicit FenceBench(double room = 5.0) { ins.x = 10.0 - 0.65 - room; }
-  std::string fault(int64_t now = kNow) {
+  std::string fault(int64_t now = kFenceNow) {
     watch.receive(ins);
     return watch.fault(now).words;
   }
@@ -399,23 +399,23 @@ TEST_CASE("room is told in centimetres") {
 
 TEST_CASE("a pose counts for half a second, and for a second it is told that none does") {
   FenceBench bench;
-  CHECK(bench.fault(kNow + 500'000).empty());
-  CHECK(bench.fault(kNow + 500'001) == "position unknown: fences cannot be kept");
-  CHECK_FALSE(bench.fault(kNow + 1'500'001).empty());
-  CHECK(bench.fault(kNow + 1'500'002).empty());
-  bench.ins.utime = kNow + 2'000'000;
-  CHECK(bench.fault(kNow + 2'000'000).empty());
-  CHECK_FALSE(bench.fault(kNow + 2'600'000).empty());
+  CHECK(bench.fault(kFenceNow + 500'000).empty());
+  CHECK(bench.fault(kFenceNow + 500'001) == "position unknown: fences cannot be kept");
+  CHECK_FALSE(bench.fault(kFenceNow + 1'500'001).empty());
+  CHECK(bench.fault(kFenceNow + 1'500'002).empty());
+  bench.ins.utime = kFenceNow + 2'000'000;
+  CHECK(bench.fault(kFenceNow + 2'000'000).empty());
+  CHECK_FALSE(bench.fault(kFenceNow + 2'600'000).empty());
 }
 
 TEST_CASE("the age of a pose is driven on, up to half a second") {
   FenceBench bench(0.7);
   bench.ins.v_forward = 1.0;
-  CHECK(bench.fault(kNow + 190'000).empty());
-  CHECK_FALSE(bench.fault(kNow + 210'000).empty());
+  CHECK(bench.fault(kFenceNow + 190'000).empty());
+  CHECK_FALSE(bench.fault(kFenceNow + 210'000).empty());
   FenceBench from_future(0.45);
   from_future.ins.v_forward = 1.0;
-  CHECK_FALSE(from_future.fault(kNow - 200'000).empty());
+  CHECK_FALSE(from_future.fault(kFenceNow - 200'000).empty());
 }
 
 TEST_CASE("3 cm/s and 3 crad/s are a motion, less is none") {
@@ -477,7 +477,7 @@ TEST_CASE("of a commanded turn 0.7 are made at most, measured or not") {
   for (const double rate : {0.0, InsMotion::kUnknown}) {
     FenceBench bench;
     bench.ins.yaw_rate = rate;
-    bench.watch.command({-0.05, 0.05}, kNow);
+    bench.watch.command({-0.05, 0.05}, kFenceNow);
     bench.ins.y = 5.0 - corner + 0.001;
     CHECK_FALSE(bench.fault().empty());
     bench.ins.y = 5.0 - corner - 0.001;
@@ -489,7 +489,7 @@ TEST_CASE("a measured drift to the side counts beside a command of the same spee
   FenceBench bench;
   bench.ins.y = 5.0 - 0.34 - 0.1;
   bench.ins.v_forward = 0.5 * kSpeed;
-  bench.watch.command({0.5, 0.5}, kNow);
+  bench.watch.command({0.5, 0.5}, kFenceNow);
   CHECK(bench.fault().empty());
   bench.ins.v_left = 0.5;
   CHECK_FALSE(bench.fault().empty());
@@ -497,15 +497,15 @@ TEST_CASE("a measured drift to the side counts beside a command of the same spee
 
 TEST_CASE("the fastest command of the last 0.25 s may still be under way, and then no more") {
   FenceBench bench(0.3);
-  bench.watch.command({0.0, 0.0}, kNow);
+  bench.watch.command({0.0, 0.0}, kFenceNow);
   CHECK(bench.fault().empty());
-  bench.watch.command({1.0, 1.0}, kNow);
+  bench.watch.command({1.0, 1.0}, kFenceNow);
   CHECK_FALSE(bench.fault().empty());
-  bench.watch.command({0.2, 0.1}, kNow + 10'000);
-  bench.watch.command({0.2, 0.1}, kNow + 259'999);
-  CHECK_FALSE(bench.fault(kNow + 10'000).empty());
-  bench.watch.command({0.2, 0.1}, kNow + 260'000);
-  CHECK(bench.fault(kNow + 10'000).empty());
+  bench.watch.command({0.2, 0.1}, kFenceNow + 10'000);
+  bench.watch.command({0.2, 0.1}, kFenceNow + 259'999);
+  CHECK_FALSE(bench.fault(kFenceNow + 10'000).empty());
+  bench.watch.command({0.2, 0.1}, kFenceNow + 260'000);
+  CHECK(bench.fault(kFenceNow + 10'000).empty());
 }
 
 TEST_CASE("blind for its speed, one track backwards may move it backwards") {
@@ -513,11 +513,11 @@ TEST_CASE("blind for its speed, one track backwards may move it backwards") {
     FenceBench behind;
     behind.ins.x = -5.0 + 0.65 + 0.3;
     behind.ins.v_forward = InsMotion::kUnknown;
-    behind.watch.command(command, kNow);
+    behind.watch.command(command, kFenceNow);
     CHECK_FALSE(behind.fault().empty());
     FenceBench ahead(0.3);
     ahead.ins.v_forward = InsMotion::kUnknown;
-    ahead.watch.command(command, kNow);
+    ahead.watch.command(command, kFenceNow);
     CHECK_FALSE(ahead.fault().empty());
   }
 }
@@ -530,19 +530,19 @@ TEST_CASE("blind for its speed, a command counts for its delay and the stopping 
     return bench;
   };
   FenceBench back = behind();
-  back.watch.command({-0.05, -0.05}, kNow - 749'999);
-  back.watch.command({0.0, 0.0}, kNow - 740'000);
+  back.watch.command({-0.05, -0.05}, kFenceNow - 749'999);
+  back.watch.command({0.0, 0.0}, kFenceNow - 740'000);
   CHECK_FALSE(back.fault().empty());
-  CHECK(back.fault(kNow + 1).empty());
+  CHECK(back.fault(kFenceNow + 1).empty());
   FenceBench ahead(0.3);
   ahead.ins.v_forward = InsMotion::kUnknown;
-  ahead.watch.command({0.05, 0.05}, kNow - 749'999);
-  ahead.watch.command({0.0, 0.0}, kNow - 740'000);
+  ahead.watch.command({0.05, 0.05}, kFenceNow - 749'999);
+  ahead.watch.command({0.0, 0.0}, kFenceNow - 740'000);
   CHECK_FALSE(ahead.fault().empty());
-  CHECK(ahead.fault(kNow + 1).empty());
+  CHECK(ahead.fault(kFenceNow + 1).empty());
   for (const TrackCommand& no_way_back : {TrackCommand{0.05, 0.0}, TrackCommand{0.0, 0.05}}) {
     FenceBench bench = behind();
-    bench.watch.command(no_way_back, kNow);
+    bench.watch.command(no_way_back, kFenceNow);
     CHECK(bench.fault().empty());
   }
 }
@@ -554,14 +554,14 @@ TEST_CASE("blind for its speed, a measured turn on the spot counts where nothing
   bench.ins.v_forward = InsMotion::kUnknown;
   bench.ins.yaw_rate = 0.3;
   CHECK_FALSE(bench.fault().empty());
-  bench.watch.command({0.5, 0.5}, kNow);  // away from it
+  bench.watch.command({0.5, 0.5}, kFenceNow);  // away from it
   CHECK(bench.fault().empty());
 }
 
 TEST_CASE("of two commands as fast the older one counts, too") {
   FenceBench bench(0.3);
-  bench.watch.command({1.0, 1.0}, kNow);
-  bench.watch.command({-1.0, 1.0}, kNow);
+  bench.watch.command({1.0, 1.0}, kFenceNow);
+  bench.watch.command({-1.0, 1.0}, kFenceNow);
   CHECK_FALSE(bench.fault().empty());
 }
 
@@ -569,7 +569,7 @@ TEST_CASE("a turn that is not measured is as commanded, a measured one is not") 
   FenceBench bench;
   bench.ins.v_forward = 1.0;
   bench.ins.y = 5.0 - 0.76;  // beyond the swing of a turn on the spot
-  bench.watch.command({-0.5, 0.5}, kNow);
+  bench.watch.command({-0.5, 0.5}, kFenceNow);
   CHECK(bench.fault().empty());
   bench.ins.yaw_rate = InsMotion::kUnknown;
   CHECK_FALSE(bench.fault().empty());

@@ -25,7 +25,7 @@ VescConfig configOf(const std::string& text, const DriveDescription& drive = {})
   return config;
 }
 
-std::string refusal(const std::string& text, const DriveDescription& drive = {}) {
+std::string refusalOf(const std::string& text, const DriveDescription& drive = {}) {
   try {
     configOf(text, drive);
   } catch (const ConfigError& error) {
@@ -129,10 +129,10 @@ TEST_CASE("VESC: a car's throttle is its duty, the steering the servo output, Na
   drive.invert_right = true;
   CHECK(servoCommand({0.0, 0.5}, configOf("{servo_left: 0.8, servo_right: 0.3}", drive)).value ==
         300);
-  CHECK(refusal("{servo_left: 0.4, servo_right: 0.4}", drive).find("nothing would be steered") !=
+  CHECK(refusalOf("{servo_left: 0.4, servo_right: 0.4}", drive).find("nothing would be steered") !=
         std::string::npos);
-  CHECK(refusal("{throttle: [1], steering: 2}", drive).find("steering") != std::string::npos);
-  CHECK(refusal("{left: [1]}", drive).find("left") != std::string::npos);
+  CHECK(refusalOf("{throttle: [1], steering: 2}", drive).find("steering") != std::string::npos);
+  CHECK(refusalOf("{left: [1]}", drive).find("left") != std::string::npos);
 }
 
 TEST_CASE("VESC over UART: a car's servo follows, and goes straight when the drive is stopped") {
@@ -165,11 +165,11 @@ TEST_CASE("VESC: four wheels that are not steered are the controllers 1 to 4 unl
 TEST_CASE("a VESC section is refused with its line") {
   DriveDescription speed;
   speed.kind = CommandKind::kTrackSpeed;
-  CHECK(refusal("{}", speed).rfind("vesc.yaml:1", 0) == 0);
+  CHECK(refusalOf("{}", speed).rfind("vesc.yaml:1", 0) == 0);
   for (const char* bad : {"left: [1, 1]", "left: [2]", "left: []", "left: [1, 2, 3]", "left: [1.5]",
                           "left: [300]", "local: 9", "pole_pairs: 7", "watchdog: 0"}) {
     INFO(bad);
-    CHECK(refusal(bad).rfind("vesc.yaml:1", 0) == 0);
+    CHECK(refusalOf(bad).rfind("vesc.yaml:1", 0) == 0);
   }
 }
 
