@@ -105,7 +105,7 @@ inline std::vector<std::string> typesIn(const std::string& text) {
       std::string scope;
       for (const std::string& part : scopes) scope += part.empty() ? "{}" : part + "::";
       const bool named = scope.find("{}") == std::string::npos;
-      if (std::regex_match(head, match, kNamespace)) {
+      if (head.find("namespace") != head.npos && std::regex_match(head, match, kNamespace)) {
         scopes.push_back(match[1]);
       } else {
         if (named && std::regex_match(head, match, kType)) types.push_back(scope + match[1].str());

@@ -38,7 +38,7 @@ std::vector<Include> includesUnder(const std::string& folder) {
     std::istringstream lines(contentOf(path));
     std::smatch match;
     for (std::string line; std::getline(lines, line);)
-      if (std::regex_search(line, match, kInclude))
+      if (line.find('#') != line.npos && std::regex_search(line, match, kInclude))
         includes.push_back({fs::relative(path, TREAD_SOURCE_DIR).string(), match[1]});
   }
   return includes;
