@@ -19,11 +19,11 @@ namespace fs = std::filesystem;
 namespace {
 
 /// A temporary folder.
-struct Folder {
-  Folder() { fs::create_directories(path); }
-  ~Folder() { fs::remove_all(path); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
+struct KeyFolder {
+  KeyFolder() { fs::create_directories(path); }
+  ~KeyFolder() { fs::remove_all(path); }
+  KeyFolder(const KeyFolder&) = delete;
+  KeyFolder& operator=(const KeyFolder&) = delete;
   std::string file(const std::string& name) const { return path / name; }
 
   const fs::path path = fs::temp_directory_path() / ("tread_key_" + std::to_string(getpid()));
@@ -40,7 +40,7 @@ const std::string kDigits(64, 'a');
 }  // namespace
 
 TEST_CASE("a new key is private, readable, unlike others, and never in the place of a file") {
-  const Folder folder;
+  const KeyFolder folder;
   const std::string one = folder.file("one");
   const std::string two = folder.file("two");
   const mode_t before = umask(0);
@@ -63,14 +63,14 @@ TEST_CASE("a new key is private, readable, unlike others, and never in the place
 }
 
 TEST_CASE("a fingerprint does not tell the key") {
-  const Folder folder;
+  const KeyFolder folder;
   const std::string path = written(folder.file("key"), kDigits + "\n");
   CHECK(fingerprint(readKey(path)).size() == 19);
   CHECK(kDigits.find(fingerprint(readKey(path)).substr(0, 4)) == std::string::npos);
 }
 
 TEST_CASE("a key that group or others may touch is refused, whatever they may do") {
-  const Folder folder;
+  const KeyFolder folder;
   for (const mode_t mode : {0640, 0604, 0620, 0602, 0610, 0601, 0644, 0777}) {
     CAPTURE(mode);
     const std::string path = written(folder.file("key"), kDigits + "\n", mode);
@@ -82,7 +82,7 @@ TEST_CASE("a key that group or others may touch is refused, whatever they may do
 }
 
 TEST_CASE("a key of somebody else is refused") {
-  const Folder folder;
+  const KeyFolder folder;
   const std::string path = written(folder.file("key"), kDigits + "\n");
   if (chown(path.c_str(), 4321, static_cast<gid_t>(-1)) != 0) {
     WARN("skipped: only root may give a file away");
@@ -92,7 +92,7 @@ TEST_CASE("a key of somebody else is refused") {
 }
 
 TEST_CASE("what is no key is refused in one line with what to do") {
-  const Folder folder;
+  const KeyFolder folder;
   const std::string half = kDigits.substr(32);
   for (const std::string& text :
        {std::string(), std::string("# only a comment\n"), half, kDigits + "a", kDigits + kDigits,
@@ -114,7 +114,7 @@ TEST_CASE("what is no key is refused in one line with what to do") {
 
 TEST_CASE(
     "a start that is killed while it writes the key leaves none, and the next start makes one") {
-  const Folder folder;
+  const KeyFolder folder;
   const std::string path = folder.file("key");
   const pid_t killed = fork();
   if (killed == 0) {
@@ -137,7 +137,7 @@ TEST_CASE(
 
 TEST_CASE(
     "two processes of a host with one key understand each other, without one there is no seal") {
-  const Folder folder;
+  const KeyFolder folder;
   writeNewKey(folder.file("key"));
   auto one = hostSealer(folder.file("key"));
   auto two = hostSealer(folder.file("key"));

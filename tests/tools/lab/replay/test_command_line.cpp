@@ -15,7 +15,8 @@ size_t lines(const std::string& text) {
   return static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-const std::string kModel = std::string(TREAD_SOURCE_DIR) + "/config/models/warthog_nominal.yaml";
+const std::string kModelFile =
+    std::string(TREAD_SOURCE_DIR) + "/config/models/warthog_nominal.yaml";
 
 }  // namespace
 
@@ -31,7 +32,7 @@ TEST_CASE("from a recording to a report on the command line") {
   REQUIRE(import.status == 0);
   // The used data, and the response of speed and turn to the commands.
   REQUIRE(lines(import.printed) == 3);
-  const CalledProgram replay = called("tread-replay learner " + log + " --model " + kModel +
+  const CalledProgram replay = called("tread-replay learner " + log + " --model " + kModelFile +
                                       " --rule collective --report " + report);
   INFO(replay.printed);
   REQUIRE(replay.status == 0);
@@ -87,12 +88,12 @@ TEST_CASE("executions of a length that is no whole number of commands are refuse
 }
 
 TEST_CASE("bad arguments of tread-replay are one clear line each") {
-  const CalledProgram missing = called("tread-replay learner /nowhere.log --model " + kModel);
+  const CalledProgram missing = called("tread-replay learner /nowhere.log --model " + kModelFile);
   REQUIRE(missing.status == 2);
   REQUIRE(lines(missing.printed) == 1);
   REQUIRE(missing.printed.find("/nowhere.log") != std::string::npos);
   REQUIRE(called("tread-replay learner /nowhere.log").status == 2);
-  REQUIRE(called("tread-replay learner x --rule best --model " + kModel).status == 2);
+  REQUIRE(called("tread-replay learner x --rule best --model " + kModelFile).status == 2);
   REQUIRE(called("tread-replay").status == 2);
   REQUIRE(called("tread-replay --no-such-option").status == 2);
   REQUIRE(called("tread-import --no-such-option").status == 2);

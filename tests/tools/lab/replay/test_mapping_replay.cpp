@@ -3,12 +3,12 @@
 #include <zlib.h>
 #include <catch2/catch.hpp>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include "common/geometry/se2.hpp"
 #include "common/log/event_log.hpp"
+#include "tests/helpers.hpp"
 #include "tools/lab/replay/mapping_recording.hpp"
 #include "tools/lab/replay/pass_overlap.hpp"
 
@@ -52,12 +52,6 @@ std::string carmenDrive(double wall, int lines) {
       "# message formats defined: PARAM ODOM FLASER\nPARAM robot_length 0.47 1 host 1\n";
   for (int i = 0; i < lines; ++i) log += carmenLine(wall, i, 0.0);
   return log;
-}
-
-std::string recording(const std::string& name) {
-  const char* folder = std::getenv("TREAD_RECORDINGS");
-  const std::string path = std::string(folder != nullptr ? folder : "") + "/" + name;
-  return std::filesystem::exists(path) ? path : "";
 }
 
 Cell at(const MappingReplay& replay, double x, double y) {
@@ -173,7 +167,8 @@ TEST_CASE("other messages on the MBot's channels are skipped and counted") {
 }
 
 TEST_CASE("the Freiburg campus goes through mapping: every scan taken, walls where they stand") {
-  const std::string path = recording("lidar/carmen/freiburg-campus-corrected.log.gz");
+  const std::string path =
+      tread::testing::recorded("lidar/carmen/freiburg-campus-corrected.log.gz");
   if (path.empty()) {
     WARN("skipped: the Freiburg campus log is not here (TREAD_RECORDINGS)");
     return;
@@ -198,7 +193,8 @@ TEST_CASE("the Freiburg campus goes through mapping: every scan taken, walls whe
 }
 
 TEST_CASE("a real LCM log of other types goes through mapping: the MBot's arena") {
-  const std::string path = recording("lcmlogs/mbot2017_sweep/sweep_drive_square.log");
+  const std::string path =
+      tread::testing::recorded("lcmlogs/mbot2017_sweep/sweep_drive_square.log");
   if (path.empty()) {
     WARN("skipped: the MBot log is not here (TREAD_RECORDINGS)");
     return;
