@@ -69,7 +69,7 @@ TEST_CASE("progress tells every part once") {
 TEST_CASE("every rule of the learner takes part, and others do not disturb it") {
   const std::vector<TrialGround> grounds = groundsOfText(kSmallWorld);
   ExperimentSettings settings = smallSettings();
-  settings.repetitions = effort(100);
+  settings.repetitions = effort(25);
   settings.excitations = 4;
   settings.rules.clear();
   for (const std::string& name : methodNames())
