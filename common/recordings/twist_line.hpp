@@ -23,8 +23,8 @@ struct HuberLimits {
 
 /// x that minimises the sum of rho(|A x - b| per observation), rho of Huber (k = 1.345 scales).
 /** Solved by iteratively reweighted least squares (QR); the scale is kMadToSigma times the
- * median residual length per row, at least `least_scale`. `prior` holds a weight for each observation;
- * zero excludes it. Deterministic. */
+ * median residual length per row, at least `least_scale`. `prior` holds a weight for each
+ * observation; zero excludes it. Deterministic. */
 Eigen::VectorXd huberFit(const Eigen::MatrixXd& A, const Eigen::VectorXd& b,
                          const Eigen::VectorXd& prior, const HuberLimits& limits);
 
