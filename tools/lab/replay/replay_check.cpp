@@ -82,8 +82,11 @@ std::string differenceOf(const pattern_set_part_t& log, const pattern_set_part_t
 }
 
 std::string differenceOf(const learning_t& log, const learning_t& replay, double tolerance) {
+  std::set<std::string> without{"seq"};
+  // Older logs have the gate's words alone.
+  if (log.gate_code < 0) without.insert("gate_code");
   return firstDifference("LEARNING of execution " + std::to_string(log.learned_execution_id), log,
-                         replay, tolerance, {"seq"});
+                         replay, tolerance, without);
 }
 
 std::string differenceOf(const program_t& log, const program_t& replay) {

@@ -133,7 +133,11 @@ TEST_CASE("a robot's log through the learner gives the sets of the log, twice") 
 
 TEST_CASE("a set that a newer one of the same execution overtook is no difference, the newest is") {
   const std::vector<LogEvent> drive = drivenLog(15.0, {}, "multi_model");
-  REQUIRE(learnerCheck(drive).equal());
+  const LearnerCheck whole = learnerCheck(drive);
+  REQUIRE(whole.equal());
+  // The replay may publish one more at the end, which the log no longer holds.
+  REQUIRE(whole.versions.only_in_replay <= 1);
+  const int64_t beyond = whole.versions.only_in_replay;
   std::map<int64_t, std::vector<int64_t>> versions;  // by parent
   for (const LogEvent& event : drive) {
     pattern_set_part_t part;
@@ -164,10 +168,10 @@ TEST_CASE("a set that a newer one of the same execution overtook is no differenc
     return learnerCheck(std::move(events));
   };
   const LearnerCheck overtaken = without(siblings.front());
-  REQUIRE(overtaken.versions.only_in_replay == 1);
+  REQUIRE(overtaken.versions.only_in_replay == beyond + 1);
   REQUIRE(overtaken.equal());
   const LearnerCheck lost = without(siblings.back());
-  REQUIRE(lost.versions.only_in_replay == 1);
+  REQUIRE(lost.versions.only_in_replay == beyond + 1);
   REQUIRE_FALSE(lost.equal());
 }
 
