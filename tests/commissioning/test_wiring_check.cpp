@@ -184,7 +184,8 @@ std::pair<double, double> steadySpeed(const Hidden& hidden) {
 
 }  // namespace
 
-TEST_CASE("the minute's numbers hold: speed, mounting, place of the INS, lag, within intervals") {
+TEST_CASE("the minute's numbers hold: speed, mounting, place of the INS, lag, within intervals",
+          "[statistics]") {
   std::mt19937_64 random(77);
   const int seeds = effort(40);
   int speed = 0, yaw = 0, across = 0;

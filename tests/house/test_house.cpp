@@ -146,9 +146,10 @@ TEST_CASE(
 }
 
 TEST_CASE("concepts link no bus and include no message type") {
-  for (const char* folder : {"common/capture", "common/execution", "common/fence",
-                             "common/geometry", "common/grid", "common/ground", "common/parallel",
-                             "common/pattern", "common/statistics", "common/vehicle"})
+  for (const char* folder :
+       {"common/capture", "common/execution", "common/fence", "common/geometry", "common/grid",
+        "common/ground", "common/parallel", "common/pattern", "common/statistics", "common/vehicle",
+        "common/words"})
     for (const Include& include : includesUnder(folder)) {
       CAPTURE(include.file, include.target);
       CHECK_FALSE(startsWith(include.target, "lcm/"));

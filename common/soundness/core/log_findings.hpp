@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -226,7 +227,9 @@ struct LogNote {
   std::string what;  ///< one clear line
   LogFinding finding = findings::kFileNote;
 
-  bool is(const LogFinding& other) const { return finding.sentence == other.sentence; }
+  bool is(const LogFinding& other) const {
+    return std::string_view(finding.sentence) == other.sentence;
+  }
   /// Nothing can be concluded from this log.
   bool isFatal() const { return finding.consequence >= findings::kFatal; }
   /// About commands against the motion.

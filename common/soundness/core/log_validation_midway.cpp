@@ -194,6 +194,7 @@ void checkFrozen(const Drive& drive, Diagnostics& notes) {
   for (const LogNote& note : drive.notes)
     if (note.is(findings::kInsFrozen)) return;  // the reader has found it
   const double least = kDriving * largestCommand(drive);
+  if (!(least > 0.0)) return;  // it stood all the time
   for (const Segment& segment : drive.segments) {
     Frozen run;
     const auto told = [&] {

@@ -502,6 +502,7 @@ Columns currentColumns(const Fitter& fitter, const FitState& state,
   if (measured.bins.size() < kLeastBins || isStuck(measured)) return {};
   orient(measured);
   Columns columns{{}, currentGrams(measured, asked.size()), {}, {}};
+  if (columns.blocks.size() < 2) return {};
   const Grams all = sumOf(columns.blocks);
   const Both weights = weightsOf(all);
   const ColumnFit fit = fitColumns(all, kOrdinary, weights);

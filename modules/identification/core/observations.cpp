@@ -443,7 +443,7 @@ std::string tooLittleDriving(const Observations& data) {
   if (data.blocks() > measured && data.blockLength() > 0.0) driven = measured * data.blockLength();
   return "only " + fixed(driven, 0) +
          " s of measured driving, too little to tell chance from cause: drive at least " +
-         fixed(std::ceil(data.settings().shortest_block) * kLeastBlocks, 0) + " s";
+         fixed(std::ceil(data.leastBlock()) * kLeastBlocks, 0) + " s";
 }
 
 }  // namespace tread::gap

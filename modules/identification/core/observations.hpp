@@ -120,7 +120,8 @@ class Observations {
   const std::vector<Drive>& drives() const { return drives_; }
   int blocks() const { return blocks_; }
   double blockLength() const { return block_length_; }  ///< [s] of driving
-  const ObservationSettings& settings() const { return settings_; }
+  /// [s] of driving that a block has at least.
+  double leastBlock() const { return block_; }
   /// Whether blocks had to be shorter than usual.
   bool isBrief() const { return block_ < settings_.block; }
   /// Factor on the scatter of a sum over blocks: 1 for usual blocks, which count as independent.

@@ -461,8 +461,8 @@ FoundTerms search(const Fitter& fitter, const ModelDocument& model, const Search
                   SearchMemory& memory, const Progress& say) {
   FoundTerms found = searchTwice(fitter, model, settings, memory, say);
   reestimateMoved({fitter, settings, say, found}, model);
-  noteToldFrom({fitter, settings, say, found});
   if (fitter.data().isBrief()) weighOthers({fitter, settings, say, found});
+  noteToldFrom({fitter, settings, say, found});
   return found;
 }
 

@@ -604,8 +604,9 @@ std::vector<Contender> contendersFor(const SearchState& search, const std::strin
 }
 
 /// Takes the best of several into the result, with those that are level as its runners-up; returns
-/// its name.
-std::string takeBest(const SearchState& search, std::vector<Contender> all) {
+/// its name. `lacking` is the state without any of them.
+std::string takeBest(const SearchState& search, const FitState& lacking,
+                     std::vector<Contender> all) {
   FoundTerms& result = search.result;
   const std::string before = all.front().effect;
   const auto best = std::min_element(
@@ -619,8 +620,20 @@ std::string takeBest(const SearchState& search, std::vector<Contender> all) {
       level.push_back({other.effect, behind.value, kBriefLevel * behind.error});
   }
   if (best->effect != before) {
-    search.say("  = " + best->effect + " in the place of " + before);
-    result.evidence[best->effect] = result.evidence[before];
+    const std::string remark = "in the place of " + before;
+    EffectEvidence evidence;
+    evidence.p_value = result.evidence[before].p_value;
+    evidence.gain = gainOf(search.fitter, heldOutLoss(search.fitter, lacking), best->loss);
+    result.record.steps.push_back({best->effect,
+                                   false,
+                                   0.0,
+                                   evidence.p_value.value_or(1.0),
+                                   evidence.gain.value,
+                                   evidence.gain.error,
+                                   {},
+                                   remark});
+    search.say("  = " + best->effect + " " + remark);
+    result.evidence[best->effect] = std::move(evidence);
     result.state = std::move(best->state);
     search.fitter.fit(result.state);
   }
@@ -636,7 +649,7 @@ void weighChange(const SearchState& search, const MovedTerm& term) {
   holdAgain(lacking, term);
   lacking.predicted = search.fitter.predict(lacking.model);
   search.fitter.fit(lacking);
-  const std::string name = takeBest(search, contendersFor(search, given, lacking));
+  const std::string name = takeBest(search, lacking, contendersFor(search, given, lacking));
   if (name == given) return;
   result.effects.push_back(name);
   result.released.erase(std::remove(result.released.begin(), result.released.end(), given),
@@ -647,10 +660,11 @@ void weighChange(const SearchState& search, const MovedTerm& term) {
 
 void weighOthers(const SearchState& search) {
   FoundTerms& result = search.result;
-  for (std::string& name : result.effects)
-    if (!search.isAccepted(name))
-      name =
-          takeBest(search, contendersFor(search, name, without(search.fitter, result.state, name)));
+  for (std::string& name : result.effects) {
+    if (search.isAccepted(name)) continue;
+    const FitState lacking = without(search.fitter, result.state, name);
+    name = takeBest(search, lacking, contendersFor(search, name, lacking));
+  }
   if (search.settings.calibrate) return;
   for (const MovedTerm& term : freedTerms(search))
     if (findEffectParameter(term.path) != nullptr) weighChange(search, term);

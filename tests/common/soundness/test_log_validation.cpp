@@ -384,6 +384,9 @@ TEST_CASE("what changes its meaning on the way is fatal, with its time") {
     CHECK(refused(made, "the INS is frozen: it repeats the same 101 times from 79.9 to 89.9 s"));
     made.to = 200.0;
     CHECK(refused(made, "the INS is frozen"));
+    Drive standing = makeDrive(made);
+    for (CommandSample& sample : standing.segments.front().commands) sample.command = {0.0, 0.0};
+    CHECK(lineWith(standing, "it repeats the same") == "");
   }
   SECTION("the gyro's sign, for a while, and from the middle to the end") {
     made.flipped = true;

@@ -171,9 +171,9 @@ const std::vector<Word>& glossary() {
        "how far the predicted pose is from the measured one at the end of an execution"},
       {"held-out", "driving that was not used for the fit; only its errors count as evidence"},
       {"block",
-       "about 20 s of driving, long enough to be independent of the next one; significance is "
-       "counted in "
-       "blocks, not in samples"},
+       "about 20 s of driving, long enough to be independent of the next one (shorter in a drive "
+       "below 200 s, which needs more evidence); significance is counted in blocks, not in "
+       "samples"},
       {"nats",
        "unit of evidence: the model makes held-out data e^n times as likely; a gain counts when it "
        "is well above its standard error"},

@@ -99,6 +99,7 @@ std::string differenceOf(const plan_t& log, const plan_t& replay) {
   std::set<std::string> without{"seq", "search_time"};
   // Plans in older logs have no risk.
   if (!std::isfinite(log.risk)) without.insert({"risk", "risk_per_metre"});
+  if (log.reason_code < 0) without.insert("reason_code");  // and the reason's words alone
   return firstDifference("PLAN on INS of " + std::to_string(log.utime) + " us", log, replay, 0.0,
                          without);
 }

@@ -247,6 +247,17 @@ TEST_CASE("a drive that cannot tell says why and shows no numbers that were not 
   CHECK_FALSE(has(text, "end-pose error"));
 }
 
+TEST_CASE("the report of a brief drive claims no test of the residuals") {
+  GapFinding finding = samples::finding(GapVerdict::kFound);
+  finding.source.blocks = 10;
+  CHECK(has(markdownOf(reportPage(finding, samples::inputs())), "Test of the residuals: p"));
+  finding.source.brief = true;
+  const std::string brief = markdownOf(reportPage(finding, samples::inputs()));
+  CHECK_FALSE(has(brief, "Test of the residuals"));
+  CHECK_FALSE(has(brief, "independent blocks"));
+  CHECK(has(brief, "the residuals were not tested"));
+}
+
 TEST_CASE("the new model is read back with its provenance and envelope") {
   const GapFinding finding = samples::finding(GapVerdict::kFound);
   const ModelDocument model = newModel(finding, samples::inputs());

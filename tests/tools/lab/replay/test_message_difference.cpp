@@ -116,6 +116,23 @@ TEST_CASE("the number of a message and how long a search took are never compared
   CHECK(differenceOf(program(), other).empty());
 }
 
+TEST_CASE("what messages of an older version lack is not compared") {
+  plan_t old_plan = plan();
+  old_plan.reason_code = -1;
+  plan_t new_plan = old_plan;
+  new_plan.reason_code = 7;
+  new_plan.risk = 0.01;
+  new_plan.risk_per_metre = 0.01;
+  CHECK(differenceOf(old_plan, new_plan).empty());
+  CHECK_FALSE(differenceOf(new_plan, old_plan).empty());
+  auto old_note = blank<learning_t>();
+  old_note.gate_code = -1;
+  learning_t new_note = old_note;
+  new_note.gate_code = 0;
+  CHECK(differenceOf(old_note, new_note, 0.0).empty());
+  CHECK_FALSE(differenceOf(new_note, old_note, 0.0).empty());
+}
+
 TEST_CASE("a plan's first different pattern, pose or covariance is named") {
   plan_t replay = plan();
   replay.covariance[1][3] = 0.5;

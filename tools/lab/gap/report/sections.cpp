@@ -289,11 +289,15 @@ std::vector<Block> logsBlocks(const GapFinding& finding) {
   if (finding.source.log_notes.empty()) points.items.push_back("Nothing unusual.");
   blocks.push_back(points);
   if (finding.source.blocks > 0)
-    blocks.push_back(Paragraph{std::to_string(finding.source.blocks) + " independent blocks of " +
-                               threeDigits(finding.source.block_length) +
-                               " s; all significance levels count blocks, not "
-                               "samples. Test of the residuals: p " +
-                               saidChance(finding.adequacy.p_value) + "."});
+    blocks.push_back(Paragraph{
+        std::to_string(finding.source.blocks) +
+        (finding.source.brief ? " blocks of " : " independent blocks of ") +
+        threeDigits(finding.source.block_length) +
+        " s; all significance levels count blocks, not samples. " +
+        (finding.source.brief
+             ? "Neighbouring blocks are that short that they share their ground, "
+               "so more evidence is asked for; the residuals were not tested."
+             : "Test of the residuals: p " + saidChance(finding.adequacy.p_value) + ".")});
   return blocks;
 }
 
